@@ -1,0 +1,123 @@
+"""Model modes against measured ones, paired by a rule fixed beforehand.
+
+When 25 model modes fill 3 kHz, any measured frequency has one within a few per cent, so the nearest one proves
+nothing. Where the measurement gives frequencies alone, the n dominant modes of the model, in order of frequency,
+are paired with the n measured ones; see :mod:`housing.dominance`.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.dominance import Dominance
+from housing.errors import HousingError
+
+FloatArray = npt.NDArray[np.float64]
+
+# The band in which dominant modes are looked for reaches so far beyond the first and the last measured frequency.
+_BAND = (0.75, 1.05)
+
+
+@dataclass(frozen=True)
+class ModePair:
+    """A measured mode and the model's.
+
+    Attributes
+    ----------
+    measured, model : float
+        Circular frequencies [rad/s].
+    mode : int
+        The model mode's number, from 1.
+    strength : float
+        Its lateral acceleration strength [1/kg].
+    """
+
+    measured: float
+    model: float
+    mode: int
+    strength: float
+
+    @property
+    def error_percent(self) -> float:
+        """Model minus measured, in per cent of measured."""
+        return 100.0 * (self.model / self.measured - 1.0)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Pairs of measured and model modes, and what the pairing is worth.
+
+    Attributes
+    ----------
+    pairs : tuple of ModePair
+    pairing : str
+        The rule by which they were paired.
+    band : tuple of float
+        Where dominant modes were looked for [rad/s].
+    gap : float
+        ln(strength of the last chosen mode / strength of the first left out); below 0.1 the choice is a coin toss.
+    measures_agree : bool
+        Whether acceleration, velocity and mean absolute strength all choose these modes.
+    """
+
+    pairs: tuple[ModePair, ...]
+    pairing: str
+    band: tuple[float, float]
+    gap: float
+    measures_agree: bool
+
+    @property
+    def rms_error_percent(self) -> float:
+        """Root-mean-square of the errors."""
+        return float(np.sqrt(np.mean([pair.error_percent**2 for pair in self.pairs])))
+
+    @property
+    def max_error_percent(self) -> float:
+        """Largest absolute error."""
+        return max(abs(pair.error_percent) for pair in self.pairs)
+
+
+def compare_by_dominance(
+    measured: FloatArray, strengths: Dominance, *, band: tuple[float, float] | None = None
+) -> Comparison:
+    """Pair the measured modes with as many dominant modes of the model, in order of frequency.
+
+    Parameters
+    ----------
+    measured : ndarray, shape (n,)
+        Measured circular frequencies, ascending [rad/s].
+    strengths : Dominance
+        Of the model's modes.
+    band : tuple of float, optional
+        Where to look for dominant modes [rad/s]; by default 0.75 of the first to 1.05 of the last measured one.
+
+    Raises
+    ------
+    HousingError
+        Where the model has fewer modes in the band than were measured.
+    """
+    low, high = band or (_BAND[0] * float(measured[0]), _BAND[1] * float(measured[-1]))
+    chosen = strengths.strongest(len(measured), (low, high))
+    if len(chosen) < len(measured):
+        hertz = 2.0 * np.pi
+        raise HousingError(
+            f"{len(measured)} measured modes, but the model has only {len(chosen)} between {low / hertz:.0f} and "
+            f"{high / hertz:.0f} Hz; raise the housing's frequency_limit or correct the model"
+        )
+    pairs = tuple(
+        ModePair(
+            float(frequency),
+            float(strengths.frequencies[mode]),
+            int(mode) + 1,
+            float(strengths.acceleration[mode]),
+        )
+        for frequency, mode in zip(measured, chosen, strict=True)
+    )
+    return Comparison(
+        pairs=pairs,
+        pairing="dominance in order of frequency",
+        band=(low, high),
+        gap=strengths.gap(len(measured), (low, high)),
+        measures_agree=strengths.measures_agree(len(measured), (low, high)),
+    )

@@ -1,0 +1,13 @@
+"""What can go wrong between a mesh and its modes."""
+
+
+class HousingError(ValueError):
+    """The housing's description does not fit its mesh; the message says what was expected."""
+
+
+class IncompleteModesError(RuntimeError):
+    """The modes found are not all there are, or not accurate enough: nothing is returned rather than a gap."""
+
+
+class FactorizationError(RuntimeError):
+    """A matrix could not be factored, or its factor does not solve; the message says what to try."""

@@ -1,0 +1,253 @@
+"""Natural modes of the housing, with the proof that none is missing.
+
+Shift-invert Lanczos (ARPACK's, through scipy) on K φ = λ M φ, about a shift just below zero, which keeps the
+shifted matrix positive definite for a free body too. The proof is Sylvester's law of inertia: the number of
+negative pivots in K - σM = L D Lᵀ is the number of eigenvalues below σ, however many of them coincide.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from housing.assembly import Matrices
+from housing.errors import FactorizationError, HousingError, IncompleteModesError
+from housing.factorization import Backend, Factorization, Factorizer
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+RESIDUAL_BOUND = 1e-8
+_ATTEMPTS = 3
+_RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """The proof of a set of modes.
+
+    Attributes
+    ----------
+    limit : float
+        The circular frequency up to which the set is complete [rad/s].
+    expected : int
+        Modes below the limit by the inertia of K - limit² M.
+    found : int
+        Modes in the set.
+    max_residual : float
+        Largest of |K φ - λ M φ| / (|λ - shift| |M φ|).
+    """
+
+    limit: float
+    expected: int
+    found: int
+    max_residual: float
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing is missing and every mode is accurate."""
+        return self.expected == self.found and self.max_residual < RESIDUAL_BOUND
+
+
+@dataclass(frozen=True)
+class ModeSet:
+    """Natural modes, ascending.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (n_modes,)
+        ω [rad/s]; rigid-body modes are exactly 0.
+    shapes : ndarray, shape (n_modes, n_nodes, 3)
+        Displacement at each node, normalised to φᵀ M φ = 1 [1/√kg].
+    certificate : Certificate
+    seconds : dict of str to float
+        Time taken by ``factorisation`` and ``eigensolver`` [s].
+    backend : str
+        Which factorisation was used.
+    """
+
+    frequencies: FloatArray
+    shapes: FloatArray
+    certificate: Certificate
+    seconds: dict[str, float]
+    backend: str
+
+    @property
+    def frequencies_hz(self) -> FloatArray:
+        """[Hz], shape (n_modes,)."""
+        return self.frequencies / (2.0 * np.pi)
+
+    def project(self, port: sparse.csr_array) -> FloatArray:
+        """The modes' motions at a port, shape (n_modes, n_motions)."""
+        return np.asarray((port @ self.shapes.reshape(len(self.shapes), -1).T).T)
+
+
+def solve_modes(
+    matrices: Matrices,
+    fixed: IntArray | None = None,
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+    backend: Backend | None = None,
+    threads: int = 2,
+    progress: Callable[[str], None] = lambda message: None,
+) -> ModeSet:
+    """All natural modes below a frequency, or the lowest of them by number.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        Of n_nodes nodes, springs included.
+    fixed : ndarray of int, optional
+        Degrees of freedom held at zero.
+    frequency_limit : float
+        Every mode below it is found [rad/s]. Either this or ``count``.
+    count : int
+        The lowest so many; one or two more where the last would split a multiple mode.
+    backend, threads
+        See :class:`housing.factorization.Factorizer`.
+    progress : callable
+        Told in words what happens next.
+
+    Raises
+    ------
+    HousingError
+        Where neither or both of limit and count are given, or they ask for nothing or for everything.
+    IncompleteModesError
+        Where the certificate cannot be made good after three searches.
+    """
+    if (frequency_limit is None) == (count is None):
+        raise HousingError("give a frequency limit or a number of modes, one of the two")
+    free = _free_freedoms(3 * matrices.n_nodes, fixed)
+    reduced = _Reduced(matrices, free)
+    if count is not None and not 1 <= count < min(len(free) - 1, 2000):
+        raise HousingError(
+            f"{count} modes asked of {len(free)} degrees of freedom: give 1 to {min(len(free), 2000) - 2}"
+        )
+    if frequency_limit is not None and frequency_limit <= 0.0:
+        raise HousingError(f"frequency limit {frequency_limit} rad/s must be positive")
+
+    start = time.perf_counter()
+    factorizer = Factorizer(reduced.shifted(0.0), backend=backend, threads=threads)
+    expected = 0
+    if frequency_limit is not None:
+        progress("counting the modes below the limit")
+        expected = factorizer.factor(reduced.shifted(frequency_limit**2)).negative
+        if expected == 0:
+            raise HousingError(f"the housing has no mode below {frequency_limit / (2 * np.pi):g} Hz; raise the limit")
+        # Small beside the wanted eigenvalues, so they stand out, and large beside the rounding of K.
+        shift = -((0.06 * frequency_limit) ** 2)
+    else:
+        shift = -1e-9 * float(np.max(reduced.stiffness.diagonal() / reduced.mass.diagonal()))
+    progress("factoring")
+    factor = factorizer.factor(reduced.shifted(shift))
+    if factor.negative:
+        raise FactorizationError(
+            f"K - {shift:g} M has {factor.negative} negative pivots; the stiffness is not positive semidefinite"
+        )
+    factored = time.perf_counter() - start
+    start = time.perf_counter()
+    progress(f"searching {expected or count} modes")
+    for attempt in range(_ATTEMPTS):
+        wanted = (count or expected) + (2 if count is not None else 0) + 2 * attempt
+        values, vectors = _lanczos(reduced, factor, shift, min(wanted, len(free) - 1), attempt)
+        if frequency_limit is not None:
+            limit = frequency_limit
+        else:
+            assert count is not None
+            limit = _gap_after(values, count)
+            expected = factorizer.factor(reduced.shifted(limit**2)).negative if limit > 0.0 else -1
+        keep = values < limit**2
+        residual = _residuals(reduced, values[keep], vectors[:, keep], shift)
+        certificate = Certificate(limit, expected, int(keep.sum()), float(residual.max(initial=0.0)))
+        if certificate.complete:
+            break
+    else:
+        raise IncompleteModesError(
+            f"{certificate.found} modes found below {limit / (2 * np.pi):.6g} Hz where the inertia demands "
+            f"{certificate.expected}, largest residual {certificate.max_residual:.1e}; move the limit a little or "
+            "refine the mesh"
+        )
+    shapes = np.zeros((certificate.found, 3 * matrices.n_nodes))
+    shapes[:, free] = _oriented(vectors[:, keep]).T
+    values = values[keep]
+    values[np.abs(values) < 1e-6 * np.abs(shift)] = 0.0
+    return ModeSet(
+        frequencies=np.sqrt(np.maximum(values, 0.0)),
+        shapes=shapes.reshape(len(shapes), -1, 3),
+        certificate=certificate,
+        seconds={"factorisation": factored, "eigensolver": time.perf_counter() - start},
+        backend=factor.backend,
+    )
+
+
+class _Reduced:
+    """The matrices without the fixed degrees of freedom."""
+
+    def __init__(self, matrices: Matrices, free: IntArray) -> None:
+        self._matrices = matrices
+        self._free = free
+        self._all = len(free) == 3 * matrices.n_nodes
+        self.stiffness = self._reduce(matrices.stiffness)
+        self.mass = self._reduce(matrices.mass)
+
+    def shifted(self, shift: float) -> sparse.csr_array:
+        return self._reduce(self._matrices.shifted(shift))
+
+    def _reduce(self, matrix: sparse.csr_array) -> sparse.csr_array:
+        return matrix if self._all else sparse.csr_array(matrix[self._free][:, self._free])
+
+
+def _free_freedoms(size: int, fixed: IntArray | None) -> IntArray:
+    held = np.zeros(size, dtype=bool)
+    if fixed is not None:
+        held[fixed] = True
+    if held.all():
+        raise HousingError("every degree of freedom is fixed")
+    return np.flatnonzero(~held)
+
+
+def _lanczos(
+    reduced: _Reduced, factor: Factorization, shift: float, count: int, attempt: int
+) -> tuple[FloatArray, FloatArray]:
+    size = factor.size
+    values, vectors = eigsh(
+        reduced.stiffness,
+        k=count,
+        M=reduced.mass,
+        sigma=shift,
+        OPinv=LinearOperator((size, size), matvec=factor.solve, dtype=np.float64),
+        v0=np.random.default_rng(attempt).standard_normal(size),
+        ncv=min(size, max(2 * count + 10, 24)),
+        tol=0.0,
+    )
+    order = np.argsort(values)
+    vectors = vectors[:, order]
+    vectors /= np.sqrt(np.einsum("ij,ij->j", vectors, reduced.mass @ vectors))
+    return values[order], vectors
+
+
+def _residuals(reduced: _Reduced, values: FloatArray, vectors: FloatArray, shift: float) -> FloatArray:
+    inertia = reduced.mass @ vectors
+    error = reduced.stiffness @ vectors - inertia * values
+    scale = np.abs(values - shift) * np.linalg.norm(inertia, axis=0)
+    return np.asarray(np.linalg.norm(error, axis=0) / scale)
+
+
+def _gap_after(values: FloatArray, count: int) -> float:
+    """A circular frequency in the first gap after ``count`` modes; 0 where they run out within a multiple mode."""
+    scale = float(np.abs(values).max())
+    for below, above in zip(values[count - 1 :], values[count:], strict=False):
+        if above - below > _RELATIVE_GAP * scale:
+            return float(np.sqrt(max(0.5 * (below + above), 0.0)))
+    return 0.0
+
+
+def _oriented(vectors: FloatArray) -> FloatArray:
+    """The same vectors with their largest entry positive, so that equal input draws equal pictures."""
+    largest = vectors[np.argmax(np.abs(vectors), axis=0), np.arange(vectors.shape[1])]
+    return np.asarray(vectors * np.sign(largest))

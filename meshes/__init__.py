@@ -1,0 +1,35 @@
+"""Finite-element meshes: from a geometry, or a file, to nodes and elements with named regions.
+
+What the room offers:
+
+- :class:`Mesh` -- nodes, tetrahedra and named regions, in metres.
+- :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet` -- a gearbox
+  housing described by its dimensions; :func:`mesh_box` meshes it with gmsh.
+- :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
+- :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
+
+In names, *mesh* is always the finite-element mesh; the gears' is the *gear mesh*.
+gmsh itself is imported only when a mesh is made.
+"""
+
+from meshes.box import Bore, Boss, BoxGeometry, Feet, WallThickness, mesh_box
+from meshes.errors import GeometryError, MesherUnavailableError
+from meshes.files import read_mesh, write_mesh
+from meshes.mesh import Mesh
+from meshes.quality import MeshQuality, mesh_quality
+
+__all__ = [
+    "Bore",
+    "Boss",
+    "BoxGeometry",
+    "Feet",
+    "GeometryError",
+    "Mesh",
+    "MeshQuality",
+    "MesherUnavailableError",
+    "WallThickness",
+    "mesh_box",
+    "mesh_quality",
+    "read_mesh",
+    "write_mesh",
+]

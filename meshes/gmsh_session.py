@@ -1,0 +1,62 @@
+"""One gmsh session: loaded late, quiet, deterministic, and closed whatever happens."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from meshes.errors import GeometryError, MesherUnavailableError
+
+# What gmsh's wheel links against but does not carry, as Debian and Ubuntu package names.
+SYSTEM_PACKAGES = (
+    "libglu1-mesa",
+    "libxft2",
+    "libxcursor1",
+    "libxinerama1",
+    "libxfixes3",
+    "libxrender1",
+    "libgomp1",
+)
+
+
+def load_gmsh() -> Any:
+    """Import gmsh.
+
+    Raises
+    ------
+    MesherUnavailableError
+        Where a system library that gmsh needs is missing; the message names the packages to install.
+    """
+    try:
+        import gmsh
+    except (ImportError, OSError) as error:
+        packages = " ".join(SYSTEM_PACKAGES)
+        raise MesherUnavailableError(
+            f"gmsh cannot be loaded: {error}. On Debian or Ubuntu install its system libraries with\n"
+            f"    sudo apt-get install {packages}"
+        ) from error
+    return gmsh
+
+
+@contextmanager
+def gmsh_session(name: str) -> Iterator[Any]:
+    """A gmsh model that is finalised at the end; gmsh's own failures become :class:`GeometryError`.
+
+    The session runs on one thread so that the same geometry gives the same mesh, bit for bit.
+    """
+    gmsh = load_gmsh()
+    # interruptible=False leaves the signal handlers alone, so it works off the main thread and Ctrl-C stays ours.
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", 1)
+        gmsh.option.setNumber("Mesh.RandomSeed", 1)
+        gmsh.model.add(name)
+        yield gmsh
+    except GeometryError:
+        raise
+    except Exception as error:  # gmsh raises bare Exception for every failure of its kernel
+        if type(error) is not Exception:
+            raise
+        raise GeometryError(f"gmsh could not mesh {name}: {error}") from error
+    finally:
+        gmsh.finalize()
