@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
+from housing.errors import HousingError
 from housing.material import Material
 from meshes import Mesh
 
@@ -86,7 +87,15 @@ def assemble(mesh: Mesh, material: Material) -> Matrices:
 
     Straight elements are integrated exactly: to degree 2 (p - 1) for the stiffness and 2 p for the mass, with p
     the order of the elements. Elements with a curved side take the same points on their isoparametric mapping.
+
+    Raises
+    ------
+    HousingError
+        Where a node belongs to no element, or an element's curved sides fold it.
     """
+    unused = int(np.count_nonzero(np.bincount(mesh.cells.ravel(), minlength=len(mesh.points)) == 0))
+    if unused:
+        raise HousingError(f"{unused} of the mesh's {len(mesh.points)} nodes belong to no element; leave them out")
     n_nodes, per_element = len(mesh.points), mesh.cells.shape[1]
     rows = np.repeat(mesh.cells, per_element, axis=1).ravel()
     columns = np.tile(mesh.cells, per_element).ravel()
@@ -123,7 +132,7 @@ def _gradient_products(mesh: Mesh, cells: npt.NDArray[np.int64]) -> FloatArray:
     """G of some elements [m], shape (n_cells, n_shape, 3, n_shape, 3)."""
     _, reference, weights = _shape_functions(mesh.order, degree=2 * (mesh.order - 1))
     jacobian = np.einsum("eai,qaj->eqij", mesh.points[cells], reference, optimize=True)
-    scale = np.sqrt(weights * np.linalg.det(jacobian))
+    scale = np.sqrt(_point_volumes(jacobian, weights))
     gradients = np.einsum("qaj,eqji->eqai", reference, np.linalg.inv(jacobian), optimize=True)
     rooted = (gradients * scale[:, :, None, None]).reshape(*scale.shape, -1)
     products = rooted.transpose(0, 2, 1) @ rooted
@@ -135,9 +144,20 @@ def _shape_products(mesh: Mesh, cells: npt.NDArray[np.int64]) -> FloatArray:
     """∫ N_a N_b dV of some elements [m³], shape (n_cells, n_shape, n_shape)."""
     values, reference, weights = _shape_functions(mesh.order, degree=2 * mesh.order)
     jacobian = np.einsum("eai,qaj->eqij", mesh.points[cells], reference, optimize=True)
-    volumes = weights * np.linalg.det(jacobian)
+    volumes = _point_volumes(jacobian, weights)
     outer = np.einsum("qa,qb->qab", values, values).reshape(len(weights), -1)
     return np.asarray((volumes @ outer).reshape(len(cells), values.shape[1], -1))
+
+
+def _point_volumes(jacobian: FloatArray, weights: FloatArray) -> FloatArray:
+    """Volume that each quadrature point stands for [m³], shape (n_cells, n_points)."""
+    determinant = np.linalg.det(jacobian)
+    folded = int(np.count_nonzero((determinant <= 0.0).any(axis=1)))
+    if folded:
+        raise HousingError(
+            f"{folded} elements are folded by their curved sides: refine the mesh where it is curved, or use order 1"
+        )
+    return np.asarray(weights * determinant)
 
 
 def _shape_functions(order: int, degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -95,8 +95,10 @@ def compare_by_dominance(
     Raises
     ------
     HousingError
-        Where the model has fewer modes in the band than were measured.
+        Where nothing was measured, the measured frequencies do not ascend, or the model has fewer modes in the band.
     """
+    if len(measured) == 0 or measured[0] <= 0.0 or np.any(np.diff(measured) <= 0.0):
+        raise HousingError(f"measured frequencies {measured} rad/s must be positive and ascending")
     low, high = band or (_BAND[0] * float(measured[0]), _BAND[1] * float(measured[-1]))
     chosen = strengths.strongest(len(measured), (low, high))
     if len(chosen) < len(measured):

@@ -27,7 +27,7 @@ class Material:
     density: float
 
     def __post_init__(self) -> None:
-        if self.youngs_modulus <= 0.0 or self.density <= 0.0:
+        if not (self.youngs_modulus > 0.0 and self.density > 0.0):
             raise HousingError(f"E = {self.youngs_modulus} Pa and ρ = {self.density} kg/m³ must be positive")
         if not 0.0 <= self.poisson_ratio < 0.5:
             raise HousingError(f"Poisson's ratio {self.poisson_ratio} must be at least 0 and below 0.5")

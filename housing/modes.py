@@ -22,8 +22,10 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 RESIDUAL_BOUND = 1e-8
+OVERLAP_BOUND = 1e-8
 _ATTEMPTS = 3
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
+_SHIFT = 0.06  # part of the limit: its square is small beside the wanted eigenvalues, large beside the rounding of K
 
 
 @dataclass(frozen=True)
@@ -39,18 +41,22 @@ class Certificate:
     found : int
         Modes in the set.
     max_residual : float
-        Largest of |K φ - λ M φ| / (|λ - shift| |M φ|).
+        Largest of |K φ - λ M φ| / ((λ + ω₀²) |M φ|), with ω₀ = 0.06 limit so that rigid modes have a scale too.
+    max_overlap : float
+        Largest |φᵢᵀ M φⱼ| of two modes: without it one mode found twice would hide another that is missing.
     """
 
     limit: float
     expected: int
     found: int
     max_residual: float
+    max_overlap: float
 
     @property
     def complete(self) -> bool:
-        """Whether nothing is missing and every mode is accurate."""
-        return self.expected == self.found and self.max_residual < RESIDUAL_BOUND
+        """Whether nothing is missing, no mode stands twice and every mode is accurate."""
+        proved = self.max_residual < RESIDUAL_BOUND and self.max_overlap < OVERLAP_BOUND
+        return self.expected == self.found and proved
 
 
 @dataclass(frozen=True)
@@ -126,7 +132,7 @@ def solve_modes(
     reduced = _Reduced(matrices, free)
     if count is not None and not 1 <= count < min(len(free) - 1, 2000):
         raise HousingError(
-            f"{count} modes asked of {len(free)} degrees of freedom: give 1 to {min(len(free), 2000) - 2}"
+            f"{count} modes asked of {len(free)} degrees of freedom: give 1 to {min(len(free) - 1, 2000) - 1}"
         )
     if frequency_limit is not None and frequency_limit <= 0.0:
         raise HousingError(f"frequency limit {frequency_limit} rad/s must be positive")
@@ -139,10 +145,13 @@ def solve_modes(
         expected = factorizer.factor(reduced.shifted(frequency_limit**2)).negative
         if expected == 0:
             raise HousingError(f"the housing has no mode below {frequency_limit / (2 * np.pi):g} Hz; raise the limit")
-        # Small beside the wanted eigenvalues, so they stand out, and large beside the rounding of K.
-        shift = -((0.06 * frequency_limit) ** 2)
+        if expected == len(free):
+            raise HousingError(
+                f"every mode of the mesh lies below {frequency_limit / (2 * np.pi):g} Hz; lower the limit or refine"
+            )
+        shift = -((_SHIFT * frequency_limit) ** 2)
     else:
-        shift = -1e-9 * float(np.max(reduced.stiffness.diagonal() / reduced.mass.diagonal()))
+        shift = -1e-7 * float(np.max(reduced.stiffness.diagonal() / reduced.mass.diagonal()))
     progress("factoring")
     factor = factorizer.factor(reduced.shifted(shift))
     if factor.negative:
@@ -159,23 +168,24 @@ def solve_modes(
             limit = frequency_limit
         else:
             assert count is not None
-            limit = _gap_after(values, count)
+            limit = _gap_after(values, count, -shift)
             expected = factorizer.factor(reduced.shifted(limit**2)).negative if limit > 0.0 else -1
         keep = values < limit**2
-        residual = _residuals(reduced, values[keep], vectors[:, keep], shift)
-        certificate = Certificate(limit, expected, int(keep.sum()), float(residual.max(initial=0.0)))
+        floor = max((_SHIFT * limit) ** 2, -shift)
+        residual, overlap = _proofs(reduced, values[keep], vectors[:, keep], floor)
+        certificate = Certificate(limit, expected, int(keep.sum()), residual, overlap)
         if certificate.complete:
             break
     else:
         raise IncompleteModesError(
             f"{certificate.found} modes found below {limit / (2 * np.pi):.6g} Hz where the inertia demands "
-            f"{certificate.expected}, largest residual {certificate.max_residual:.1e}; move the limit a little or "
-            "refine the mesh"
+            f"{certificate.expected}, largest residual {certificate.max_residual:.1e}, largest overlap "
+            f"{certificate.max_overlap:.1e}; move the limit a little or refine the mesh"
         )
     shapes = np.zeros((certificate.found, 3 * matrices.n_nodes))
     shapes[:, free] = _oriented(vectors[:, keep]).T
     values = values[keep]
-    values[np.abs(values) < 1e-6 * np.abs(shift)] = 0.0
+    values[np.abs(values) < 1e-6 * floor] = 0.0
     return ModeSet(
         frequencies=np.sqrt(np.maximum(values, 0.0)),
         shapes=shapes.reshape(len(shapes), -1, 3),
@@ -231,16 +241,21 @@ def _lanczos(
     return values[order], vectors
 
 
-def _residuals(reduced: _Reduced, values: FloatArray, vectors: FloatArray, shift: float) -> FloatArray:
+def _proofs(reduced: _Reduced, values: FloatArray, vectors: FloatArray, floor: float) -> tuple[float, float]:
+    """The largest residual and the largest overlap of the modes; see :class:`Certificate`."""
     inertia = reduced.mass @ vectors
     error = reduced.stiffness @ vectors - inertia * values
-    scale = np.abs(values - shift) * np.linalg.norm(inertia, axis=0)
-    return np.asarray(np.linalg.norm(error, axis=0) / scale)
+    residuals = np.linalg.norm(error, axis=0) / ((np.abs(values) + floor) * np.linalg.norm(inertia, axis=0))
+    overlaps = vectors.T @ inertia - np.eye(len(values))
+    return float(residuals.max(initial=0.0)), float(np.abs(overlaps).max(initial=0.0))
 
 
-def _gap_after(values: FloatArray, count: int) -> float:
-    """A circular frequency in the first gap after ``count`` modes; 0 where they run out within a multiple mode."""
-    scale = float(np.abs(values).max())
+def _gap_after(values: FloatArray, count: int, floor: float) -> float:
+    """A circular frequency in the first gap after ``count`` modes; 0 where they run out within a multiple mode.
+
+    ``floor`` [rad²/s²] is far above the rounding of rigid modes, whose differences are no gaps.
+    """
+    scale = max(float(np.abs(values).max()), floor)
     for below, above in zip(values[count - 1 :], values[count:], strict=False):
         if above - below > _RELATIVE_GAP * scale:
             return float(np.sqrt(max(0.5 * (below + above), 0.0)))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from housing.errors import HousingError
 from housing.modes import ModeSet
 from meshes import Mesh
 
@@ -96,7 +97,13 @@ def render_modes(
     -------
     list of path
         The files, in the order of ``numbers``.
+
+    Raises
+    ------
+    HousingError
+        Where there is no mode of that number, or no view of that name.
     """
+    _check(modes, numbers, view)
     pyvista = load_pyvista()
     folder.mkdir(parents=True, exist_ok=True)
     surface, nodes = _outer_surface(pyvista, mesh)
@@ -127,6 +134,7 @@ def render_gallery(
     tile: tuple[int, int] = (520, 440),
 ) -> Path:
     """Draw several modes on one sheet, up to four in a row; see :func:`render_modes`."""
+    _check(modes, numbers, view)
     pyvista = load_pyvista()
     surface, nodes = _outer_surface(pyvista, mesh)
     outline = surface.extract_feature_edges(feature_angle=30.0, boundary_edges=False, manifold_edges=False)
@@ -144,6 +152,14 @@ def render_gallery(
     finally:
         plotter.close()
     return path
+
+
+def _check(modes: ModeSet, numbers: Sequence[int], view: str) -> None:
+    missing = [number for number in numbers if not 1 <= number <= len(modes.shapes)]
+    if missing or not numbers:
+        raise HousingError(f"modes {missing or 'none'} asked for; give numbers from 1 to {len(modes.shapes)}")
+    if view not in _VIEWS:
+        raise HousingError(f"no view {view!r}; there are {', '.join(VIEWS)}")
 
 
 def _outer_surface(pyvista: Any, mesh: Mesh) -> tuple[Any, npt.NDArray[np.int64]]:

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
+from housing.errors import HousingError
 from housing.surface import facet_normals, surface_point
 from meshes import Mesh
 
@@ -66,6 +67,11 @@ def survey_grid(
     counts : dict
         Columns and rows on each face.
 
+    Raises
+    ------
+    HousingError
+        Where no facet of the mesh looks the way of a face.
+
     Notes
     -----
     Each point is projected along the face's normal on to the facets that look that way on the outer side; one
@@ -81,6 +87,8 @@ def survey_grid(
         normal_axes, column_axis, row_axis = _FACES[face]
         normal = np.array(normal_axes, dtype=np.float64)
         outer = boundary[(facing @ normal > 0.9) & ((centers - middle) @ normal > 0.0)]
+        if len(outer) == 0:
+            raise HousingError(f"no facet of the housing makes up the {face} of the box {box.tolist()} m")
         for column in (np.arange(columns) + 0.5) / columns:
             for row in (np.arange(rows) + 0.5) / rows:
                 place = middle.copy()

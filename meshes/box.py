@@ -16,7 +16,7 @@ from meshes.mesh import IntArray, Mesh
 
 # gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
 _GMSH_TO_VTK = {4: [0, 1, 2, 3], 10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
-_TRIANGLE_TO_OURS = {3: [0, 1, 2], 6: [0, 1, 2, 3, 4, 5]}
+_FACES = ("left", "right", "bottom", "top", "back", "front", "foot-1", "foot-2", "foot-3", "foot-4")
 
 
 @dataclass(frozen=True)
@@ -101,16 +101,17 @@ class BoxGeometry:
         wall = self.wall
         pairs = ((wall.left, wall.right), (wall.bottom, wall.top), (wall.back, wall.front))
         for axis, length, (low, high) in zip("xyz", self.size, pairs, strict=True):
-            if min(length, low, high) <= 0.0:
+            if not all(value > 0.0 for value in (length, low, high)):
                 raise GeometryError(f"box along {axis}: size {length} m and walls {low}, {high} m must be positive")
             if low + high >= length:
                 raise GeometryError(f"walls of {low} m and {high} m leave no room in a box {length} m along {axis}")
         if self.feet is not None:
             width, height, depth = self.feet.size
-            if min(self.feet.size) <= 0.0 or 2 * width > self.size[0] or 2 * depth > self.size[2]:
+            # Feet that touch would melt into one, and their undersides with them.
+            if min(self.feet.size) <= 0.0 or 2 * width >= self.size[0] or 2 * depth >= self.size[2]:
                 raise GeometryError(
                     f"feet of {width} x {height} x {depth} m do not fit under a base of "
-                    f"{self.size[0]} x {self.size[2]} m: give positive sizes, at most half the base each"
+                    f"{self.size[0]} x {self.size[2]} m: give positive sizes, less than half the base each"
                 )
         for bore in self.bores:
             self._check_bore(bore)
@@ -153,6 +154,8 @@ class BoxGeometry:
         return (self.wall.bottom, self.size[1] - self.wall.top)
 
     def _check_bore(self, bore: Bore) -> None:
+        if bore.name in _FACES:
+            raise GeometryError(f"a seat cannot be named {bore.name!r}, which is a surface of the box itself")
         self.end_wall(bore)
         if bore.diameter <= 0.0:
             raise GeometryError(f"seat {bore.name!r}: diameter {bore.diameter} m must be positive")
@@ -219,7 +222,16 @@ def mesh_box(geometry: BoxGeometry, mesh_size: float, *, order: int = 2) -> Mesh
         gmsh.option.setNumber("Mesh.Algorithm3D", 1)
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(order)
+        if order == 2:
+            _unfold(gmsh)
         return _collect(gmsh, order, named)
+
+
+def _unfold(gmsh: Any) -> None:
+    """Bend elements back whose curved side folds them: it happens where they are large beside a bore's radius."""
+    tags, _ = gmsh.model.mesh.getElementsByType(11)
+    if gmsh.model.mesh.getElementQualities(tags, "minSJ").min() < 0.05:
+        gmsh.model.mesh.optimize("HighOrder")
 
 
 def _build_solid(gmsh: Any, geometry: BoxGeometry) -> None:

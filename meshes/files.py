@@ -13,6 +13,9 @@ from meshes.mesh import FloatArray, IntArray, Mesh
 _TETRAHEDRA = {"tetra": 4, "tetra10": 10}
 _TRIANGLES = {3: "triangle", 6: "triangle6"}
 
+# The endings under which meshio keeps both orders of tetrahedra whole; under others it drops elements in silence.
+WRITABLE = (".inp", ".med", ".msh", ".vtk", ".vtu", ".xdmf")
+
 
 def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     """Read a mesh of tetrahedra, with its physical groups or cell sets as named regions.
@@ -27,10 +30,12 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     Raises
     ------
     GeometryError
-        Where the file is missing, cannot be read, or holds no tetrahedra.
+        Where the file is missing, cannot be read, holds no tetrahedra, or holds other solid elements beside them.
     """
     import meshio
 
+    if not unit > 0.0:
+        raise GeometryError(f"unit of length {unit} m must be positive")
     path = Path(path)
     if not path.is_file():
         raise GeometryError(f"mesh file {path}: no such file")
@@ -46,6 +51,11 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     if solid is None:
         found = ", ".join(sorted(kinds)) or "nothing"
         raise GeometryError(f"mesh file {path} holds no tetrahedra (tet4 or tet10); it holds: {found}")
+    others = sorted({block.type for block in content.cells if block.dim == 3} - {solid})
+    if others:
+        raise GeometryError(
+            f"mesh file {path} holds {', '.join(others)} beside {solid}; every solid element must be of one kind"
+        )
     facet = _TRIANGLES[3 if solid == "tetra" else 6]
     names = _region_names(content)
 
@@ -65,7 +75,7 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
 
     connectivity = np.concatenate(cells)
     used = np.unique(connectivity)
-    renumbered = np.full(len(content.points), -1, dtype=np.int64)
+    renumbered = np.full(len(content.points), -1, dtype=np.int64)  # -1 in a surface is refused by Mesh
     renumbered[used] = np.arange(len(used))
     points = np.asarray(content.points, dtype=np.float64)[used] * unit
     return Mesh(
@@ -88,33 +98,31 @@ def _right_handed(points: FloatArray, cells: IntArray) -> IntArray:
 def write_mesh(mesh: Mesh, path: str | Path) -> None:
     """Write a mesh with its named surfaces; the file appears whole or not at all.
 
-    The format follows the file's ending (``.msh``, ``.vtu``, ``.inp``, ...). Named surfaces become physical groups
-    in ``.msh``, element sets in ``.inp``, and a cell array ``region`` (0 for the solid, then the surfaces by name)
-    in ``.vtu`` and ``.vtk``; other formats carry the mesh alone.
+    The format follows the file's ending, one of :data:`WRITABLE`. Named surfaces become physical groups in ``.msh``,
+    element sets in ``.inp``, and a cell array ``region`` (0 for the solid, then the surfaces by name) in ``.vtu`` and
+    ``.vtk``; ``.med`` and ``.xdmf`` (with its ``.h5`` beside it) carry the mesh alone.
 
     Raises
     ------
     GeometryError
-        Where meshio knows no format for the ending, or the format cannot hold the mesh.
+        Where the ending is another one, or the file cannot be written.
     """
     import meshio
 
     path = Path(path)
-    if path.suffix not in meshio.extension_to_filetypes:
-        known = " ".join(sorted(meshio.extension_to_filetypes))
-        raise GeometryError(f"no mesh format ends in {path.suffix!r}; known endings: {known}")
+    if path.suffix not in WRITABLE:
+        raise GeometryError(f"a mesh is not written to {path.suffix!r}; known endings: {' '.join(WRITABLE)}")
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
-    os.close(handle)
-    try:
-        # Version 2.2 of gmsh's format is the one that every reader knows.
-        format_name = "gmsh22" if path.suffix == ".msh" else None
-        meshio.write(temporary, _for_meshio(mesh, path.suffix), file_format=format_name)
-        os.replace(temporary, path)
-    except Exception as error:  # writers refuse in many ways, some by a bare assertion
-        raise GeometryError(f"mesh file {path} cannot be written: {type(error).__name__} {error}") from error
-    finally:
-        Path(temporary).unlink(missing_ok=True)
+    # Written under its own name in a folder beside, because XDMF names its companion after itself.
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
+        try:
+            # Version 2.2 of gmsh's format is the one that every reader knows.
+            format_name = "gmsh22" if path.suffix == ".msh" else None
+            meshio.write(Path(folder) / path.name, _for_meshio(mesh, path.suffix), file_format=format_name)
+            for part in sorted(Path(folder).iterdir(), key=lambda part: part.name == path.name):
+                os.replace(part, path.parent / part.name)
+        except Exception as error:  # writers refuse in many ways, some by a bare assertion
+            raise GeometryError(f"mesh file {path} cannot be written: {type(error).__name__} {error}") from error
 
 
 def _for_meshio(mesh: Mesh, suffix: str) -> Any:
@@ -142,8 +150,12 @@ def _for_meshio(mesh: Mesh, suffix: str) -> Any:
 
 
 def _region_names(content: Any) -> list[list[tuple[str, IntArray]]]:
-    """For each cell block, its named groups as (name, members within the block)."""
-    names: list[list[tuple[str, IntArray]]] = [[] for _ in content.cells]
+    """For each cell block, its named groups as (name, members within the block).
+
+    Of gmsh's format 4 meshio gives the groups twice, as sets and as tags, and the tags name one group only of an
+    element that is in several: the union of both is what the file says.
+    """
+    names: list[dict[str, IntArray]] = [{} for _ in content.cells]
     physical = content.cell_data.get("gmsh:physical")
     # A tag is unique among groups of one dimension only.
     by_tag = {(int(tag), int(dimension)): name for name, (tag, dimension) in content.field_data.items()}
@@ -151,8 +163,9 @@ def _region_names(content: Any) -> list[list[tuple[str, IntArray]]]:
         if physical is not None:
             for tag in np.unique(physical[number]):
                 name = by_tag.get((int(tag), block.dim), f"group-{int(tag)}")
-                names[number].append((name, np.flatnonzero(physical[number] == tag)))
+                names[number][name] = np.flatnonzero(physical[number] == tag)
         for name, members in content.cell_sets.items():
             if not name.startswith("gmsh:") and members[number] is not None and len(members[number]):
-                names[number].append((name, np.asarray(members[number], dtype=np.int64)))
-    return names
+                known = names[number].get(name, np.empty(0, dtype=np.int64))
+                names[number][name] = np.union1d(known, np.asarray(members[number], dtype=np.int64))
+    return [list(groups.items()) for groups in names]

@@ -54,6 +54,17 @@ class Mesh:
             raise GeometryError("mesh points hold values that are not finite")
         if self.cells.min() < 0 or self.cells.max() >= len(self.points):
             raise GeometryError(f"mesh elements name nodes outside 0..{len(self.points) - 1}")
+        for name, facets in self.surfaces.items():
+            if facets.ndim != 2 or facets.shape[1] != 3 * self.order:
+                raise GeometryError(
+                    f"surface {name!r} has shape {facets.shape}; expected (n_facets, {3 * self.order}) on elements of "
+                    f"order {self.order}"
+                )
+            if facets.size and (facets.min() < 0 or facets.max() >= len(self.points)):
+                raise GeometryError(f"surface {name!r} names nodes outside 0..{len(self.points) - 1}")
+        for name, members in self.volumes.items():
+            if members.size and (members.min() < 0 or members.max() >= len(self.cells)):
+                raise GeometryError(f"volume {name!r} names elements outside 0..{len(self.cells) - 1}")
         inverted = int(np.count_nonzero(self.corner_volumes <= 0.0))
         if inverted:
             raise GeometryError(

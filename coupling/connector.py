@@ -1,0 +1,89 @@
+"""Connectors: what ties components together.
+
+A connector is a matrix of directions D, shape (n, d), that turns the n coordinates of the whole system into
+relative deflections δ = Dᵀ q, and a law that turns deflections, rates and phase into forces f. It adds -D f to the
+equations of motion, so the two sides feel equal and opposite forces, whatever the law.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from coupling.gears import ToothContact
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LinearConnector:
+    """A connector whose law is f = K δ + C δ': a bearing, a coupling, a mount.
+
+    Attributes
+    ----------
+    name : str
+    directions : ndarray, shape (n, d)
+        D.
+    stiffness : ndarray, shape (d, d)
+        K [N/m], not necessarily symmetric.
+    damping : ndarray, shape (d, d)
+        C [N s/m].
+    """
+
+    name: str
+    directions: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+
+    def __post_init__(self) -> None:
+        d = self.directions.shape[1]
+        for what, matrix in (("stiffness", self.stiffness), ("damping", self.damping)):
+            if matrix.shape != (d, d):
+                raise CouplingError(f"{self.name}: {what} of shape {matrix.shape}; expected ({d}, {d})")
+
+
+@dataclass(frozen=True)
+class ContactConnector:
+    """A connector whose law is a tooth contact: one line of action of a gear pair.
+
+    With the mesh phase p(t) = phase + rate t and the runout error e(t) = Σ a cos(w t + c), the compression is
+    δ = dᵀ q - e(t) - clearance and the force is :func:`coupling.gears.kernels.tooth_force`.
+
+    Attributes
+    ----------
+    name : str
+    direction : ndarray, shape (n,)
+        d, the compression by each coordinate.
+    contact : ToothContact
+    phase : float
+        At t = 0 [mesh periods].
+    rate : float
+        Mesh frequency [Hz]; negative for flanks met in the opposite order.
+    errors : ndarray, shape (h, 3)
+        a [m], w [rad/s] and c [rad] of each harmonic of the runout error.
+    clearance : float
+        Gap to close before the flanks touch [m]: 0 for the drive flanks, the backlash for the back flanks.
+    """
+
+    name: str
+    direction: FloatArray
+    contact: ToothContact
+    phase: float
+    rate: float
+    errors: FloatArray
+    clearance: float = 0.0
+
+    def event_times(self, start: float, end: float) -> FloatArray:
+        """Times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
+
+        The force may jump at the former; at the latter its rate and the power of the turning teeth do.
+        """
+        marks = np.unique([*self.contact.event_phases, *self.contact.corner_phases])
+        if self.rate == 0.0 or not marks.size:
+            return np.empty(0)
+        first, last = sorted((self.phase + self.rate * start, self.phase + self.rate * end))
+        whole = np.arange(np.floor(first) - 1.0, np.ceil(last) + 1.0)
+        phases = (whole[:, None] + marks).ravel()
+        times = np.sort((phases - self.phase) / self.rate)
+        return np.asarray(times[(times > start) & (times < end)])

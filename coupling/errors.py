@@ -1,0 +1,9 @@
+"""What can go wrong between the components and the coupled answer."""
+
+
+class CouplingError(ValueError):
+    """The components, connectors or loads do not fit each other; the message says what was expected."""
+
+
+class TransientError(RuntimeError):
+    """A time integration that cannot be trusted: it diverged, stalled, or its energies do not balance."""

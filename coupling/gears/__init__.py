@@ -1,0 +1,107 @@
+"""Gears: from the shape of a tooth to the force that a gear mesh answers with.
+
+The chain, each link usable alone:
+
+>>> from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness
+>>> from coupling.gears import static_transmission_error, tooth_contact
+>>> wheel = Gear("wheel", teeth=62, module=2e-3, pressure_angle=0.349066, face_width=20e-3, bore=35e-3)
+>>> pair = GearPairGeometry(wheel, wheel)  # path of contact, working angle, backlash
+>>> contact = tooth_contact(pair, PotentialEnergyStiffness())  # the law: k(s), d(s), damping
+>>> loaded = static_transmission_error(contact, force=2000.0)  # mesh stiffness, sharing
+>>> round(pair.contact_ratio, 4)
+1.7898
+
+The compiled law is `coupling.gears.kernels.tooth_force`; it alone imports numba and is not imported here.
+Positions along the path of contact are in base pitches, phases in mesh periods, everything else in SI.
+"""
+
+from coupling.gears.damping import equivalent_mass, mesh_damping
+from coupling.gears.deviation import tip_relief_deviation
+from coupling.gears.errors import (
+    ContactAccuracyError,
+    GearError,
+    InterferenceError,
+    MismatchedGearsError,
+    NoContactError,
+    PointedToothError,
+    StiffnessModelError,
+    UndercutError,
+)
+from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
+from coupling.gears.geometry import Gear, module_from_base_radius
+from coupling.gears.involute import inverse_involute, involute
+from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
+from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.piecewise import PiecewiseCubic
+from coupling.gears.profile import tooth_outline
+from coupling.gears.runout import runout_error
+from coupling.gears.static import (
+    StaticMesh,
+    mesh_period_phases,
+    mesh_stiffness,
+    static_transmission_error,
+)
+from coupling.gears.stiffness_models import (
+    STIFFNESS_MODELS,
+    ConstantStiffness,
+    Iso6336Stiffness,
+    PotentialEnergyStiffness,
+    SquareStiffness,
+    StiffnessModel,
+    TableStiffness,
+    stiffness_model,
+)
+from coupling.gears.tip_relief import TipRelief
+from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, hertz_compliance, potential_energy
+from coupling.gears.tooth_contact import (
+    PairStates,
+    ToothContact,
+    tooth_contact,
+)
+
+__all__ = [
+    "STIFFNESS_MODELS",
+    "ConstantStiffness",
+    "ContactAccuracyError",
+    "Gear",
+    "GearError",
+    "GearPairGeometry",
+    "InterferenceError",
+    "Iso6336Stiffness",
+    "Iso6336Values",
+    "MismatchedGearsError",
+    "NoContactError",
+    "PairStates",
+    "PiecewiseCubic",
+    "PointedToothError",
+    "PotentialEnergyStiffness",
+    "RootSection",
+    "SquareStiffness",
+    "StaticMesh",
+    "StiffnessModel",
+    "StiffnessModelError",
+    "TableStiffness",
+    "TipRelief",
+    "ToothCompliance",
+    "ToothContact",
+    "ToothModel",
+    "UndercutError",
+    "equivalent_mass",
+    "foundation_compliance",
+    "hertz_compliance",
+    "inverse_involute",
+    "involute",
+    "iso6336_stiffness",
+    "mesh_damping",
+    "mesh_period_phases",
+    "mesh_stiffness",
+    "module_from_base_radius",
+    "potential_energy",
+    "runout_error",
+    "static_transmission_error",
+    "stiffness_model",
+    "tip_relief_deviation",
+    "tooth_contact",
+    "tooth_outline",
+    "within_fitted_range",
+]

@@ -1,0 +1,43 @@
+"""What can be wrong with a gear, a pair or a contact, each with a name of its own."""
+
+import math
+
+
+class GearError(ValueError):
+    """An input that no gear, gear pair or contact law can be built from."""
+
+
+class UndercutError(GearError):
+    """The tool cuts away the foot of the involute."""
+
+
+class PointedToothError(GearError):
+    """The two flanks meet below the tip circle."""
+
+
+class InterferenceError(GearError):
+    """A tip digs into the mating root, or the teeth jam between each other's flanks."""
+
+
+class NoContactError(GearError):
+    """The contact ratio is below one: between two pairs of teeth nothing touches."""
+
+
+class MismatchedGearsError(GearError):
+    """Two gears whose base pitches differ cannot mesh."""
+
+
+class StiffnessModelError(GearError):
+    """A stiffness model asked for something outside its range."""
+
+
+class ContactAccuracyError(RuntimeError):
+    """A table or an equilibrium missed its own accuracy check."""
+
+
+def require_finite(what: str, value: float, *, minimum: float = -math.inf, strict: bool = False) -> None:
+    """Raise `GearError` unless `value` is a finite number above `minimum`."""
+    if not math.isfinite(value):
+        raise GearError(f"{what} must be a finite number, got {value!r}")
+    if value < minimum or (strict and value == minimum):
+        raise GearError(f"{what} must be {'above' if strict else 'at least'} {minimum:g}, got {value!r}")

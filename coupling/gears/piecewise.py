@@ -1,0 +1,130 @@
+"""Smooth functions as piecewise cubics, in plain arrays that a compiled kernel can hold.
+
+On each interval ``f = c0 + c1 u + c2 u^2 + c3 u^3`` with ``u`` running from 0 to 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+from coupling.gears.errors import ContactAccuracyError, GearError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PiecewiseCubic:
+    """A function on ``[knots[0], knots[-1]]``.
+
+    Attributes
+    ----------
+    knots : ndarray, shape (n + 1,)
+        Strictly increasing.
+    coefficients : ndarray, shape (n, 4)
+        c0 ... c3 of each interval.
+    """
+
+    knots: FloatArray = field(repr=False)
+    coefficients: FloatArray = field(repr=False)
+
+    def __post_init__(self) -> None:
+        if self.knots.ndim != 1 or self.coefficients.shape != (self.knots.size - 1, 4):
+            raise GearError(
+                f"a piecewise cubic needs n + 1 knots and (n, 4) coefficients, "
+                f"got {self.knots.shape} and {self.coefficients.shape}"
+            )
+        if not (np.all(np.isfinite(self.coefficients)) and np.all(np.diff(self.knots) > 0.0)):
+            raise GearError("a piecewise cubic needs increasing knots and finite coefficients")
+
+    def __call__(self, position: npt.ArrayLike, derivative: int = 0) -> FloatArray:
+        """Value at `position`, or its first derivative (`derivative` = 1); ends are held outside."""
+        where = np.clip(np.asarray(position, dtype=np.float64), self.knots[0], self.knots[-1])
+        interval = np.clip(np.searchsorted(self.knots, where, side="right") - 1, 0, self.knots.size - 2)
+        width = self.knots[interval + 1] - self.knots[interval]
+        u = (where - self.knots[interval]) / width
+        c0, c1, c2, c3 = np.moveaxis(self.coefficients[interval], -1, 0)
+        if derivative == 1:
+            return np.asarray((c1 + u * (2.0 * c2 + 3.0 * u * c3)) / width, dtype=np.float64)
+        return np.asarray(c0 + u * (c1 + u * (c2 + u * c3)), dtype=np.float64)
+
+    @property
+    def mean(self) -> float:
+        """Mean value over the whole range."""
+        widths = np.diff(self.knots)
+        integrals = self.coefficients @ np.array([1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0])
+        return float(np.sum(widths * integrals) / np.sum(widths))
+
+
+def constant(value: float, length: float) -> PiecewiseCubic:
+    """The same value on ``[0, length]``."""
+    return PiecewiseCubic(np.array([0.0, length]), np.array([[value, 0.0, 0.0, 0.0]]))
+
+
+def quadratic(start: float, middle: float, end: float, length: float) -> PiecewiseCubic:
+    """The parabola through three values at 0, ``length / 2`` and ``length``."""
+    linear, square = -3.0 * start + 4.0 * middle - end, 2.0 * start - 4.0 * middle + 2.0 * end
+    return PiecewiseCubic(np.array([0.0, length]), np.array([[start, linear, square, 0.0]]))
+
+
+def polyline(knots: FloatArray, values: FloatArray) -> PiecewiseCubic:
+    """Straight lines between `values` at `knots`, exact at every corner."""
+    zeros = np.zeros(knots.size - 1)
+    return PiecewiseCubic(knots, np.column_stack([values[:-1], np.diff(values), zeros, zeros]))
+
+
+def tabulated(function: Callable[[FloatArray], FloatArray], length: float, tolerance: float = 1e-9) -> PiecewiseCubic:
+    """Cubic spline of a smooth function on a uniform grid over ``[0, length]``, as fine as it needs.
+
+    Parameters
+    ----------
+    function : callable
+        From positions (n,) to values (n,).
+    length : float
+        End of the range.
+    tolerance : float
+        Largest difference from `function`, relative to its largest value, at points between the knots.
+
+    Raises
+    ------
+    ContactAccuracyError
+        When 8192 intervals do not suffice: the function has a step or a corner.
+    """
+    intervals = 64
+    while intervals <= 8192:
+        knots = np.linspace(0.0, length, intervals + 1)
+        table = _from_scipy(CubicSpline(knots, function(knots)))
+        between = knots[:-1] + np.diff(knots) * np.array([0.5, 0.211])[:, None]
+        exact = function(between.ravel())
+        error = float(np.max(np.abs(table(between.ravel()) - exact)) / max(float(np.max(np.abs(exact))), 1e-300))
+        if error <= tolerance:
+            return table
+        intervals *= 4
+    raise ContactAccuracyError(
+        f"the table still misses the function by {error:.1e} (allowed {tolerance:.1e}) with 8192 intervals; "
+        "it is not smooth: give it as a table with its own knots"
+    )
+
+
+def through_points(position: FloatArray, values: FloatArray, intervals: int = 4096) -> PiecewiseCubic:
+    """Monotone cubic through given points (Fritsch & Carlson), on a uniform grid.
+
+    Points that are spaced uniformly are kept as they are; others are carried over to a grid of `intervals`.
+    """
+    curve = PchipInterpolator(position, values)
+    spacing = np.diff(position)
+    if np.allclose(spacing, spacing.mean(), rtol=1e-9, atol=0.0):
+        return _from_scipy(curve)
+    knots = np.linspace(position[0], position[-1], intervals + 1)
+    return _from_scipy(PchipInterpolator(knots, curve(knots)))
+
+
+def _from_scipy(curve: CubicSpline | PchipInterpolator) -> PiecewiseCubic:
+    """Scipy's powers of (x - knot), highest first, to powers of u, lowest first."""
+    knots = np.asarray(curve.x, dtype=np.float64)
+    powers = np.diff(knots)[:, None] ** np.arange(4)
+    return PiecewiseCubic(knots, np.ascontiguousarray(np.asarray(curve.c, dtype=np.float64)[::-1].T * powers))

@@ -1,0 +1,159 @@
+"""The mesh under a steady load: static transmission error, mesh stiffness, load sharing.
+
+At each phase the compression ``delta`` carries the load: ``sum_j k_j max(0, delta - d_j) = F``.  The left
+side is piecewise linear and increasing, so with the pairs sorted by deviation the answer is exact: with the n
+least relieved pairs touching ``delta = (F + sum k_j d_j) / sum k_j``, and n is the number for which this lies
+above the n-th and not above the next deviation.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import ContactAccuracyError, GearError
+from coupling.gears.tooth_contact import ToothContact
+
+FloatArray = npt.NDArray[np.float64]
+
+_BESIDE = 1e-9
+"""How far beside an event the limits of a stepping curve are taken, in mesh periods."""
+
+
+@dataclass(frozen=True, eq=False)
+class StaticMesh:
+    """A loaded mesh at n phases, up to m pairs.
+
+    Attributes
+    ----------
+    force : float
+        Load along the line of action [N].
+    phases : ndarray, shape (n,)
+        Mesh periods.
+    transmission_error : ndarray, shape (n,)
+        Compression of the mesh under the load [m]: how far the driven gear lags, along the line of action.
+    pair_forces : ndarray, shape (n, m)
+        Force of the pair at position frac(phase) + j [N].
+    tangent_stiffness : ndarray, shape (n,)
+        Stiffness of the pairs that touch, dF/d delta [N/m].
+    secant_stiffness : ndarray, shape (n,)
+        Load over the compression beyond first touch [N/m]; the tangent at no load.
+    """
+
+    force: float
+    phases: FloatArray
+    transmission_error: FloatArray
+    pair_forces: FloatArray
+    tangent_stiffness: FloatArray
+    secant_stiffness: FloatArray
+
+    @property
+    def load_shares(self) -> FloatArray:
+        """Fraction of the load on each pair, shape (n, m); zero everywhere at no load."""
+        return self.pair_forces / self.force if self.force > 0.0 else np.zeros_like(self.pair_forces)
+
+    @property
+    def mean_transmission_error(self) -> float:
+        """Mean over the period that `phases` covers [m]."""
+        return period_mean(self.phases, self.transmission_error)
+
+    @property
+    def peak_to_peak_transmission_error(self) -> float:
+        """Largest less smallest transmission error [m]."""
+        return float(np.ptp(self.transmission_error))
+
+    @property
+    def mean_stiffness(self) -> float:
+        """Mean of the tangent stiffness over the period that `phases` covers [N/m]."""
+        return period_mean(self.phases, self.tangent_stiffness)
+
+
+def mesh_period_phases(contact: ToothContact, points: int = 400) -> FloatArray:
+    """Phases over one mesh period, with both sides of every step and every corner among them.
+
+    Parameters
+    ----------
+    contact : ToothContact
+    points : int
+        Equally spaced phases before the events are added.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Ascending, in [0, 1).
+    """
+    even = (np.arange(points) + 0.5) / points
+    events = np.array(contact.event_phases)
+    beside = np.concatenate([events - _BESIDE, events + _BESIDE, np.array(contact.corner_phases)]) % 1.0
+    return np.unique(np.concatenate([even, beside]))
+
+
+def static_transmission_error(contact: ToothContact, force: float, phases: npt.ArrayLike | None = None) -> StaticMesh:
+    """Equilibrium of the mesh under a load, phase by phase.
+
+    Parameters
+    ----------
+    contact : ToothContact
+    force : float
+        Load along the line of action, torque over base radius [N], at least 0.
+    phases : array_like, shape (n,), or None
+        Mesh periods; None for one period, `mesh_period_phases`.
+
+    Returns
+    -------
+    StaticMesh
+
+    Raises
+    ------
+    GearError
+        For a negative or non-finite load.
+    ContactAccuracyError
+        If the pairs' forces miss the load by more than rounding.
+    """
+    if not (math.isfinite(force) and force >= 0.0):
+        raise GearError(f"static mesh: the load must be at least 0 N, got {force!r}")
+    at = mesh_period_phases(contact) if phases is None else np.atleast_1d(np.asarray(phases, dtype=np.float64))
+    states = contact.pairs(at)
+    order = np.argsort(states.deviation, axis=1)
+    stiffness = np.take_along_axis(states.stiffness, order, axis=1)
+    gap = np.take_along_axis(states.deviation, order, axis=1)
+    # Counted from first touch, so that rounding never puts the equilibrium before it.
+    first = gap[:, :1]
+    later = np.where(np.isfinite(gap), gap - first, 0.0)
+    sum_stiffness = np.cumsum(stiffness, axis=1)
+    candidate = first + (force + np.cumsum(stiffness * later, axis=1)) / sum_stiffness
+    # The n-th candidate stands while it exceeds the n-th gap; the first always does (or equals it).
+    stands = (candidate > gap) & np.isfinite(gap)
+    stands[:, 0] = True
+    touching = np.argmin(np.column_stack([stands, np.zeros(at.size, dtype=bool)]), axis=1) - 1
+    rows = np.arange(at.size)
+    compression = candidate[rows, touching]
+    tangent = sum_stiffness[rows, touching]
+
+    forces = contact.pair_forces(at, compression)
+    # Rounding of delta - d, times the stiffness, is the least that any solution leaves.
+    rounding = 64.0 * np.finfo(np.float64).eps * (force + tangent * np.abs(compression))
+    imbalance = np.abs(forces.sum(axis=1) - force)
+    if np.any(imbalance > rounding + 1e-300):
+        raise ContactAccuracyError(
+            f"static mesh: the teeth carry {imbalance.max():.3e} N more or less than the load of {force:.6g} N; "
+            "check the contact's stiffness and deviation for extreme values"
+        )
+    beyond = compression - first[:, 0]
+    secant = np.where(beyond > 0.0, force / np.where(beyond > 0.0, beyond, 1.0), tangent)
+    return StaticMesh(force, at, compression, forces, tangent, secant)
+
+
+def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
+    """Stiffness of all pairs on the path of contact, as if none were relieved [N/m], at `phases` (n,)."""
+    return np.asarray(contact.pairs(phases).stiffness.sum(axis=1), dtype=np.float64)
+
+
+def period_mean(phases: FloatArray, values: FloatArray) -> float:
+    """Mean of a periodic curve over one period, by the trapezoidal rule on ascending phases within it."""
+    closed_phases = np.append(phases, phases[0] + 1.0)
+    closed_values = np.append(values, values[0])
+    return float(np.sum(0.5 * np.diff(closed_phases) * (closed_values[1:] + closed_values[:-1])))

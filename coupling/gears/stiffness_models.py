@@ -1,0 +1,231 @@
+"""Stiffness of one pair of teeth along the path of contact, by named models.
+
+Every model is a small frozen dataclass with one method, ``pair_stiffness(geometry)``, that returns the
+stiffness of a single pair [N/m along the line of action] as a function of the position in base pitches.
+Its range is the range of contact: the contact ratio, or exactly 1 for models that describe the whole mesh
+as one spring.
+
+============================  =====================================================================
+name                          model
+============================  =====================================================================
+``"potential-energy"``        bending, shear, compression, body and Hertz, from the tooth's outline
+``"iso6336"``                 ISO 6336-1 method B: its maximum c' and its mean c_gamma, as a parabola
+``"square"``                  every pair the same constant: a square wave in the mesh
+``"constant"``                the whole mesh one constant spring
+``"table"``                   given values, of a pair or of the whole mesh
+============================  =====================================================================
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears import piecewise
+from coupling.gears.errors import StiffnessModelError
+from coupling.gears.foundation import RootSection
+from coupling.gears.iso6336 import iso6336_stiffness
+from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.piecewise import PiecewiseCubic
+from coupling.gears.tooth_compliance import ToothModel, hertz_compliance, potential_energy
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class StiffnessModel(Protocol):
+    """Whatever can say how stiff a pair of teeth is along its path of contact."""
+
+    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
+        """Stiffness [N/m] by position in base pitches, from 0 to the contact ratio (or 1)."""
+        ...
+
+
+@dataclass(frozen=True)
+class PotentialEnergyStiffness:
+    """Energy method with Sainsot's body compliance and linear Hertzian flattening.
+
+    Parameters
+    ----------
+    root_section : {"ma2014", "trochoid"}
+        See `coupling.gears.foundation.root_section_angle`; ignored when `tooth_model` is given.
+    tooth_model : callable or None
+        Another tooth model (gear, radii) -> `ToothCompliance` in place of `potential_energy`.
+    """
+
+    root_section: RootSection = "ma2014"
+    tooth_model: ToothModel | None = None
+
+    def pair_compliance(self, geometry: GearPairGeometry, position: FloatArray) -> FloatArray:
+        """Compliance of one pair [m/N] at `position` in base pitches, without any table."""
+        total = np.full(np.shape(position), hertz_compliance(geometry.driver, geometry.driven))
+        sides = (
+            (geometry.driver, geometry.driver_radius(position)),
+            (geometry.driven, geometry.driven_radius(position)),
+        )
+        for gear, radius in sides:
+            if self.tooth_model is None:
+                tooth = potential_energy(gear, radius, self.root_section)
+            else:
+                tooth = self.tooth_model(gear, radius)
+            total = total + tooth.total
+        return np.asarray(total, dtype=np.float64)
+
+    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
+        """Stiffness [N/m] by position; the table is checked against the model to 1e-9."""
+        return piecewise.tabulated(
+            lambda position: 1.0 / self.pair_compliance(geometry, position), geometry.contact_ratio
+        )
+
+
+@dataclass(frozen=True)
+class Iso6336Stiffness:
+    """ISO 6336-1 method B as a curve: a parabola with the norm's maximum and the norm's mean.
+
+    The norm gives two numbers, c' at the middle of the path and the mean of the mesh
+    ``c_gamma = c' (0.75 eps + 0.25)``.  The parabola ``c' (1 - kappa (2 s/eps - 1)^2)`` has both exactly
+    with ``kappa = 0.75 (1 - 1/eps)``.
+
+    Parameters
+    ----------
+    specific_load : float or None
+        Tangential load per face width, F_t K_A / b [N/m]; below 100 N/mm the norm lowers the stiffness.
+    """
+
+    specific_load: float | None = None
+
+    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
+        """Stiffness [N/m] by position."""
+        norm = iso6336_stiffness(geometry, specific_load=self.specific_load)
+        width = min(geometry.driver.face_width, geometry.driven.face_width)
+        largest = norm.single_pair * width
+        ends = largest * (0.25 + 0.75 / geometry.contact_ratio)
+        return piecewise.quadratic(ends, largest, ends, geometry.contact_ratio)
+
+
+@dataclass(frozen=True)
+class SquareStiffness:
+    """Each pair has the same stiffness while it touches.
+
+    Parameters
+    ----------
+    value : float
+        Stiffness of one pair [N/m].
+    contact_ratio : float or None
+        In place of the geometry's, where a source prints the ratio but not the teeth.
+    """
+
+    value: float
+    contact_ratio: float | None = None
+
+    def __post_init__(self) -> None:
+        _require_positive("square", self.value)
+        if self.contact_ratio is not None and not 1.0 <= self.contact_ratio < math.inf:
+            raise StiffnessModelError(
+                f"stiffness model 'square': contact_ratio must be at least 1, got {self.contact_ratio!r}"
+            )
+
+    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
+        """Stiffness [N/m] by position."""
+        return piecewise.constant(self.value, self.contact_ratio or geometry.contact_ratio)
+
+
+@dataclass(frozen=True)
+class ConstantStiffness:
+    """The mesh is one spring of stiffness `value` [N/m], whatever the teeth do."""
+
+    value: float
+
+    def __post_init__(self) -> None:
+        _require_positive("constant", self.value)
+
+    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
+        """Stiffness [N/m] over one mesh period."""
+        del geometry
+        return piecewise.constant(self.value, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class TableStiffness:
+    """Stiffness from a table, of the whole mesh over a period or of one pair over its contact.
+
+    Parameters
+    ----------
+    position : ndarray, shape (n,)
+        In base pitches (mesh periods), from 0, increasing.  Ending at 1 the table is of the whole mesh;
+        ending at the contact ratio it is of one pair.
+    stiffness : ndarray, shape (n,)
+        [N/m], positive.
+    """
+
+    position: FloatArray
+    stiffness: FloatArray
+
+    def __post_init__(self) -> None:
+        position, stiffness = self.position, self.stiffness
+        if position.ndim != 1 or position.size < 2 or position.shape != stiffness.shape:
+            raise StiffnessModelError(
+                f"a stiffness table needs two equally long columns of at least 2 rows, "
+                f"got {position.shape} and {stiffness.shape}"
+            )
+        if position[0] != 0.0 or not np.all(np.diff(position) > 0.0) or not np.isfinite(position[-1]):
+            raise StiffnessModelError("stiffness table: positions must start at 0 and increase")
+        if not (np.all(np.isfinite(stiffness)) and np.all(stiffness > 0.0)):
+            raise StiffnessModelError(
+                f"stiffness table: every stiffness must be positive, got a least of {np.min(stiffness):.4g} N/m"
+            )
+
+    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
+        """Stiffness [N/m] by position.
+
+        Raises
+        ------
+        StiffnessModelError
+            When the table ends neither at 1 nor at the pair's contact ratio.
+        """
+        end = float(self.position[-1])
+        for wanted in (1.0, geometry.contact_ratio):
+            if math.isclose(end, wanted, rel_tol=1e-3):
+                # A table printed with a few digits ends exactly where the contact does.
+                return piecewise.through_points(self.position * (wanted / end), self.stiffness)
+        raise StiffnessModelError(
+            f"{geometry.label}: the stiffness table ends at {end:.6g} base pitches; expected 1 (whole mesh) "
+            f"or the contact ratio {geometry.contact_ratio:.6g} (one pair)"
+        )
+
+
+_MODELS: dict[str, Callable[..., StiffnessModel]] = {
+    "potential-energy": PotentialEnergyStiffness,
+    "iso6336": Iso6336Stiffness,
+    "square": SquareStiffness,
+    "constant": ConstantStiffness,
+    "table": TableStiffness,
+}
+
+STIFFNESS_MODELS: tuple[str, ...] = tuple(_MODELS)
+"""Names that `stiffness_model` knows."""
+
+
+def stiffness_model(name: str, **parameters: object) -> StiffnessModel:
+    """Model by name, e.g. ``stiffness_model("square", value=2e8)``.
+
+    Raises
+    ------
+    StiffnessModelError
+        For an unknown name, or parameters that the model does not take or misses.
+    """
+    if name not in _MODELS:
+        raise StiffnessModelError(f"unknown stiffness model {name!r}; expected one of {', '.join(_MODELS)}")
+    try:
+        return _MODELS[name](**parameters)
+    except TypeError as error:
+        raise StiffnessModelError(f"stiffness model {name!r}: {error}") from error
+
+
+def _require_positive(name: str, value: float) -> None:
+    if not (math.isfinite(value) and value > 0.0):
+        raise StiffnessModelError(f"stiffness model {name!r}: value must be above 0 N/m, got {value!r}")

@@ -1,0 +1,203 @@
+r"""The contact law of a gear pair: what its teeth answer to a compression of the mesh.
+
+At phase ``p`` (mesh periods of the driver) the pairs in contact are at ``s_j = frac(p) + j < eps``.  Each has
+a stiffness ``k(s)`` and a profile deviation ``d(s) >= 0``, the gap that tip relief leaves it.  With the
+compression ``delta`` of the mesh along the line of action and its rate ``v``:
+
+    F = sum_j k(s_j) max(0, delta - d(s_j)) + c v [some pair touches]
+    U = sum_j 1/2 k(s_j) max(0, delta - d(s_j))^2
+
+``dU/d delta = F - c v``; the teeth's turning does the work ``dU/dp`` per mesh period on the contact besides
+(the parametric power ``dU/dp * dp/dt``), which an energy balance of a prescribed speed has to carry.
+A pair never pulls; the whole mesh may separate, and returns through the same law.
+
+The idle flanks are the same law in a mirror: phase ``back_flank_offset - p``, their own compression (the
+motion projected on the mirrored line of action, less the backlash), and ``dU/dp`` of opposite sign.
+
+Contact is taken on the theoretical path: a deflected tooth without relief comes in and goes out with a
+step in force, as in the sources.  The step stands exactly at `event_phases`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears import piecewise
+from coupling.gears.deviation import tip_relief_deviation
+from coupling.gears.errors import GearError
+from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.piecewise import PiecewiseCubic
+from coupling.gears.stiffness_models import StiffnessModel
+
+FloatArray = npt.NDArray[np.float64]
+KernelArguments = tuple[float, FloatArray, FloatArray, FloatArray, float]
+
+
+@dataclass(frozen=True, eq=False)
+class PairStates:
+    """The pairs of teeth at some phases, at most m of them at once.
+
+    Attributes
+    ----------
+    position : ndarray, shape (n, m)
+        Position on the path of contact, base pitches.
+    present : ndarray of bool, shape (n, m)
+        Whether the pair is on its path of contact.
+    stiffness : ndarray, shape (n, m)
+        [N/m], 0 where absent.
+    deviation : ndarray, shape (n, m)
+        [m], infinite where absent.
+    """
+
+    position: FloatArray
+    present: npt.NDArray[np.bool_]
+    stiffness: FloatArray
+    deviation: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class ToothContact:
+    """The contact law's numbers, ready for the kernels.
+
+    Attributes
+    ----------
+    contact_ratio : float
+        Length of a pair's contact in base pitches.
+    stiffness : PiecewiseCubic
+        Stiffness of one pair [N/m] over [0, contact_ratio], equally spaced knots.
+    deviation : PiecewiseCubic
+        Gap of one pair [m] over [0, contact_ratio], any knots.
+    damping : float
+        Damping coefficient while the mesh touches [N s/m].
+    back_flank_offset : float
+        Phase of the idle flanks, see `GearPairGeometry.back_flank_offset`.
+    """
+
+    contact_ratio: float
+    stiffness: PiecewiseCubic
+    deviation: PiecewiseCubic
+    damping: float = 0.0
+    back_flank_offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
+            raise GearError(f"tooth contact: contact_ratio must be at least 1, got {self.contact_ratio!r}")
+        if not (math.isfinite(self.damping) and self.damping >= 0.0):
+            raise GearError(f"tooth contact: damping must be at least 0 N s/m, got {self.damping!r}")
+        for name, curve in (("stiffness", self.stiffness), ("deviation", self.deviation)):
+            ends = curve.knots[[0, -1]]
+            if not np.allclose(ends, [0.0, self.contact_ratio], rtol=1e-12, atol=1e-12):
+                raise GearError(
+                    f"tooth contact: {name} must cover 0 to {self.contact_ratio:.6g} base pitches, "
+                    f"got {ends[0]:.6g} to {ends[1]:.6g}"
+                )
+        spacing = np.diff(self.stiffness.knots)
+        if not np.allclose(spacing, spacing[0], rtol=1e-9, atol=0.0):
+            raise GearError("tooth contact: the stiffness needs equally spaced knots")
+        if np.any(self.stiffness(np.linspace(0.0, self.contact_ratio, 4 * spacing.size + 1)) <= 0.0):
+            raise GearError("tooth contact: the stiffness of a pair must be positive everywhere")
+
+    @property
+    def kernel_arguments(self) -> KernelArguments:
+        """Everything `coupling.gears.kernels.tooth_force` wants after phase, compression and rate."""
+        return (
+            float(self.contact_ratio),
+            np.ascontiguousarray(self.stiffness.coefficients, dtype=np.float64),
+            np.ascontiguousarray(self.deviation.knots, dtype=np.float64),
+            np.ascontiguousarray(self.deviation.coefficients, dtype=np.float64),
+            float(self.damping),
+        )
+
+    @property
+    def largest_pair_count(self) -> int:
+        """The most pairs that are ever on the path of contact at once."""
+        return math.ceil(self.contact_ratio)
+
+    @property
+    def mean_stiffness(self) -> float:
+        """Mean over a mesh period of the stiffness with all pairs touching [N/m]."""
+        return self.stiffness.mean * self.contact_ratio
+
+    @property
+    def event_phases(self) -> tuple[float, ...]:
+        """Phases in [0, 1) where a pair enters (0) or leaves, ascending.
+
+        Empty for a mesh that is one unchanging number of pairs, i.e. a whole contact ratio with a stiffness
+        and a deviation that join up at the period's ends.
+        """
+        leaving = self.contact_ratio % 1.0
+        if leaving > 1e-12 and 1.0 - leaving > 1e-12:
+            return (0.0, leaving)
+        ends = np.array([0.0, self.contact_ratio])
+        stiffness, deviation = self.stiffness(ends), self.deviation(ends)
+        steady = math.isclose(stiffness[0], stiffness[1], rel_tol=1e-9) and math.isclose(
+            deviation[0], deviation[1], abs_tol=1e-15
+        )
+        return () if steady else (0.0,)
+
+    @property
+    def back_flank_event_phases(self) -> tuple[float, ...]:
+        """Phases in [0, 1) where a pair of idle flanks would enter or leave, ascending."""
+        return tuple(sorted((self.back_flank_offset - phase) % 1.0 for phase in self.event_phases))
+
+    @property
+    def corner_phases(self) -> tuple[float, ...]:
+        """Phases in [0, 1) where a deviation's slope jumps (tip relief begins), ascending."""
+        knots = self.deviation.knots[1:-1]
+        widths = np.diff(self.deviation.knots)
+        coefficients = self.deviation.coefficients
+        after = coefficients[1:, 1] / widths[1:]
+        before = (coefficients[:-1] @ np.array([0.0, 1.0, 2.0, 3.0])) / widths[:-1]
+        jumps = np.abs(after - before) > 1e-9 * max(float(np.max(np.abs(after), initial=0.0)), 1e-30)
+        return tuple(sorted({float(phase) for phase in knots[jumps] % 1.0}))
+
+    def with_damping(self, damping: float) -> ToothContact:
+        """The same contact with another damping coefficient [N s/m]."""
+        return replace(self, damping=damping)
+
+    def pairs(self, phases: npt.ArrayLike) -> PairStates:
+        """Where the pairs are at `phases` (n,), and how stiff and how relieved they are."""
+        phase = np.atleast_1d(np.asarray(phases, dtype=np.float64))
+        fraction = phase - np.floor(phase)
+        fraction = np.where(fraction >= 1.0, 0.0, fraction)
+        position = fraction[:, None] + np.arange(self.largest_pair_count)
+        present = position < self.contact_ratio
+        return PairStates(
+            position=position,
+            present=present,
+            stiffness=np.where(present, self.stiffness(position), 0.0),
+            deviation=np.where(present, self.deviation(position), np.inf),
+        )
+
+    def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
+        """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
+        states = self.pairs(phases)
+        approach = np.atleast_1d(np.asarray(compression, dtype=np.float64))[:, None] - states.deviation
+        return np.asarray(states.stiffness * np.maximum(0.0, approach), dtype=np.float64)
+
+
+def tooth_contact(geometry: GearPairGeometry, model: StiffnessModel, damping: float = 0.0) -> ToothContact:
+    """Contact law of a gear pair.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+    model : StiffnessModel
+        See `coupling.gears.stiffness_models`.  A model of the whole mesh (range exactly one base pitch, when
+        the contact ratio is not) leaves no single pairs to relieve: the deviation is then zero.
+    damping : float
+        Damping coefficient [N s/m], e.g. from `mesh_damping`.
+
+    Returns
+    -------
+    ToothContact
+    """
+    stiffness = model.pair_stiffness(geometry)
+    length = float(stiffness.knots[-1])
+    whole_mesh = length == 1.0
+    deviation = piecewise.constant(0.0, length) if whole_mesh else tip_relief_deviation(geometry, length)
+    return ToothContact(length, stiffness, deviation, damping, geometry.back_flank_offset)

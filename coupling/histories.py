@@ -1,0 +1,92 @@
+"""What the transient tells, under the names of sensors, gears, bearings and gear pairs."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.machine import Machine, MountedGear
+from coupling.system import embed
+from coupling.transient import TransientOutputs, TransientResult
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Histories:
+    """Time histories at even spacing, s samples.
+
+    Attributes
+    ----------
+    times : ndarray, shape (s,)
+        [s].
+    sensor_acceleration : dict of str to ndarray, shape (s,)
+        Along each sensor [m/s²].
+    gear_motion : dict of str to ndarray, shape (s, 3)
+        x, y [m] of each gear's centre, and its rotation beside the steady one [rad].
+    bearing_force : dict of str to ndarray, shape (s, 2)
+        Force of each shaft on its bearing along x and y [N].
+    mesh_force : dict of str to ndarray, shape (s,)
+        Force along the line of action [N], drive flanks and back flanks apart.
+    mesh_compression : dict of str to ndarray, shape (s,)
+        [m].
+    """
+
+    times: FloatArray
+    sensor_acceleration: dict[str, FloatArray]
+    gear_motion: dict[str, FloatArray]
+    bearing_force: dict[str, FloatArray]
+    mesh_force: dict[str, FloatArray]
+    mesh_compression: dict[str, FloatArray]
+
+
+def transient_outputs(machine: Machine) -> TransientOutputs:
+    """The rows to record so that :func:`histories` can name them."""
+    system = machine.system
+    numbers = {component.name: i for i, component in enumerate(system.components)}
+    displacement = []
+    for gear in _gears(machine):
+        rotor = next(rotor for rotor in machine.rotors if rotor.name == gear.rotor)
+        for row in (rotor.direction(gear.at, 0), rotor.direction(gear.at, 1), rotor.rotation(gear.at)):
+            displacement.append(embed(system.components, numbers[rotor.name], row))
+    deflections = [row for connector in system.linear for row in connector.directions.T]
+    sensors = []
+    if machine.housing is not None:
+        which = numbers[machine.housing.name]
+        sensors = [embed(system.components, which, row) for row in machine.housing.sensors.values()]
+    n = system.size
+    return TransientOutputs(
+        displacement=np.array(displacement + deflections).reshape(-1, n),
+        velocity=np.array(deflections).reshape(-1, n),
+        acceleration=np.array(sensors).reshape(-1, n),
+    )
+
+
+def histories(machine: Machine, result: TransientResult) -> Histories:
+    """Name what a transient with :func:`transient_outputs` recorded."""
+    gears = _gears(machine)
+    deflections = result.displacement[:, 3 * len(gears) :]
+    forces = {}
+    column = 0
+    for connector in machine.system.linear:
+        columns = slice(column, column + connector.directions.shape[1])
+        column = columns.stop
+        forces[connector.name] = (
+            deflections[:, columns] @ connector.stiffness.T + result.velocity[:, columns] @ connector.damping.T
+        )
+    names = [] if machine.housing is None else list(machine.housing.sensors)
+    contacts = [contact.name for contact in machine.system.contacts]
+    return Histories(
+        times=result.times,
+        sensor_acceleration={name: result.acceleration[:, i] for i, name in enumerate(names)},
+        gear_motion={gear.name: result.displacement[:, 3 * i : 3 * i + 3] for i, gear in enumerate(gears)},
+        bearing_force=forces,
+        mesh_force={name: result.force[:, i] for i, name in enumerate(contacts)},
+        mesh_compression={name: result.compression[:, i] for i, name in enumerate(contacts)},
+    )
+
+
+def _gears(machine: Machine) -> list[MountedGear]:
+    """Every gear of the meshes, once, in order."""
+    gears = [gear for mesh in machine.meshes for gear in (mesh.driver, mesh.driven)]
+    return list({gear.name: gear for gear in gears}.values())

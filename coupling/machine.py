@@ -1,0 +1,218 @@
+"""From rotors, a housing, bearings and gear pairs to the coupled system."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.component import Component, HousingComponent, RotorComponent
+from coupling.connector import ContactConnector, LinearConnector
+from coupling.errors import CouplingError
+from coupling.gears import GearPairGeometry, ToothContact
+from coupling.system import CoupledSystem, HarmonicLoad, embed
+from rotors import Bearing
+
+FloatArray = npt.NDArray[np.float64]
+
+_Parts = Callable[[str], tuple[int, RotorComponent]]
+
+
+@dataclass(frozen=True)
+class MountedBearing:
+    """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None."""
+
+    bearing: Bearing
+    rotor: str
+    seat: str | None
+
+
+@dataclass(frozen=True)
+class MountedGear:
+    """Where a gear sits: its rotor, the distance from the rotor's left end and the axis in the x-y plane [m]."""
+
+    name: str
+    rotor: str
+    at: float
+    axis: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class GearMesh:
+    """A driver and a driven gear with the law of their contact.
+
+    Attributes
+    ----------
+    driver, driven : MountedGear
+    geometry : GearPairGeometry
+    contact : ToothContact
+    backlash : float, optional
+        Gap between the back flanks along their line of action [m]; None where they can never meet.
+    """
+
+    driver: MountedGear
+    driven: MountedGear
+    geometry: GearPairGeometry
+    contact: ToothContact
+    backlash: float | None = None
+
+
+@dataclass(frozen=True)
+class Unbalance:
+    """Mass times eccentricity [kg m] at a distance from the rotor's left end [m], ahead of x by a phase [rad]."""
+
+    rotor: str
+    at: float
+    moment: float
+    phase: float
+
+
+@dataclass(frozen=True)
+class Torque:
+    """A constant torque about z [N m] on a rotor at a distance from its left end [m]."""
+
+    rotor: str
+    at: float
+    value: float
+
+
+@dataclass(frozen=True)
+class Machine:
+    """The parts, and the coupled system that they make.
+
+    Attributes
+    ----------
+    rotors : tuple of RotorComponent
+    housing : HousingComponent or None
+    bearings : tuple of MountedBearing
+    meshes : tuple of GearMesh
+    system : CoupledSystem
+        Components in the order rotors, housing; linear connectors as ``bearings``; the drive flanks of
+        ``meshes`` first among its contacts, then the back flanks.
+    """
+
+    rotors: tuple[RotorComponent, ...]
+    housing: HousingComponent | None
+    bearings: tuple[MountedBearing, ...]
+    meshes: tuple[GearMesh, ...]
+    system: CoupledSystem
+
+
+def couple(
+    rotors: Sequence[RotorComponent],
+    housing: HousingComponent | None,
+    *,
+    speeds: dict[str, float],
+    bearings: Sequence[MountedBearing] = (),
+    meshes: Sequence[GearMesh] = (),
+    unbalances: Sequence[Unbalance] = (),
+    torques: Sequence[Torque] = (),
+) -> Machine:
+    """Tie rotors and housing together and put the loads on.
+
+    Parameters
+    ----------
+    rotors, housing
+        The components.
+    speeds : dict of str to float
+        Signed speed of each rotor [rad/s].
+    bearings, meshes, unbalances, torques
+        What ties and drives them.
+
+    Raises
+    ------
+    CouplingError
+        Where a name has no component, or a seat no housing.
+    """
+    components: list[Component] = [*rotors]
+    if housing is not None:
+        components.append(housing)
+    number = {component.name: i for i, component in enumerate(components)}
+    size = sum(component.size for component in components)
+
+    def rotor_named(name: str) -> tuple[int, RotorComponent]:
+        for i, rotor in enumerate(rotors):
+            if rotor.name == name:
+                return i, rotor
+        raise CouplingError(f"no rotor is named {name!r}; there are: {', '.join(sorted(r.name for r in rotors))}")
+
+    linear = []
+    for mounted in bearings:
+        which, rotor = rotor_named(mounted.rotor)
+        at = mounted.bearing.at
+        columns = [embed(components, which, rotor.direction(at, axis)) for axis in (0, 1)]
+        if mounted.seat is not None:
+            if housing is None or mounted.seat not in housing.seats:
+                raise CouplingError(f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing")
+            z = rotor.start + at
+            for axis in (0, 1):
+                seat = embed(components, number[housing.name], housing.seat_direction(mounted.seat, axis, z))
+                columns[axis] = columns[axis] - seat
+        name, law = mounted.bearing.name, mounted.bearing
+        linear.append(LinearConnector(name, np.array(columns).T, law.stiffness, law.damping))
+
+    drive, back = [], []
+    for mesh in meshes:
+        sense = 1 if speeds[mesh.driver.rotor] >= 0.0 else -1
+        rate = abs(speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
+        direction, errors = _flank(components, mesh, rotor_named, speeds, sense)
+        name = f"{mesh.driver.name} -> {mesh.driven.name}"
+        drive.append(ContactConnector(name, direction, mesh.contact, 0.0, rate, errors))
+        if mesh.backlash is not None:
+            direction, errors = _flank(components, mesh, rotor_named, speeds, -sense)
+            offset = mesh.contact.back_flank_offset
+            back.append(
+                ContactConnector(f"{name}, back", direction, mesh.contact, offset, -rate, errors, mesh.backlash)
+            )
+
+    load = np.zeros(size)
+    for torque in torques:
+        which, rotor = rotor_named(torque.rotor)
+        load += torque.value * embed(components, which, rotor.rotation(torque.at))
+    harmonic = []
+    for unbalance in unbalances:
+        which, rotor = rotor_named(unbalance.rotor)
+        speed = speeds[unbalance.rotor]
+        if speed == 0.0 or unbalance.moment == 0.0:
+            continue
+        # (cos, sin)(Ω t + phase) on x and y: y lags x by a quarter turn, in the sense of rotation.
+        force = unbalance.moment * speed**2 * np.exp(1j * unbalance.phase)
+        x = embed(components, which, rotor.direction(unbalance.at, 0))
+        y = embed(components, which, rotor.direction(unbalance.at, 1))
+        harmonic.append(HarmonicLoad(speed, force * (x - 1j * y)))
+
+    system = CoupledSystem(
+        components=tuple(components),
+        speeds=tuple(speeds.get(component.name, 0.0) for component in components),
+        linear=tuple(linear),
+        contacts=tuple(drive + back),
+        load=load,
+        harmonic_loads=tuple(harmonic),
+    )
+    return Machine(tuple(rotors), housing, tuple(bearings), tuple(meshes), system)
+
+
+def _flank(
+    components: Sequence[Component], mesh: GearMesh, parts: _Parts, speeds: dict[str, float], sense: int
+) -> tuple[FloatArray, FloatArray]:
+    """Direction of compression and the harmonics of the runout error on one side of the teeth.
+
+    With e the unit vector along which the driver pushes, δ = s (R_k θ_k + R_i θ_i) + e (u_k - u_i) - e_err. A gear
+    whose centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
+    e_err = -e (ε_k - ε_i): the same first-order runout as :func:`coupling.gears.runout_error`.
+    """
+    driver, driven = mesh.driver, mesh.driven
+    line = np.subtract(driven.axis, driver.axis)
+    angle = mesh.geometry.line_of_action_angle(float(np.arctan2(line[1], line[0])), sense)
+    push = (np.cos(angle), np.sin(angle))
+    direction = np.zeros(sum(component.size for component in components))
+    errors = []
+    for mounted, gear, side in ((driver, mesh.geometry.driver, 1.0), (driven, mesh.geometry.driven, -1.0)):
+        which, rotor = parts(mounted.rotor)
+        motion = sense * gear.base_radius * rotor.rotation(mounted.at)
+        for axis in (0, 1):
+            motion = motion + side * push[axis] * rotor.direction(mounted.at, axis)
+        direction += embed(components, which, motion)
+        if gear.eccentricity:
+            errors.append([-side * gear.eccentricity, speeds[mounted.rotor], gear.eccentricity_phase - angle])
+    return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)

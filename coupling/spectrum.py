@@ -1,0 +1,87 @@
+"""Spectra of evenly sampled signals."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+Window = Literal["uniform", "hann"]
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """A one-sided amplitude spectrum.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (m,)
+        [Hz].
+    amplitude : ndarray, shape (..., m)
+        Peak amplitude of each line, in the signal's unit: a sine a·sin(2πft) of whole periods in the record has
+        the line a. The line at 0 Hz is the mean.
+    phase : ndarray, shape (..., m)
+        Of the cosine, at the start of the record [rad].
+    window : {"uniform", "hann"}
+    """
+
+    frequencies: FloatArray
+    amplitude: FloatArray
+    phase: FloatArray
+    window: Window
+
+
+def amplitude_spectrum(signal: FloatArray, interval: float, window: Window = "uniform") -> Spectrum:
+    """Amplitude and phase of the lines of a record.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (..., s)
+    interval : float
+        Between samples [s].
+    window : {"uniform", "hann"}
+        Uniform for a record of whole periods, whose lines are then exact; Hann otherwise, scaled so that a sine
+        keeps its height. The mean is taken off before Hann's window and given back at 0 Hz.
+    """
+    count = signal.shape[-1]
+    mean = signal.mean(axis=-1, keepdims=True)
+    weights = np.ones(count) if window == "uniform" else 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count)
+    lines = np.fft.rfft((signal - mean) * weights, axis=-1) * (2.0 / weights.sum())
+    if count % 2 == 0:
+        lines[..., -1] *= 0.5  # the line at half the sampling rate stands alone
+    lines[..., 0] = mean[..., 0]
+    frequencies = np.asarray(np.fft.rfftfreq(count, interval), dtype=np.float64)
+    return Spectrum(frequencies, np.abs(lines), np.angle(lines), window)
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A line that stands out: frequency [Hz] and amplitude in the signal's unit."""
+
+    frequency: float
+    amplitude: float
+
+
+def spectrum_peaks(
+    spectrum: Spectrum, *, count: int = 12, above: float = 0.0, limit: float = np.inf, floor: float = 1e-3
+) -> list[Peak]:
+    """The highest lines that are higher than both neighbours, highest first.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        Of one signal.
+    count : int
+        At most so many.
+    above, limit : float
+        Between these frequencies [Hz].
+    floor : float
+        Only lines above this part of the highest.
+    """
+    a, f = spectrum.amplitude, spectrum.frequencies
+    inner = np.arange(1, len(a) - 1)
+    peaks = inner[(a[inner] >= a[inner - 1]) & (a[inner] > a[inner + 1]) & (f[inner] > above) & (f[inner] <= limit)]
+    peaks = peaks[a[peaks] > floor * a[peaks].max(initial=0.0)]
+    peaks = peaks[np.argsort(-a[peaks], kind="stable")][:count]
+    return [Peak(float(f[i]), float(a[i])) for i in peaks]

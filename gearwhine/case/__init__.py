@@ -1,0 +1,120 @@
+"""The case file: from TOML with units to one checked, frozen object in SI.
+
+What the room offers:
+
+- :func:`load_case` -- a file or a bundled case, with changes from the command line; :func:`parse_case` for a
+  dictionary. Everything wrong comes in one :class:`CaseError`, a :class:`Problem` each.
+- :class:`Case` -- the tables of the file as frozen models, attributes named as the keys: :class:`Material`,
+  :class:`Housing` (:class:`Box`, :class:`CadFile`, :class:`MeshFile`, :class:`Seat`, :class:`Support`,
+  :class:`Sensor`), :class:`Rotor`, :class:`Bearing`, :class:`Gear`, :class:`GearPair`, :class:`Operation`,
+  :class:`Transient`, :class:`Sweep`, :class:`Measured`.
+- :func:`dump_case` -- the resolved case as TOML that loads back equal.
+- :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques` -- what follows
+  without solving anything.
+- :func:`require` -- the error for what a command needs and a case lacks.
+- :func:`bundled_cases` -- the examples that ship with the package.
+
+Inside, lengths are in m, masses in kg, forces in N, angles in rad, speeds in rad/s; frequencies are in Hz.
+"""
+
+from gearwhine.case.box import Box, Feet, Walls
+from gearwhine.case.bundled import bundled_case, bundled_cases
+from gearwhine.case.dump import case_document, dump_case
+from gearwhine.case.gears import Gear, GearErrors, GearPair, TipRelief, ToothStiffness
+from gearwhine.case.housing import (
+    Boss,
+    CadFile,
+    Housing,
+    Material,
+    MeshFile,
+    Seat,
+    Sensor,
+    Springs,
+    Support,
+)
+from gearwhine.case.load import LoadedCase, load_case, parse_case
+from gearwhine.case.model import Case
+from gearwhine.case.motion import (
+    AppliedTorque,
+    applied_torques,
+    gears_on,
+    mesh_frequencies,
+    pair_torques,
+    rotor_speeds,
+    speed_ratios,
+)
+from gearwhine.case.problems import CaseError, Problem
+from gearwhine.case.require import require
+from gearwhine.case.running import Measured, Operation, Output, SpeedRange, Sweep, Transient
+from gearwhine.case.shafts import (
+    Bearing,
+    Bow,
+    Disc,
+    MatrixDamping,
+    MatrixStiffness,
+    RadialDamping,
+    RadialStiffness,
+    Rolling,
+    RollingStiffness,
+    Rotor,
+    Segment,
+    Unbalance,
+)
+from gearwhine.case.train import shaft_of
+
+__all__ = [
+    "AppliedTorque",
+    "Bearing",
+    "Boss",
+    "Bow",
+    "Box",
+    "CadFile",
+    "Case",
+    "CaseError",
+    "Disc",
+    "Feet",
+    "Gear",
+    "GearErrors",
+    "GearPair",
+    "Housing",
+    "LoadedCase",
+    "Material",
+    "MatrixDamping",
+    "MatrixStiffness",
+    "Measured",
+    "MeshFile",
+    "Operation",
+    "Output",
+    "Problem",
+    "RadialDamping",
+    "RadialStiffness",
+    "Rolling",
+    "RollingStiffness",
+    "Rotor",
+    "Seat",
+    "Segment",
+    "Sensor",
+    "SpeedRange",
+    "Springs",
+    "Support",
+    "Sweep",
+    "TipRelief",
+    "ToothStiffness",
+    "Transient",
+    "Unbalance",
+    "Walls",
+    "applied_torques",
+    "bundled_case",
+    "bundled_cases",
+    "case_document",
+    "dump_case",
+    "gears_on",
+    "load_case",
+    "mesh_frequencies",
+    "pair_torques",
+    "parse_case",
+    "require",
+    "rotor_speeds",
+    "shaft_of",
+    "speed_ratios",
+]

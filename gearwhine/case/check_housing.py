@@ -1,0 +1,178 @@
+"""Checks of the housing: one geometry, and everything in its place on a box."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from gearwhine.case.box import FACES, FOOT_SURFACES, Box
+from gearwhine.case.check_shafts import millimetres
+from gearwhine.case.draft import Draft
+from gearwhine.case.housing import Seat, Sensor, Support
+from gearwhine.case.problems import NOTHING, Finding, did_you_mean
+
+_SLACK = 1e-9
+"""Room for rounding where two lengths may just touch [m]."""
+
+
+def check_housing_form(draft: Draft) -> Iterator[Finding]:
+    """Yield choices that are not made exactly once: the geometry, and how many modes."""
+    housing = draft.document.get("housing")
+    if not isinstance(housing, Mapping):
+        return
+    forms = [key for key in ("box", "cad", "mesh") if key in housing]
+    if len(forms) != 1:
+        value = forms or NOTHING
+        expected = "exactly one of [housing.box], [housing.cad] and [housing.mesh]"
+        yield Finding(("housing",), expected, value)
+    limits = [key for key in ("frequency_limit", "modes") if key in housing]
+    if len(limits) != 1:
+        expected = "exactly one of 'frequency_limit' (such as '3.2 kHz') and 'modes' (such as 25)"
+        yield Finding(("housing",), expected, limits or NOTHING)
+    ratios, modes = housing.get("damping_ratio"), housing.get("modes")
+    if isinstance(ratios, list) and isinstance(modes, int) and len(ratios) != modes:
+        yield Finding(("housing", "damping_ratio"), f"a ratio for each of the {modes} modes (there are {len(ratios)})")
+
+
+def check_box(draft: Draft) -> Iterator[Finding]:
+    """Yield what does not fit a box: its walls and feet, seats, supports and sensors."""
+    box = draft.box
+    if box is None:
+        return
+    yield from _check_walls(box)
+    for index, seat in draft.seats:
+        yield from _check_seat(box, index, seat)
+    yield from _check_seats_apart(draft, box)
+    yield from _check_surfaces(draft, box)
+    for index, support in draft.supports:
+        yield from _check_support(box, index, support, _boss_length(draft))
+    for index, sensor in draft.sensors:
+        yield from _check_sensor(box, index, sensor, _boss_length(draft))
+
+
+def _check_walls(box: Box) -> Iterator[Finding]:
+    """Yield walls that meet, feet that overlap, and elements larger than the box."""
+    walls = box.walls
+    pairs = (("left", "right"), ("bottom", "top"), ("back", "front"))
+    for axis, size, (low, high) in zip("xyz", box.size, pairs, strict=True):
+        if getattr(walls, low) + getattr(walls, high) >= size:
+            expected = f"{low} and {high} walls that leave room inside the {millimetres(size)} of the box along {axis}"
+            yield Finding(("housing", "box", "wall"), expected)
+    if box.feet is not None:
+        for place, axis in ((0, "x"), (2, "z")):
+            if 2.0 * box.feet.size[place] > box.size[place] + _SLACK:
+                expected = f"feet of at most half the base along {axis}, {millimetres(box.size[place] / 2)}"
+                yield Finding(("housing", "box", "feet", "size", place), expected)
+    if box.mesh_size > max(box.size):
+        expected = f"elements smaller than the box, {millimetres(max(box.size))}"
+        yield Finding(("housing", "box", "mesh_size"), expected)
+
+
+def _wall_of(box: Box, seat: Seat) -> str | None:
+    """Return which end wall a seat is in; None for neither."""
+    z, half = seat.center[2], box.size[2] / 2.0
+    if -half - _SLACK <= z <= -half + box.walls.back + _SLACK:
+        return "back"
+    return "front" if half - box.walls.front - _SLACK <= z <= half + _SLACK else None
+
+
+def _check_seat(box: Box, index: int, seat: Seat) -> Iterator[Finding]:
+    """Yield a seat that is in no end wall, or whose bore or boss leaves it."""
+    location, half = ("housing", "seat", index), box.size[2] / 2.0
+    if _wall_of(box, seat) is None:
+        expected = (
+            f"z in the back wall, {millimetres(-half)} to {millimetres(-half + box.walls.back)}, "
+            f"or in the front wall, {millimetres(half - box.walls.front)} to {millimetres(half)}"
+        )
+        yield Finding((*location, "center", 2), expected)
+    for kind, diameter in (("bore", seat.diameter), ("boss", seat.boss.diameter if seat.boss else 0.0)):
+        x, y, radius = seat.center[0], seat.center[1], diameter / 2.0
+        over = max(abs(x) + radius - box.upper[0], radius - y, y + radius - box.upper[1])
+        if over > _SLACK:
+            key = (*location, "diameter") if kind == "bore" else (*location, "boss", "diameter")
+            expected = (
+                f"a {kind} within its wall of {millimetres(box.size[0])} by {millimetres(box.size[1])}; around "
+                f"x = {millimetres(x)}, y = {millimetres(y)} it reaches {millimetres(over)} beyond the edge"
+            )
+            yield Finding(key, expected)
+            return
+
+
+def _check_seats_apart(draft: Draft, box: Box) -> Iterator[Finding]:
+    """Yield bores that touch another bore or its boss."""
+    for place, (index, seat) in enumerate(draft.seats):
+        for _, other in draft.seats[:place]:
+            if _wall_of(box, seat) is None or _wall_of(box, seat) != _wall_of(box, other):
+                continue
+            apart = math.hypot(seat.center[0] - other.center[0], seat.center[1] - other.center[1])
+            bosses = [s.boss.diameter if s.boss else s.diameter for s in (seat, other)]
+            needed = max(seat.diameter + bosses[1], bosses[0] + other.diameter) / 2.0
+            if apart <= needed:
+                expected = (
+                    f'a bore clear of seat "{other.name}" and its boss (they overlap by '
+                    f"{millimetres(needed - apart)}: centres {millimetres(apart)} apart, {millimetres(needed)} needed)"
+                )
+                yield Finding(("housing", "seat", index, "diameter"), expected)
+
+
+def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
+    """Yield supports on surfaces that the box does not have."""
+    seats = draft.names("housing", "seat")
+    known = (*FACES, *(FOOT_SURFACES if box.feet is not None else ()), *seats)
+    for index, support in draft.supports:
+        if support.surface is not None and support.surface not in known:
+            feet = "" if box.feet is not None else "; it has no feet"
+            expected = f"a surface of the box ({', '.join(known)}{feet})" + did_you_mean(support.surface, known)
+            yield Finding(("housing", "support", index, "surface"), expected)
+
+
+def _boss_length(draft: Draft) -> float:
+    """Return how far the longest boss stands out of the end walls [m]."""
+    return max((seat.boss.length for _, seat in draft.seats if seat.boss is not None), default=0.0)
+
+
+def _check_support(box: Box, index: int, support: Support, boss: float) -> Iterator[Finding]:
+    """Yield a support whose box holds no material: outside the housing, or all in its cavity."""
+    if support.corners is None:
+        return
+    low, high = support.corners
+    foot = box.feet.size[1] if box.feet is not None else 0.0
+    bottom = (box.lower[0], box.lower[1] - foot, box.lower[2] - boss)
+    top = (box.upper[0], box.upper[1], box.upper[2] + boss)
+    walls = box.walls
+    inside_low = (box.lower[0] + walls.left, box.lower[1] + walls.bottom, box.lower[2] + walls.back)
+    inside_high = (box.upper[0] - walls.right, box.upper[1] - walls.top, box.upper[2] - walls.front)
+    location = ("housing", "support", index, "box")
+    for axis, least, most, begin, end in zip("xyz", low, high, bottom, top, strict=True):
+        if least > end + _SLACK or most < begin - _SLACK:
+            expected = f"a box that meets the housing, which spans {axis} = {millimetres(begin)} to {millimetres(end)}"
+            yield Finding(location, expected)
+            return
+    if all(a > b for a, b in zip(low, inside_low, strict=True)) and all(
+        a < b for a, b in zip(high, inside_high, strict=True)
+    ):
+        yield Finding(location, "a box that meets the housing's walls; this one is all in its cavity")
+
+
+def _check_sensor(box: Box, index: int, sensor: Sensor, boss: float) -> Iterator[Finding]:
+    """Yield a sensor that is further from the box's surface than its walls are thick."""
+    walls = box.walls
+    names = ("left", "bottom", "back", "right", "top", "front")  # the order of the depths below
+    depths = [
+        *(p - low for p, low in zip(sensor.position, box.lower, strict=True)),
+        *(high - p for p, high in zip(sensor.position, box.upper, strict=True)),
+    ]
+    outside = math.hypot(*(min(a, b, 0.0) for a, b in zip(depths[:3], depths[3:], strict=True)))
+    thickness = [getattr(walls, name) for name in names]
+    foot = box.feet.size[1] if box.feet is not None else 0.0
+    location = ("housing", "sensor", index, "position")
+    if outside > max(*thickness, boss, foot) + _SLACK:
+        expected = f"a point on the surface of the box; this one is {millimetres(outside)} outside"
+        yield Finding(location, expected)
+    elif outside == 0.0 and all(depth > wall + _SLACK for depth, wall in zip(depths, thickness, strict=True)):
+        nearest = min(range(6), key=lambda face: depths[face])
+        expected = (
+            f"a point on the surface of the box; this one is in its cavity, {millimetres(depths[nearest])} from "
+            f"the {names[nearest]} face"
+        )
+        yield Finding(location, expected)

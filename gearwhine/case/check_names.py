@@ -1,0 +1,79 @@
+"""Checks that every name belongs to one entry, and that every entry referred to exists.
+
+Names are read from the document itself, so an entry in which something else is wrong still counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from gearwhine.case.draft import Draft
+from gearwhine.case.problems import NOTHING, Finding, Location, did_you_mean, key_of, look_up, show_value
+
+_NAMED = (
+    ("rotor",),
+    ("bearing",),
+    ("gear",),
+    ("housing", "seat"),
+    ("housing", "support"),
+    ("housing", "sensor"),
+)
+
+
+def check_names(draft: Draft) -> Iterator[Finding]:
+    """Yield duplicate names and names that lead nowhere."""
+    yield from _check_unique(draft)
+    yield from _check_materials(draft)
+    rotors, gears, seats = draft.names("rotor"), draft.names("gear"), draft.names("housing", "seat")
+    for index, bearing in draft.raw_entries("bearing"):
+        yield from _check_reference(bearing, ("bearing", index, "rotor"), "rotor", rotors)
+        yield from _check_reference(bearing, ("bearing", index, "seat"), "seat", (*seats, "ground"))
+    for index, gear in draft.raw_entries("gear"):
+        yield from _check_reference(gear, ("gear", index, "rotor"), "rotor", rotors)
+        if rotors and "rotor" not in gear:
+            yield Finding(("gear", index, "rotor"), _one_of("rotor", rotors), NOTHING)
+    for index, pair in draft.raw_entries("gear_pair"):
+        for key in ("driver", "driven"):
+            yield from _check_reference(pair, ("gear_pair", index, key), "gear", gears)
+    for index, output in draft.raw_entries("operation", "output"):
+        shafts = rotors or gears
+        yield from _check_reference(output, ("operation", "output", index, "rotor"), "rotor", shafts)
+
+
+def _check_materials(draft: Draft) -> Iterator[Finding]:
+    """Yield materials that are referred to and not there."""
+    table = draft.document.get("material")
+    materials = [name for name in table if isinstance(name, str)] if isinstance(table, Mapping) else []
+    housing = draft.document.get("housing")
+    if isinstance(housing, Mapping):
+        yield from _check_reference(housing, ("housing", "material"), "material", materials)
+    for kind in ("rotor", "gear"):
+        for index, entry in draft.raw_entries(kind):
+            yield from _check_reference(entry, (kind, index, "material"), "material", materials)
+            segments = entry.get("segments")
+            for place, segment in enumerate(segments if isinstance(segments, (list, tuple)) else ()):
+                location = (kind, index, "segments", place, "material")
+                yield from _check_reference(segment, location, "material", materials)
+
+
+def _check_reference(entry: object, location: Location, kind: str, names: Iterable[str]) -> Iterator[Finding]:
+    """Yield a finding where the name at the end of a location is not among the names there are."""
+    name = look_up(entry, location[-1:])
+    if isinstance(name, str) and name not in (names := tuple(names)):
+        yield Finding(location, _one_of(kind, names) + did_you_mean(name, names))
+
+
+def _one_of(kind: str, names: Iterable[str]) -> str:
+    listed = ", ".join(show_value(name) for name in list(names)[:20])
+    return f"the name of a {kind} of this case ({listed or 'there is none'})"
+
+
+def _check_unique(draft: Draft) -> Iterator[Finding]:
+    """Yield the second and later uses of a name among entries of one kind."""
+    for keys in _NAMED:
+        first: dict[str, int] = {}
+        for index, entry in draft.raw_entries(*keys):
+            name = entry.get("name")
+            if isinstance(name, str) and first.setdefault(name, index) != index:
+                taken = key_of((*keys, first[name]))
+                yield Finding((*keys, index, "name"), f"a name of its own ({taken} has this one)")

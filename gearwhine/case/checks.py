@@ -1,0 +1,44 @@
+"""Checks across the tables of a case, put together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gearwhine.case.check_gears import check_gears
+from gearwhine.case.check_housing import check_box, check_housing_form
+from gearwhine.case.check_names import check_names
+from gearwhine.case.check_provenance import check_provenance
+from gearwhine.case.check_running import check_running
+from gearwhine.case.check_shafts import check_shafts
+from gearwhine.case.draft import Draft
+from gearwhine.case.model import Case
+from gearwhine.case.problems import Finding
+
+
+def check(draft: Draft) -> Iterator[Finding]:
+    """Yield everything that does not go together in what could be read of a case."""
+    yield from check_names(draft)
+    yield from check_housing_form(draft)
+    yield from check_box(draft)
+    yield from check_shafts(draft)
+    yield from check_gears(draft)
+    yield from check_running(draft)
+    yield from check_provenance(draft)
+
+
+def warnings_of(case: Case) -> tuple[str, ...]:
+    """Return what is allowed in a sound case but likely not meant, a sentence each."""
+    found = []
+    housing = case.housing
+    if housing is not None and case.transient is not None and not housing.sensor:
+        found.append("[housing] has no [[housing.sensor]]: the transient will show no acceleration of the housing")
+    if housing is not None and case.rotor and all(bearing.grounded for bearing in case.bearing):
+        found.append("no bearing stands in a seat of [housing]: rotors and housing do not feel each other")
+    if housing is not None and not housing.support:
+        found.append("[housing] has no [[housing.support]]: it floats freely")
+    if case.operation is not None and case.operation.torque > 0.0 and not case.gear_pair and not case.operation.output:
+        found.append("operation.torque has nothing to work against: there are no gear pairs and no outputs")
+    for rotor in case.rotor:
+        if not any(bearing.rotor == rotor.name for bearing in case.bearing):
+            found.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
+    return tuple(found)

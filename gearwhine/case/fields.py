@@ -1,0 +1,219 @@
+"""The kinds of values a case holds, with their units and ranges, and the base of all its tables."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, ValidationInfo
+from pydantic_core import PydanticCustomError, core_schema
+
+from gearwhine.case import units
+from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
+
+MOST_ENTRIES = 10_000
+"""Most entries a list may hold; beyond it a case is a mistake, not a gearbox."""
+
+LARGEST_LENGTH = 100.0
+"""No length in a gearbox is longer [m]: what is, was meant in millimetres."""
+
+
+def wrong(expected: str, *at: str | int, note: str = "") -> PydanticCustomError:
+    """Make the error for a value that is not what was expected.
+
+    Parameters
+    ----------
+    expected
+        What was expected.
+    at
+        Steps that lead on to the key at fault.
+    note
+        What the value is, where that is not plain to see.
+    """
+    return PydanticCustomError("case", "{expected}", {"expected": expected, "at": at, "note": note})
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Validates a quantity within a range, and writes it back with its unit; to stand in `Annotated`.
+
+    Attributes
+    ----------
+    dimension
+        What it measures.
+    above, below
+        Limits that the value must not touch, in SI.
+    at_least, at_most
+        Limits that the value may touch, in SI.
+    """
+
+    dimension: Dimension
+    above: float | None = None
+    at_least: float | None = None
+    below: float | None = None
+    at_most: float | None = None
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        """Tell pydantic how to validate and write this field."""
+        writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
+        return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
+
+    def write(self, number: float) -> str | float:
+        """Return the quantity as text with its unit."""
+        return format_quantity(number, self.dimension)
+
+    def validate(self, value: object) -> float:
+        """Return the quantity in SI, or raise pydantic's error with what was expected."""
+        try:
+            number = parse_quantity(value, self.dimension)
+        except QuantityError as error:
+            raise wrong(str(error), note=error.note) from None
+        within = (
+            (self.above is None or number > self.above)
+            and (self.at_least is None or number >= self.at_least)
+            and (self.below is None or number < self.below)
+            and (self.at_most is None or number <= self.at_most)
+        )
+        if not within:
+            raise wrong(self.expected + self._hint(value, number))
+        if self.dimension is units.LENGTH and abs(number) > LARGEST_LENGTH:
+            raise wrong(f"a length of at most {LARGEST_LENGTH:g} m{hint_of_millimetres(value)}")
+        return number
+
+    @property
+    def expected(self) -> str:
+        """What a user should write here, in words."""
+        example = f"such as {self.dimension.example!r}" if self._has_fair_example() else ""
+        return " ".join(word for word in (self.dimension.name, self._range(), example) if word)
+
+    def _has_fair_example(self) -> bool:
+        """Tell whether the dimension's example is itself within the limits."""
+        dimension = self.dimension
+        example = parse_quantity(dimension.example if dimension.unit else float(dimension.example), dimension)
+        low = max(limit for limit in (self.above, self.at_least, float("-inf")) if limit is not None)
+        high = min(limit for limit in (self.below, self.at_most, float("inf")) if limit is not None)
+        return low < example < high
+
+    def _range(self) -> str:
+        """Write the limits as words."""
+        lower = (("above", self.above), ("of at least", self.at_least))
+        upper = (("below", self.below), ("at most" if self.at_least is not None else "of at most", self.at_most))
+        return " and ".join(f"{word} {self._show(limit)}" for word, limit in (*lower, *upper) if limit is not None)
+
+    def _hint(self, value: object, number: float) -> str:
+        """Return the advice for a length that is too long because its unit is missing."""
+        too_long = self.dimension is units.LENGTH and self.at_most is not None and number > self.at_most
+        return hint_of_millimetres(value) if too_long else ""
+
+    def _show(self, limit: float) -> str:
+        """Write a limit with its unit."""
+        return str(self.write(limit)) if self.dimension.unit else f"{limit:g}"
+
+
+def hint_of_millimetres(value: object) -> str:
+    """Return the advice for a plain number of metres that looks like millimetres, or nothing."""
+    if isinstance(value, str):
+        return ""
+    return f"; plain numbers are in metres: did you mean '{value:g} mm'?"
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Validates a whole number within limits; to stand in `Annotated`."""
+
+    at_least: int
+    at_most: int
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        """Tell pydantic how to validate this field."""
+        return core_schema.no_info_plain_validator_function(self.validate)
+
+    @property
+    def expected(self) -> str:
+        """What a user should write here, in words."""
+        return f"a whole number from {self.at_least} to {self.at_most}"
+
+    def validate(self, value: object) -> int:
+        """Return the whole number, or raise pydantic's error with what was expected."""
+        if isinstance(value, int) and not isinstance(value, bool) and self.at_least <= value <= self.at_most:
+            return value
+        raise wrong(self.expected)
+
+
+_NAME = re.compile(r"[^\s\x00-\x1f\x7f/\\](?:[^\x00-\x1f\x7f/\\]{0,98}[^\s\x00-\x1f\x7f/\\])?")
+
+
+@dataclass(frozen=True)
+class _NameRule:
+    """Validates an entry's name: short, on one line, fit to stand in a table, a plot and a file name."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.validate)
+
+    def validate(self, value: object) -> str:
+        if not isinstance(value, str) or _NAME.fullmatch(value) is None:
+            raise wrong("a name of 1 to 100 characters, without slashes, line breaks or blanks at its ends")
+        return value
+
+
+@dataclass(frozen=True)
+class _FileRule:
+    """Validates a file: found from the case file's folder (the validation context), and there."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        writer = core_schema.plain_serializer_function_ser_schema(str, when_used="json")
+        return core_schema.with_info_plain_validator_function(self.validate, serialization=writer)
+
+    def validate(self, value: object, info: ValidationInfo) -> Path:
+        text = str(value) if isinstance(value, (str, Path)) else ""
+        if not 0 < len(text) <= 1000 or "\0" in text:
+            raise wrong("the name of a file, relative to the case file's folder")
+        path = Path((info.context or {}).get("folder", ""), text)
+        try:
+            if path.is_file():
+                return path.resolve()
+        except (OSError, ValueError, RuntimeError):  # names no file system takes, and loops of links
+            pass
+        raise wrong(f"an existing file (looked in {str(path.parent)!r})")
+
+
+Name = Annotated[str, _NameRule()]
+CaseFile = Annotated[Path, _FileRule()]
+
+Length = Annotated[float, Quantity(units.LENGTH)]
+LengthFromZero = Annotated[float, Quantity(units.LENGTH, at_least=0.0)]
+PositiveLength = Annotated[float, Quantity(units.LENGTH, above=0.0)]
+Mass = Annotated[float, Quantity(units.MASS, at_least=0.0)]
+Inertia = Annotated[float, Quantity(units.INERTIA, at_least=0.0)]
+Imbalance = Annotated[float, Quantity(units.IMBALANCE, at_least=0.0)]
+Density = Annotated[float, Quantity(units.DENSITY, above=0.0)]
+ElasticModulus = Annotated[float, Quantity(units.STRESS, above=0.0)]
+Stiffness = Annotated[float, Quantity(units.STIFFNESS)]
+StiffnessFromZero = Annotated[float, Quantity(units.STIFFNESS, at_least=0.0)]
+PositiveStiffness = Annotated[float, Quantity(units.STIFFNESS, above=0.0)]
+Damping = Annotated[float, Quantity(units.DAMPING)]
+DampingFromZero = Annotated[float, Quantity(units.DAMPING, at_least=0.0)]
+Force = Annotated[float, Quantity(units.FORCE)]
+Torque = Annotated[float, Quantity(units.TORQUE, at_least=0.0)]
+Angle = Annotated[float, Quantity(units.ANGLE)]
+PositiveFrequency = Annotated[float, Quantity(units.FREQUENCY, above=0.0)]
+Speed = Annotated[float, Quantity(units.SPEED)]
+SpeedFromZero = Annotated[float, Quantity(units.SPEED, at_least=0.0)]
+PositiveSpeed = Annotated[float, Quantity(units.SPEED, above=0.0)]
+PlainNumber = Annotated[float, Quantity(units.RATIO)]
+DampingRatio = Annotated[float, Quantity(units.RATIO, at_least=0.0, below=1.0)]
+
+Point = tuple[Length, Length, Length]
+
+
+class Table(BaseModel):
+    """A table of the case file: frozen, and strict about its keys."""
+
+    later: ClassVar[frozenset[str]] = frozenset()
+    """Keys that are known to be missing so far."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", populate_by_name=True, hide_input_in_errors=True, protected_namespaces=()
+    )

@@ -1,0 +1,157 @@
+"""The `[[gear]]` and `[[gear_pair]]` entries of a case. Attributes are named as the keys and are in SI."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import field_validator, model_validator
+
+from gearwhine.case import units
+from gearwhine.case.fields import (
+    Angle,
+    CaseFile,
+    DampingRatio,
+    Inertia,
+    LengthFromZero,
+    Mass,
+    Name,
+    PositiveLength,
+    PositiveStiffness,
+    Quantity,
+    Table,
+    Whole,
+    wrong,
+)
+
+PressureAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(10.0), at_most=math.radians(35.0))]
+
+
+class TipRelief(Table):
+    """Linear tip relief: amount at the tip [m], and the roll angle where it starts [rad]."""
+
+    amount: LengthFromZero
+    start_roll_angle: Annotated[float, Quantity(units.ANGLE, above=0.0, at_most=2.0 * math.pi)]
+
+
+class GearErrors(Table):
+    """Manufacturing errors: eccentricity of the teeth [m] and its angle from x at rest [rad]."""
+
+    later = frozenset({"pitch", "profile", "lead", "runout", "spacing", "cumulative_pitch", "helix"})
+
+    eccentricity: LengthFromZero = 0.0
+    phase: Angle = 0.0
+
+
+class Gear(Table):
+    """`[[gear]]`: an external spur gear, by module or by base radius.
+
+    On a rotor at a station [m from its left end]; without rotor in a case that has no rotors. Its
+    inertia comes from its geometry unless `mass`, `polar_inertia` and `diametral_inertia` are all given.
+    """
+
+    later = frozenset({"fault"})
+
+    name: Name
+    rotor: Name | None = None
+    at: LengthFromZero | None = None
+    teeth: Annotated[int, Whole(5, 2000)]
+    module: Annotated[float, Quantity(units.LENGTH, at_least=1e-5, at_most=0.2)] | None = None
+    base_radius: PositiveLength | None = None
+    face_width: PositiveLength | None = None
+    pressure_angle: Annotated[float, Quantity(units.ANGLE, at_least=math.radians(10.0), at_most=math.radians(35.0))] = (
+        math.radians(20.0)
+    )
+    profile_shift: Annotated[float, Quantity(units.RATIO, at_least=-2.0, at_most=2.0)] = 0.0
+    bore: LengthFromZero = 0.0
+    rim: PositiveLength | None = None
+    root_radius: LengthFromZero | None = None
+    tip_relief: TipRelief | None = None
+    material: Name | None = None
+    mass: Mass | None = None
+    polar_inertia: Inertia | None = None
+    diametral_inertia: Inertia | None = None
+    errors: GearErrors = GearErrors()
+    helix_angle: Angle = 0.0
+
+    @field_validator("helix_angle", mode="after")
+    @classmethod
+    def _spur(cls, angle: float) -> float:
+        if angle != 0.0:
+            raise wrong("0 deg: helical gears come in a later version")
+        return angle
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Gear:
+        if (self.module is None) == (self.base_radius is None):
+            raise wrong("exactly one of 'module' and 'base_radius'")
+        if self.module is not None and self.face_width is None:
+            raise wrong("the face width of a gear that is given by its module", "face_width")
+        if self.bore >= 2.0 * self.base_circle_radius:
+            raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
+        given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]
+        if any(given) and not all(given):
+            raise wrong("all of 'mass', 'polar_inertia' and 'diametral_inertia', or none of them")
+        if self.base_radius is not None and self.face_width is None and not all(given):
+            raise wrong("a face width, or all of 'mass', 'polar_inertia' and 'diametral_inertia'")
+        if (self.rotor is None) != (self.at is None):
+            raise wrong("'rotor' and 'at' together, or neither in a case without rotors")
+        return self
+
+    @property
+    def base_circle_radius(self) -> float:
+        """Radius of the base circle [m]."""
+        if self.base_radius is not None:
+            return self.base_radius
+        return self.pitch_radius * math.cos(self.pressure_angle)
+
+    @property
+    def tooth_module(self) -> float:
+        """Module [m], also where the gear is given by its base radius."""
+        return 2.0 * self.pitch_radius / self.teeth
+
+    @property
+    def pitch_radius(self) -> float:
+        """Radius of the reference circle [m]."""
+        if self.module is not None:
+            return self.module * self.teeth / 2.0
+        assert self.base_radius is not None
+        return self.base_radius / math.cos(self.pressure_angle)
+
+
+class ToothStiffness(Table):
+    """How stiff a pair's teeth are: a model by name, and the value [N/m] or file that it needs."""
+
+    model: Literal["potential-energy", "constant", "iso6336", "square", "table"] = "potential-energy"
+    value: PositiveStiffness | None = None
+    file: CaseFile | None = None
+
+    @model_validator(mode="after")
+    def _has_what_it_needs(self) -> ToothStiffness:
+        needs_value, needs_file = self.model in ("constant", "square"), self.model == "table"
+        if needs_value != (self.value is not None):
+            raise wrong(f"{'a' if needs_value else 'no'} stiffness value with model {self.model!r}", "value")
+        if needs_file != (self.file is not None):
+            raise wrong(f"{'a' if needs_file else 'no'} file with model {self.model!r}", "file")
+        return self
+
+
+class GearPair(Table):
+    """`[[gear_pair]]`: two gears by name, and their contact.
+
+    `backlash` [m] is measured along the line of action; None: the back flanks never touch. `centre_distance`
+    [m] is checked against the rotors' axes, and needed only in a case without rotors where it is not nominal.
+    """
+
+    driver: Name
+    driven: Name
+    stiffness: ToothStiffness = ToothStiffness()
+    damping_ratio: DampingRatio = 0.05
+    backlash: LengthFromZero | None = None
+    centre_distance: PositiveLength | None = None
+
+    @model_validator(mode="after")
+    def _two_gears(self) -> GearPair:
+        if self.driver == self.driven:
+            raise wrong("another gear than the driver itself", "driven")
+        return self

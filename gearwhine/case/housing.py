@@ -1,0 +1,221 @@
+"""The `[housing]` of a case: its geometry, seats, supports and sensors; and the materials.
+
+Attributes are named as the keys of the case file and are in SI; frequencies are in Hz.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+
+from gearwhine.case import units
+from gearwhine.case.box import FACES, FOOT_SURFACES, Box
+from gearwhine.case.fields import (
+    MOST_ENTRIES,
+    CaseFile,
+    DampingRatio,
+    Density,
+    ElasticModulus,
+    Name,
+    PlainNumber,
+    Point,
+    PositiveFrequency,
+    PositiveLength,
+    Quantity,
+    StiffnessFromZero,
+    Table,
+    Whole,
+    wrong,
+)
+from gearwhine.case.units import QuantityError, parse_quantity
+
+
+def _shape(value: Any) -> str:
+    """Tell which form a value with several forms has been given in."""
+    if isinstance(value, (dict, Table)):
+        return "~table"
+    return "~list" if isinstance(value, (list, tuple)) else "~scalar"
+
+
+class Material(Table):
+    """`[material.NAME]`: Young's modulus [Pa], Poisson ratio, density [kg/m³]."""
+
+    youngs_modulus: ElasticModulus
+    poisson_ratio: Annotated[float, Quantity(units.RATIO, at_least=0.0, below=0.5)]
+    density: Density
+
+    @property
+    def shear_modulus(self) -> float:
+        """E / (2 (1 + ν)) [Pa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+
+class CadFile(Table):
+    """`[housing.cad]`: a STEP file, the unit of its numbers and the element size [m]."""
+
+    file: CaseFile
+    mesh_size: PositiveLength
+    unit: Literal["m", "mm", "cm", "in"] = "mm"
+
+
+class MeshFile(Table):
+    """`[housing.mesh]`: a finite-element mesh file and the unit of its coordinates."""
+
+    file: CaseFile
+    unit: Literal["m", "mm", "cm", "in"] = "m"
+
+
+class Boss(Table):
+    """A cylinder on the outside of the wall, concentric with the bore [m]."""
+
+    diameter: PositiveLength
+    length: PositiveLength
+
+
+class Seat(Table):
+    """`[[housing.seat]]`: a bearing seat, a bore along z [m]."""
+
+    name: Name
+    center: Point
+    diameter: PositiveLength
+    boss: Boss | None = None
+
+    @field_validator("name")
+    @classmethod
+    def _not_taken(cls, name: str) -> str:
+        if name == "ground":
+            raise wrong("another name than 'ground', which bearings use for what does not move")
+        if name in (*FACES, *FOOT_SURFACES):
+            raise wrong("another name than that of a face or foot of a box")
+        return name
+
+    @model_validator(mode="after")
+    def _boss_around_bore(self) -> Seat:
+        if self.boss is not None and self.boss.diameter <= self.diameter:
+            raise wrong(f"a boss wider than its bore of {self.diameter:g} m", "boss", "diameter")
+        return self
+
+
+class Springs(Table):
+    """Stiffness to ground along x, y, z [N/m], in all, spread over the patch."""
+
+    x: StiffnessFromZero = 0.0
+    y: StiffnessFromZero = 0.0
+    z: StiffnessFromZero = 0.0
+
+
+class Support(Table):
+    """`[[housing.support]]`: a patch of the surface, held fast or on springs."""
+
+    name: Name
+    box: tuple[Point, Point] | None = None
+    surface: Name | None = None
+    fixed: tuple[Literal["x", "y", "z"], ...] | None = Field(default=None, min_length=1, max_length=3)
+    stiffness: Springs | None = None
+
+    @model_validator(mode="after")
+    def _one_of_each(self) -> Support:
+        if (self.box is None) == (self.surface is None):
+            raise wrong("exactly one of 'box' and 'surface'")
+        if (self.fixed is None) == (self.stiffness is None):
+            raise wrong("exactly one of 'fixed' and 'stiffness'")
+        if self.fixed is not None and len(set(self.fixed)) < len(self.fixed):
+            raise wrong("each of 'x', 'y', 'z' at most once", "fixed")
+        if self.stiffness is not None and self.stiffness == Springs():
+            raise wrong("a stiffness above 0 N/m in x, y or z", "stiffness")
+        return self
+
+    @property
+    def corners(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        """The box's corners of least and of greatest x, y, z [m], whichever two opposite ones were given."""
+        if self.box is None:
+            return None
+        (x1, y1, z1), (x2, y2, z2) = self.box
+        return (min(x1, x2), min(y1, y2), min(z1, z2)), (max(x1, x2), max(y1, y2), max(z1, z2))
+
+
+def _direction_form(value: Any) -> str:
+    return "~list" if isinstance(value, (list, tuple)) else "~axis"
+
+
+class Sensor(Table):
+    """`[[housing.sensor]]`: a point on the surface [m] and a direction; None: the outward normal there."""
+
+    name: Name
+    position: Point
+    direction: (
+        Annotated[
+            Annotated[Literal["x", "y", "z"], Tag("~axis")]
+            | Annotated[tuple[PlainNumber, PlainNumber, PlainNumber], Tag("~list")],
+            Discriminator(_direction_form),
+        ]
+        | None
+    ) = None
+
+    @model_validator(mode="after")
+    def _has_direction(self) -> Sensor:
+        if isinstance(self.direction, tuple) and not 1e-100 < math.hypot(*self.direction) < 1e100:
+            raise wrong("a vector with a direction", "direction")
+        return self
+
+    @property
+    def unit_vector(self) -> tuple[float, float, float] | None:
+        """The direction as a unit vector; None where it is the surface normal."""
+        if self.direction is None:
+            return None
+        if isinstance(self.direction, str):
+            return (float(self.direction == "x"), float(self.direction == "y"), float(self.direction == "z"))
+        x, y, z = self.direction
+        length = math.hypot(x, y, z)
+        return (x / length, y / length, z / length)
+
+
+def _check_frequency_key(key: object) -> str:
+    """Hold the keys of a damping table to frequencies."""
+    try:
+        if parse_quantity(key, units.FREQUENCY) >= 0.0:
+            return str(key)
+    except QuantityError:
+        pass
+    raise wrong("a frequency such as '658 Hz' as a key of the damping table")
+
+
+class Housing(Table):
+    """`[housing]`: geometry (exactly one of box, cad, mesh), material, damping and the modes wanted.
+
+    `damping_ratio` is one ratio for all modes, a ratio per mode, or a table from frequency (text with
+    unit, see `damping_points`) to ratio. `frequency_limit` is in Hz.
+    """
+
+    material: Name
+    damping_ratio: Annotated[
+        Annotated[DampingRatio, Tag("~scalar")]
+        | Annotated[tuple[DampingRatio, ...], Tag("~list"), Field(min_length=1, max_length=MOST_ENTRIES)]
+        | Annotated[dict[str, DampingRatio], Tag("~table"), Field(min_length=1, max_length=MOST_ENTRIES)],
+        Discriminator(_shape),
+    ] = 0.01
+    frequency_limit: PositiveFrequency | None = None
+    modes: Annotated[int, Whole(1, 5000)] | None = None
+    box: Box | None = None
+    cad: CadFile | None = None
+    mesh: MeshFile | None = None
+    seat: tuple[Seat, ...] = Field(default=(), max_length=1000)
+    support: tuple[Support, ...] = Field(default=(), max_length=1000)
+    sensor: tuple[Sensor, ...] = Field(default=(), max_length=MOST_ENTRIES)
+
+    @field_validator("damping_ratio", mode="after")
+    @classmethod
+    def _keyed_by_frequency(cls, value: Any) -> Any:
+        if isinstance(value, dict):
+            for key in value:
+                _check_frequency_key(key)
+        return value
+
+    @property
+    def damping_points(self) -> tuple[tuple[float, float], ...]:
+        """The damping table as (frequency in Hz, ratio), ascending; empty for the other forms."""
+        if not isinstance(self.damping_ratio, dict):
+            return ()
+        return tuple(sorted((parse_quantity(k, units.FREQUENCY), v) for k, v in self.damping_ratio.items()))

@@ -1,0 +1,199 @@
+"""Reads a case: from a file or a bundled name to a checked `Case`, with everything wrong in one error."""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from gearwhine.case.bundled import bundled_case, bundled_names
+from gearwhine.case.checks import check, warnings_of
+from gearwhine.case.draft import draft_of_case, draft_of_document
+from gearwhine.case.explain import findings_of
+from gearwhine.case.model import Case
+from gearwhine.case.overrides import apply_overrides
+from gearwhine.case.problems import (
+    UNSAID,
+    CaseError,
+    Finding,
+    Location,
+    Problem,
+    did_you_mean,
+    problem_of,
+)
+
+DEEPEST = 32
+"""Tables and lists within each other beyond which a case is refused."""
+
+LARGEST_FILE = 20_000_000
+"""Bytes beyond which a file is not taken for a case."""
+
+
+@dataclass(frozen=True)
+class LoadedCase:
+    """A case as it was read.
+
+    Attributes
+    ----------
+    case
+        Checked, in SI.
+    path
+        The file it was read from.
+    warnings
+        What is allowed but likely not meant, a sentence each.
+    """
+
+    case: Case
+    path: Path
+    warnings: tuple[str, ...]
+
+
+def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> LoadedCase:
+    """Read and check a case.
+
+    Parameters
+    ----------
+    source
+        A case file, or the name of a bundled case. A file of that name goes before a bundled case.
+    overrides
+        Changes such as ``"housing.box.wall=10 mm"``, see `apply_overrides`.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong.
+    """
+    path, content = _read(source)
+    document = _parse(content, path.name)
+    document, sources = apply_overrides(document, overrides)
+    case = parse_case(document, folder=path.parent, source=path.name, sources=sources)
+    return LoadedCase(case, path, warnings_of(case))
+
+
+def parse_case(
+    document: Mapping[str, Any],
+    *,
+    folder: str | os.PathLike[str] = ".",
+    source: str = "",
+    sources: Mapping[Location, str] | None = None,
+) -> Case:
+    """Validate and check nested tables and lists, as TOML gives them.
+
+    Parameters
+    ----------
+    document
+        The case as a dictionary.
+    folder
+        Where relative file names start.
+    source
+        The file's name, for messages.
+    sources
+        Where single values came from another place: from location to a name for that place.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong.
+    """
+    _check_depth(document, source)
+    context = {"folder": Path(folder)}
+    findings: list[Finding] = []
+    try:
+        case = Case.model_validate(dict(document), context=context)
+        draft = draft_of_case(case, document)
+    except ValidationError as error:
+        findings += findings_of(error)
+        broken = frozenset(str(finding.location[0]) for finding in findings if finding.location)
+        draft = draft_of_document(document, broken, context)
+    findings += check(draft)
+    if findings:
+        raise CaseError(_in_words(findings, document, source, sources or {}))
+    return case
+
+
+def _in_words(
+    findings: Iterable[Finding], document: object, source: str, sources: Mapping[Location, str]
+) -> list[Problem]:
+    """Put findings in words, each once."""
+    problems: dict[Problem, None] = {}
+    for finding in findings:
+        within = [place for place in sources if finding.location[: len(place)] == place]
+        origin = sources[max(within, key=len)] if within else source
+        problems[problem_of(finding, document, origin)] = None
+    return list(problems)
+
+
+def _read(source: str | os.PathLike[str]) -> tuple[Path, bytes]:
+    """Return the place and content of a case file or bundled case."""
+    name = os.fspath(source)
+    path = Path(name)
+    bundled = bundled_case(name) if isinstance(source, str) else None
+    try:
+        if bundled is not None and not path.is_file():
+            return Path(str(bundled)), bundled.read_bytes()
+        if path.is_dir():
+            raise CaseError([Problem("case", name, "a case file; this is a folder")])
+        if path.stat().st_size > LARGEST_FILE:
+            raise CaseError([Problem("case", name, f"a case file of at most {LARGEST_FILE // 10**6} MB")])
+        return path, path.read_bytes()
+    except FileNotFoundError:
+        names = bundled_names()
+        expected = f"an existing file, or one of the bundled cases {', '.join(names)}{did_you_mean(name, names)}"
+    except (OSError, ValueError) as error:
+        if isinstance(error, CaseError):
+            raise
+        expected = f"a readable file ({getattr(error, 'strerror', None) or error})"
+    raise CaseError([Problem("case", name, expected)])
+
+
+def _parse(content: bytes, source: str) -> dict[str, Any]:
+    """Parse TOML text, naming line and column of what is not."""
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise CaseError([Problem(f"line {line}", content[error.start], "text in UTF-8", source=source)]) from None
+    try:
+        document = tomllib.loads(text)
+        _check_depth(document, source)
+        return document
+    except CaseError:
+        raise
+    except RecursionError:
+        raise _too_deep(source) from None
+    except ValueError as error:
+        place, message = _place_of(str(error), text)
+        raise CaseError([Problem(place, UNSAID, f"TOML ({message})", source=source)]) from None
+
+
+def _check_depth(document: object, source: str) -> None:
+    """Raise where tables and lists stand in each other deeper than any case needs."""
+    level = [document]
+    for _ in range(DEEPEST):
+        level = [
+            inner
+            for outer in level
+            for inner in (outer.values() if isinstance(outer, Mapping) else outer if isinstance(outer, list) else ())
+        ]
+        if not level:
+            return
+    raise _too_deep(source)
+
+
+def _too_deep(source: str) -> CaseError:
+    return CaseError([Problem("case", UNSAID, f"tables and lists at most {DEEPEST} deep", source=source)])
+
+
+def _place_of(message: str, text: str) -> tuple[str, str]:
+    """Split a TOML error into its line and column, and what is wrong."""
+    found = re.search(r" \(at line (\d+), column (\d+)\)$", message)
+    if found is not None:
+        return f"line {found[1]}, column {found[2]}", message[: found.start()]
+    lines = text.split("\n")
+    return f"line {len(lines)}, column {len(lines[-1]) + 1}", message.removesuffix(" (at end of document)")

@@ -1,0 +1,123 @@
+"""Changes to a case from the command line: ``--set key.path=value``."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable
+from copy import deepcopy
+from typing import Any
+
+from gearwhine.case.problems import NOTHING, CaseError, Location, Problem, did_you_mean, key_of
+
+_STEP = re.compile(r"""\[(\d{1,9})\]|\.?(?:"([^"]*)"|'([^']*)'|([^.\[\]"']+))""")
+
+
+def parse_key_path(text: str) -> tuple[str, ...] | None:
+    """Split a key path such as ``rotor.input.segments[1].length``; names that hold dots stand in quotes.
+
+    Returns
+    -------
+    tuple of str, or None
+        The steps; list places stay text. None where the text is no key path.
+    """
+    steps, place = [], 0
+    while place < len(text):
+        match = _STEP.match(text, place)
+        if match is None or (place == 0 and text[0] in ".["):
+            return None
+        steps.append(next(group for group in match.groups() if group is not None))
+        place = match.end()
+    return tuple(steps) or None
+
+
+def place_in_list(entries: list[Any], step: str) -> int | None:
+    """Find a list's entry by its own name or by its number."""
+    for index, entry in enumerate(entries):
+        if isinstance(entry, dict) and entry.get("name") == step:
+            return index
+    return int(step) if step.isdecimal() and len(step) < 10 and int(step) < len(entries) else None
+
+
+def apply_overrides(document: dict[str, Any], overrides: Iterable[str]) -> tuple[dict[str, Any], dict[Location, str]]:
+    """Apply ``key.path=value`` texts to a copy of a document, in order.
+
+    A value is written as in TOML; what is not TOML (``10 mm``, ``lumped``) stands for itself as text. An empty
+    value takes the key away. Keys that are not yet there are added; whether they may be is for the models to say.
+
+    Returns
+    -------
+    document, sources
+        The changed copy, and from each changed location to the text that changed it.
+
+    Raises
+    ------
+    CaseError
+        With a problem for each override that is no override or leads nowhere.
+    """
+    document, sources, problems = deepcopy(document), dict[Location, str](), list[Problem]()
+    for override in overrides:
+        path, equals, value_text = override.partition("=")
+        steps = parse_key_path(path.strip())
+        if not equals or steps is None:
+            problems.append(Problem("--set", override, "key.path=value, such as housing.box.wall=10mm"))
+            continue
+        try:
+            places = _set(document, steps, _read_value(value_text.strip()))
+        except _LeadsNowhereError as stop:
+            problems.append(Problem(stop.key, stop.value, stop.expected, source=f"--set {override}"))
+        else:
+            sources |= dict.fromkeys(places, f"--set {override}")
+    if problems:
+        raise CaseError(problems)
+    return document, sources
+
+
+class _LeadsNowhereError(Exception):
+    def __init__(self, location: Location, step: str, expected: str) -> None:
+        self.key, self.value, self.expected = key_of((*location, step)), step, expected
+
+
+def _read_value(text: str) -> Any:
+    """Read a TOML value; text that is none stands for itself. ``NOTHING`` for an empty text."""
+    if not text:
+        return NOTHING
+    try:
+        read = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return read["value"] if list(read) == ["value"] else text
+
+
+def _set(document: dict[str, Any], steps: tuple[str, ...], value: Any) -> list[Location]:
+    """Set one value in place; return where, after the tables made on the way."""
+    made: list[Location] = []
+    here: Any = document
+    location: Location = ()
+    for depth, step in enumerate(steps):
+        last = depth == len(steps) - 1
+        if isinstance(here, list):
+            index = place_in_list(here, step)
+            if index is None:
+                names = [entry["name"] for entry in here if isinstance(entry, dict) and "name" in entry]
+                known = f" or one of {', '.join(map(repr, names))}" if names else ""
+                expected = f"a place from 0 to {len(here) - 1}{known}{did_you_mean(step, map(str, names))}"
+                raise _LeadsNowhereError(location, step, expected)
+            key: str | int = index
+        elif isinstance(here, dict):
+            key = step
+            if key not in here and last and value is NOTHING:
+                raise _LeadsNowhereError(location, step, f"a key to take away{did_you_mean(step, map(str, here))}")
+            if key not in here and not last:
+                here[key] = {}
+                made.append((*location, key))
+        else:
+            raise _LeadsNowhereError(location, step, f"no further key: {key_of(location)} is a value, not a table")
+        location = (*location, key)
+        if not last:
+            here = here[key]
+        elif value is NOTHING:
+            del here[key]
+        else:
+            here[key] = value
+    return [*made, location]

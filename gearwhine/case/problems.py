@@ -1,0 +1,173 @@
+"""What is wrong in a case: problems, and the one error that carries them all."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+
+Location = tuple[str | int, ...]
+"""Where a value stands in a case file: table keys and list indices from the top."""
+
+
+class _Nothing:
+    """The value of a key that is not there."""
+
+    def __repr__(self) -> str:
+        return "nothing"
+
+
+NOTHING = _Nothing()
+"""Stands for the value of a key that is missing."""
+
+UNSAID = object()
+"""Stands for a value that a message had better leave out: a whole entry, or how two entries lie."""
+
+_short = reprlib.Repr()
+_short.maxstring = _short.maxother = 80
+_short.maxlong = 40
+_short.maxlevel = 3
+
+
+def show_value(value: object) -> str:
+    """Return a value as an error message shows it: short, on one line, whatever it is."""
+    if isinstance(value, Mapping):
+        listed = ", ".join(show_value(key)[1:-1] for key in list(value)[:8])
+        return f"a table with {listed}{', …' if len(value) > 8 else ''}" if value else "an empty table"
+    try:
+        text = _short.repr(value)
+    except ValueError:  # an integer of more digits than Python is willing to print
+        text = "an integer of thousands of digits"
+    return " ".join(text.split())
+
+
+def key_of(location: Location) -> str:
+    """Write a location as a key path, such as ``rotor[0].segments[1].length``."""
+    text = ""
+    for step in location:
+        if isinstance(step, int):
+            text += f"[{step}]"
+        else:
+            bare = step != "" and all(c.isalnum() or c in "_-*" for c in step)
+            text += ("." if text else "") + (step if bare else show_value(step))
+    return text or "the case"
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the nearest known word, or nothing."""
+    near = get_close_matches(word, list(known), n=1, cutoff=0.6)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong in a case.
+
+    Attributes
+    ----------
+    key
+        Key path, such as ``rotor[0].segments[1].length``.
+    value
+        What stands there: ``NOTHING`` where the key is missing, ``UNSAID`` where no one value is at fault.
+    expected
+        What was expected instead, to be read after "expected".
+    label
+        The entry the key belongs to by its own name, such as ``rotor "input"``; empty where it has none.
+    source
+        The file, or the ``--set`` that brought the value in.
+    note
+        What the value is, where that is not plain to see, such as ``mass``.
+    """
+
+    key: str
+    value: object = field(hash=False)
+    expected: str
+    label: str = ""
+    source: str = ""
+    note: str = ""
+
+    @property
+    def message(self) -> str:
+        """What was expected and what was found, without the place."""
+        if self.value is UNSAID:
+            return f"expected {self.expected}"
+        note = f" ({self.note})" if self.note else ""
+        return f"expected {self.expected}, got {show_value(self.value)}{note}"
+
+    def __str__(self) -> str:
+        place = f"{self.key} ({self.label})" if self.label else self.key
+        return f"{self.source}: {place}: {self.message}" if self.source else f"{place}: {self.message}"
+
+
+class CaseError(ValueError):
+    """The case is wrong; every problem found is in it.
+
+    Attributes
+    ----------
+    problems
+        Everything that is wrong.
+    """
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(str(problem) for problem in self.problems))
+
+
+LOOK_UP = _Nothing()
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something wrong at a place, before it is put in the words of a `Problem`.
+
+    Attributes
+    ----------
+    location
+        Where; what stands there is looked up in the case unless `value` says otherwise.
+    expected
+        What was expected instead.
+    note
+        What the value is, where that is not plain to see.
+    """
+
+    location: Location
+    expected: str
+    value: object = field(default=LOOK_UP, hash=False)
+    note: str = ""
+
+
+def look_up(document: object, location: Location) -> object:
+    """Return what stands at a location of nested tables and lists; ``NOTHING`` where there is nothing."""
+    for step in location:
+        in_table = isinstance(document, Mapping) and step in document
+        in_list = isinstance(document, (list, tuple)) and isinstance(step, int) and 0 <= step < len(document)
+        if not (in_table or in_list):
+            return NOTHING
+        document = document[step]  # type: ignore[index]  # one of the two, by the line above
+    return document
+
+
+def label_of(document: object, location: Location) -> str:
+    """Name the entry that a location is in by its own name, such as ``rotor "input"``; else nothing."""
+    for depth, step in enumerate(location):
+        if isinstance(step, int):
+            entry = look_up(document, location[: depth + 1])
+            if isinstance(entry, Mapping):
+                if isinstance(entry.get("name"), str):
+                    return f"{location[depth - 1]} {_quoted(entry['name'])}"
+                if isinstance(entry.get("driver"), str) and isinstance(entry.get("driven"), str):
+                    return f"{_quoted(entry['driver'])} to {_quoted(entry['driven'])}"
+            return ""
+    return ""
+
+
+def _quoted(name: str) -> str:
+    return '"' + show_value(name)[1:-1] + '"'
+
+
+def problem_of(finding: Finding, document: object, source: str = "") -> Problem:
+    """Put a finding in words: its key path, the entry's own name and the value that stands there."""
+    value = look_up(document, finding.location) if finding.value is LOOK_UP else finding.value
+    label = label_of(document, finding.location)
+    return Problem(key_of(finding.location), value, finding.expected, label, source, finding.note)

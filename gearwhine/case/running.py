@@ -1,0 +1,122 @@
+"""How a case runs and what it is compared with: operation, transient, sweep and measured modes.
+
+Attributes are named as the keys and are in SI; speeds in rad/s, frequencies in Hz.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
+
+from gearwhine.case import units
+from gearwhine.case.fields import (
+    MOST_ENTRIES,
+    LengthFromZero,
+    Name,
+    PositiveFrequency,
+    Quantity,
+    Speed,
+    SpeedFromZero,
+    Table,
+    Torque,
+    Whole,
+    wrong,
+)
+
+
+class Output(Table):
+    """`[[operation.output]]`: a torque taken off a rotor [N m], at a station [m]; None: its right end."""
+
+    rotor: Name
+    torque: Torque
+    at: LengthFromZero | None = None
+
+
+class Operation(Table):
+    """`[operation]`: speed [rad/s] and torque [N m] of the first driver's rotor.
+
+    Positive speeds are counter-clockwise seen from +z. The torque drives in the direction of turning, at station
+    `at` [m] (None: the left end). Without outputs, the rotors that drive no other share the power equally.
+    """
+
+    speed: Speed
+    torque: Torque = 0.0
+    at: LengthFromZero | None = None
+    output: tuple[Output, ...] = Field(default=(), max_length=1000)
+
+
+def _half_the_run(data: dict[str, Any]) -> float:
+    return float(data.get("revolutions", 0.0)) / 2.0
+
+
+class Transient(Table):
+    """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps."""
+
+    revolutions: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e6)]
+    discard: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = Field(default_factory=_half_the_run)
+    points_per_revolution: Annotated[int, Whole(200, 1_000_000)] = 200
+    tolerance: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=0.1)] = 1e-4
+
+    @model_validator(mode="after")
+    def _something_left(self) -> Transient:
+        if self.discard >= self.revolutions:
+            raise wrong(f"fewer revolutions than the {self.revolutions:g} of the run", "discard")
+        return self
+
+
+class SpeedRange(Table):
+    """Speeds from `start` (key `from`) to `to` by `step` [rad/s], both ends included."""
+
+    model_config = ConfigDict(serialize_by_alias=True)
+
+    start: SpeedFromZero = Field(alias="from")
+    to: SpeedFromZero
+    step: Speed
+
+    @model_validator(mode="after")
+    def _leads_there(self) -> SpeedRange:
+        span = self.to - self.start
+        if self.step == 0.0 or span * self.step < 0.0:
+            raise wrong("a step that leads from 'from' to 'to'", "step")
+        if span / self.step > MOST_ENTRIES:
+            raise wrong(f"a step that makes at most {MOST_ENTRIES} speeds", "step")
+        return self
+
+
+def _range_or_list(value: Any) -> str:
+    return "~table" if isinstance(value, (dict, Table)) else "~list"
+
+
+class Sweep(Table):
+    """`[sweep]`: the speeds to go through, as a range or a list."""
+
+    speed: Annotated[
+        Annotated[SpeedRange, Tag("~table")]
+        | Annotated[tuple[SpeedFromZero, ...], Tag("~list"), Field(min_length=1, max_length=MOST_ENTRIES)],
+        Discriminator(_range_or_list),
+    ]
+
+    @property
+    def speeds(self) -> tuple[float, ...]:
+        """Every speed of the sweep [rad/s], in order."""
+        if not isinstance(self.speed, SpeedRange):
+            return self.speed
+        count = math.floor((self.speed.to - self.speed.start) / self.speed.step + 1e-9) + 1
+        return tuple(self.speed.start + index * self.speed.step for index in range(count))
+
+
+class Measured(Table):
+    """`[measured]`: frequencies of measured modes [Hz], ascending."""
+
+    later = frozenset({"file"})
+
+    frequencies: tuple[PositiveFrequency, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
+
+    @model_validator(mode="after")
+    def _ascending(self) -> Measured:
+        for index in range(1, len(self.frequencies)):
+            if self.frequencies[index] <= self.frequencies[index - 1]:
+                raise wrong("a frequency above the one before it", "frequencies", index)
+        return self

@@ -1,0 +1,250 @@
+"""Units at the door: ``"6.35 mm"`` in, ``0.00635`` out.
+
+A quantity is a number and a unit of plain symbols multiplied, divided and raised to whole powers. Text is
+held to that grammar before the unit registry sees any of it, so nothing in a case file is ever evaluated.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pint
+
+LONGEST_QUANTITY = 100
+"""Characters beyond which a string is not taken for a quantity."""
+
+_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\s*(.*)", re.DOTALL)
+_FACTOR = re.compile(r"\s*([*·/]?)\s*([A-Za-zµμ°%]{1,20})\s*(?:(?:\^|\*\*)\s*([+-]?[1-9]))?")
+_BRACKET = re.compile(r"/\s*\(([^()/]*)\)")  # "N*m/(rad*s)": the one place where brackets are customary
+_SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3", "⋅": "·"})
+_RESPELT = {"°": "degree", "%": "percent"}
+
+
+class QuantityError(ValueError):
+    """A text or number is not the quantity that was asked for.
+
+    The message is what was expected; `note` says what the value is, where that is not plain to see.
+    """
+
+    def __init__(self, expected: str, note: str = "") -> None:
+        super().__init__(expected)
+        self.note = note
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A kind of quantity, the SI unit it is kept in, and how people write it.
+
+    Attributes
+    ----------
+    name
+        With its article, as a message shows it: ``"a length"``.
+    unit
+        SI unit of the stored float.
+    example
+        A quantity as a user might write it.
+    display
+        A customary unit, used in output where it gives back the very same float.
+    """
+
+    name: str
+    unit: str
+    example: str
+    display: str = ""
+
+
+LENGTH = Dimension("a length", "m", "6.35 mm")
+MASS = Dimension("a mass", "kg", "4 kg")
+DENSITY = Dimension("a density", "kg/m^3", "7850 kg/m^3")
+STRESS = Dimension("an elastic modulus", "Pa", "207 GPa")
+INERTIA = Dimension("a moment of inertia", "kg*m^2", "0.02 kg*m^2")
+IMBALANCE = Dimension("an unbalance", "kg*m", "2e-5 kg*m")
+STIFFNESS = Dimension("a stiffness", "N/m", "1.2e8 N/m")
+COUPLED_STIFFNESS = Dimension("a force per angle", "N/rad", "1e5 N/rad")
+TILT_STIFFNESS = Dimension("a tilting stiffness", "N*m/rad", "1e4 N*m/rad")
+DAMPING = Dimension("a damping", "N*s/m", "500 N*s/m")
+COUPLED_DAMPING = Dimension("a damping force per angular rate", "N*s/rad", "1 N*s/rad")
+TILT_DAMPING = Dimension("a tilting damping", "N*m*s/rad", "0.1 N*m*s/rad")
+FORCE = Dimension("a force", "N", "1 kN")
+TORQUE = Dimension("a torque", "N*m", "71.77 N*m")
+ANGLE = Dimension("an angle", "rad", "24 deg", display="deg")
+FREQUENCY = Dimension("a frequency", "Hz", "3.2 kHz")
+SPEED = Dimension("an angular speed", "rad/s", "5500 rpm", display="rpm")
+RATIO = Dimension("a plain number", "", "0.01")
+
+_DIMENSIONS = (
+    *(LENGTH, MASS, DENSITY, STRESS, INERTIA, IMBALANCE, STIFFNESS, COUPLED_STIFFNESS, DAMPING, TILT_DAMPING),
+    *(TORQUE, ANGLE, FREQUENCY, SPEED),
+)
+
+
+@dataclass(frozen=True)
+class _Unit:
+    """A unit in SI: ``factor`` times a product of base units to whole powers; cycles kept apart."""
+
+    factor: Decimal
+    powers: tuple[tuple[str, int], ...]
+
+    def without_angle(self) -> tuple[tuple[str, int], ...]:
+        return tuple(item for item in self.powers if item[0] != "radian")
+
+
+@lru_cache(maxsize=1)
+def _registry() -> pint.UnitRegistry[float]:
+    """Return the one shared unit registry, made when the first unit is read (half a second)."""
+    import pint
+
+    return pint.UnitRegistry(cache_folder=None)
+
+
+@lru_cache(maxsize=256)
+def _symbol(symbol: str) -> _Unit | None:
+    """Look up one unit symbol; None where there is no such (whole-power, multiplicative) unit."""
+    import pint
+
+    registry = _registry()
+    try:
+        unit = registry.parse_units(_RESPELT.get(symbol, symbol))
+        if not registry.Quantity(1, unit)._is_multiplicative:
+            return None
+        factor, base = registry.get_base_units(unit)
+    except (pint.PintError, AttributeError, ValueError, TypeError, KeyError):
+        return None
+    powers = {str(name): float(str(power)) for name, power in base._units.items()}
+    if any(power % 1.0 != 0.0 for power in powers.values()):
+        return None
+    if str(unit).endswith("hertz"):
+        powers["cycle"] = 1.0  # the registry takes 1 Hz for 1/s, which would lose a 2 pi in angular speeds
+    whole = sorted((name, int(power)) for name, power in powers.items())
+    return _Unit(Decimal(repr(float(str(factor)))), tuple(whole))
+
+
+@lru_cache(maxsize=1024)
+def _parse_unit(text: str) -> _Unit | None:
+    """Multiply out a unit such as ``kg*m^2``; None where it is not one."""
+    text = _BRACKET.sub(lambda inside: "/" + "/".join(re.split(r"[*·]", inside[1])), text.translate(_SUPERSCRIPTS))
+    factor, powers, place = Decimal(1), dict[str, int](), 0
+    while place < len(text.rstrip()):
+        match = _FACTOR.match(text, place)
+        if match is None or (place == 0 and match[1]):
+            return None
+        unit = _symbol(match[2])
+        if unit is None:
+            return None
+        exponent = int(match[3] or 1) * (-1 if match[1] == "/" else 1)
+        factor *= unit.factor**exponent
+        for key, power in unit.powers:
+            powers[key] = powers.get(key, 0) + power * exponent
+        place = match.end()
+    return _Unit(factor, tuple(sorted((key, power) for key, power in powers.items() if power)))
+
+
+def _matches(unit: _Unit, dimension: Dimension) -> bool:
+    """Tell whether a unit measures this dimension (radians matter only where angles are the point)."""
+    if dimension is RATIO:
+        return unit.powers == ()
+    wanted = _parse_unit(dimension.unit)
+    assert wanted is not None, dimension.unit
+    if dimension is SPEED and ("cycle", 1) in unit.powers:
+        return unit.powers == (("cycle", 1), ("second", -1))
+    if dimension in (ANGLE, SPEED, FREQUENCY):
+        return unit.powers == wanted.powers
+    return unit.without_angle() == wanted.without_angle()
+
+
+def _name_of(unit: _Unit) -> str:
+    """Name what a unit measures, for a message: ``"mass"``, or nothing."""
+    if unit.powers == ():
+        return "plain number"
+    return next((d.name.split(" ", 1)[1] for d in _DIMENSIONS if _matches(unit, d)), "")
+
+
+def parse_quantity(value: object, dimension: Dimension) -> float:
+    """Read a quantity: text with a unit, or a plain number in SI.
+
+    Parameters
+    ----------
+    value
+        ``"6.35 mm"`` or ``0.00635``.
+    dimension
+        What it has to measure.
+
+    Returns
+    -------
+    float
+        In ``dimension.unit``, the double nearest to the decimal number written wherever the unit is a decimal
+        multiple of the SI unit.
+
+    Raises
+    ------
+    QuantityError
+        When the value is no finite number or text, has no unit or an unknown one, or measures something else.
+    """
+    expected = f"{dimension.name} such as {dimension.example!r}"
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise QuantityError(expected)
+    try:
+        number = _parse_text(value, dimension, expected) if isinstance(value, str) else float(value)
+    except (OverflowError, InvalidOperation):
+        raise QuantityError(f"{expected} that a computer number can hold") from None
+    if not math.isfinite(number):
+        raise QuantityError(f"{expected}, and a finite one")
+    return number
+
+
+def _parse_text(text: str, dimension: Dimension, expected: str) -> float:
+    """Read number and unit of a text; see `parse_quantity`."""
+    match = _NUMBER.fullmatch(text) if len(text) <= LONGEST_QUANTITY else None
+    if match is None:
+        raise QuantityError(expected)
+    number, unit_text = Decimal(match[1]), match[2].strip()
+    if unit_text == dimension.unit:
+        return float(number)
+    if not unit_text:
+        raise QuantityError(f"{expected} with its unit (numbers without quotes are in {dimension.unit})")
+    unit = _parse_unit(unit_text)
+    if unit is None:
+        raise QuantityError(f"{expected} (the unit {unit_text!r} is not known)")
+    if not _matches(unit, dimension):
+        raise QuantityError(expected + _unit_advice(unit_text), note=_name_of(unit))
+    turn = 2.0 * math.pi if dimension is SPEED and ("cycle", 1) in unit.powers else 1.0
+    return float(number * unit.factor) * turn
+
+
+def _unit_advice(unit_text: str) -> str:
+    """Say how products are written, where that is the likely slip."""
+    return " (write 'N*m' for newton metres)" if unit_text == "Nm" else ""
+
+
+def format_quantity(number: float, dimension: Dimension) -> str | float:
+    """Write a quantity so that `parse_quantity` gives back the very same float.
+
+    Parameters
+    ----------
+    number
+        In ``dimension.unit``.
+    dimension
+        What it measures.
+
+    Returns
+    -------
+    str or float
+        Text with a unit (the customary one where nothing is lost by it); the number itself for a ratio.
+    """
+    if not dimension.unit:
+        return number
+    if dimension.display:
+        unit = _parse_unit(dimension.display)
+        assert unit is not None, dimension.display
+        customary = float(Decimal(repr(number)) / unit.factor)
+        text = f"{customary:.12g} {dimension.display}"
+        if math.isfinite(customary) and parse_quantity(text, dimension) == number:
+            return text
+    short = f"{number:g}"
+    return f"{short if float(short) == number else repr(number)} {dimension.unit}"

@@ -1,0 +1,1 @@
+"""Bundled cases: small ones for each command, and the published gearboxes."""

@@ -1,0 +1,209 @@
+"""The gear pairs of a case: geometry, contact law, mesh stiffness and static transmission error."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling.gears as room
+from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, pair_torques, require
+from gearwhine.case import Gear as GivenGear
+from gearwhine.case import GearPair as GivenPair
+from gearwhine.progress import Progress, silent
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SolvedPair:
+    """One gear pair at rest under its mean load.
+
+    Attributes
+    ----------
+    given : GearPair
+        As in the case.
+    geometry : coupling.gears.GearPairGeometry
+    contact : coupling.gears.ToothContact
+        With its damping.
+    static : coupling.gears.StaticMesh
+        Over one mesh period.
+    mesh_frequency : float or None
+        [Hz]; None where the case gives no speed.
+    """
+
+    given: GivenPair
+    geometry: room.GearPairGeometry
+    contact: room.ToothContact
+    static: room.StaticMesh
+    mesh_frequency: float | None
+
+
+def build_gear(case: Case, given: GivenGear) -> room.Gear:
+    """A gear of the case as the gear room's.
+
+    A gear known by its base radius alone has the module that gives it, and a nominal width where none is given.
+    """
+    module = given.module
+    if module is None:
+        assert given.base_radius is not None
+        module = room.module_from_base_radius(given.base_radius, given.teeth, given.pressure_angle)
+    steel = {} if (material := _material(case, given)) is None else {
+        "youngs_modulus": case.material[material].youngs_modulus,
+        "poisson_ratio": case.material[material].poisson_ratio,
+        "density": case.material[material].density,
+    }  # fmt: skip
+    return room.Gear(
+        name=given.name,
+        teeth=given.teeth,
+        module=module,
+        pressure_angle=given.pressure_angle,
+        face_width=given.face_width if given.face_width is not None else 10.0 * module,
+        profile_shift=given.profile_shift,
+        root_radius=given.root_radius,
+        bore=given.bore,
+        tip_relief=room.TipRelief(given.tip_relief.amount, given.tip_relief.start_roll_angle)
+        if given.tip_relief
+        else None,
+        eccentricity=given.errors.eccentricity,
+        eccentricity_phase=given.errors.phase,
+        **steel,
+    )
+
+
+def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
+    """Mass [kg], polar and diametral inertia [kg m²]: as given, or from the geometry."""
+    if given.mass is not None and given.polar_inertia is not None and given.diametral_inertia is not None:
+        return given.mass, given.polar_inertia, given.diametral_inertia
+    gear = build_gear(case, given)
+    return gear.mass, gear.polar_inertia, gear.diametral_inertia
+
+
+def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ...]:
+    """Every gear pair of the case.
+
+    Raises
+    ------
+    CaseError, coupling.gears.GearError
+        Where the case has no gear pairs, or one cannot be solved as it stands.
+    """
+    require(case, "gear_pair", command="gears")
+    torques = pair_torques(case) if case.operation else (0.0,) * len(case.gear_pair)
+    frequencies = mesh_frequencies(case) if case.operation else (None,) * len(case.gear_pair)
+    solved = []
+    for number, (pair, torque, frequency) in enumerate(zip(case.gear_pair, torques, frequencies, strict=True)):
+        progress(f"gear pair {pair.driver} -> {pair.driven}")
+        geometry = pair_geometry(case, pair)
+        contact = room.tooth_contact(geometry, _model(pair, number))
+        contact = contact.with_damping(_damping(case, pair, contact))
+        force = abs(torque) / geometry.driver.base_radius
+        static = room.static_transmission_error(contact, force)
+        solved.append(SolvedPair(pair, geometry, contact, static, frequency))
+    return tuple(solved)
+
+
+def pair_geometry(case: Case, pair: GivenPair) -> room.GearPairGeometry:
+    """The two gears at the distance of their shafts, or without backlash where there are no shafts."""
+    driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
+    distance = pair.centre_distance
+    if driver.rotor is not None and driven.rotor is not None:
+        axes = case.rotor_named(driver.rotor).axis, case.rotor_named(driven.rotor).axis
+        distance = float(np.hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]))
+    return room.GearPairGeometry(build_gear(case, driver), build_gear(case, driven), distance)
+
+
+def gears_document(solved: tuple[SolvedPair, ...]) -> dict[str, Any]:
+    """The gear pairs as the command's JSON."""
+    return {"pairs": [_pair_document(pair) for pair in solved]}
+
+
+def _pair_document(pair: SolvedPair) -> dict[str, Any]:
+    phases = pair.static.phases
+    stiffness = room.mesh_stiffness(pair.contact, phases)
+    teeth = pair.geometry.driver.teeth
+    return {
+        "driver": pair.given.driver,
+        "driven": pair.given.driven,
+        "model": pair.given.stiffness.model,
+        "contact_ratio": pair.geometry.contact_ratio,
+        "mesh_frequency_hz": pair.mesh_frequency,
+        "mean_force_n": pair.static.force,
+        "stiffness_n_per_m": {
+            "mean": pair.contact.mean_stiffness,
+            "min": float(stiffness.min()),
+            "max": float(stiffness.max()),
+        },
+        "transmission_error_m": {
+            "mean": pair.static.mean_transmission_error,
+            "peak_to_peak": pair.static.peak_to_peak_transmission_error,
+        },
+        "roll_angle_rad": (2.0 * np.pi * phases / teeth).tolist(),
+        "stiffness": stiffness.tolist(),
+        "loaded_stiffness": pair.static.tangent_stiffness.tolist(),
+        "transmission_error": pair.static.transmission_error.tolist(),
+    }
+
+
+def _material(case: Case, given: GivenGear) -> str | None:
+    if given.material is not None:
+        return given.material
+    return case.rotor_named(given.rotor).material if given.rotor is not None else None
+
+
+def _model(pair: GivenPair, number: int) -> room.StiffnessModel:
+    stiffness = pair.stiffness
+    if stiffness.file is not None:
+        position, values = _table(stiffness.file, f"gear_pair[{number}].stiffness.file")
+        return room.stiffness_model("table", position=position, stiffness=values)
+    if stiffness.value is not None:
+        return room.stiffness_model(stiffness.model, value=stiffness.value)
+    return room.stiffness_model(stiffness.model)
+
+
+def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
+    """Two columns of a CSV file: position in base pitches, stiffness [N/m]; a first line of names may stand."""
+    rows = []
+    lines = Path(path).read_text(encoding="utf-8").splitlines()
+    for number, line in enumerate(lines, start=1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        try:
+            first, second = (float(part) for part in line.split(","))
+        except ValueError as error:
+            if number == 1:
+                continue
+            expected = f"two numbers with a comma between in line {number} of {path}"
+            raise CaseError([Problem(key, line[:60], expected)]) from error
+        rows.append((first, second))
+    if len(rows) < 2:
+        raise CaseError([Problem(key, str(path), "at least two rows: position in base pitches, stiffness in N/m")])
+    columns = np.array(rows, dtype=np.float64).T
+    return columns[0], columns[1]
+
+
+def _damping(case: Case, pair: GivenPair, contact: room.ToothContact) -> float:
+    """The mesh's damping coefficient [N s/m] from the ratio, with the inertia that sits where the gears do."""
+    if pair.damping_ratio == 0.0:
+        return 0.0
+    driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
+    mass = room.equivalent_mass(
+        _inertia_at(case, driver),
+        _inertia_at(case, driven),
+        build_gear(case, driver).base_radius,
+        build_gear(case, driven).base_radius,
+    )
+    return room.mesh_damping(pair.damping_ratio, contact.mean_stiffness, mass)
+
+
+def _inertia_at(case: Case, given: GivenGear) -> float:
+    """Polar inertia of a gear with the discs at its station [kg m²]; of its whole rotor where that is nothing."""
+    inertia = gear_inertia(case, given)[1]
+    if given.rotor is not None and given.at is not None:
+        rotor = case.rotor_named(given.rotor)
+        inertia += sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - given.at) < 1e-6 * rotor.length)
+        if inertia == 0.0:
+            from gearwhine.stages.rotors import build_rotor
+
+            inertia = build_rotor(case, rotor).polar_inertia
+    return inertia if inertia > 0.0 else build_gear(case, given).polar_inertia

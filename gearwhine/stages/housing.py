@@ -1,0 +1,260 @@
+"""The housing of a case: geometry to mesh, mesh to certified modes, modes to strengths and comparison."""
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import housing as room
+from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.progress import Progress, silent
+from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
+
+
+@dataclass(frozen=True)
+class SolvedHousing:
+    """The housing with everything that later stages take from it.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    mass : float
+        [kg].
+    modes : housing.ModeSet
+    damping_ratios : ndarray, shape (n_modes,)
+    seats : dict of str to ndarray, shape (n_modes, 6)
+        Modes' motions at each bearing seat.
+    sensors : dict of str to housing.SensorPort
+    survey : housing.Survey
+    strengths : housing.Dominance or None
+        None where there are no seats.
+    seconds : dict of str to float
+        Time taken by mesh, assembly, factorisation, eigensolver and in total.
+    """
+
+    mesh: Mesh
+    mass: float
+    modes: room.ModeSet
+    damping_ratios: FloatArray
+    seats: dict[str, FloatArray]
+    sensors: dict[str, room.SensorPort]
+    survey: room.Survey
+    strengths: room.Dominance | None
+    seconds: dict[str, float]
+
+
+def build_mesh(case: Case) -> Mesh:
+    """The housing's finite-element mesh.
+
+    Raises
+    ------
+    CaseError
+        Where the case has no housing, or one from a CAD file.
+    meshes.GeometryError
+        Where the shape cannot be meshed or the file not read.
+    """
+    require(case, "housing", command="mesh")
+    assert case.housing is not None
+    if case.housing.box is not None:
+        return mesh_box(box_geometry(case), case.housing.box.mesh_size)
+    if case.housing.mesh is not None:
+        return read_mesh(case.housing.mesh.file, unit=_UNITS[case.housing.mesh.unit])
+    raise CaseError([Problem("housing.cad", str(case.housing.cad and case.housing.cad.file), _NO_CAD)])
+
+
+_NO_CAD = "[housing.box] or [housing.mesh]: geometry from CAD comes in a later version"
+
+
+def box_geometry(case: Case) -> BoxGeometry:
+    """The box of a case as the mesher's geometry."""
+    assert case.housing is not None
+    box = case.housing.box
+    assert box is not None
+    walls = box.walls
+    return BoxGeometry(
+        size=box.size,
+        wall=WallThickness(walls.left, walls.right, walls.bottom, walls.top, walls.back, walls.front),
+        bores=tuple(
+            Bore(
+                seat.name, seat.center, seat.diameter, Boss(seat.boss.diameter, seat.boss.length) if seat.boss else None
+            )
+            for seat in case.housing.seat
+        ),
+        feet=Feet(box.feet.size) if box.feet else None,
+    )
+
+
+def solve_housing(case: Case, progress: Progress = silent) -> SolvedHousing:
+    """Mesh the housing and find its modes with their certificate.
+
+    Raises
+    ------
+    CaseError, meshes.GeometryError, housing.HousingError
+        Where the case cannot be solved as it stands.
+    housing.IncompleteModesError
+        Where the modes fail their certificate.
+    """
+    require(case, "housing", command="modes")
+    given = case.housing
+    assert given is not None
+    begin = time.perf_counter()
+    progress("meshing the housing")
+    mesh = build_mesh(case)
+    meshed = time.perf_counter()
+    progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
+    steel = case.material[given.material]
+    material = room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
+    free = room.assemble(mesh, material)
+    supports = [_support(entry) for entry in given.support]
+    matrices = room.with_springs(free, mesh, supports)
+    assembled = time.perf_counter()
+    # Without a limit or a number, what a first look wants.
+    count = given.modes if given.modes is not None else (None if given.frequency_limit is not None else 20)
+    modes = room.solve_modes(
+        matrices,
+        room.fixed_freedoms(mesh, supports),
+        frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
+        count=count,
+        progress=progress,
+    )
+    seats = {seat.name: modes.project(room.seat_matrix(mesh, room.Seat(seat.name, seat.center))) for seat in given.seat}
+    sensors = {
+        sensor.name: room.sensor_port(mesh, room.Sensor(sensor.name, sensor.position, sensor.unit_vector))
+        for sensor in given.sensor
+    }
+    bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
+    survey = room.survey_grid(mesh, bounds)
+    strengths = None
+    if seats:
+        radial = np.stack([motion[:, :2] for motion in seats.values()], axis=1)
+        strengths = room.dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
+    return SolvedHousing(
+        mesh=mesh,
+        mass=free.total_mass,
+        modes=modes,
+        damping_ratios=_damping(case, modes.frequencies_hz),
+        seats=seats,
+        sensors=sensors,
+        survey=survey,
+        strengths=strengths,
+        seconds={
+            "mesh": meshed - begin,
+            "assembly": assembled - meshed,
+            **modes.seconds,
+            "total": time.perf_counter() - begin,
+        },
+    )
+
+
+def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:
+    """Pair the model's dominant modes with the measured ones.
+
+    Raises
+    ------
+    CaseError
+        Where nothing is measured or the housing has no seats to be driven at.
+    housing.HousingError
+        Where the model has too few modes in the band.
+    """
+    require(case, "measured", command="compare")
+    assert case.measured is not None
+    if solved.strengths is None:
+        raise CaseError(
+            [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
+        )
+    return room.compare_by_dominance(_HERTZ * np.array(case.measured.frequencies), solved.strengths)
+
+
+def modes_document(solved: SolvedHousing) -> dict[str, Any]:
+    """The modes as the command's JSON."""
+    certificate = solved.modes.certificate
+    strengths = solved.strengths
+    return {
+        "modes": [
+            {
+                "number": number,
+                "frequency_hz": float(frequency),
+                "damping_ratio": float(damping),
+                "strength": None if strengths is None else float(strengths.acceleration[number - 1]),
+            }
+            for number, (frequency, damping) in enumerate(
+                zip(solved.modes.frequencies_hz, solved.damping_ratios, strict=True), start=1
+            )
+        ],
+        "certificate": {
+            "limit_hz": certificate.limit / _HERTZ,
+            "expected": certificate.expected,
+            "found": certificate.found,
+            "complete": certificate.complete,
+            "max_residual": certificate.max_residual,
+        },
+        "mesh": {
+            "nodes": len(solved.mesh.points),
+            "elements": len(solved.mesh.cells),
+            "dofs": 3 * len(solved.mesh.points),
+        },
+        "mass_kg": solved.mass,
+        "seconds": solved.seconds,
+    }
+
+
+def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> dict[str, Any]:
+    """The comparison as the command's JSON."""
+    highest = float(np.floor(comparison.pairs[-1].measured / _HERTZ / 1000.0 + 0.999) * 1000.0)
+    return {
+        "pairs": [
+            {
+                "measured_hz": pair.measured / _HERTZ,
+                "model_hz": pair.model / _HERTZ,
+                "error_percent": pair.error_percent,
+                "mode": pair.mode,
+                "mac": None,
+                "strength": pair.strength,
+            }
+            for pair in comparison.pairs
+        ],
+        "rms_error_percent": comparison.rms_error_percent,
+        "max_error_percent": comparison.max_error_percent,
+        "pairing": comparison.pairing,
+        "band_hz": [edge / _HERTZ for edge in comparison.band],
+        "gap": comparison.gap,
+        "measures_agree": comparison.measures_agree,
+        "model_modes": {
+            "below_hz": highest,
+            "count": int(np.count_nonzero(solved.modes.frequencies_hz < highest)),
+        },
+    }
+
+
+def _support(entry: Any) -> room.Support:
+    springs = entry.stiffness
+    return room.Support(
+        name=entry.name,
+        surface=entry.surface,
+        box=entry.box,
+        fixed=("x" in (entry.fixed or ()), "y" in (entry.fixed or ()), "z" in (entry.fixed or ())),
+        stiffness=(springs.x, springs.y, springs.z) if springs else (0.0, 0.0, 0.0),
+    )
+
+
+def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:
+    """Damping ratio of each mode: one for all, one for each, or by a table of frequency."""
+    assert case.housing is not None
+    given = case.housing.damping_ratio
+    if case.housing.damping_points:
+        places, ratios = np.array(case.housing.damping_points).T
+        return np.asarray(np.interp(frequencies_hz, places, ratios))
+    if isinstance(given, tuple):
+        if len(given) < len(frequencies_hz):
+            expected = f"a ratio for each of the {len(frequencies_hz)} modes found"
+            raise CaseError([Problem("housing.damping_ratio", f"{len(given)} ratios", expected)])
+        return np.array(given[: len(frequencies_hz)])
+    assert isinstance(given, float | int)
+    return np.full(len(frequencies_hz), float(given))

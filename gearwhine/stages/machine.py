@@ -1,0 +1,152 @@
+"""The whole machine of a case: rotors, housing, bearings, gears and loads in one system; its complex modes."""
+
+from typing import Any
+
+import numpy as np
+
+import coupling as room
+import rotors as rotor_room
+from gearwhine.case import Case, CaseError, Problem, applied_torques, require, rotor_speeds
+from gearwhine.progress import Progress, silent
+from gearwhine.stages.gears import SolvedPair, solve_gears
+from gearwhine.stages.housing import SolvedHousing, solve_housing
+from gearwhine.stages.rotors import build_bearings, build_rotor
+
+_HERTZ = 2.0 * np.pi
+
+# Shafts keep every bending mode up to this frequency, or several times the housing's limit where that is higher;
+# what lies above answers statically, through attachment vectors at bearings and gears.
+_LATERAL_LIMIT_HZ = 8000.0
+_LIMIT_FACTOR = 2.5
+_FEWEST_TORSIONAL = 4
+
+
+def build_machine(
+    case: Case, housing: SolvedHousing | None, pairs: tuple[SolvedPair, ...], progress: Progress = silent
+) -> room.Machine:
+    """Couple the parts of a case at its speed of operation.
+
+    Raises
+    ------
+    CaseError, rotors.RotorError, coupling.CouplingError
+        Where the parts do not make a machine.
+    """
+    require(case, "rotor", "operation", command="system")
+    assert case.operation is not None
+    speeds = rotor_speeds(case)
+    _check_bows(case)
+    components = []
+    bearings: list[room.MountedBearing] = []
+    for given in case.rotor:
+        progress(f"modes of rotor {given.name}")
+        rotor, held = build_rotor(case, given), build_bearings(case, given.name)
+        gears_at = [gear.at for gear in case.gear if gear.rotor == given.name and gear.at is not None]
+        components.append(
+            room.rotor_component(
+                given.name,
+                _lateral_basis(case, rotor, held, gears_at),
+                _torsional_basis(case, rotor),
+                start=given.start,
+                damping_ratio=given.damping_ratio,
+            )
+        )
+        seats = {entry.name: None if entry.grounded else entry.seat for entry in case.bearing}
+        bearings += [room.MountedBearing(bearing, given.name, seats[bearing.name]) for bearing in held]
+    return room.couple(
+        components,
+        None if housing is None else _housing_component(case, housing),
+        speeds=speeds,
+        bearings=bearings,
+        meshes=[_mesh(case, pair) for pair in pairs],
+        unbalances=[
+            room.Unbalance(rotor.name, entry.at, entry.moment, entry.phase)
+            for rotor in case.rotor
+            for entry in rotor.unbalance
+        ],
+        torques=[
+            room.Torque(torque.shaft, torque.at, torque.torque)
+            for torque in applied_torques(case)
+            if torque.at is not None
+        ],
+    )
+
+
+def solve_machine(
+    case: Case, progress: Progress = silent
+) -> tuple[SolvedHousing | None, tuple[SolvedPair, ...], room.Machine]:
+    """Solve the housing and the gears that the case has, and couple everything."""
+    require(case, "rotor", "operation", command="system")
+    pairs = solve_gears(case, progress) if case.gear_pair else ()
+    housing = solve_housing(case, progress) if case.housing else None
+    return housing, pairs, build_machine(case, housing, pairs, progress)
+
+
+def system_document(case: Case, machine: room.Machine, modes: room.CoupledModes) -> dict[str, Any]:
+    """The coupled modes as the command's JSON."""
+    assert case.operation is not None
+    return {
+        "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
+        "modes": [
+            {
+                "frequency_hz": float(frequency),
+                "damping_ratio": float(damping),
+                "kind": kind,
+                "energy": energy,
+            }
+            for frequency, damping, kind, energy in zip(
+                modes.frequencies_hz, modes.damping_ratios, modes.kinds, modes.energy, strict=True
+            )
+        ],
+        "coordinates": machine.system.size,
+    }
+
+
+def _lateral_basis(
+    case: Case, rotor: rotor_room.Rotor, bearings: tuple[rotor_room.Bearing, ...], gears_at: list[float]
+) -> rotor_room.LateralModes:
+    supports = [bearing.mean_support for bearing in bearings]
+    limit = _basis_limit(case)
+    modes = rotor_room.solve_lateral_modes(rotor, supports, frequency_limit=_HERTZ * limit)
+    if modes.count < 4:
+        modes = rotor_room.solve_lateral_modes(rotor, supports)
+    if rotor.mass_model == "lumped":
+        return modes
+    return rotor_room.attach_loads(modes, forces_at=[bearing.at for bearing in bearings] + gears_at)
+
+
+def _torsional_basis(case: Case, rotor: rotor_room.Rotor) -> rotor_room.TorsionalModes:
+    modes = rotor_room.solve_torsional_modes(rotor, frequency_limit=_HERTZ * _basis_limit(case))
+    return modes if modes.count >= _FEWEST_TORSIONAL else rotor_room.solve_torsional_modes(rotor)
+
+
+def _basis_limit(case: Case) -> float:
+    limit = (case.housing.frequency_limit or 0.0) if case.housing else 0.0
+    return max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit)
+
+
+def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingComponent:
+    assert case.housing is not None
+    return room.housing_component(
+        solved.modes,
+        solved.damping_ratios,
+        seats=solved.seats,
+        seat_z={seat.name: seat.center[2] for seat in case.housing.seat},
+        sensors={name: solved.modes.project(port.matrix)[:, 0] for name, port in solved.sensors.items()},
+    )
+
+
+def _mesh(case: Case, pair: SolvedPair) -> room.GearMesh:
+    mounted = []
+    for name in (pair.given.driver, pair.given.driven):
+        gear = case.gear_named(name)
+        assert gear.rotor is not None
+        assert gear.at is not None
+        mounted.append(room.MountedGear(name, gear.rotor, gear.at, case.rotor_named(gear.rotor).axis))
+    return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, pair.given.backlash)
+
+
+def _check_bows(case: Case) -> None:
+    for index, rotor in enumerate(case.rotor):
+        if rotor.bow:
+            expected = "nothing: residual bow comes in a later version"
+            raise CaseError([Problem(f"rotor[{index}].bow", "a bow", expected, label=f'rotor "{rotor.name}"')])

@@ -1,0 +1,175 @@
+"""The transient of a case: the machine turning under load, and what its sensors, gears and bearings show."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling as room
+from gearwhine.case import Case, require, rotor_speeds
+from gearwhine.progress import Progress, silent
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+
+# Samples per second over the highest frequency of interest: the signal of a rigid, unfiltered sensor folds little.
+_OVERSAMPLING = 10.0
+
+
+@dataclass(frozen=True)
+class SolvedTransient:
+    """The machine in motion.
+
+    Attributes
+    ----------
+    machine : coupling.Machine
+    result : coupling.TransientResult
+    histories : coupling.Histories
+        Of the recorded revolutions.
+    sensor_spectra : dict of str to coupling.Spectrum
+        Acceleration [m/s²].
+    force_spectra : dict of str to coupling.Spectrum
+        Gear-mesh force [N].
+    trusted_limit : float
+        Highest frequency that the housing's modes carry [Hz].
+    """
+
+    machine: room.Machine
+    result: room.TransientResult
+    histories: room.Histories
+    sensor_spectra: dict[str, room.Spectrum]
+    force_spectra: dict[str, room.Spectrum]
+    trusted_limit: float
+
+
+def solve_transient(
+    case: Case, machine: room.Machine, mesh_frequencies: tuple[float, ...], progress: Progress = silent
+) -> SolvedTransient:
+    """March the machine through the case's revolutions and take the spectra of those not discarded.
+
+    The record holds whole revolutions of the first driver. Where every shaft then turns a whole number of times
+    the spectra are taken as they are, each line exact; otherwise under Hann's window.
+
+    Raises
+    ------
+    coupling.TransientError
+        Where the motion cannot be followed or its energies do not balance.
+    """
+    require(case, "operation", "transient", command="run")
+    assert case.operation is not None
+    assert case.transient is not None
+    given = case.transient
+    period = _HERTZ / abs(case.operation.speed)
+    limit = _trusted_limit(case, mesh_frequencies)
+    per_revolution = _samples_per_revolution(period, limit, given.points_per_revolution)
+    settings = room.TransientSettings(
+        duration=given.revolutions * period,
+        record_from=given.discard * period,
+        sample_interval=period / per_revolution,
+        largest_step=period / given.points_per_revolution,
+        tolerance=given.tolerance,
+    )
+    progress("compiling the time stepper (the first time takes longer)")
+    result = room.simulate(
+        machine.system,
+        settings,
+        room.transient_outputs(machine),
+        progress=lambda fraction: progress("marching through the transient", fraction),
+    )
+    named = room.histories(machine, result)
+    window = _window(case)
+    interval = settings.sample_interval
+    return SolvedTransient(
+        machine=machine,
+        result=result,
+        histories=named,
+        sensor_spectra={
+            name: room.amplitude_spectrum(signal, interval, window)
+            for name, signal in named.sensor_acceleration.items()
+        },
+        force_spectra={
+            name: room.amplitude_spectrum(signal, interval, window) for name, signal in named.mesh_force.items()
+        },
+        trusted_limit=limit,
+    )
+
+
+def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
+    """The transient as the command's JSON."""
+    assert case.operation is not None
+    result = solved.result
+    drives = len(solved.machine.meshes)
+    pairs = []
+    for number, mesh in enumerate(solved.machine.meshes):
+        spectrum = solved.force_spectra[solved.machine.system.contacts[number].name]
+        pairs.append(
+            {
+                "driver": mesh.driver.name,
+                "driven": mesh.driven.name,
+                "mean_force_n": float(result.mean_force[number]),
+                "peak_force_n": float(result.peak_force[number]),
+                "contact_loss_fraction": float(result.contact_loss[number]),
+                "back_flank_peak_force_n": _back_flank_peak(solved, number, drives),
+                "force_peaks": [
+                    {"frequency_hz": peak.frequency, "amplitude_n": peak.amplitude}
+                    for peak in room.spectrum_peaks(spectrum, count=8)
+                ],
+            }
+        )
+    return {
+        "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
+        "steps": result.steps,
+        "rejected_steps": result.rejected,
+        "smallest_step_s": result.smallest_step,
+        "steps_per_second": result.steps / result.seconds if result.seconds > 0.0 else None,
+        "energy_error": result.energy.error,
+        "energy_j": {
+            "change": result.energy.change,
+            "loads": result.energy.loads,
+            "lost": result.energy.lost,
+            "teeth": result.energy.teeth,
+        },
+        "coordinates": solved.machine.system.size,
+        "trusted_below_hz": solved.trusted_limit,
+        "sensors": [
+            {
+                "name": name,
+                "rms_m_per_s2": float(np.std(solved.histories.sensor_acceleration[name])),
+                "peaks": [
+                    {"frequency_hz": peak.frequency, "amplitude_m_per_s2": peak.amplitude}
+                    for peak in room.spectrum_peaks(spectrum, count=16, limit=solved.trusted_limit)
+                ],
+            }
+            for name, spectrum in solved.sensor_spectra.items()
+        ],
+        "gear_pairs": pairs,
+    }
+
+
+def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float | None:
+    """Largest force on the back flanks of a mesh [N]; None where they cannot meet."""
+    meshes = solved.machine.meshes
+    if meshes[number].backlash is None:
+        return None
+    before = sum(mesh.backlash is not None for mesh in meshes[:number])
+    return float(solved.result.peak_force[drives + before])
+
+
+def _trusted_limit(case: Case, mesh_frequencies: tuple[float, ...]) -> float:
+    if case.housing is not None and case.housing.frequency_limit is not None:
+        return case.housing.frequency_limit
+    return 4.0 * max(mesh_frequencies, default=1000.0)
+
+
+def _samples_per_revolution(period: float, limit: float, floor: int) -> int:
+    """The power of two that samples the frequencies of interest well and meets the case's floor."""
+    return int(2 ** np.ceil(np.log2(max(floor, _OVERSAMPLING * limit * period))))
+
+
+def _window(case: Case) -> room.Window:
+    assert case.transient is not None
+    recorded = case.transient.revolutions - case.transient.discard
+    turns = [recorded * abs(ratio) for ratio in rotor_speeds(case, 1.0).values()]
+    return "uniform" if all(abs(turn - round(turn)) < 1e-9 for turn in turns) else "hann"

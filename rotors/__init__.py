@@ -1,0 +1,57 @@
+"""Rotors: shafts, discs and bearings; their bending, torsion and whirl by exact transfer matrices.
+
+A shaft is described by what can be measured on it::
+
+    steel = ShaftMaterial(youngs_modulus=211e9, shear_modulus=81.2e9, density=7810.0)
+    shaft = Rotor("shaft", [Segment(0.5, 0.05, 0.0, steel)] * 3,
+                  [Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0)])
+    bearings = [Bearing.isotropic("left", 0.0, 1e6), Bearing.isotropic("right", 1.5, 1e6)]
+
+and answered for by frozen results, each with the certificate that no mode is missing::
+
+    solve_lateral_modes(shaft, [b.mean_support for b in bearings], frequency_limit=5e3)
+    solve_torsional_modes(shaft, count=5)
+    rest_frequencies(shaft, bearings, count=8)
+    solve_whirl(shaft, bearings, speed=418.9, count=8)
+    critical_speeds(shaft, bearings, speed_limit=1e3)
+
+Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z along the shaft; slopes and
+the gyroscopic sign are those of `rotors.whirl`.
+"""
+
+from .attachment import attach_loads
+from .bearing import Bearing, RadialSupport
+from .certificate import ModeCertificate
+from .errors import IncompleteModesError, RotorError
+from .lateral import LateralModes, solve_lateral_modes
+from .material import ShaftMaterial, shear_coefficient
+from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .shaft import Disc, Rotor, Segment
+from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
+from .whirl import WhirlModes, solve_whirl, whirl_basis
+
+__all__ = [
+    "Bearing",
+    "CriticalSpeeds",
+    "Disc",
+    "IncompleteModesError",
+    "LateralModes",
+    "ModeCertificate",
+    "RadialSupport",
+    "RestFrequencies",
+    "Rotor",
+    "RotorError",
+    "Segment",
+    "ShaftMaterial",
+    "TorsionalModes",
+    "WhirlModes",
+    "attach_loads",
+    "critical_speeds",
+    "rest_frequencies",
+    "shear_coefficient",
+    "solve_lateral_modes",
+    "solve_torsional_chain",
+    "solve_torsional_modes",
+    "solve_whirl",
+    "whirl_basis",
+]

@@ -1,0 +1,33 @@
+"""What can go wrong in this room: a wrong input, or a result that fails its own proof."""
+
+import math
+import numbers
+
+
+class RotorError(ValueError):
+    """A shaft, disc, bearing or request that cannot be: names what, its value and what was expected."""
+
+
+class IncompleteModesError(RuntimeError):
+    """The modes found are not the modes that the root count demands, or a mode fails its energy check."""
+
+
+def require(condition: bool, what: str, value: object, expected: str) -> None:
+    """Raise `RotorError` naming ``what``, its ``value`` and what was ``expected`` unless ``condition``."""
+    if not condition:
+        raise RotorError(f"{what} is {value!r}; expected {expected}")
+
+
+def require_count(what: str, value: int | None) -> None:
+    """Raise `RotorError` unless ``value`` is None or a positive whole number."""
+    whole = value is None or (isinstance(value, numbers.Integral) and value > 0)
+    require(whole, what, value, "a positive whole number")
+
+
+def require_finite(what: str, value: float, *, positive: bool = False, minimum: float | None = None) -> None:
+    """Raise `RotorError` unless ``value`` is finite and, as asked, positive or not below ``minimum``."""
+    require(math.isfinite(value), what, value, "a finite number")
+    if positive:
+        require(value > 0.0, what, value, "a positive number")
+    if minimum is not None:
+        require(value >= minimum, what, value, f"a number not below {minimum:g}")

@@ -1,0 +1,143 @@
+"""Undamped bending modes of a shaft in one plane: the modal basis of the rotor (TM-101442 Eqs. 7–13)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from .bearing import RadialSupport
+from .certificate import ModeCertificate
+from .chain import bending_chain
+from .fields import Fields
+from .search import find_modes, require_positions
+from .shaft import Rotor
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LateralModes:
+    """Mass-orthonormal planar modes, Φᵀ M Φ = I and Φᵀ K Φ = diag(ω²).
+
+    M holds the shaft's translational and rotary inertia along its length as well as the discs; K the
+    shaft and the supports.
+
+    Attributes
+    ----------
+    frequencies
+        (m,): ascending, rad/s; rigid motions of a free shaft are zeros.
+    stations
+        (s,): segment ends, discs and supports, m from the left end.
+    displacement, slope
+        (m, s): x and the rotation of the section at the stations, in m and rad per unit modal coordinate.
+    polar_inertia_matrix
+        (m, m): ∫ ρI_p βᵢβⱼ dz plus Σ I_p βᵢβⱼ of the discs: the gyroscopic matrix per rad/s.
+    supports
+        The springs that K holds, which a coupled model takes out again.
+    certificate
+        Proof of completeness. Vectors added by `rotors.attach_loads` are beyond it.
+    """
+
+    frequencies: FloatArray
+    stations: FloatArray
+    displacement: FloatArray
+    slope: FloatArray
+    polar_inertia_matrix: FloatArray
+    supports: tuple[RadialSupport, ...]
+    certificate: ModeCertificate
+    fields: Fields = field(repr=False)
+    mixture: FloatArray = field(repr=False)
+
+    @property
+    def count(self) -> int:
+        """Number of modes m."""
+        return int(self.frequencies.size)
+
+    def evaluate(self, z: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Displacement and slope of every mode at positions z (m), both (m, len(z)), by the exact field.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        positions = require_positions(self.stations, z)
+        states = np.tensordot(self.mixture, self.fields.at(positions)[:, :, :2], axes=1)
+        unit = self.fields.chain.displacement_unit
+        return states[:, :, 0] * unit[0], states[:, :, 1] * unit[1]
+
+    @property
+    def support_matrix(self) -> FloatArray:
+        """Φᵀ k Φ of the finite supports, (m, m), N/m per unit modal mass."""
+        total = np.zeros((self.count, self.count))
+        for support in self.supports:
+            displacement, slope = self.evaluate([support.at])
+            if np.isfinite(support.stiffness):
+                total += support.stiffness * (displacement @ displacement.T)
+            if np.isfinite(support.tilt_stiffness):
+                total += support.tilt_stiffness * (slope @ slope.T)
+        return total
+
+
+def solve_lateral_modes(
+    rotor: Rotor,
+    supports: Sequence[RadialSupport] = (),
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+) -> LateralModes:
+    """Every planar bending mode below a limit, or the lowest few, without gyroscopic effects.
+
+    Parameters
+    ----------
+    rotor
+        The shaft and its discs.
+    supports
+        Springs to ground in this plane; none leaves the shaft free, with two rigid motions at zero.
+    frequency_limit
+        rad/s: all modes strictly below.
+    count
+        How many modes, instead of a limit; with neither, 10 (or all that a lumped rotor has). A multiple
+        root at the end is kept whole, so that a mode or two more may come back.
+
+    Raises
+    ------
+    RotorError
+        A support off the shaft, both a limit and a count, or more modes than a lumped rotor has.
+    IncompleteModesError
+        The modes fail their own proof.
+    """
+    held = tuple(supports)
+    found = find_modes(lambda highest: bending_chain(rotor, held, highest), frequency_limit, count)
+    return lateral_modes(found.frequencies, found.fields, found.mixture, held, found.certificate)
+
+
+def lateral_modes(
+    frequencies: FloatArray,
+    fields: Fields,
+    mixture: FloatArray,
+    supports: tuple[RadialSupport, ...],
+    certificate: ModeCertificate,
+) -> LateralModes:
+    """Assemble the result from fields in the chain's units and the mixture that makes modes of them."""
+    chain = fields.chain
+    is_station = chain.is_station
+    nodal = np.tensordot(mixture, fields.states[:, is_station, :2], axes=1)
+    # The largest displacement is positive, so that a shape does not depend on the solver's start.
+    largest = np.take_along_axis(nodal[:, :, 0], np.abs(nodal[:, :, 0]).argmax(axis=1)[:, None], axis=1)
+    mixture = np.where(largest < 0.0, -1.0, 1.0) * mixture
+    nodal = np.tensordot(mixture, fields.states[:, is_station, :2], axes=1) * chain.displacement_unit
+    # Polar inertia and rotary mass share one unit, so that the unit modal mass carries it over unchanged.
+    polar = fields.polar_matrix(mixture)
+    return LateralModes(
+        frequencies=frequencies,
+        stations=chain.nodes[is_station],
+        displacement=nodal[:, :, 0],
+        slope=nodal[:, :, 1],
+        polar_inertia_matrix=0.5 * (polar + polar.T),
+        supports=supports,
+        certificate=certificate,
+        fields=fields,
+        mixture=mixture,
+    )

@@ -1,0 +1,175 @@
+"""A rotor on its bearings at rest, and its critical speeds."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from .bearing import Bearing
+from .certificate import ModeCertificate
+from .lateral import LateralModes, solve_lateral_modes
+from .shaft import Rotor
+from .shapes import SAME_ROOT
+from .whirl import (
+    DEFAULT_COUNT,
+    NO_OSCILLATION,
+    basis_for,
+    frequency_weight,
+    plane_matrices,
+    solve_whirl,
+    whirl_direction,
+)
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RestFrequencies:
+    """Undamped natural frequencies of both planes at rest.
+
+    Attributes
+    ----------
+    frequencies
+        (m,): ascending, rad/s; an isotropic root stands twice.
+    certificate
+        Proof of completeness over both planes. With cross-coupled stiffness there is no count, and it is
+        that of the planar modal basis.
+    """
+
+    frequencies: FloatArray
+    certificate: ModeCertificate
+
+
+@dataclass(frozen=True)
+class CriticalSpeeds:
+    """Speeds at which the rotor whirls once per turn.
+
+    Attributes
+    ----------
+    speeds
+        (c,): ascending, rad/s.
+    direction
+        (c,): 1 circular forward, −1 circular backward, 0 planar, as in `rotors.WhirlModes`.
+    """
+
+    speeds: FloatArray
+    direction: FloatArray
+
+    @property
+    def forward(self) -> FloatArray:
+        """The speeds that unbalance excites: those whose whirl is not purely backward."""
+        return np.asarray(self.speeds[self.direction > -1.0 + 1e-6])
+
+
+def rest_frequencies(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+) -> RestFrequencies:
+    """Undamped natural frequencies of both planes of a rotor that does not turn.
+
+    Without cross-coupled stiffness each plane is solved exactly with its own k_xx or k_yy. With it, the
+    planes are coupled on the modal basis of `rotors.solve_whirl`.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and what holds it; no bearings leave it free.
+    frequency_limit
+        rad/s: all frequencies strictly below.
+    count
+        How many over both planes, instead of a limit; with neither, 12. Multiple roots stay whole.
+
+    Raises
+    ------
+    RotorError, IncompleteModesError
+        As `rotors.solve_lateral_modes`.
+    """
+    if any(bearing.has_cross_stiffness for bearing in bearings):
+        undamped = [replace(bearing, damping=np.zeros((2, 2))) for bearing in bearings]
+        modes = solve_whirl(rotor, undamped, 0.0, frequency_limit=frequency_limit, count=count)
+        return RestFrequencies(modes.damped_frequencies, modes.basis.certificate)
+
+    wanted = count
+    if frequency_limit is None and count is None:
+        wanted = DEFAULT_COUNT
+    per_plane = [_plane_modes(rotor, bearings, plane, frequency_limit, wanted) for plane in (0, 1)]
+    merged = np.sort(np.concatenate([modes.frequencies for modes in per_plane]))
+    proofs = [modes.certificate for modes in per_plane]
+    limit = min(proof.limit for proof in proofs)
+    if wanted is not None:
+        limit = min(limit, max(float(merged[min(wanted, merged.size) - 1]) * (1.0 + 2.0 * SAME_ROOT), 0.0))
+        # A free rotor's zeros are below every limit.
+        merged = merged[merged <= limit]
+    certificate = ModeCertificate(
+        limit=limit,
+        expected=sum(proof.expected for proof in proofs) if wanted is None else merged.size,
+        found=merged.size,
+        max_residual=max(proof.max_residual for proof in proofs),
+        orthonormality=max(proof.orthonormality for proof in proofs),
+    )
+    return RestFrequencies(merged, certificate)
+
+
+def critical_speeds(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    *,
+    speed_limit: float | None = None,
+    count: int | None = None,
+    basis: LateralModes | None = None,
+) -> CriticalSpeeds:
+    """Undamped critical speeds: where a whirl frequency equals the speed of rotation.
+
+    With Ω = ω the gyroscopic term joins the mass, and all of them are roots of one eigenproblem,
+
+        K q = ω² [[M, −i G], [i G, M]] q
+
+    over both planes; a disc whose polar inertia exceeds its diametral one takes its forward root away.
+    With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying whirl),
+    and the real part of ω is given. Damping is left out, which is the usual definition; the damped whirl
+    frequency crosses a little lower.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and what holds it.
+    speed_limit
+        rad/s: all critical speeds strictly below.
+    count
+        How many, instead of a limit; with neither, 12.
+    basis
+        From `rotors.whirl_basis`, to spare building it.
+
+    Raises
+    ------
+    RotorError, IncompleteModesError
+        As `rotors.solve_whirl`.
+    """
+    chosen = basis_for(rotor, bearings, speed_limit, count, basis)
+    weight = frequency_weight(chosen)
+    scale = np.outer(weight, weight)
+    stiffness = plane_matrices(chosen, bearings)[0] / scale
+    polar = chosen.polar_inertia_matrix
+    unit = np.eye(chosen.count)
+    mass = np.block([[unit, -1j * polar], [1j * polar, unit]]) / scale
+    values, vectors = linalg.eig(stiffness, mass)
+    speeds = np.emath.sqrt(np.where(np.isfinite(values), values, -1.0)).astype(np.complex128)
+    # Roots of ω² that are not near the positive real axis are no vibration at this speed.
+    kept = np.flatnonzero((speeds.real > NO_OSCILLATION * weight.min()) & (np.abs(speeds.imag) < speeds.real))
+    kept = kept[np.argsort(speeds[kept].real)]
+    wanted = kept.size if speed_limit is not None else count or DEFAULT_COUNT
+    kept = kept[speeds[kept].real < (speed_limit or np.inf)][:wanted]
+    coordinates = (vectors[:, kept] / weight[:, None]).T
+    return CriticalSpeeds(np.asarray(speeds[kept].real), whirl_direction(coordinates))
+
+
+def _plane_modes(
+    rotor: Rotor, bearings: Sequence[Bearing], plane: int, frequency_limit: float | None, count: int | None
+) -> LateralModes:
+    supports = [bearing.plane_support(plane) for bearing in bearings]
+    return solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)

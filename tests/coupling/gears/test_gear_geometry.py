@@ -1,0 +1,129 @@
+"""One gear: radii, angles, inertia, and the messages for teeth that cannot be."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from coupling.gears import (
+    Gear,
+    GearError,
+    PointedToothError,
+    TipRelief,
+    UndercutError,
+    inverse_involute,
+    involute,
+    module_from_base_radius,
+)
+
+ALPHA = math.radians(20.0)
+NASA = Gear("pinion", 28, 3.175e-3, ALPHA, 6.35e-3)
+
+
+def test_radii_of_a_standard_gear() -> None:
+    assert NASA.pitch_radius == pytest.approx(44.45e-3, rel=1e-14)
+    assert NASA.base_radius == pytest.approx(44.45e-3 * math.cos(ALPHA), rel=1e-14)
+    assert NASA.tip_radius == pytest.approx(47.625e-3, rel=1e-14)
+    assert NASA.root_circle_radius == pytest.approx((44.45 - 1.25 * 3.175) * 1e-3, rel=1e-14)
+    assert NASA.base_pitch == pytest.approx(math.pi * 3.175e-3 * math.cos(ALPHA), rel=1e-14)
+
+
+def test_module_from_base_radius() -> None:
+    assert module_from_base_radius(NASA.base_radius, 28, ALPHA) == pytest.approx(3.175e-3, rel=1e-14)
+    with pytest.raises(GearError, match="base_radius must be above 0"):
+        module_from_base_radius(0.0, 28, ALPHA)
+
+
+def test_profile_shift_moves_tip_and_root_but_not_the_base() -> None:
+    shifted = replace(NASA, profile_shift=0.3)
+    assert shifted.tip_radius - NASA.tip_radius == pytest.approx(0.3 * 3.175e-3)
+    assert shifted.root_circle_radius - NASA.root_circle_radius == pytest.approx(0.3 * 3.175e-3)
+    assert shifted.base_radius == NASA.base_radius
+
+
+def test_tooth_is_half_a_pitch_thick_on_the_pitch_circle() -> None:
+    # s = m (pi/2 + 2 x tan(alpha)): ISO 21771.
+    for shift in (0.0, 0.3, -0.1):
+        gear = replace(NASA, profile_shift=shift)
+        half = gear.base_half_angle - involute(ALPHA)
+        expected = gear.module * (math.pi / 2.0 + 2.0 * shift * math.tan(ALPHA))
+        assert 2.0 * half * gear.pitch_radius == pytest.approx(expected, rel=1e-12)
+
+
+def test_default_rack_corner_leaves_one_addendum_of_straight_flank() -> None:
+    # Then the involute starts where the rack's flank ends, one module below the pitch line.
+    expected = math.hypot(NASA.base_radius, NASA.pitch_radius * math.sin(ALPHA) - NASA.module / math.sin(ALPHA))
+    assert NASA.form_radius == pytest.approx(expected, rel=1e-13)
+
+
+def test_a_sharp_rack_corner_cuts_deeper_involutes() -> None:
+    wheel = replace(NASA, teeth=60)
+    assert replace(wheel, root_radius=0.0).form_radius < wheel.form_radius
+
+
+def test_inertia_is_that_of_a_hollow_disc() -> None:
+    gear = replace(NASA, bore=20e-3, density=7800.0)
+    outer, inner, width = 44.45e-3, 10e-3, 6.35e-3
+    full = 7800.0 * math.pi * outer**2 * width
+    hole = 7800.0 * math.pi * inner**2 * width
+    assert gear.mass == pytest.approx(full - hole, rel=1e-13)
+    assert gear.polar_inertia == pytest.approx((full * outer**2 - hole * inner**2) / 2.0, rel=1e-13)
+    thin = (full * (3 * outer**2 + width**2) - hole * (3 * inner**2 + width**2)) / 12.0
+    assert gear.diametral_inertia == pytest.approx(thin, rel=1e-13)
+
+
+def test_involute_closed_values() -> None:
+    assert involute(0.0) == 0.0
+    assert involute(math.pi / 4.0) == pytest.approx(1.0 - math.pi / 4.0, rel=1e-15)
+    assert inverse_involute(1.0 - math.pi / 4.0) == pytest.approx(math.pi / 4.0, rel=1e-14)
+    assert inverse_involute(0.0) == 0.0
+
+
+@pytest.mark.parametrize("value", [-1e-9, math.nan, math.inf])
+def test_inverse_involute_refuses(value: float) -> None:
+    with pytest.raises(GearError, match="involute function"):
+        inverse_involute(value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "kind", "words"),
+    [
+        ({"teeth": 4}, GearError, "teeth must be a whole number of at least 5, got 4"),
+        ({"teeth": 28.0}, GearError, "teeth"),
+        ({"teeth": True}, GearError, "teeth"),
+        ({"module": 0.0}, GearError, "module must be above 0"),
+        ({"module": math.nan}, GearError, "module must be a finite number"),
+        ({"face_width": -1.0}, GearError, "face_width"),
+        ({"pressure_angle": 20.0}, GearError, "5 to 45 degrees in rad"),
+        ({"poisson_ratio": 0.5}, GearError, "poisson_ratio"),
+        ({"youngs_modulus": math.inf}, GearError, "youngs_modulus"),
+        ({"bore": 90e-3}, GearError, "bore .* must be smaller than the root circle"),
+        ({"bore": -1e-3}, GearError, "bore must be at least 0"),
+        ({"root_radius": 2e-3}, GearError, "does not fit the rack's tip; at most 1.498 mm"),
+        ({"profile_shift": 1.1}, GearError, "profile_shift"),
+        ({"addendum": 3.0, "dedendum": 1.25}, PointedToothError, "pointed below the tip circle"),
+        ({"dedendum": 3.0}, PointedToothError, "rack's own teeth are pointed"),
+        ({"teeth": 14}, UndercutError, "profile_shift of 0.1812 or more"),
+        ({"profile_shift": -0.9}, UndercutError, "undercut"),
+        ({"tip_relief": TipRelief(2e-5, 1.0)}, GearError, "below the tip's roll angle of 31.38"),
+        ({"eccentricity": -1e-6}, GearError, "eccentricity"),
+    ],
+)
+def test_impossible_gears_say_what_is_wrong(changes: dict[str, object], kind: type, words: str) -> None:
+    with pytest.raises(kind, match=words) as caught:
+        replace(NASA, **changes)
+    assert "'pinion'" in str(caught.value)
+
+
+def test_the_least_shift_that_is_advised_is_enough() -> None:
+    # Textbook limit of a standard rack: x = (17.097 - z) / 17.097.
+    least = 1.0 - 14 * math.sin(ALPHA) ** 2 / 2.0
+    Gear("pinion", 14, 1e-3, ALPHA, 1e-2, profile_shift=least)
+    with pytest.raises(UndercutError):
+        Gear("pinion", 14, 1e-3, ALPHA, 1e-2, profile_shift=least - 1e-6)
+
+
+@pytest.mark.parametrize(("amount", "start"), [(-1e-6, 0.4), (1e-6, -0.1), (math.nan, 0.4)])
+def test_tip_relief_refuses(amount: float, start: float) -> None:
+    with pytest.raises(GearError, match="tip relief"):
+        TipRelief(amount, start)

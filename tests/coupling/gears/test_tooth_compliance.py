@@ -1,0 +1,154 @@
+"""Tooth compliance against direct integration over a finely sampled outline, and limits of the body's formula."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, simpson
+
+from coupling.gears import (
+    Gear,
+    GearError,
+    GearPairGeometry,
+    PotentialEnergyStiffness,
+    StiffnessModelError,
+    foundation_compliance,
+    hertz_compliance,
+    iso6336_stiffness,
+    potential_energy,
+    tooth_contact,
+    tooth_outline,
+    within_fitted_range,
+)
+from coupling.gears.foundation import root_section_angle
+from coupling.gears.profile import root_half_angle
+
+ALPHA = math.radians(20.0)
+GEARS = [
+    Gear("standard", 62, 2e-3, ALPHA, 20e-3, bore=35e-3),
+    Gear("nasa", 28, 3.175e-3, ALPHA, 6.35e-3, root_radius=1.35e-3),
+    Gear("shifted", 19, 4e-3, math.radians(22.0), 20e-3, profile_shift=0.4, bore=30e-3),
+]
+
+
+@pytest.mark.parametrize("gear", GEARS, ids=lambda gear: gear.name)
+@pytest.mark.parametrize("fraction", [0.05, 0.5, 1.0])
+def test_energy_integrals_over_the_sampled_outline(gear: Gear, fraction: float) -> None:
+    # Sections taken from the outline's points, the load from the involute's tangent length: no curve parameter.
+    right = tooth_outline(gear, points=4000)[: 2 * 4000 - 1]
+    half, height = -right[:, 0], right[:, 1]
+    radius = gear.form_radius + fraction * (gear.tip_radius - gear.form_radius)
+    below = np.hypot(half, height) < radius
+    y, x = height[below], half[below]
+    # Load: normal to the flank, tangent to the base circle.
+    tangent = math.sqrt(radius**2 - gear.base_radius**2)
+    beta = tangent / gear.base_radius - gear.base_half_angle
+    polar = beta - math.atan(tangent / gear.base_radius) + math.pi / 2.0
+    load_x, load_y = radius * math.cos(polar), radius * math.sin(polar)
+    y, x = np.append(y, load_y), np.append(x, load_x)
+    modulus, width = gear.youngs_modulus, gear.face_width
+    moment = math.cos(beta) * (load_y - y) - math.sin(beta) * load_x
+    bending = simpson(moment**2 / (modulus * width * (2.0 * x) ** 3 / 12.0), x=y)
+    area = simpson(1.0 / (2.0 * x * width), x=y)
+    shear = 1.2 * math.cos(beta) ** 2 * area * 2.0 * (1.0 + gear.poisson_ratio) / modulus
+    axial = math.sin(beta) ** 2 * area / modulus
+    tooth = potential_energy(gear, np.array(radius))
+    assert float(tooth.bending) == pytest.approx(bending, rel=1e-5)
+    assert float(tooth.shear) == pytest.approx(shear, rel=1e-6)
+    assert float(tooth.axial) == pytest.approx(axial, rel=1e-6)
+
+
+def test_flank_integral_by_adaptive_quadrature() -> None:
+    # The difference between loads sheds the fillet: shear over [form radius, r] in the involute's own roll angle.
+    gear = GEARS[0]
+    psi, rb = gear.base_half_angle, gear.base_radius
+    low, high = gear.roll_angle(gear.form_radius), gear.roll_angle(0.5 * (gear.pitch_radius + gear.tip_radius))
+
+    def inverse_thickness(roll: float) -> float:
+        angle = roll - psi
+        return roll * math.cos(angle) / (2.0 * (roll * math.cos(angle) - math.sin(angle)))
+
+    flank, _ = quad(inverse_thickness, low, high, epsabs=0.0, epsrel=1e-13)
+    radii = rb * np.sqrt(1.0 + np.array([low, high]) ** 2)
+    tooth = potential_energy(gear, radii)
+    per_angle = tooth.axial / np.sin(np.array([low, high]) - psi) ** 2 * gear.youngs_modulus * gear.face_width
+    assert per_angle[1] - per_angle[0] == pytest.approx(flank, rel=1e-10)
+
+
+def test_bending_grows_toward_the_tip_and_arrays_keep_their_shape() -> None:
+    gear = GEARS[0]
+    radii = np.linspace(gear.form_radius, gear.tip_radius, 12).reshape(3, 4)
+    tooth = potential_energy(gear, radii)
+    assert tooth.total.shape == (3, 4)
+    assert np.all(np.diff(tooth.foundation.ravel()) > 0.0)
+    assert np.all(np.diff(tooth.bending.ravel()[3:]) > 0.0)
+    np.testing.assert_allclose(tooth.total, tooth.bending + tooth.shear + tooth.axial + tooth.foundation, rtol=1e-15)
+
+
+def test_loads_act_on_the_flank_only() -> None:
+    gear = GEARS[0]
+    for radius in (gear.root_circle_radius, 1.01 * gear.tip_radius, math.nan):
+        with pytest.raises(GearError, match="loads act on the flank"):
+            potential_energy(gear, np.array([radius]))
+
+
+def test_hertz_of_two_half_planes() -> None:
+    gear = GEARS[0]
+    nu = gear.poisson_ratio
+    alike = 4.0 * (1.0 - nu**2) / (math.pi * gear.youngs_modulus * gear.face_width)
+    assert hertz_compliance(gear, gear) == pytest.approx(alike, rel=1e-14)
+    rigid = replace(gear, youngs_modulus=1e30, face_width=1.0)
+    assert hertz_compliance(gear, rigid) == pytest.approx(0.5 * alike, rel=1e-14)
+
+
+def test_root_angle_readings() -> None:
+    # With the rack's own addendum (the gear's dedendum) in the place of the gear's, Ma's formula is the exact one.
+    gear = GEARS[0]
+    as_rack = replace(gear, addendum=1.25, root_radius=gear.rack_tip_radius)
+    assert root_section_angle(as_rack, "ma2014") == pytest.approx(root_half_angle(gear), rel=1e-13)
+    assert root_section_angle(gear, "trochoid") == root_half_angle(gear)
+    assert root_section_angle(gear, "ma2014") < root_half_angle(gear)
+    with pytest.raises(StiffnessModelError, match="'ma2014' or 'trochoid', got 'other'"):
+        root_section_angle(gear, "other")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("ratio", [1.39, 7.01])
+def test_body_outside_the_fitted_range_is_refused(ratio: float) -> None:
+    gear = GEARS[0]
+    ring = replace(gear, bore=2.0 * gear.root_circle_radius / ratio)
+    with pytest.raises(StiffnessModelError, match=r"covers 1.4 to 7"):
+        foundation_compliance(ring, np.array([ring.pitch_radius]))
+    assert not within_fitted_range(ring, "trochoid")
+
+
+def test_fitted_range() -> None:
+    assert within_fitted_range(GEARS[0], "ma2014")
+    assert within_fitted_range(replace(GEARS[0], bore=0.0), "trochoid")
+    assert not within_fitted_range(GEARS[2], "trochoid")  # 19 teeth: too wide a root
+
+
+@pytest.mark.parametrize("teeth", [28, 40, 62, 90])
+def test_a_solid_gear_is_as_soft_as_its_dent(teeth: int) -> None:
+    # The dent around a tooth hardly knows the bore: whatever the ring, the compliance less its twist agrees
+    # with the solid gear's within the scatter of the published fit (10 %).
+    solid = Gear("solid", teeth, 2e-3, ALPHA, 20e-3)
+    radius = np.array([solid.pitch_radius])
+    dent = float(foundation_compliance(solid, radius, "trochoid")[0])
+    shear_modulus = solid.youngs_modulus / (2.0 * (1.0 + solid.poisson_ratio))
+    for ratio in (1.5, 2.0, 4.0, 5.0, 7.0):
+        ring = replace(solid, bore=2.0 * solid.root_circle_radius / ratio)
+        turn = (4.0 / ring.bore**2 - 1.0 / ring.root_circle_radius**2) / (
+            4.0 * math.pi * shear_modulus * ring.face_width
+        )
+        of_ring = float(foundation_compliance(ring, radius, "trochoid")[0])
+        assert of_ring - turn * ring.base_radius**2 == pytest.approx(dent, rel=0.1)
+
+
+@pytest.mark.parametrize("teeth", [28, 40, 62, 90])
+def test_a_solid_gear_is_near_the_norm(teeth: int) -> None:
+    # ISO 6336-1 and the energy method are independent models; for solid gears they are 20 % apart at most.
+    gear = Gear("solid", teeth, 2e-3, ALPHA, 20e-3, youngs_modulus=206e9)
+    pair = GearPairGeometry(gear, gear)
+    mean = tooth_contact(pair, PotentialEnergyStiffness()).mean_stiffness / gear.face_width
+    assert mean == pytest.approx(iso6336_stiffness(pair).mesh_mean, rel=0.2)

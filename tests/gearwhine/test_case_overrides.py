@@ -1,0 +1,94 @@
+"""Changes from the command line: which value, where, and what is said when they lead nowhere."""
+
+from __future__ import annotations
+
+import pytest
+
+from gearwhine.case import Case, CaseError, load_case
+
+
+def changed(*overrides: str) -> Case:
+    return load_case("small-gearbox", overrides).case
+
+
+def test_values_are_toml_or_bare_words_and_quantities() -> None:
+    case = changed(
+        "housing.box.wall=12 mm",
+        "rotor.input.mass=lumped",
+        'rotor[1].mass="lumped"',
+        "gear_pair.0.damping_ratio=0.07",
+        "bearing.0.damping.xx=600 N*s/m",
+        "rotor.output.segments.0.diameter='31 mm'",
+        'housing.support.0.stiffness={ x = "1e8 N/m" }',
+        'housing.sensor."right wall".direction=[1, 0, 0]',
+        "title=Two words",
+        "bearing.input-front.stiffness.xy=-10",
+    )
+    assert case.housing is not None
+    assert case.housing.box is not None
+    assert case.housing.box.wall == 0.012
+    assert [rotor.mass for rotor in case.rotor] == ["lumped", "lumped"]
+    assert case.gear_pair[0].damping_ratio == 0.07
+    assert case.bearing[0].damping.xx == 600.0  # type: ignore[union-attr]
+    assert case.rotor[1].segments[0].diameter == 0.031
+    assert case.housing.support[0].stiffness is not None
+    assert case.housing.support[0].stiffness.x == 1e8
+    assert case.housing.sensor[1].unit_vector == (1.0, 0.0, 0.0)
+    assert case.title == "Two words"
+    assert case.bearing[1].stiffness.xy == -10.0  # type: ignore[union-attr]
+
+
+def test_keys_that_are_not_there_yet_are_added_and_an_empty_value_takes_away() -> None:
+    case = changed(
+        "sweep.speed=[1, 2]", "housing.frequency_limit=", "housing.modes=7", "gear.0.errors.eccentricity=1 um"
+    )
+    assert case.sweep is not None
+    assert case.sweep.speeds == (1.0, 2.0)
+    assert case.housing is not None
+    assert (case.housing.modes, case.housing.frequency_limit) == (7, None)
+    assert case.gear[0].errors.eccentricity == 1e-6
+
+
+def test_later_overrides_go_before_earlier_ones() -> None:
+    assert (
+        changed("gear_pair.0.damping_ratio=0.07", "gear_pair.0.damping_ratio=0.08").gear_pair[0].damping_ratio == 0.08
+    )
+
+
+LEADS_NOWHERE = {
+    "no equals sign": ("housing.box.wall", "expected key.path=value"),
+    "no key": ("=3", "expected key.path=value"),
+    "not a path": ("housing..box=3", "expected key.path=value"),
+    "no such entry": ("rotor.inptu.mass=lumped", "one of 'input', 'output'; did you mean 'input'?, got 'inptu'"),
+    "beyond the list": ("bearing.7.at=3", "expected a place from 0 to 3"),
+    "into a value": ("housing.box.mesh_size.x=3", "housing.box.mesh_size is a value, not a table"),
+    "nothing to take away": ("housing.frequency=", "a key to take away; did you mean 'frequency_limit'?"),
+    "unknown key": ("housing.box.walls=3 mm", "housing.box.walls: expected no such key; did you mean 'wall'?"),
+    "unknown table": ("hosing.box.wall=3 mm", "hosing: expected no such key; did you mean 'housing'?"),
+    "wrong value": ("gear.0.teeth=3", 'gear[0].teeth (gear "pinion"): expected a whole number from 5'),
+    "wrong unit": ("housing.box.wall=3 kg", "got '3 kg' (mass)"),
+    "unfinished list": ("housing.box.size=[1", "housing.box.size: expected a list, got '[1'"),
+    "two lines": ("gear.0.teeth=28\nrotor=3", "expected a whole number from 5 to 2000"),
+}
+
+
+@pytest.mark.parametrize("kind", LEADS_NOWHERE)
+def test_an_override_that_is_wrong_is_named(kind: str) -> None:
+    override, expected = LEADS_NOWHERE[kind]
+    with pytest.raises(CaseError) as caught:
+        changed(override)
+    assert expected in str(caught.value)
+    assert override.split("\n")[0] in str(caught.value)
+    assert "--set" in str(caught.value)
+
+
+def test_all_wrong_overrides_come_at_once() -> None:
+    with pytest.raises(CaseError) as caught:
+        changed("rotor.x.mass=lumped", "bearing.9.at=3", "gear")
+    assert len(caught.value.problems) == 3
+
+
+def test_the_bundled_case_itself_is_not_changed() -> None:
+    before = load_case("small-gearbox").case
+    changed("title=other")
+    assert load_case("small-gearbox").case == before

@@ -1,0 +1,58 @@
+"""gmsh comes late, leaves always, and is missed politely."""
+
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+from meshes import BoxGeometry, GeometryError, WallThickness, mesh_box
+from meshes.gmsh_session import SYSTEM_PACKAGES, gmsh_session
+
+
+def _run(script: str) -> subprocess.CompletedProcess[str]:
+    command = "import sys; sys.path[:0] = " + repr(sys.path) + "\n" + textwrap.dedent(script)
+    return subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, timeout=60, check=False)
+
+
+def test_importing_the_room_brings_neither_gmsh_nor_meshio() -> None:
+    done = _run("""
+        import meshes
+        print([name for name in ("gmsh", "meshio", "vtk", "matplotlib", "skfem") if name in sys.modules])
+    """)
+    assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_a_gmsh_that_cannot_be_loaded_is_answered_with_the_packages_to_install() -> None:
+    done = _run("""
+        class Blocker:
+            def find_spec(self, name, path=None, target=None):
+                if name == "gmsh":
+                    raise OSError("libGLU.so.1: cannot open shared object file: No such file or directory")
+        sys.meta_path.insert(0, Blocker())
+        from meshes import BoxGeometry, MesherUnavailableError, WallThickness, mesh_box
+        try:
+            mesh_box(BoxGeometry((0.2, 0.2, 0.2), WallThickness.uniform(0.02)), 0.1)
+        except MesherUnavailableError as error:
+            print(error)
+    """)
+    assert "libGLU.so.1" in done.stdout, done.stderr
+    assert all(package in done.stdout for package in SYSTEM_PACKAGES)
+
+
+def test_failures_of_gmsh_become_ours_and_the_session_ends() -> None:
+    with pytest.raises(GeometryError, match="gmsh could not mesh nothing"), gmsh_session("nothing") as gmsh:
+        gmsh.model.occ.addCylinder(0, 0, 0, 0, 0, 0, 1)
+    assert not gmsh.isInitialized()
+
+
+def test_errors_of_the_caller_pass_through_and_the_session_ends() -> None:
+    with pytest.raises(KeyError), gmsh_session("nothing") as gmsh:
+        raise KeyError("x")
+    assert not gmsh.isInitialized()
+
+
+def test_gmsh_says_nothing_and_works_again_after_a_failure(capfd: pytest.CaptureFixture[str]) -> None:
+    mesh_box(BoxGeometry((0.2, 0.2, 0.2), WallThickness.uniform(0.03)), 0.1)
+    captured = capfd.readouterr()
+    assert captured.out == captured.err == ""

@@ -1,0 +1,364 @@
+"""What must hold for any rotor: the count, the shapes, the symmetries and the scaling of its modes.
+
+The independent computation is a spectral finite-element model written here: displacement and rotation are
+separate polynomials of high degree in every span, integrated by Gauss quadrature, consistent in mass. It
+shares no formula with the transfer matrices beyond the definition of the Timoshenko energies.
+"""
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from numpy.polynomial import legendre
+from scipy.linalg import eig, eigh
+
+from rotors import (
+    Bearing,
+    Disc,
+    RadialSupport,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    attach_loads,
+    critical_speeds,
+    rest_frequencies,
+    solve_lateral_modes,
+    solve_torsional_modes,
+    solve_whirl,
+)
+
+STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
+BRASS = ShaftMaterial(100e9, 37e9, 8500.0)
+DEGREE = 9
+FEW = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+
+
+def reals(low: float, high: float) -> st.SearchStrategy[float]:
+    return st.floats(low, high).map(lambda value: round(value, 4))
+
+
+# Not nearer than this to each other: the independent model, not the rotor, loses digits on tiny elements.
+PLACES = st.integers(0, 24).map(lambda k: k / 24)
+
+
+@st.composite
+def random_segments(draw: st.DrawFn) -> list[Segment]:
+    segments = []
+    for _ in range(draw(st.integers(1, 4))):
+        outer = draw(reals(0.02, 0.15))
+        bore = outer * draw(st.sampled_from([0.0, 0.5, 0.9]))
+        material = draw(st.sampled_from([STEEL, BRASS]))
+        segments.append(Segment(draw(reals(0.05, 0.6)), outer, bore, material))
+    return segments
+
+
+@st.composite
+def random_rotors(draw: st.DrawFn) -> Rotor:
+    segments = draw(random_segments())
+    length = math.fsum(segment.length for segment in segments)
+    discs = [
+        Disc(length * draw(PLACES), draw(reals(0.1, 30.0)), draw(reals(0.0, 0.3)), draw(reals(0.0, 0.2)))
+        for _ in range(draw(st.integers(0, 3)))
+    ]
+    return Rotor("random", segments, discs)
+
+
+@st.composite
+def random_supports(draw: st.DrawFn, rotor: Rotor) -> list[RadialSupport]:
+    stiffness = st.one_of(st.just(math.inf), reals(4.0, 10.0).map(lambda power: 10.0**power))
+    return [
+        RadialSupport(rotor.length * draw(PLACES), draw(stiffness)) for _ in range(draw(st.integers(0, 3)))
+    ]
+
+
+def supported_rotors() -> st.SearchStrategy[tuple[Rotor, list[RadialSupport]]]:
+    return random_rotors().flatmap(lambda rotor: st.tuples(st.just(rotor), random_supports(rotor)))
+
+
+class SpectralModel:
+    """Mass, stiffness and polar matrices of a rotor over the polynomial coefficients of all spans."""
+
+    def __init__(self, rotor: Rotor, places: list[float]) -> None:
+        points = sorted({0.0, *rotor.joints.tolist(), *(disc.at for disc in rotor.discs), *places})
+        # Elements no longer than a quarter of the shaft resolve twelve half waves to 1e-8.
+        self.ends = [0.0]
+        for point in points[1:]:
+            span = point - self.ends[-1]
+            if span > 1e-9 * rotor.length:
+                cuts = math.ceil(4 * span / rotor.length)
+                self.ends.extend((self.ends[-1] + span * np.arange(1, cuts + 1) / cuts).tolist())
+        self.size = (len(self.ends) - 1) * DEGREE + 1
+        shape = (2 * self.size, 2 * self.size)
+        self.mass, self.stiffness, self.polar, self.twist = (np.zeros(shape) for _ in range(4))
+        # Nodes are the Chebyshev–Lobatto points; values at Gauss points through the Legendre basis.
+        nodes = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
+        gauss, weight = legendre.leggauss(DEGREE + 3)
+        coefficients = np.linalg.inv(legendre.legvander(nodes, DEGREE))
+        value = legendre.legvander(gauss, DEGREE) @ coefficients
+        derived = np.stack([legendre.legval(gauss, legendre.legder(column)) for column in coefficients.T], axis=1)
+        for span in range(len(self.ends) - 1):
+            left, right = self.ends[span], self.ends[span + 1]
+            index = min(int(np.searchsorted(rotor.joints, (left + right) / 2)) - 1, len(rotor.segments) - 1)
+            part, half = rotor.segments[index], (right - left) / 2
+            x = np.arange(DEGREE + 1) + span * DEGREE
+            b = x + self.size
+            self._add(self.mass, x, x, value, value, half * weight * part.material.density * part.area)
+            rotary = half * weight * part.material.density * part.second_moment
+            self._add(self.mass, b, b, value, value, rotary)
+            self._add(self.polar, b, b, value, value, 2 * rotary)
+            slope = derived / half
+            self._add(self.stiffness, b, b, slope, slope, half * weight * part.bending_stiffness)
+            torsional = half * weight * 2 * part.material.shear_modulus * part.second_moment
+            self._add(self.twist, b, b, slope, slope, torsional)
+            shear = half * weight * part.shear_stiffness
+            for rows, rows_value, row_sign in ((x, slope, 1.0), (b, value, -1.0)):
+                for columns, columns_value, column_sign in ((x, slope, 1.0), (b, value, -1.0)):
+                    self._add(self.stiffness, rows, columns, row_sign * rows_value, column_sign * columns_value, shear)
+        for disc in rotor.discs:
+            node = self.node(disc.at)
+            self.mass[node, node] += disc.mass
+            self.mass[node + self.size, node + self.size] += disc.diametral_inertia
+            self.polar[node + self.size, node + self.size] += disc.polar_inertia
+
+    def node(self, at: float) -> int:
+        return int(np.argmin(np.abs(np.array(self.ends) - at))) * DEGREE
+
+    @staticmethod
+    def _add(matrix, rows, columns, left, right, weight) -> None:
+        matrix[np.ix_(rows, columns)] += left.T @ (weight[:, None] * right)
+
+    def lateral(self, supports: list[RadialSupport]) -> np.ndarray:
+        stiffness, held = self.stiffness.copy(), set()
+        for support in supports:
+            node = self.node(support.at)
+            if math.isinf(support.stiffness):
+                held.add(node)
+            else:
+                stiffness[node, node] += support.stiffness
+        free = np.array([i for i in range(2 * self.size) if i not in held])
+        squared = eigh(stiffness[np.ix_(free, free)], self.mass[np.ix_(free, free)], eigvals_only=True)
+        return np.sqrt(np.maximum(squared, 0.0))
+
+
+@FEW
+@given(supported_rotors())
+def test_modes_are_those_of_an_independent_finite_element_model(case: tuple[Rotor, list[RadialSupport]]) -> None:
+    rotor, supports = case
+    independent = SpectralModel(rotor, [support.at for support in supports]).lateral(supports)
+    # A limit in the middle of a gap, where the independent model has converged.
+    count = 7
+    gap = count + int(np.argmax(np.diff(independent[count - 1 : count + 3]))) - 1
+    limit = (independent[gap] + independent[gap + 1]) / 2
+    modes = solve_lateral_modes(rotor, supports, frequency_limit=float(limit))
+    assert modes.count == modes.certificate.expected == int(np.count_nonzero(independent < limit))
+    # Zero to a dense eigensolver is the square root of rounding of its largest value.
+    np.testing.assert_allclose(modes.frequencies, independent[: modes.count], rtol=2e-6, atol=1e-6 * limit)
+
+
+@FEW
+@given(supported_rotors())
+def test_shapes_are_orthonormal_and_continue_between_stations(case: tuple[Rotor, list[RadialSupport]]) -> None:
+    rotor, supports = case
+    modes = solve_lateral_modes(rotor, supports, count=8)
+    # Integrated here span by span with another rule, in SI, against the definition of the modal mass.
+    gauss, weight = legendre.leggauss(40)
+    mass = np.zeros((modes.count, modes.count))
+    for left, right in zip(modes.stations[:-1], modes.stations[1:], strict=True):
+        z = (left + right) / 2 + (right - left) / 2 * gauss
+        index = min(int(np.searchsorted(rotor.joints, (left + right) / 2)) - 1, len(rotor.segments) - 1)
+        part = rotor.segments[index]
+        x, b = modes.evaluate(z)
+        density = part.material.density * weight * (right - left) / 2
+        mass += (x * density * part.area) @ x.T + (b * density * part.second_moment) @ b.T
+    for disc in rotor.discs:
+        x, b = modes.evaluate([disc.at])
+        mass += disc.mass * x @ x.T + disc.diametral_inertia * b @ b.T
+    np.testing.assert_allclose(mass, np.eye(modes.count), atol=1e-9)
+    x, b = modes.evaluate(modes.stations)
+    np.testing.assert_allclose(x, modes.displacement, atol=1e-9 * np.abs(x).max())
+    np.testing.assert_allclose(b, modes.slope, atol=1e-9 * np.abs(b).max())
+    assert np.linalg.eigvalsh(modes.polar_inertia_matrix).min() > -1e-9
+
+
+@FEW
+@given(supported_rotors())
+def test_a_rotor_seen_from_the_other_end_is_the_same_rotor(case: tuple[Rotor, list[RadialSupport]]) -> None:
+    rotor, supports = case
+    length = rotor.length
+    discs = [replace(disc, at=max(length - disc.at, 0.0)) for disc in rotor.discs]
+    turned = Rotor("turned", rotor.segments[::-1], discs)
+    turned_supports = [replace(support, at=max(length - support.at, 0.0)) for support in supports]
+    one, other = solve_lateral_modes(rotor, supports, count=6), solve_lateral_modes(turned, turned_supports, count=6)
+    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-9)
+    twist, turned_twist = solve_torsional_modes(rotor, count=6), solve_torsional_modes(turned, count=6)
+    np.testing.assert_allclose(turned_twist.frequencies, twist.frequencies, rtol=1e-10)
+
+
+@FEW
+@given(supported_rotors(), st.data())
+def test_cutting_a_segment_changes_nothing(case: tuple[Rotor, list[RadialSupport]], data: st.DataObject) -> None:
+    rotor, supports = case
+    pieces = data.draw(st.integers(2, 40))
+    cut = [replace(part, length=part.length / pieces) for part in rotor.segments for _ in range(pieces)]
+    one = solve_lateral_modes(rotor, supports, count=6)
+    other = solve_lateral_modes(replace(rotor, segments=cut), supports, count=6)
+    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-10)
+    np.testing.assert_allclose(np.abs(other.evaluate([0.0])[0]), np.abs(one.evaluate([0.0])[0]), rtol=1e-5, atol=1e-7)
+
+
+@FEW
+@given(random_rotors(), reals(0.1, 10.0))
+def test_frequencies_scale_inversely_with_size(rotor: Rotor, factor: float) -> None:
+    segments = [
+        replace(
+            part,
+            length=factor * part.length,
+            outer_diameter=factor * part.outer_diameter,
+            inner_diameter=factor * part.inner_diameter,
+        )
+        for part in rotor.segments
+    ]
+    discs = [
+        Disc(factor * d.at, factor**3 * d.mass, factor**5 * d.polar_inertia, factor**5 * d.diametral_inertia)
+        for d in rotor.discs
+    ]
+    large = Rotor("large", segments, discs)
+    one, other = solve_lateral_modes(rotor, count=6), solve_lateral_modes(large, count=6)
+    np.testing.assert_allclose(factor * other.frequencies, one.frequencies, rtol=1e-10)
+    np.testing.assert_allclose(
+        factor * solve_torsional_modes(large, count=4).frequencies,
+        solve_torsional_modes(rotor, count=4).frequencies,
+        rtol=1e-10,
+    )
+
+
+@FEW
+@given(supported_rotors(), PLACES, reals(0.1, 50.0))
+def test_added_mass_lowers_and_added_stiffness_raises(
+    case: tuple[Rotor, list[RadialSupport]], place: float, amount: float
+) -> None:
+    rotor, supports = case
+    at = place * rotor.length
+    plain = solve_lateral_modes(rotor, supports, count=6).frequencies
+    heavier = replace(rotor, discs=[*rotor.discs, Disc(at, amount, 0.01 * amount, 0.005 * amount)])
+    loaded = solve_lateral_modes(heavier, supports, count=6).frequencies
+    stiffer = solve_lateral_modes(rotor, [*supports, RadialSupport(at, 1e6 * amount)], count=6).frequencies
+    count = min(plain.size, loaded.size, stiffer.size)
+    assert (loaded[:count] <= plain[:count] * (1 + 1e-11)).all()
+    assert (stiffer[:count] >= plain[:count] * (1 - 1e-11)).all()
+    # One spring is one constraint at most: by interlacing no frequency passes the next.
+    assert (stiffer[: count - 1] <= plain[1:count] * (1 + 1e-11) + 1e-9).all()
+
+
+@FEW
+@given(random_rotors())
+def test_torsion_is_that_of_an_independent_finite_element_model(rotor: Rotor) -> None:
+    modes = solve_torsional_modes(rotor, count=6)
+    model = SpectralModel(rotor, [])
+    n = model.size
+    squared = eigh(model.twist[n:, n:], model.polar[n:, n:], eigvals_only=True)
+    independent = np.sqrt(np.maximum(squared, 0.0))[:6]
+    np.testing.assert_allclose(modes.frequencies, independent, rtol=2e-6, atol=1e-6 * independent[-1])
+
+
+@settings(FEW, max_examples=5)
+@given(random_rotors(), st.data())
+def test_whirl_is_that_of_an_independent_finite_element_model(rotor: Rotor, data: st.DataObject) -> None:
+    speed = data.draw(reals(-2000.0, 2000.0))
+    entries = [data.draw(reals(1e6, 1e8)) for _ in range(4)]
+    cross = [data.draw(reals(-3e5, 3e5)) for _ in range(2)]
+    losses = [data.draw(reals(0.0, 2e3)) for _ in range(2)]
+    bearings = [
+        Bearing(
+            "left",
+            0.1 * rotor.length,
+            np.array([[entries[0], cross[0]], [cross[1], entries[1]]]),
+            losses[0] * np.eye(2),
+        ),
+        Bearing("right", 0.9 * rotor.length, np.diag(entries[2:]), np.diag([losses[1], 0.0])),
+    ]
+    model = SpectralModel(rotor, [bearing.at for bearing in bearings])
+    n = 2 * model.size
+    mass, polar = np.kron(np.eye(2), model.mass), model.polar
+    stiffness, damping = np.kron(np.eye(2), model.stiffness), np.zeros((2 * n, 2 * n))
+    for bearing in bearings:
+        at = model.node(bearing.at) + n * np.arange(2)
+        stiffness[np.ix_(at, at)] += bearing.stiffness
+        damping[np.ix_(at, at)] += bearing.damping
+    damping += speed * np.block([[np.zeros((n, n)), polar], [-polar, np.zeros((n, n))]])
+    # Over the undamped modes of its own planes, all of them, and with states ω q and q̇, eig is well scaled.
+    squared, vectors = eigh(model.stiffness + 1e6 * model.mass, model.mass)
+    shapes, weight = np.kron(np.eye(2), vectors), np.tile(np.sqrt(squared), 2)
+    k, c = shapes.T @ stiffness @ shapes, shapes.T @ damping @ shapes
+    np.testing.assert_allclose(shapes.T @ mass @ shapes, np.eye(2 * n), atol=1e-6)
+    values = eig(np.block([[np.zeros((2 * n, 2 * n)), np.diag(weight)], [-k / weight, -c]]), right=False)
+    values = values[values.imag > 1.0]
+
+    modes = solve_whirl(rotor, bearings, speed, count=6)
+    for value in modes.eigenvalues:
+        nearest = values[np.argmin(np.abs(values - value))]
+        assert abs(nearest - value) < 1e-4 * abs(value)
+    assert modes.frequencies.size == 6
+
+
+@settings(FEW, max_examples=5)
+@given(random_rotors(), reals(1e5, 1e8), reals(10.0, 2000.0))
+def test_reversed_rotation_swaps_the_directions(rotor: Rotor, stiffness: float, speed: float) -> None:
+    bearings = [Bearing.isotropic(str(z), z * rotor.length, stiffness) for z in (0.0, 1.0)]
+    one = solve_whirl(rotor, bearings, speed, count=6)
+    other = solve_whirl(rotor, bearings, -speed, count=6)
+    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-8)
+    np.testing.assert_allclose(np.abs(one.damping_ratios), 0.0, atol=1e-8)
+    separate = np.abs(np.diff(one.frequencies)).min(initial=np.inf) > 1e-4 * one.frequencies[-1]
+    if separate:
+        np.testing.assert_allclose(other.direction, -one.direction, atol=1e-5)
+
+
+@settings(FEW, max_examples=5)
+@given(random_rotors(), reals(1e5, 1e8), reals(1e5, 1e8))
+def test_planes_at_rest(rotor: Rotor, k_xx: float, k_yy: float) -> None:
+    bearings = [Bearing(str(z), z * rotor.length, np.diag([k_xx, k_yy]), np.zeros((2, 2))) for z in (0.0, 1.0)]
+    exact = rest_frequencies(rotor, bearings, count=6)
+    whirl = solve_whirl(rotor, bearings, 0.0, count=8)
+    np.testing.assert_allclose(whirl.frequencies[: exact.frequencies.size], exact.frequencies, rtol=1e-5)
+    assert exact.certificate.complete
+    # With the polar inertia joining the mass, backward critical speeds lie below the frequencies at rest.
+    assert critical_speeds(rotor, bearings, count=1).speeds[0] <= exact.frequencies[0] * (1 + 1e-9)
+
+
+@settings(FEW, max_examples=5)
+@given(random_rotors(), PLACES, PLACES)
+def test_compliance_of_attached_loads_is_reciprocal_and_that_of_the_model(
+    rotor: Rotor, first: float, second: float
+) -> None:
+    supports = [RadialSupport(0.0, 1e7), RadialSupport(rotor.length, 3e7)]
+    places = [first * rotor.length, second * rotor.length]
+    modes = attach_loads(solve_lateral_modes(rotor, supports, count=3), forces_at=places)
+    shapes = modes.evaluate(places)[0]
+    compliance = (shapes / modes.frequencies[:, None] ** 2).T @ shapes
+    model = SpectralModel(rotor, places)
+    stiffness = model.stiffness.copy()
+    for support in supports:
+        stiffness[model.node(support.at), model.node(support.at)] += support.stiffness
+    loads = np.zeros((2 * model.size, 2))
+    for column, place in enumerate(places):
+        loads[model.node(place), column] = 1.0
+    expected = loads.T @ np.linalg.solve(stiffness, loads)
+    np.testing.assert_allclose(compliance, expected, rtol=1e-6, atol=1e-8 * expected.max())
+
+
+def test_lumping_converges_to_the_distributed_shaft() -> None:
+    pins = [RadialSupport(0.0, math.inf), RadialSupport(1.0, math.inf)]
+    exact = solve_lateral_modes(Rotor("d", [Segment(1.0, 0.05, 0.0, STEEL)]), pins, count=2).frequencies
+    errors = []
+    for pieces in (8, 16, 32):
+        lumped = Rotor("l", [Segment(1.0 / pieces, 0.05, 0.0, STEEL)] * pieces, mass_model="lumped")
+        errors.append(np.abs(solve_lateral_modes(lumped, pins, count=2).frequencies / exact - 1.0))
+    # Second order in the length of the segments.
+    for coarse, fine in itertools.pairwise(errors):
+        np.testing.assert_allclose(coarse / fine, 4.0, rtol=0.1)
+    assert errors[-1] == pytest.approx(0.0, abs=1e-2)

@@ -1,0 +1,136 @@
+"""Wrong shafts, bearings and requests name what is wrong; right ones have the inertias of solid geometry."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import rotors
+from rotors import Bearing, Disc, RadialSupport, Rotor, RotorError, Segment, ShaftMaterial
+
+STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
+BAR = Segment(0.4, 0.03, 0.01, STEEL)
+ZERO = np.zeros((2, 2))
+
+
+def test_material_keeps_the_poisson_ratio() -> None:
+    assert STEEL.poisson_ratio == pytest.approx(0.3, rel=1e-14)
+    assert STEEL.shear_modulus == pytest.approx(207e9 / 2.6, rel=1e-15)
+
+
+def test_segment_inertias_are_those_of_a_hollow_cylinder() -> None:
+    outer, inner, mass = 0.015, 0.005, 7850.0 * math.pi * (0.015**2 - 0.005**2) * 0.4
+    assert BAR.mass == pytest.approx(mass, rel=1e-14)
+    assert BAR.polar_inertia == pytest.approx(mass * (outer**2 + inner**2) / 2, rel=1e-14)
+    assert BAR.diametral_inertia == pytest.approx(mass * (3 * (outer**2 + inner**2) + 0.4**2) / 12, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("formula", "bore", "expected"),
+    [
+        # Solid circle: 6(1 + ν)/(7 + 6ν) and 6(1 + ν)²/(7 + 12ν + 4ν²).
+        # Thin tube: 2(1 + ν)/(4 + 3ν) and (1 + ν)/(2 + ν).
+        ("cowper", 0.0, 7.8 / 8.8),
+        ("hutchinson", 0.0, 6 * 1.69 / (7 + 3.6 + 0.36)),
+        ("cowper", 1.0 - 1e-9, 2.6 / 4.9),
+        ("hutchinson", 1.0 - 1e-9, 1.3 / 2.3),
+    ],
+)
+def test_shear_coefficient_limits(formula: str, bore: float, expected: float) -> None:
+    assert rotors.shear_coefficient(formula, bore, 0.3) == pytest.approx(expected, rel=1e-8)  # type: ignore[arg-type]
+
+
+def test_rotor_sums_its_parts_and_merges_its_stations() -> None:
+    shaft = Rotor("shaft", [Segment(0.1, 0.03, 0.0, STEEL)] * 7, [Disc(0.3, 2.0, 0.01), Disc(0.35, 1.0)])
+    # 0.1 + 0.1 + 0.1 is not 0.3 in binary: still one station.
+    np.testing.assert_allclose(shaft.stations, [0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7], atol=1e-15)
+    bar = 7850.0 * math.pi / 4 * 0.03**2 * 0.7
+    assert shaft.mass == pytest.approx(bar + 3.0, rel=1e-14)
+    assert shaft.centre_of_mass == pytest.approx((bar * 0.35 + 0.6 + 0.35) / (bar + 3.0), rel=1e-14)
+    assert shaft.length == pytest.approx(0.7, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("build", "message"),
+    [
+        (lambda: ShaftMaterial(-1.0, 1.0, 1.0), "youngs_modulus is -1.0; expected a positive number"),
+        (lambda: ShaftMaterial(1.0, 1.0, math.nan), "density is nan"),
+        (lambda: ShaftMaterial.from_poisson_ratio(1.0, 0.6, 1.0), "poisson_ratio is 0.6"),
+        (lambda: Segment(0.0, 0.03, 0.0, STEEL), "segment length is 0.0; expected a positive number"),
+        (lambda: Segment(0.1, 0.03, 0.03, STEEL), "less than the outer diameter"),
+        (lambda: Segment(0.1, 0.03, 0.0, ShaftMaterial(2e11, 2e10, 1.0)), "check the moduli"),
+        (lambda: Segment(0.1, 0.03, 0.0, STEEL, "timoshenko"), "'cowper', 'hutchinson' or a number"),  # type: ignore[arg-type]
+        (lambda: Disc(0.1, -1.0), "disc mass is -1.0"),
+        (lambda: Rotor("r", []), "no segments"),
+        (lambda: Rotor("r", [BAR], [Disc(0.5, 1.0)]), "rotor 'r' disc position is 0.5; expected a place on the"),
+        (lambda: Rotor("r", [BAR], mass_model="point"), "'distributed' or 'lumped'"),  # type: ignore[arg-type]
+        (lambda: Rotor("r", [Segment(1.0, 0.1, 0.0, ShaftMaterial(2e11, 8e10, 0.0))]), "a positive mass"),
+        (lambda: RadialSupport(0.0, -1.0), "support stiffness is -1.0"),
+        (lambda: RadialSupport(0.0, math.nan), "support stiffness is nan"),
+        (lambda: Bearing("b", 0.0, np.eye(3), ZERO), "bearing 'b' stiffness shape"),
+        (lambda: Bearing("b", 0.0, ZERO, np.full((2, 2), np.inf)), "damping"),
+        (lambda: Bearing("b", 0.0, np.diag([1.0, -1.0]), ZERO), "not negative in xx and yy"),
+    ],
+)
+def test_wrong_input_is_named(build, message: str) -> None:
+    with pytest.raises(RotorError) as caught:
+        build()
+    assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("request_modes", "message"),
+    [
+        (lambda r: rotors.solve_lateral_modes(r, [RadialSupport(9.0, 1.0)], count=1), "place on the shaft"),
+        (lambda r: rotors.solve_lateral_modes(r, frequency_limit=1.0, count=1), "one of the two"),
+        (lambda r: rotors.solve_lateral_modes(r, frequency_limit=-1.0), "frequency_limit is -1.0"),
+        (lambda r: rotors.solve_lateral_modes(r, count=0), "count of modes is 0"),
+        (lambda r: rotors.solve_lateral_modes(r, frequency_limit=1e12), "lower frequency limit"),
+        (lambda r: rotors.solve_lateral_modes(r, count=2).evaluate([0.5]), "positions are [0.5]"),
+        (lambda r: rotors.solve_whirl(r, [Bearing.isotropic("b", 1.0, 1.0)], 0.0), "bearing 'b' position"),
+        (lambda r: rotors.solve_whirl(r, [], math.inf), "speed is inf"),
+        (
+            lambda r: rotors.solve_whirl(r, [Bearing.isotropic("b", 0.0, 1.0)], 0.0, basis=rotors.whirl_basis(r, [])),
+            "supports of the basis",
+        ),
+        (lambda _: rotors.solve_torsional_chain([1.0, 2.0], [1.0, 1.0]), "one spring between each two"),
+        (lambda _: rotors.solve_torsional_chain([1.0, 2.0], [0.0]), "stiffnesses"),
+        (
+            lambda _: rotors.solve_lateral_modes(Rotor("l", [BAR], mass_model="lumped"), count=5),
+            "at most 4, all this lumped rotor has",
+        ),
+        (
+            lambda _: rotors.solve_torsional_modes(
+                Rotor("p", [Segment(1.0, 0.1, 0.0, ShaftMaterial(2e11, 8e10, 0.0))], [Disc(0.5, 1.0)])
+            ),
+            "polar inertia",
+        ),
+        (
+            lambda _: rotors.solve_lateral_modes(
+                Rotor("p", [Segment(1.0, 0.1, 0.0, ShaftMaterial(2e11, 8e10, 0.0))], [Disc(0.5, 1.0)])
+            ),
+            "moves no inertia",
+        ),
+    ],
+)
+def test_wrong_request_is_named(request_modes, message: str) -> None:
+    with pytest.raises(RotorError) as caught:
+        request_modes(Rotor("r", [BAR]))
+    assert message in str(caught.value)
+
+
+def test_bearings_are_values() -> None:
+    one, same = (Bearing("b", 0.1, np.eye(2), ZERO) for _ in range(2))
+    assert one == same
+    assert hash(one) == hash(same)
+    assert one != Bearing("b", 0.1, np.eye(2), np.eye(2))
+    with pytest.raises(ValueError, match="read-only"):
+        one.stiffness[0, 0] = 2.0
+
+
+def test_import_pulls_in_no_meshing_and_no_pictures() -> None:
+    script = "import sys, rotors; print([m for m in ('gmsh', 'vtk', 'matplotlib', 'numba') if m in sys.modules])"
+    answer = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == "[]"
