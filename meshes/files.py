@@ -41,8 +41,8 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
         raise GeometryError(f"mesh file {path}: no such file")
     try:
         content = meshio.read(path)
-    except SystemExit as error:  # meshio leaves through sys.exit where it cannot tell the format
-        raise GeometryError(f"mesh file {path}: its format is not one that meshio reads") from error
+    except SystemExit as error:  # meshio leaves through sys.exit where no reader takes the file
+        raise GeometryError(f"mesh file {path} is broken, or of a format that meshio does not read") from error
     except Exception as error:  # a broken file fails in whatever way its reader happens to stumble
         raise GeometryError(f"mesh file {path} cannot be read: {type(error).__name__}: {error}") from error
 

@@ -172,6 +172,13 @@ def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:
     return room.compare_by_dominance(_HERTZ * np.array(case.measured.frequencies), solved.strengths)
 
 
+def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
+    """Numbers of the strongest modes, from 1; the lowest ones where there are no seats to be driven at."""
+    if solved.strengths is None:
+        return list(range(1, min(count, len(solved.modes.frequencies)) + 1))
+    return [int(mode) + 1 for mode in solved.strengths.strongest(count, (0.0, np.inf))]
+
+
 def modes_document(solved: SolvedHousing) -> dict[str, Any]:
     """The modes as the command's JSON."""
     certificate = solved.modes.certificate

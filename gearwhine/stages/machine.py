@@ -81,6 +81,11 @@ def solve_machine(
     return housing, pairs, build_machine(case, housing, pairs, progress)
 
 
+def coupled_modes(machine: room.Machine) -> room.CoupledModes:
+    """Complex modes of the machine about its mean contact."""
+    return room.coupled_modes(machine.system)
+
+
 def system_document(case: Case, machine: room.Machine, modes: room.CoupledModes) -> dict[str, Any]:
     """The coupled modes as the command's JSON."""
     assert case.operation is not None

@@ -75,7 +75,7 @@ def test_surfaces_that_do_not_fit_are_refused(surface: np.ndarray, message: str)
 
 
 def test_volumes_that_do_not_fit_are_refused() -> None:
-    with pytest.raises(GeometryError, match="volume 'part' names elements outside 0..1"):
+    with pytest.raises(GeometryError, match=r"volume 'part' names elements outside 0\.\.1"):
         Mesh(POINTS, CELLS, volumes={"part": np.array([2])})
 
 

@@ -1,0 +1,250 @@
+"""The command line: ``gearwhine COMMAND CASE [-o OUT] [--json] [--set key.path=value ...] [-q]``.
+
+Every command is a few lines: read the case, run the stages, hand the result on. What takes long to import is
+imported where it is used, so that ``--help`` answers at once.
+"""
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import App, CycloptsError, Parameter
+
+from gearwhine import __version__
+
+if TYPE_CHECKING:
+    from gearwhine.case import Case
+    from gearwhine.progress import Progress
+
+app = App(
+    name="gearwhine",
+    version=__version__,
+    help="Gearbox vibration: from the geometry of housing, rotors and gears to the spectrum at an accelerometer.",
+    help_epilogue="Try: gearwhine examples, then gearwhine run small-gearbox",
+    help_format="plaintext",
+)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Common:
+    """What every command on a case takes."""
+
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")] = None
+    json: Annotated[bool, Parameter(name="--json", negative=(), help="Print one JSON document and nothing else.")] = (
+        False
+    )
+    settings: Annotated[
+        list[str],
+        Parameter(
+            name=["--set"],
+            negative=(),
+            consume_multiple=False,
+            help="Change the case: key.path=value, such as --set housing.box.mesh_size='20 mm'. May be repeated.",
+        ),
+    ] = field(default_factory=list)
+    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative=(), help="Show no progress.")] = False
+
+
+_DEFAULTS = Common()
+CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a bundled case.")]
+
+
+@app.command
+def run(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+    """Everything the case asks for, start to end; results go to OUT (default: ./<case>-results)."""
+    from gearwhine.screen import show_run
+    from gearwhine.work import run_case
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return run_case(given, _folder(case, common), progress)
+
+    _on_case(case, common, work, show_run)
+
+
+@app.command
+def check(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+    """Read the case and say what it means; solves nothing."""
+    from gearwhine.screen import show_check
+    from gearwhine.stages.summary import check_document
+
+    _on_case(case, common, lambda given, progress: check_document(given), show_check)
+
+
+@app.command
+def mesh(
+    case: CaseName,
+    *,
+    format: Annotated[  # noqa: A002 - the name of the option
+        Literal["msh", "vtu", "vtk", "inp", "med", "xdmf"], Parameter(help="Format of the mesh file.")
+    ] = "msh",
+    common: Common = _DEFAULTS,
+) -> None:
+    """Mesh the housing and write the mesh file to OUT (default: ./<case>-results)."""
+    from gearwhine.screen import show_mesh
+    from gearwhine.work import mesh_case
+
+    _on_case(case, common, lambda given, progress: mesh_case(given, _folder(case, common), format, progress), show_mesh)
+
+
+@app.command
+def modes(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+    """Housing modes, proved complete."""
+    from gearwhine.screen import show_modes
+    from gearwhine.work import modes_case
+
+    _on_case(case, common, lambda given, progress: modes_case(given, common.output, progress), show_modes)
+
+
+@app.command
+def rotors(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+    """Each rotor's lateral and torsional modes, whirl and critical speeds."""
+    from gearwhine.screen import show_rotors
+    from gearwhine.work import rotors_case
+
+    _on_case(case, common, lambda given, progress: rotors_case(given, common.output, progress), show_rotors)
+
+
+@app.command
+def gears(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+    """Contact ratio, mesh stiffness and static transmission error of each gear pair."""
+    from gearwhine.screen import show_gears
+    from gearwhine.work import gears_case
+
+    _on_case(case, common, lambda given, progress: gears_case(given, common.output, progress), show_gears)
+
+
+@app.command
+def system(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+    """Complex natural modes of the whole coupled system at its speed."""
+    from gearwhine.screen import show_system
+    from gearwhine.work import system_case
+
+    _on_case(case, common, lambda given, progress: system_case(given, common.output, progress), show_system)
+
+
+@app.command
+def compare(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+    """Model modes of the housing against measured ones."""
+    from gearwhine.screen import show_comparison
+    from gearwhine.work import compare_case
+
+    _on_case(case, common, lambda given, progress: compare_case(given, common.output, progress), show_comparison)
+
+
+@app.command
+def render(
+    case: CaseName,
+    *,
+    modes: Annotated[
+        str, Parameter(help="Which modes: 'dominant', 'all', or numbers such as '1,4,9' or '1-6'.")
+    ] = "dominant",
+    view: Annotated[
+        Literal["iso", "front", "back", "left", "right", "top"], Parameter(help="From where to look.")
+    ] = "iso",
+    common: Common = _DEFAULTS,
+) -> None:
+    """Pictures of the housing's mode shapes, off-screen, in OUT (default: ./<case>-results)."""
+    from gearwhine.screen import show_files
+    from gearwhine.work import render_case
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return render_case(given, _folder(case, common), modes, view, progress)
+
+    _on_case(case, common, work, show_files)
+
+
+@app.command
+def examples(
+    action: Annotated[Literal["list", "copy"], Parameter(help="What to do.")] = "list",
+    name: Annotated[str | None, Parameter(help="Which bundled case to copy.")] = None,
+    *,
+    common: Common = _DEFAULTS,
+) -> None:
+    """List the bundled cases, or copy one here (or to OUT) to change it: examples copy NAME."""
+    from gearwhine.screen import show_examples, show_files
+    from gearwhine.work import copy_example, list_examples
+
+    if action == "list":
+        _hand_over(list_examples(), common, show_examples)
+    else:
+        _hand_over(copy_example(name, common.output or Path()), common, show_files)
+
+
+def _later(command: str, what: str) -> Callable[..., None]:
+    def refuse(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.case.problems import UNSAID
+
+        del case, common
+        raise CaseError([Problem(command, UNSAID, f"another command: '{command}' ({what}) comes with a later version")])
+
+    refuse.__doc__ = f"{what[0].upper()}{what[1:]} (comes with a later version)."
+    return refuse
+
+
+for _name, _what in (
+    ("sweep", "runs over many speeds, in parallel"),
+    ("update", "fits named parameters to measured modes"),
+    ("report", "the results folder as one HTML page"),
+):
+    app.command(_later(_name, _what), name=_name)
+
+
+def run_command(arguments: list[str]) -> int:
+    """Run the command line; 0 when done, 2 where the user's input is wrong, 1 for anything else.
+
+    Only what nobody foresaw leaves a traceback.
+    """
+    from gearwhine.failures import explain
+
+    try:
+        app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+    except CycloptsError as error:
+        sys.stderr.write(f"gearwhine: {error}\nTry 'gearwhine --help'.\n")
+        return 2
+    except KeyboardInterrupt:
+        sys.stderr.write("gearwhine: interrupted; the output folder holds no half-written file\n")
+        return 130
+    except BrokenPipeError:
+        return 1
+    except Exception as error:
+        code, message = explain(error)
+        if message is None:
+            raise
+        sys.stderr.write(f"gearwhine: {message}\n")
+        return code
+    return 0
+
+
+def _on_case(
+    name: str,
+    common: Common,
+    work: Callable[["Case", "Progress"], dict[str, Any]],
+    show: Callable[[dict[str, Any]], None],
+) -> None:
+    """Read the case, do the work under a progress display, and hand the result over."""
+    from gearwhine.case import load_case
+    from gearwhine.progress import shown
+
+    loaded = load_case(name, common.settings)
+    for warning in loaded.warnings:
+        sys.stderr.write(f"warning: {warning}\n")
+    with shown(quiet=common.quiet) as progress:
+        document = work(loaded.case, progress)
+    _hand_over(document, common, show)
+
+
+def _hand_over(document: dict[str, Any], common: Common, show: Callable[[dict[str, Any]], None]) -> None:
+    from gearwhine.output import finite, json_text
+
+    if common.json:
+        sys.stdout.write(json_text(finite(document)) + "\n")
+    else:
+        show(document)
+
+
+def _folder(case: str, common: Common) -> Path:
+    return common.output if common.output is not None else Path(f"{Path(case).stem}-results")

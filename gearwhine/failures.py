@@ -1,0 +1,38 @@
+"""Which failures are the user's to mend, which are ours to report, and in what words."""
+
+
+def explain(error: Exception) -> tuple[int, str | None]:
+    """Exit code and message of a failure; no message where nobody foresaw it and a traceback is due.
+
+    Wrong input is 2. A missing system library, or a result that failed its own proof, is 1 with its advice.
+    """
+    from coupling.errors import CouplingError, TransientError
+    from coupling.gears.errors import ContactAccuracyError, GearError
+    from gearwhine.case import CaseError
+    from housing.errors import FactorizationError, HousingError, IncompleteModesError
+    from meshes.errors import GeometryError, MesherUnavailableError
+    from rotors.errors import IncompleteModesError as IncompleteRotorModesError
+    from rotors.errors import RotorError
+
+    if isinstance(error, CaseError):
+        count = len(error.problems)
+        head = "the case cannot be used as it stands" if count == 1 else f"{count} problems in the case"
+        return 2, head + ":\n" + "\n".join(f"  {problem}" for problem in error.problems)
+    if isinstance(error, CouplingError | GearError | HousingError | GeometryError | RotorError):
+        return 2, str(error)
+    proofs = (
+        ContactAccuracyError,
+        FactorizationError,
+        IncompleteModesError,
+        IncompleteRotorModesError,
+        MesherUnavailableError,
+        TransientError,
+    )
+    # The renderer's error lives beside VTK, which must not be imported for its sake.
+    if isinstance(error, proofs) or type(error).__name__ == "RendererUnavailableError":
+        return 1, str(error)
+    if isinstance(error, MemoryError):
+        return 1, "out of memory; a larger mesh_size or a lower frequency_limit needs less"
+    if isinstance(error, OSError):
+        return 1, f"{error.strerror or error}: {error.filename}" if error.filename else str(error)
+    return 1, None

@@ -1,0 +1,222 @@
+"""The results file: labelled arrays with units, as NetCDF4 that any tool opens."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from coupling import CoupledModes
+from coupling.gears import mesh_stiffness, static_transmission_error
+from gearwhine import __version__
+from gearwhine.case import Case, dump_case
+from gearwhine.stages.gears import SolvedPair
+from gearwhine.stages.housing import SolvedHousing
+from gearwhine.stages.rotors import SolvedRotor
+from gearwhine.stages.transient import SolvedTransient
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_PHASES = 400  # of the mesh period
+_PLACES = 101  # along a rotor
+
+Variables = dict[str, tuple[Any, Any, dict[str, str]]]
+
+
+def write(
+    path: Path,
+    case: Case,
+    housing: SolvedHousing | None,
+    rotors: tuple[SolvedRotor, ...],
+    pairs: tuple[SolvedPair, ...],
+    system: CoupledModes | None,
+    transient: SolvedTransient | None,
+) -> None:
+    """Write what was solved; the rest is left out."""
+    variables: Variables = {}
+    coordinates: Variables = {}
+    if housing is not None:
+        _housing(housing, variables, coordinates)
+    if rotors:
+        _rotors(rotors, variables, coordinates)
+    if pairs:
+        _pairs(pairs, variables, coordinates)
+    if system is not None:
+        _system(system, variables, coordinates)
+    if transient is not None:
+        _transient(transient, variables, coordinates)
+    if case.operation is not None:
+        coordinates["speed"] = ((), case.operation.speed * 60.0 / _HERTZ, _unit("rpm", "speed of the first driver"))
+    attributes = {
+        "title": case.title,
+        "source": f"gearwhine {__version__}",
+        "case": dump_case(case),
+        "amplitude_convention": "peak: the amplitude of a sine a sin(2 pi f t) is a",
+    }
+    dataset = xr.Dataset(variables, coordinates, attributes)
+    dataset.to_netcdf(path, engine="h5netcdf")
+
+
+def write_shapes(path: Path, housing: SolvedHousing) -> None:
+    """Write the mesh with every mode shape as a point array, for ParaView and its like."""
+    import meshio
+
+    kind = "tetra" if housing.mesh.order == 1 else "tetra10"
+    shapes = {
+        f"mode {number:02d}, {frequency:.1f} Hz": shape
+        for number, (frequency, shape) in enumerate(
+            zip(housing.modes.frequencies_hz, housing.modes.shapes, strict=True), start=1
+        )
+    }
+    meshio.write(path, meshio.Mesh(housing.mesh.points, [(kind, housing.mesh.cells)], point_data=shapes))
+
+
+def _unit(unit: str, what: str) -> dict[str, str]:
+    return {"units": unit, "long_name": what}
+
+
+def _housing(solved: SolvedHousing, variables: Variables, coordinates: Variables) -> None:
+    numbers = np.arange(1, len(solved.modes.frequencies) + 1)
+    survey = (solved.survey.matrix @ solved.modes.shapes.reshape(len(numbers), -1).T).T
+    coordinates["housing_mode"] = ("housing_mode", numbers, _unit("1", "number of the housing mode"))
+    coordinates["component"] = ("component", ["x", "y", "z"], {})
+    mode = "housing_mode"
+    variables["housing_frequency"] = (mode, solved.modes.frequencies_hz, _unit("Hz", "housing natural frequency"))
+    variables["housing_damping_ratio"] = (mode, solved.damping_ratios, _unit("1", "housing modal damping ratio"))
+    if solved.strengths is not None:
+        strength = solved.strengths.acceleration
+        variables["housing_strength"] = (mode, strength, _unit("kg-1", "lateral acceleration strength"))
+    variables["survey_position"] = (
+        ("survey_point", "component"),
+        solved.survey.positions,
+        _unit("m", "survey points on the housing's outer faces"),
+    )
+    variables["survey_normal"] = (("survey_point", "component"), solved.survey.normals, _unit("1", "outward normals"))
+    variables["survey_shape"] = (
+        (mode, "survey_point", "component"),
+        survey.reshape(len(numbers), -1, 3),
+        _unit("kg-0.5", "mass-normalised mode shapes at the survey points"),
+    )
+
+
+def _rotors(solved: tuple[SolvedRotor, ...], variables: Variables, coordinates: Variables) -> None:
+    coordinates["rotor"] = ("rotor", [one.rotor.name for one in solved], {})
+    variables["rotor_rest_frequency"] = (
+        ("rotor", "rest_mode"),
+        _padded([one.rest.frequencies / _HERTZ for one in solved]),
+        _unit("Hz", "lateral natural frequencies at rest, both planes"),
+    )
+    variables["rotor_torsional_frequency"] = (
+        ("rotor", "torsional_mode"),
+        _padded([one.torsional.frequencies / _HERTZ for one in solved]),
+        _unit("Hz", "free torsional natural frequencies"),
+    )
+    places = [np.linspace(0.0, one.rotor.length, _PLACES) for one in solved]
+    variables["rotor_place"] = (("rotor", "place"), np.array(places), _unit("m", "distance from the rotor's left end"))
+    for kind, shapes in (
+        ("lateral", [one.lateral.evaluate(z)[0] for one, z in zip(solved, places, strict=True)]),
+        ("torsional", [one.torsional.evaluate(z) for one, z in zip(solved, places, strict=True)]),
+    ):
+        most = max(len(shape) for shape in shapes)
+        padded = np.full((len(solved), most, _PLACES), np.nan)
+        for row, shape in zip(padded, shapes, strict=True):
+            row[: len(shape)] = shape
+        dimension = "torsional_mode" if kind == "torsional" else "lateral_mode"
+        unit = "kg-0.5 m-1" if kind == "torsional" else "kg-0.5"
+        variables[f"rotor_{kind}_shape"] = (
+            ("rotor", dimension, "place"),
+            padded,
+            _unit(unit, f"orthonormal {kind} mode shapes"),
+        )
+
+
+def _pairs(solved: tuple[SolvedPair, ...], variables: Variables, coordinates: Variables) -> None:
+    grid = np.arange(_PHASES) / _PHASES
+    coordinates["gear_pair"] = ("gear_pair", [f"{pair.given.driver} -> {pair.given.driven}" for pair in solved], {})
+    coordinates["mesh_phase"] = ("mesh_phase", grid, _unit("1", "part of the mesh period"))
+    static = [static_transmission_error(pair.contact, pair.static.force, grid) for pair in solved]
+    dimensions = ("gear_pair", "mesh_phase")
+    variables["mesh_stiffness"] = (
+        dimensions,
+        np.array([mesh_stiffness(pair.contact, grid) for pair in solved]),
+        _unit("N/m", "mesh stiffness of all pairs on the path of contact"),
+    )
+    variables["loaded_mesh_stiffness"] = (
+        dimensions,
+        np.array([one.tangent_stiffness for one in static]),
+        _unit("N/m", "stiffness of the pairs that touch under the mean torque"),
+    )
+    variables["transmission_error"] = (
+        dimensions,
+        np.array([one.transmission_error for one in static]),
+        _unit("m", "static transmission error under the mean torque, along the line of action"),
+    )
+
+
+def _system(modes: CoupledModes, variables: Variables, coordinates: Variables) -> None:
+    variables["system_frequency"] = ("system_mode", modes.frequencies_hz, _unit("Hz", "coupled natural frequency"))
+    variables["system_damping_ratio"] = ("system_mode", modes.damping_ratios, _unit("1", "coupled damping ratio"))
+    variables["system_kind"] = ("system_mode", list(modes.kinds), {"long_name": "what moves most"})
+
+
+def _transient(solved: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
+    named = solved.histories
+    coordinates["time"] = ("time", named.times, _unit("s", "time from static equilibrium"))
+    if named.sensor_acceleration:
+        coordinates["sensor"] = ("sensor", list(named.sensor_acceleration), {})
+        variables["sensor_acceleration"] = (
+            ("sensor", "time"),
+            np.array(list(named.sensor_acceleration.values())),
+            _unit("m/s2", "acceleration along the sensor"),
+        )
+    if named.bearing_force:
+        coordinates["bearing"] = ("bearing", list(named.bearing_force), {})
+        coordinates["axis"] = ("axis", ["x", "y"], {})
+        variables["bearing_force"] = (
+            ("bearing", "time", "axis"),
+            np.array(list(named.bearing_force.values())),
+            _unit("N", "force of the shaft on its bearing"),
+        )
+    if named.mesh_force:
+        coordinates["contact"] = ("contact", list(named.mesh_force), {})
+        for name, values, unit, what in (
+            ("mesh_force", named.mesh_force, "N", "gear-mesh force along the line of action"),
+            ("mesh_compression", named.mesh_compression, "m", "compression of the mesh along the line of action"),
+        ):
+            variables[name] = (("contact", "time"), np.array(list(values.values())), _unit(unit, what))
+        coordinates["gear"] = ("gear", list(named.gear_motion), {})
+        motion = np.array(list(named.gear_motion.values()))
+        variables["gear_displacement"] = (
+            ("gear", "time", "axis"),
+            motion[:, :, :2],
+            _unit("m", "motion of the gear's centre"),
+        )
+        variables["gear_rotation"] = (
+            ("gear", "time"),
+            motion[:, :, 2],
+            _unit("rad", "rotation of the gear beside the steady one"),
+        )
+        coordinates.setdefault("axis", ("axis", ["x", "y"], {}))
+    for name, spectra, dimension, unit, what in (
+        ("sensor_spectrum", solved.sensor_spectra, "sensor", "m/s2", "peak amplitude of acceleration"),
+        ("mesh_force_spectrum", solved.force_spectra, "contact", "N", "peak amplitude of the gear-mesh force"),
+    ):
+        if not spectra:
+            continue
+        first = next(iter(spectra.values()))
+        coordinates["frequency"] = ("frequency", first.frequencies, _unit("Hz", "frequency"))
+        amplitude = np.array([spectrum.amplitude for spectrum in spectra.values()])
+        phase = np.array([spectrum.phase for spectrum in spectra.values()])
+        attributes = _unit(unit, what) | {"window": first.window}
+        variables[name] = ((dimension, "frequency"), amplitude, attributes)
+        variables[f"{name}_phase"] = ((dimension, "frequency"), phase, _unit("rad", f"phase of {what[18:]}"))
+
+
+def _padded(rows: list[FloatArray]) -> FloatArray:
+    """Rows of unequal length, filled up with NaN."""
+    padded = np.full((len(rows), max(len(row) for row in rows)), np.nan)
+    for target, row in zip(padded, rows, strict=True):
+        target[: len(row)] = row
+    return padded

@@ -1,0 +1,235 @@
+"""What a person sees on the terminal."""
+
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+_WIDTH = 100
+
+
+def show_run(document: dict[str, Any]) -> None:
+    """The main job's outcome."""
+    console = _console()
+    console.print(f"[bold]{escape(document['title'])}[/bold]")
+    if "housing" in document:
+        _modes_line(console, document["housing"])
+    if "compare" in document:
+        _comparison(console, document["compare"])
+    for pair in document.get("gear_pairs", ()):
+        console.print(
+            f"Gear mesh {escape(pair['driver'])} → {escape(pair['driven'])}: mean force {pair['mean_force_n']:.0f} N, "
+            f"peak {pair['peak_force_n']:.0f} N, apart {100 * pair['contact_loss_fraction']:.2g} % of the time"
+        )
+    if document.get("sensors"):
+        _sensors(console, document)
+    if "steps" in document:
+        console.print(
+            f"Transient: {document['steps']} steps, {document['steps_per_second']:.0f} a second; energy balance closes "
+            f"to {document['energy_error']:.1e}; {document['coordinates']} modal coordinates"
+        )
+    elif "system" in document:
+        console.print(f"Coupled system: {len(document['system']['modes'])} modes")
+    _files(console, document)
+    console.print(f"Time: {document['seconds']['total']:.1f} s")
+
+
+def show_check(document: dict[str, Any]) -> None:
+    """What the case means."""
+    console = _console()
+    console.print(f"[bold]{escape(document['title'])}[/bold]")
+    for key, rows in document.items():
+        if isinstance(rows, list):
+            _rows(console, key.replace("_", " "), rows)
+        elif key == "provenance":
+            _rows(console, key, [{"key": name, "standing": text} for name, text in rows.items()])
+        elif isinstance(rows, dict):
+            nested = {name: value for name, value in rows.items() if isinstance(value, list) and value}
+            plain = [{"": name.replace("_", " "), "value": value} for name, value in rows.items() if name not in nested]
+            _rows(console, key, plain)
+            for name, value in nested.items():
+                if isinstance(value[0], dict):
+                    _rows(console, name.replace("_", " "), value)
+                else:
+                    console.print(f"  {name.replace('_', ' ')}: {escape(', '.join(_text(one) for one in value))}")
+
+
+def show_mesh(document: dict[str, Any]) -> None:
+    """The mesh's size and quality."""
+    console = _console()
+    mesh, edge, shape = document["mesh"], document["edge_length_m"], document["shape_number"]
+    console.print(f"{mesh['nodes']} nodes, {mesh['elements']} tetrahedra of order {document['order']}")
+    console.print(f"Volume {document['volume_m3']:.6g} m³; median edge {1e3 * edge['median']:.3g} mm")
+    console.print(f"Shape number (1 is regular): median {shape['median']:.2f}, smallest {shape['min']:.2f}")
+    console.print(f"Surfaces: {escape(', '.join(document['surfaces'])) or 'none named'}")
+    _files(console, document)
+
+
+def show_modes(document: dict[str, Any]) -> None:
+    """Housing modes and their certificate."""
+    console = _console()
+    table = Table("mode", "frequency [Hz]", "damping", "strength [1/kg]", box=SIMPLE_HEAD)
+    for column in table.columns:
+        column.justify = "right"
+    for mode in document["modes"]:
+        strength = "" if mode["strength"] is None else f"{mode['strength']:.3e}"
+        table.add_row(str(mode["number"]), f"{mode['frequency_hz']:.2f}", f"{mode['damping_ratio']:.4g}", strength)
+    console.print(table)
+    _modes_line(console, document)
+    _files(console, document)
+
+
+def show_rotors(document: dict[str, Any]) -> None:
+    """Each rotor's frequencies."""
+    console = _console()
+    for rotor in document["rotors"]:
+        console.print(f"[bold]{escape(rotor['name'])}[/bold]  {rotor['mass_kg']:.3f} kg")
+        rows = [("lateral at rest [Hz]", rotor["lateral_hz"]), ("torsional [Hz]", rotor["torsional_hz"])]
+        rows += [(f"whirl at {whirl['speed_rpm']:.0f} rpm [Hz]", whirl["frequency_hz"]) for whirl in rotor["whirl"]]
+        rows += [("critical speeds [rpm]", rotor["critical_speeds_rpm"])]
+        for name, values in rows:
+            console.print(f"  {name:26s} {'  '.join(f'{value:.5g}' for value in values[:10])}")
+        certificate = rotor["certificate"]
+        console.print(f"  complete below {certificate['limit_hz']:.5g} Hz: {certificate['found']} found, "
+                      f"{certificate['expected']} counted")  # fmt: skip
+    _files(console, document)
+
+
+def show_gears(document: dict[str, Any]) -> None:
+    """Each gear pair's figures."""
+    console = _console()
+    for pair in document["pairs"]:
+        stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
+        console.print(f"[bold]{escape(pair['driver'])} → {escape(pair['driven'])}[/bold]  {pair['model']}")
+        console.print(f"  contact ratio {pair['contact_ratio']:.5f}")
+        if pair["mesh_frequency_hz"] is not None:
+            console.print(
+                f"  mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mesh force {pair['mean_force_n']:.1f} N"
+            )
+        console.print(
+            f"  mesh stiffness {1e-6 * stiffness['mean']:.2f} N/µm in the mean, {1e-6 * stiffness['min']:.2f} to "
+            f"{1e-6 * stiffness['max']:.2f}"
+        )
+        console.print(
+            f"  static transmission error {1e6 * error['mean']:.3f} µm in the mean, "
+            f"{1e6 * error['peak_to_peak']:.3f} µm peak to peak"
+        )
+    _files(console, document)
+
+
+def show_system(document: dict[str, Any]) -> None:
+    """Coupled modes."""
+    console = _console()
+    console.print(f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm")
+    table = Table("frequency [Hz]", "damping ratio", "kind", "housing", "rotor", "torsion", "teeth", box=SIMPLE_HEAD)
+    for column in table.columns:
+        column.justify = "right"
+    for mode in document["modes"]:
+        shares = [f"{100 * mode['energy'][kind]:.0f} %" for kind in ("housing", "rotor", "torsion", "mesh")]
+        table.add_row(f"{mode['frequency_hz']:.2f}", f"{mode['damping_ratio']:.4f}", mode["kind"], *shares)
+    console.print(table)
+    console.print("Shares of the kinetic energy; teeth: share of the strain energy.")
+    _files(console, document)
+
+
+def show_comparison(document: dict[str, Any]) -> None:
+    """Measured beside model modes."""
+    console = _console()
+    _comparison(console, document)
+    _files(console, document)
+
+
+def show_examples(document: dict[str, Any]) -> None:
+    """The bundled cases."""
+    console = _console()
+    table = Table("name", "what it is", box=SIMPLE_HEAD)
+    for example in document["examples"]:
+        table.add_row(escape(example["name"]), escape(example["title"]))
+    console.print(table)
+    console.print("Run one:   gearwhine run NAME\nChange one: gearwhine examples copy NAME")
+
+
+def show_files(document: dict[str, Any]) -> None:
+    """What was written."""
+    _files(_console(), document)
+
+
+def _comparison(console: Console, document: dict[str, Any]) -> None:
+    table = Table("mode", "measured [Hz]", "model [Hz]", "error", "strength [1/kg]", box=SIMPLE_HEAD)
+    for column in table.columns:
+        column.justify = "right"
+    for pair in document["pairs"]:
+        table.add_row(
+            str(pair["mode"]),
+            f"{pair['measured_hz']:.0f}",
+            f"{pair['model_hz']:.1f}",
+            f"{pair['error_percent']:+.2f} %",
+            f"{pair['strength']:.2e}",
+        )
+    console.print(table)
+    count = document["model_modes"]
+    agree = "agree" if document["measures_agree"] else "do not all agree"
+    console.print(
+        f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, "
+        f"rms {document['rms_error_percent']:.2f} %; {count['count']} model modes below {count['below_hz']:.0f} Hz."
+    )
+    console.print(
+        f"Gap between the last chosen mode and the next: ln {document['gap']:.3f} (below 0.1 the choice is a coin "
+        f"toss); the three measures of dominance {agree}."
+    )
+    console.print(
+        "Such a match is weak evidence where the model was calibrated to these frequencies: see the case's notes."
+    )
+
+
+def _sensors(console: Console, document: dict[str, Any]) -> None:
+    table = Table("sensor", "rms [m/s²]", "highest lines: Hz (m/s², peak)", box=SIMPLE_HEAD)
+    table.columns[1].justify = "right"
+    for sensor in document["sensors"]:
+        lines = "  ".join(
+            f"{peak['frequency_hz']:.0f} ({peak['amplitude_m_per_s2']:.2g})" for peak in sensor["peaks"][:5]
+        )
+        table.add_row(escape(sensor["name"]), f"{sensor['rms_m_per_s2']:.3g}", lines)
+    console.print(table)
+
+
+def _modes_line(console: Console, document: dict[str, Any]) -> None:
+    certificate, mesh = document["certificate"], document["mesh"]
+    console.print(
+        f"Housing: {certificate['found']} modes below {certificate['limit_hz']:.5g} Hz, the inertia demands "
+        f"{certificate['expected']}; largest residual {certificate['max_residual']:.0e}; {document['mass_kg']:.2f} kg, "
+        f"{mesh['dofs']} degrees of freedom, {document['seconds']['total']:.1f} s"
+    )
+
+
+def _files(console: Console, document: dict[str, Any]) -> None:
+    if document.get("files"):
+        console.print(f"Written to {escape(document['folder'])}: {escape(', '.join(document['files']))}")
+
+
+def _rows(console: Console, title: str, rows: list[dict[str, Any]]) -> None:
+    if not rows:
+        return
+    table = Table(*[escape(key.replace("_", " ")) for key in rows[0]], title=escape(title), box=SIMPLE_HEAD)
+    table.title_justify = "left"
+    for row in rows:
+        table.add_row(*[escape(_text(value)) for value in row.values()])
+    console.print(table)
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list):
+        return ", ".join(_text(one) for one in value) or "none"
+    return str(value)
+
+
+def _console() -> Console:
+    console = Console(highlight=False)
+    # Where there is no terminal, lines are not cut at the 80 columns that rich then assumes.
+    return console if console.is_terminal else Console(highlight=False, width=_WIDTH, soft_wrap=True)

@@ -1,0 +1,107 @@
+"""What a case means before anything is solved: ratios, frequencies, loads, sizes."""
+
+from typing import Any
+
+import numpy as np
+
+from gearwhine.case import Case, applied_torques, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.stages.gears import pair_geometry
+from gearwhine.stages.rotors import build_rotor
+
+_RPM = 60.0 / (2.0 * np.pi)
+
+
+def check_document(case: Case) -> dict[str, Any]:
+    """Everything that follows from the case by arithmetic alone."""
+    document: dict[str, Any] = {"title": case.title}
+    if case.housing is not None:
+        document["housing"] = _housing(case)
+    if case.rotor:
+        document["rotors"] = _rotors(case)
+    if case.bearing:
+        document["bearings"] = [
+            {"name": bearing.name, "rotor": bearing.rotor, "seat": bearing.seat} for bearing in case.bearing
+        ]
+    if case.gear_pair:
+        document["gear_pairs"] = _pairs(case)
+    if case.operation is not None:
+        document["operation"] = {
+            "speed_rpm": case.operation.speed * _RPM,
+            "torque_n_m": case.operation.torque,
+            "torques": [
+                {"rotor": torque.shaft, "at_m": torque.at, "torque_n_m": torque.torque}
+                for torque in applied_torques(case)
+            ],
+        }
+    if case.transient is not None:
+        document["transient"] = {
+            "revolutions": case.transient.revolutions,
+            "recorded_revolutions": case.transient.revolutions - case.transient.discard,
+            "tolerance": case.transient.tolerance,
+        }
+    if case.sweep is not None:
+        document["sweep"] = {"speeds": len(case.sweep.speeds)}
+    if case.measured is not None:
+        document["measured"] = {"frequencies_hz": list(case.measured.frequencies)}
+    if case.provenance:
+        document["provenance"] = dict(case.provenance)
+    return document
+
+
+def _housing(case: Case) -> dict[str, Any]:
+    housing = case.housing
+    assert housing is not None
+    document: dict[str, Any] = {
+        "geometry": "box" if housing.box else "mesh" if housing.mesh else "cad",
+        "material": housing.material,
+        "frequency_limit_hz": housing.frequency_limit,
+        "modes": housing.modes,
+        "seats": [seat.name for seat in housing.seat],
+        "supports": [support.name for support in housing.support],
+        "sensors": [sensor.name for sensor in housing.sensor],
+    }
+    if housing.box is not None:
+        document |= {"size_m": list(housing.box.size), "mesh_size_m": housing.box.mesh_size}
+    return document
+
+
+def _rotors(case: Case) -> list[dict[str, Any]]:
+    speeds = rotor_speeds(case) if case.operation is not None else {}
+    rows = []
+    for given in case.rotor:
+        rotor = build_rotor(case, given)
+        speed = speeds.get(given.name)
+        rows.append(
+            {
+                "name": given.name,
+                "length_m": rotor.length,
+                "mass_kg": rotor.mass,
+                "polar_inertia_kg_m2": rotor.polar_inertia,
+                "speed_rpm": None if speed is None else speed * _RPM,
+                "mass_model": given.mass,
+            }
+        )
+    return rows
+
+
+def _pairs(case: Case) -> list[dict[str, Any]]:
+    number = len(case.gear_pair)
+    frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
+    torques = pair_torques(case) if case.operation is not None else (None,) * number
+    rows = []
+    for pair, frequency, torque in zip(case.gear_pair, frequencies, torques, strict=True):
+        geometry = pair_geometry(case, pair)
+        rows.append(
+            {
+                "driver": pair.driver,
+                "driven": pair.driven,
+                "ratio": geometry.ratio,
+                "contact_ratio": geometry.contact_ratio,
+                "centre_distance_m": geometry.working_centre_distance,
+                "working_pressure_angle_deg": float(np.degrees(geometry.working_pressure_angle)),
+                "mesh_frequency_hz": frequency,
+                "mean_force_n": None if torque is None else abs(torque) / geometry.driver.base_radius,
+                "stiffness_model": pair.stiffness.model,
+            }
+        )
+    return rows

@@ -1,0 +1,123 @@
+"""Pictures of modes: they exist, have their size, show something, and differ."""
+
+import subprocess
+import sys
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from housing import HousingError, Matrices, ModeSet, solve_modes
+from housing.pictures import VIEWS, RendererUnavailableError, load_pyvista, render_gallery, render_modes
+from meshes import Mesh
+
+
+@pytest.fixture(scope="module")
+def modes(box_matrices: Matrices) -> ModeSet:
+    return solve_modes(box_matrices, count=8)
+
+
+@pytest.fixture(scope="module")
+def renderer() -> None:
+    try:
+        load_pyvista()
+    except RendererUnavailableError as error:
+        pytest.skip(str(error))
+
+
+def _pixels(path: Path) -> np.ndarray:
+    with Image.open(path) as image:
+        assert image.format == "PNG"
+        return np.asarray(image.convert("RGB"))
+
+
+@pytest.mark.usefixtures("renderer")
+def test_two_modes_make_two_different_pictures(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
+    told: list[str] = []
+    folder = tmp_path / "pictures"
+    files = render_modes(box, modes, [7, 8], folder, notes={8: "strong"}, size=(320, 240), progress=told.append)
+    hertz = modes.frequencies_hz
+    assert [path.name for path in files] == [f"mode-07-{hertz[6]:.0f}Hz.png", f"mode-08-{hertz[7]:.0f}Hz.png"]
+    assert sorted(folder.iterdir()) == sorted(files)
+    assert told == ["drawing mode 7", "drawing mode 8"]
+    first, second = (_pixels(path) for path in files)
+    assert first.shape == second.shape == (240, 320, 3)
+    for image in (first, second):
+        colours = np.unique(image.reshape(-1, 3), axis=0)
+        assert len(colours) > 50
+        grey = np.ptp(image.astype(int), axis=2) < 12
+        assert np.count_nonzero(~grey) > 0.05 * grey.size  # the coloured solid fills part of the sheet
+    assert np.mean(np.any(first != second, axis=2)) > 0.02
+
+
+@pytest.mark.usefixtures("renderer")
+def test_views_differ_and_a_picture_is_repeatable(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
+    images = {
+        name: _pixels(render_modes(box, modes, [7], tmp_path / name, size=(160, 120), view=view)[0])
+        for name, view in (("once", "iso"), ("again", "iso"), ("top", "top"))
+    }
+    assert np.array_equal(images["once"], images["again"])
+    assert not np.array_equal(images["once"], images["top"])
+
+
+@pytest.mark.usefixtures("renderer")
+def test_gallery_is_a_sheet_of_four_in_a_row(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
+    path = render_gallery(box, modes, [1, 2, 3, 4, 7], tmp_path / "sheet.png", tile=(120, 100))
+    assert _pixels(path).shape == (200, 480, 3)
+
+
+def test_pictures_of_modes_that_are_not_there_are_refused(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
+    for numbers in ([0], [-1], [9], []):
+        with pytest.raises(HousingError, match="give numbers from 1 to 8"):
+            render_modes(box, modes, numbers, tmp_path)
+        with pytest.raises(HousingError, match="give numbers from 1 to 8"):
+            render_gallery(box, modes, numbers, tmp_path / "sheet.png")
+    with pytest.raises(HousingError, match="no view 'below'; there are iso, front"):
+        render_modes(box, modes, [7], tmp_path, view="below")
+    assert "iso" in VIEWS
+    assert not list(tmp_path.iterdir())
+
+
+def _run(script: str) -> subprocess.CompletedProcess[str]:
+    command = "import sys; sys.path[:0] = " + repr(sys.path) + "\n" + textwrap.dedent(script)
+    return subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, timeout=60, check=False)
+
+
+def test_without_egl_and_osmesa_the_packages_to_install_are_named() -> None:
+    done = _run("""
+        def refuse(event, arguments):
+            if event == "ctypes.dlopen" and arguments[0] and ("EGL" in arguments[0] or "OSMesa" in arguments[0]):
+                raise OSError(f"{arguments[0]}: cannot open shared object file")
+        sys.addaudithook(refuse)
+        from housing.pictures import RendererUnavailableError, load_pyvista
+        try:
+            load_pyvista()
+        except RendererUnavailableError as error:
+            print(error)
+        print("pyvista" in sys.modules)
+    """)
+    assert "sudo apt-get install libegl1" in done.stdout, done.stderr
+    assert done.stdout.strip().endswith("False")
+
+
+def test_importing_the_room_brings_no_heavy_library() -> None:
+    done = _run("""
+        import housing
+        heavy = ("gmsh", "vtk", "vtkmodules", "pyvista", "matplotlib", "skfem", "numba", "rslab", "PIL")
+        print([name for name in heavy if name in sys.modules])
+    """)
+    assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_middle_nodes_bend_the_drawn_surface(renderer: None, block: Callable[..., Mesh], tmp_path: Path) -> None:
+    """The picture of a shape that moves middle nodes only is not that of the shape at rest."""
+    from housing.pictures import _outer_surface
+
+    mesh = block((0.1, 0.1, 0.1))
+    surface, nodes = _outer_surface(load_pyvista(), mesh)
+    assert set(nodes) == set(np.unique(mesh.boundary))
+    assert surface.n_cells == 4 * len(mesh.boundary)
+    assert surface.area == pytest.approx(6 * 0.1**2)
