@@ -140,8 +140,9 @@ def march(
         Number of the first sample not yet written.
     stored : float
         Energy in the teeth just before the first segment [J].
-    totals : ndarray, shape (3,)
-        Work of the loads, energy lost to damping, work of the turning teeth on the contacts [J]: added to.
+    totals : ndarray, shape (4,)
+        Work of the loads, energy lost to damping, work of the turning teeth on the contacts (added to), and the
+        largest kinetic energy [J].
     contact_totals : ndarray, shape (c, 3)
         For each contact ∫ force dt [N s], time apart [s] (both added to) and the largest force [N].
 
@@ -217,6 +218,10 @@ def march(
             for k in range(3):
                 totals[k] += 0.5 * h * (powers[k] + powers1[k])
                 powers[k] = powers1[k]
+            kinetic = 0.0
+            for i in range(n):
+                kinetic += 0.5 * v1[i] * v1[i]
+            totals[3] = max(totals[3], kinetic)
             for k in range(c):
                 contact_totals[k, 0] += 0.5 * h * (force[k] + force1[k])
                 if force1[k] == 0.0:

@@ -4,7 +4,9 @@ Every command is a few lines: read the case, run the stages, hand the result on.
 imported where it is used, so that ``--help`` answers at once.
 """
 
+import signal
 import sys
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -200,6 +202,9 @@ def run_command(arguments: list[str]) -> int:
     """
     from gearwhine.failures import explain
 
+    # A polite kill unwinds like Ctrl-C does, so that staged files are cleared away.
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, _interrupt)
     try:
         app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
@@ -217,6 +222,10 @@ def run_command(arguments: list[str]) -> int:
         sys.stderr.write(f"gearwhine: {message}\n")
         return code
     return 0
+
+
+def _interrupt(number: int, frame: object) -> None:
+    raise KeyboardInterrupt
 
 
 def _on_case(

@@ -162,13 +162,14 @@ def _system(modes: CoupledModes, variables: Variables, coordinates: Variables) -
 
 
 def _transient(solved: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
+    """Histories in single precision, seven digits, since there are many; spectra in double."""
     named = solved.histories
     coordinates["time"] = ("time", named.times, _unit("s", "time from static equilibrium"))
     if named.sensor_acceleration:
         coordinates["sensor"] = ("sensor", list(named.sensor_acceleration), {})
         variables["sensor_acceleration"] = (
             ("sensor", "time"),
-            np.array(list(named.sensor_acceleration.values())),
+            np.array(list(named.sensor_acceleration.values()), dtype=np.float32),
             _unit("m/s2", "acceleration along the sensor"),
         )
     if named.bearing_force:
@@ -176,7 +177,7 @@ def _transient(solved: SolvedTransient, variables: Variables, coordinates: Varia
         coordinates["axis"] = ("axis", ["x", "y"], {})
         variables["bearing_force"] = (
             ("bearing", "time", "axis"),
-            np.array(list(named.bearing_force.values())),
+            np.array(list(named.bearing_force.values()), dtype=np.float32),
             _unit("N", "force of the shaft on its bearing"),
         )
     if named.mesh_force:
@@ -185,9 +186,13 @@ def _transient(solved: SolvedTransient, variables: Variables, coordinates: Varia
             ("mesh_force", named.mesh_force, "N", "gear-mesh force along the line of action"),
             ("mesh_compression", named.mesh_compression, "m", "compression of the mesh along the line of action"),
         ):
-            variables[name] = (("contact", "time"), np.array(list(values.values())), _unit(unit, what))
+            variables[name] = (
+                ("contact", "time"),
+                np.array(list(values.values()), dtype=np.float32),
+                _unit(unit, what),
+            )
         coordinates["gear"] = ("gear", list(named.gear_motion), {})
-        motion = np.array(list(named.gear_motion.values()))
+        motion = np.array(list(named.gear_motion.values()), dtype=np.float32)
         variables["gear_displacement"] = (
             ("gear", "time", "axis"),
             motion[:, :, :2],

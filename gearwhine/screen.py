@@ -1,5 +1,6 @@
 """What a person sees on the terminal."""
 
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
@@ -37,23 +38,75 @@ def show_run(document: dict[str, Any]) -> None:
 
 
 def show_check(document: dict[str, Any]) -> None:
-    """What the case means."""
+    """What the case means, a line for each part."""
+    table = Table.grid(padding=(0, 2))
+    for part, text in _parts(document):
+        table.add_row(f"[bold]{part}[/bold]", escape(text))
     console = _console()
     console.print(f"[bold]{escape(document['title'])}[/bold]")
-    for key, rows in document.items():
-        if isinstance(rows, list):
-            _rows(console, key.replace("_", " "), rows)
-        elif key == "provenance":
-            _rows(console, key, [{"key": name, "standing": text} for name, text in rows.items()])
-        elif isinstance(rows, dict):
-            nested = {name: value for name, value in rows.items() if isinstance(value, list) and value}
-            plain = [{"": name.replace("_", " "), "value": value} for name, value in rows.items() if name not in nested]
-            _rows(console, key, plain)
-            for name, value in nested.items():
-                if isinstance(value[0], dict):
-                    _rows(console, name.replace("_", " "), value)
-                else:
-                    console.print(f"  {name.replace('_', ' ')}: {escape(', '.join(_text(one) for one in value))}")
+    console.print(table)
+
+
+def _parts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """The parts of a case in words; a part's name stands on its first line only."""
+    if "housing" in document:
+        yield from _named("housing", _housing_lines(document["housing"]))
+    yield from _named("rotors", [_rotor_line(rotor) for rotor in document.get("rotors", ())])
+    bearings = [f"{one['name']}: {one['rotor']} on {one['seat']}" for one in document.get("bearings", ())]
+    yield from _named("bearings", bearings)
+    yield from _named("gear pairs", [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair)])
+    if "operation" in document:
+        operation = document["operation"]
+        lines = [f"{operation['speed_rpm']:.6g} rpm, {operation['torque_n_m']:.6g} N·m"]
+        for torque in operation["torques"]:
+            place = "" if torque["at_m"] is None else f" at {1e3 * torque['at_m']:.4g} mm"
+            lines.append(f"torque on {torque['rotor']}{place}: {torque['torque_n_m']:+.6g} N·m about z")
+        yield from _named("operation", lines)
+    if "transient" in document:
+        given = document["transient"]
+        recorded, all_of_them = given["recorded_revolutions"], given["revolutions"]
+        yield (
+            "transient",
+            f"{all_of_them:g} revolutions, the last {recorded:g} recorded; tolerance {given['tolerance']:g}",
+        )
+    if "sweep" in document:
+        yield "sweep", f"{document['sweep']['speeds']} speeds"
+    if "measured" in document:
+        yield "measured", ", ".join(f"{one:g}" for one in document["measured"]["frequencies_hz"]) + " Hz"
+    yield from _named("standing", [f"{key}: {text}" for key, text in document.get("provenance", {}).items()])
+
+
+def _named(part: str, lines: Sequence[str]) -> Iterator[tuple[str, str]]:
+    for number, line in enumerate(lines):
+        yield ("" if number else part), line
+
+
+def _housing_lines(housing: dict[str, Any]) -> list[str]:
+    shape = housing["geometry"]
+    if "size_m" in housing:
+        size = " x ".join(f"{1e3 * length:g}" for length in housing["size_m"])
+        shape += f" of {size} mm, elements of {1e3 * housing['mesh_size_m']:g} mm"
+    limit, count = housing["frequency_limit_hz"], housing["modes"]
+    wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {count or 20} modes"
+    lines = [f"{shape}, {housing['material']}; {wanted}"]
+    return lines + [f"{kind}: {', '.join(housing[kind])}" for kind in ("seats", "supports", "sensors") if housing[kind]]
+
+
+def _rotor_line(rotor: dict[str, Any]) -> str:
+    speed = "" if rotor["speed_rpm"] is None else f", {rotor['speed_rpm']:+.6g} rpm"
+    return f"{rotor['name']}: {1e3 * rotor['length_m']:g} mm, {rotor['mass_kg']:.4g} kg, {rotor['mass_model']}{speed}"
+
+
+def _pair_lines(pair: dict[str, Any]) -> list[str]:
+    lines = [
+        f"{pair['driver']} → {pair['driven']}: ratio {pair['ratio']:.6g}, contact ratio {pair['contact_ratio']:.5f}, "
+        f"stiffness {pair['stiffness_model']}",
+        f"shafts {1e3 * pair['centre_distance_m']:.6g} mm apart, working pressure angle "
+        f"{pair['working_pressure_angle_deg']:.4g}°",
+    ]
+    if pair["mesh_frequency_hz"] is not None:
+        lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
+    return lines
 
 
 def show_mesh(document: dict[str, Any]) -> None:
@@ -207,26 +260,6 @@ def _modes_line(console: Console, document: dict[str, Any]) -> None:
 def _files(console: Console, document: dict[str, Any]) -> None:
     if document.get("files"):
         console.print(f"Written to {escape(document['folder'])}: {escape(', '.join(document['files']))}")
-
-
-def _rows(console: Console, title: str, rows: list[dict[str, Any]]) -> None:
-    if not rows:
-        return
-    table = Table(*[escape(key.replace("_", " ")) for key in rows[0]], title=escape(title), box=SIMPLE_HEAD)
-    table.title_justify = "left"
-    for row in rows:
-        table.add_row(*[escape(_text(value)) for value in row.values()])
-    console.print(table)
-
-
-def _text(value: Any) -> str:
-    if value is None:
-        return "–"
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    if isinstance(value, list):
-        return ", ".join(_text(one) for one in value) or "none"
-    return str(value)
 
 
 def _console() -> Console:

@@ -9,11 +9,15 @@ from meshes.errors import GeometryError, MesherUnavailableError
 # What gmsh's wheel links against but does not carry, as Debian and Ubuntu package names.
 SYSTEM_PACKAGES = (
     "libglu1-mesa",
-    "libxft2",
-    "libxcursor1",
-    "libxinerama1",
-    "libxfixes3",
+    "libgl1",
+    "libx11-6",
+    "libxext6",
     "libxrender1",
+    "libxcursor1",
+    "libxfixes3",
+    "libxft2",
+    "libxinerama1",
+    "libfontconfig1",
     "libgomp1",
 )
 

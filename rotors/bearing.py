@@ -1,6 +1,5 @@
 """What holds a rotor: springs of one plane, and radial bearings of both."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -108,8 +107,3 @@ class Bearing:
     def plane_support(self, direction: int) -> RadialSupport:
         """The bearing's own direct spring in x (``direction`` 0) or y (1)."""
         return RadialSupport(self.at, float(self.stiffness[direction, direction]))
-
-
-def is_rigid(stiffness: float) -> bool:
-    """Whether a support stiffness means a constraint rather than a spring."""
-    return math.isinf(stiffness)

@@ -9,6 +9,8 @@ from scipy import linalg
 
 from .bearing import Bearing
 from .certificate import ModeCertificate
+from .chain import bending_chain
+from .errors import require, require_count
 from .lateral import LateralModes, solve_lateral_modes
 from .shaft import Rotor
 from .shapes import SAME_ROOT
@@ -97,8 +99,12 @@ def rest_frequencies(
     wanted = count
     if frequency_limit is None and count is None:
         wanted = DEFAULT_COUNT
+    require_count("count of frequencies", wanted)
     per_plane = [_plane_modes(rotor, bearings, plane, frequency_limit, wanted) for plane in (0, 1)]
     merged = np.sort(np.concatenate([modes.frequencies for modes in per_plane]))
+    if count is not None:
+        expected = f"at most {merged.size}, all this lumped rotor has"
+        require(count <= merged.size, "count of frequencies", count, expected)
     proofs = [modes.certificate for modes in per_plane]
     limit = min(proof.limit for proof in proofs)
     if wanted is not None:
@@ -171,5 +177,8 @@ def critical_speeds(
 def _plane_modes(
     rotor: Rotor, bearings: Sequence[Bearing], plane: int, frequency_limit: float | None, count: int | None
 ) -> LateralModes:
-    supports = [bearing.plane_support(plane) for bearing in bearings]
+    supports = tuple(bearing.plane_support(plane) for bearing in bearings)
+    if count is not None:
+        # One plane of a lumped rotor may have fewer modes than are asked for over both.
+        count = int(min(count, bending_chain(rotor, supports, 1.0).available_modes))
     return solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)

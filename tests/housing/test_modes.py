@@ -46,7 +46,8 @@ def box_modes(box_matrices: Matrices) -> ModeSet:
 def test_free_cube_keeps_its_double_and_triple_modes(
     cube: tuple[Mesh, Matrices], cube_values: npt.NDArray[np.float64], backend: Literal["rslab", "superlu"]
 ) -> None:
-    limit = 0.5 * (cube_values[29] + cube_values[30])
+    gap = 25 + int(np.argmax(np.diff(cube_values[25:35])))
+    limit = 0.5 * (cube_values[gap] + cube_values[gap + 1])
     modes = solve_modes(cube[1], frequency_limit=limit, backend=backend)
     expected = cube_values[cube_values < limit]
     np.testing.assert_allclose(modes.frequencies[6:], expected[6:], rtol=1e-9)
@@ -203,7 +204,7 @@ def test_a_limit_between_two_modes_splits_them_and_one_upon_a_mode_is_refused(
     last = float(box_modes.frequencies[8])
     assert len(solve_modes(box_matrices, frequency_limit=last * (1 + 1e-9)).frequencies) == 9
     assert len(solve_modes(box_matrices, frequency_limit=last * (1 - 1e-9)).frequencies) == 8
-    with pytest.raises((FactorizationError, IncompleteModesError), match="another shift|move the limit"):
+    with pytest.raises((FactorizationError, IncompleteModesError), match=r"another shift|move the limit"):
         solve_modes(box_matrices, frequency_limit=last)
 
 
@@ -236,7 +237,7 @@ def test_a_stiffness_that_is_not_one_is_refused(
 ) -> None:
     matrices = cube[1]
     wrong = Matrices(matrices.pointer, matrices.neighbors, -matrices.blocks, matrices.node_mass)
-    with pytest.raises((FactorizationError, HousingError), match="not positive semidefinite|every mode"):
+    with pytest.raises((FactorizationError, HousingError), match=r"not positive semidefinite|every mode"):
         solve_modes(wrong, frequency_limit=float(cube_values[10]))
 
 

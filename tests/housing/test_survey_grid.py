@@ -39,7 +39,8 @@ def test_points_without_a_bore_below_stand_at_the_middles_of_an_even_grid(survey
     columns, rows = SURVEY_COUNTS["top"]
     z, x = np.meshgrid((np.arange(columns) + 0.5) / columns, (np.arange(rows) + 0.5) / rows, indexing="ij")
     expected = np.stack([-0.10 + 0.20 * x, np.full_like(x, 0.16), -0.12 + 0.24 * z], axis=-1).reshape(-1, 3)
-    np.testing.assert_allclose(survey.positions[: columns * rows], expected, atol=1e-12)
+    # gmsh's middle nodes are off the middles of straight edges by up to a few millionths of an edge.
+    np.testing.assert_allclose(survey.positions[: columns * rows], expected, atol=1e-6)
 
 
 def test_points_over_a_bore_move_to_its_rim(survey: Survey, geometry: BoxGeometry) -> None:

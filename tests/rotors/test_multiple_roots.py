@@ -96,8 +96,7 @@ def test_disc_at_a_node_of_the_mode_changes_nothing() -> None:
 
 @pytest.mark.parametrize("stiffness", [1e-6, 1.0, 1e6, 1e12, 1e18, 1e24])
 def test_any_support_stiffness_keeps_the_digits(stiffness: float) -> None:
-    # One spring at the middle of a nearly rigid short bar: symmetric modes against the rod on half its
-    # spring, found here from the free field's receptance at the middle, by brentq.
+    # One spring at the middle of a short bar: from a soft mount, √(k/m), to what cannot be told from a pin.
     bar = Rotor("bar", [Segment(0.5, 0.05, 0.0, STEEL)] * 2)
     modes = solve_lateral_modes(bar, [RadialSupport(0.5, stiffness)], frequency_limit=8000.0)
     assert modes.certificate.complete

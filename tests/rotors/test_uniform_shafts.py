@@ -105,7 +105,7 @@ def test_pinned_shape_is_a_sine() -> None:
     modes = solve_lateral_modes(uniform(*shaft, 3), ends, count=4)
     z = np.linspace(0.0, 1.0, 41)
     displacement, slope = modes.evaluate(z)
-    bending, shear, mass, rotary = section(*shaft)
+    _, shear, mass, rotary = section(*shaft)
     for n, (omega, x, beta) in enumerate(zip(modes.frequencies, displacement, slope, strict=True), start=1):
         q = n * math.pi
         ratio = q - omega**2 * mass / (shear * q)
@@ -116,7 +116,6 @@ def test_pinned_shape_is_a_sine() -> None:
         np.testing.assert_allclose(
             modes.polar_inertia_matrix[n - 1, n - 1], rotary * (ratio * amplitude) ** 2, rtol=1e-9
         )
-    assert bending > 0
 
 
 @pytest.mark.parametrize("pieces", [1, 400])

@@ -10,6 +10,7 @@ from rotors import (
     Disc,
     RadialSupport,
     Rotor,
+    RotorError,
     Segment,
     ShaftMaterial,
     attach_loads,
@@ -149,6 +150,14 @@ def test_lumped_rotor_with_all_its_modes_needs_no_attachments() -> None:
     lumped = Rotor("l", [Segment(0.2, 0.04, 0.0, STEEL)] * 3, mass_model="lumped")
     modes = solve_lateral_modes(lumped, [RadialSupport(0.0, 1e6), RadialSupport(0.6, 1e6)])
     assert modes.count == 8
+    # Both planes together have sixteen, and no more.
+    bearings = [Bearing.isotropic(str(z), z, 1e6) for z in (0.0, 0.6)]
+    found = rest_frequencies(lumped, bearings, count=16)
+    np.testing.assert_allclose(found.frequencies, np.repeat(modes.frequencies, 2), rtol=1e-12)
+    assert found.certificate.complete
+    assert rest_frequencies(lumped, bearings).frequencies.size == 12
+    with pytest.raises(RotorError, match="at most 16"):
+        rest_frequencies(lumped, bearings, count=17)
     assert attach_loads(modes, forces_at=[0.0, 0.6], moments_at=[0.2]).count == 8
 
 

@@ -1,0 +1,71 @@
+# Two commands do everything on a fresh machine:
+#
+#   make demo   runs the main job on the NASA gear noise rig
+#   make test   lint, strict types, import arrows, tests
+#
+# Each makes the virtual environment in .venv and installs into it where that is missing or out of date.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+PIP    := $(BIN)/pip --disable-pip-version-check --quiet
+OUT    ?= results/nasa-gear-noise-rig
+
+# Two cores are the rule; BLAS threads on top of worker processes cost far more than they give.
+export OMP_NUM_THREADS ?= 2
+export OPENBLAS_NUM_THREADS ?= 2
+
+.PHONY: demo test lint types check-format unit install install-dev system format constraints clean
+
+demo: install
+	$(BIN)/gearwhine run nasa-gear-noise-rig -o $(OUT)
+
+test: install-dev lint types unit
+
+lint: install-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: install-dev
+	$(BIN)/mypy
+
+unit: install-dev
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile
+
+install: $(VENV)/.installed system
+install-dev: $(VENV)/.installed-dev system
+
+# gmsh and VTK need libraries from the system: this says which, and installs them where it may.
+system: | $(BIN)/python
+	@sh scripts/system_libraries.sh $(BIN)/python
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "Python 3.11 or newer is needed; name one with: make PYTHON=python3.12"; exit 2; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
+	@echo "Installing (about a minute) ..."
+	$(PIP) install -c constraints.txt -e .
+	@touch $@
+
+$(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
+	@echo "Installing with the development tools (about a minute) ..."
+	$(PIP) install -c constraints.txt -e .[dev]
+	@touch $@ $(VENV)/.installed
+
+format: install-dev
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+# New exact versions: what a fresh environment resolves to today.
+constraints:
+	rm -rf .venv-constraints
+	$(PYTHON) -m venv .venv-constraints
+	.venv-constraints/bin/pip --disable-pip-version-check --quiet install -e .[dev]
+	{ sed -n '/^#/p' constraints.txt; .venv-constraints/bin/pip freeze --exclude-editable; } > constraints.new
+	mv constraints.new constraints.txt
+	rm -rf .venv-constraints
+
+clean:
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis

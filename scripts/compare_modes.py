@@ -1,0 +1,30 @@
+"""Compare a housing's modes with measured ones: compare_modes.py CASE OUT [key.path=value ...]
+
+Writes OUT/comparison.json and prints the pairs. Frequencies alone are paired by dominance, in order.
+"""
+
+import sys
+from pathlib import Path
+
+from gearwhine.case import load_case
+from gearwhine.output import finite, json_text, staging
+from gearwhine.stages.housing import compare_housing, comparison_document, solve_housing
+
+
+def main(case_name: str, folder: str, *changes: str) -> None:
+    case = load_case(case_name, changes).case
+    housing = solve_housing(case)
+    document = comparison_document(compare_housing(case, housing), housing)
+    with staging(Path(folder)) as place:
+        (place / "comparison.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
+    print("measured [Hz]  model [Hz]  error")
+    for pair in document["pairs"]:
+        print(f"{pair['measured_hz']:13.0f}  {pair['model_hz']:10.1f}  {pair['error_percent']:+.2f} %")
+    print(f"largest {document['max_error_percent']:.2f} %, rms {document['rms_error_percent']:.2f} %,", end=" ")
+    print(f"gap ln {document['gap']:.3f}, measures agree: {document['measures_agree']}")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    main(*sys.argv[1:])

@@ -1,0 +1,146 @@
+"""Bad input through the real command: exit code 2, a message that names key, value and expectation, nothing written."""
+
+from pathlib import Path
+
+import pytest
+
+RIG = "nasa-gear-noise-rig"
+BOX = "steel-box"
+
+# What is wrong, the case, the changes, and what the message must say.
+WRONG: list[tuple[str, str, list[str], list[str]]] = [
+    ("wrong unit", RIG, ['housing.box.mesh_size="12 kg"'], ["housing.box.mesh_size", "12 kg", "length"]),
+    ("negative length", RIG, ['rotor.input.segments.0.length="-80 mm"'], ["segments[0].length", "-80 mm"]),
+    ("zero length", RIG, ['rotor.input.segments.0.length="0 mm"'], ["segments[0].length", "0 mm"]),
+    ("unknown key", RIG, ["housing.colour=red"], ["colour"]),
+    ("misspelt key", RIG, ['gear.driver.face_with="6 mm"'], ["face_with", "face_width"]),
+    ("dangling seat", RIG, ["bearing.input-back.seat=nowhere"], ["seat", "nowhere"]),
+    ("dangling rotor", RIG, ["gear.driver.rotor=nobody"], ["rotor", "nobody"]),
+    ("dangling material", RIG, ["rotor.input.material=cheese"], ["material", "cheese"]),
+    ("dangling gear", RIG, ["gear_pair.0.driven=ghost"], ["driven", "ghost"]),
+    ("unequal modules", RIG, ['gear.driven.module="4 mm"'], ["module"]),
+    (
+        "unequal pressure angles",
+        RIG,
+        ['gear.driven.pressure_angle="25 deg"'],
+        ["gear_pair[0]", "pressure angle", "25 deg"],
+    ),
+    ("overlapping bores", RIG, ['housing.seat.output-back.center=["-20 mm", "127 mm", "-165 mm"]'], ["output-back"]),
+    (
+        "bore outside its wall",
+        RIG,
+        ['housing.seat.output-back.center=["130 mm", "127 mm", "-165 mm"]'],
+        ["output-back"],
+    ),
+    ("seat in no wall", RIG, ['housing.seat.output-back.center=["44.45 mm", "127 mm", "0 mm"]'], ["output-back"]),
+    ("two geometries", RIG, ['housing.mesh={file="x.msh"}'], ["housing"]),
+    ("no such mesh file", BOX, ["housing.box=", 'housing.mesh={file="none.msh"}'], ["none.msh"]),
+    ("walls thicker than the box", RIG, ['housing.box.wall="140 mm"'], ["wall"]),
+    ("Poisson's ratio of a fluid", RIG, ["material.steel.poisson_ratio=0.5"], ["poisson_ratio", "0.5"]),
+    ("bore wider than the shaft", RIG, ['rotor.input.segments.1.bore="50 mm"'], ["bore", "50 mm"]),
+    ("bearing beyond the shaft", RIG, ['bearing.input-front.at="600 mm"'], ["at", "600 mm"]),
+    ("gears in different planes", RIG, ['gear.driven.at="150 mm"'], ["driven"]),
+    ("discarding everything", RIG, ["transient.discard=60"], ["discard", "60"]),
+    ("too few points", RIG, ["transient.points_per_revolution=50"], ["points_per_revolution", "50"]),
+    ("half a tooth", RIG, ["gear.driver.teeth=27.5"], ["teeth", "27.5"]),
+    ("a boolean for a length", RIG, ["housing.box.mesh_size=true"], ["mesh_size"]),
+    ("not a number", RIG, ["housing.damping_ratio=nan"], ["damping_ratio"]),
+    ("nonsense for a quantity", RIG, ['operation.speed="fast"'], ["speed", "fast"]),
+    ("unknown stiffness model", RIG, ["gear_pair.0.stiffness.model=magic"], ["model", "magic"]),
+    ("foot support without feet", RIG, ["housing.box.feet="], ["foot-1"]),
+    ("measured out of order", RIG, ['measured.frequencies=["1049 Hz", "658 Hz"]'], ["frequencies"]),
+    ("unknown path in --set", RIG, ["housing.cellar.depth=3"], ["cellar"]),
+    ("a value that does not fit a list", RIG, ["bearing.9.at=1"], ["bearing"]),
+]
+
+
+@pytest.mark.parametrize(("case", "changes", "said"), [row[1:] for row in WRONG], ids=[row[0] for row in WRONG])
+def test_wrong_value(gearwhine, tmp_path: Path, case: str, changes: list[str], said: list[str]) -> None:
+    outcome = gearwhine("run", case, "-q", *[part for change in changes for part in ("--set", change)])
+    assert outcome.code == 2
+    assert outcome.out == ""
+    assert "Traceback" not in outcome.err
+    for text in said:
+        assert text in outcome.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_several_errors_are_told_at_once(gearwhine) -> None:
+    changes = ['housing.box.mesh_size="12 kg"', "bearing.input-back.seat=nowhere", "gear.driver.teeth=-1"]
+    outcome = gearwhine("check", RIG, *[part for change in changes for part in ("--set", change)])
+    assert outcome.code == 2
+    assert all(key in outcome.err for key in ("housing.box.mesh_size", "nowhere", "teeth"))
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        pytest.param(b'title = "cut off', ["line 1"], id="truncated TOML"),
+        pytest.param(b"title = \xff\xfe", ["UTF-8"], id="not text"),
+        pytest.param(b"", [], id="empty file"),
+        pytest.param(b"title = 'only a title'", [], id="nothing to run"),
+    ],
+)
+def test_wrong_file(gearwhine, tmp_path: Path, content: bytes, said: list[str]) -> None:
+    (tmp_path / "case.toml").write_bytes(content)
+    outcome = gearwhine("modes", "case.toml", "-q")
+    assert outcome.code == 2
+    assert "Traceback" not in outcome.err
+    assert "case.toml" in outcome.err or "housing" in outcome.err
+    for text in said:
+        assert text in outcome.err
+    assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
+
+
+def test_missing_case_lists_the_bundled_ones(gearwhine) -> None:
+    outcome = gearwhine("run", "no-such-case")
+    assert outcome.code == 2
+    assert "no-such-case" in outcome.err
+    assert RIG in outcome.err
+
+
+def test_a_folder_is_not_a_case(gearwhine, tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    outcome = gearwhine("run", "folder")
+    assert outcome.code == 2
+    assert "folder" in outcome.err
+
+
+@pytest.mark.parametrize(
+    ("command", "case", "said"),
+    [
+        ("modes", "friswell-rotor", "[housing]"),
+        ("rotors", "steel-box", "[[rotor]]"),
+        ("gears", "steel-box", "[[gear_pair]]"),
+        ("system", "steel-box", "[operation]"),
+        ("compare", "steel-box", "[measured]"),
+    ],
+)
+def test_a_command_says_what_the_case_lacks(gearwhine, command: str, case: str, said: str) -> None:
+    outcome = gearwhine(command, case)
+    assert outcome.code == 2
+    assert said in outcome.err
+
+
+@pytest.mark.parametrize("command", ["sweep", "update", "report"])
+def test_what_comes_later_says_so(gearwhine, command: str) -> None:
+    outcome = gearwhine(command, RIG)
+    assert outcome.code == 2
+    assert "later version" in outcome.err
+
+
+@pytest.mark.parametrize(
+    "arguments", [["fly"], ["run"], ["modes", "steel-box", "--colour"], ["mesh", "a", "--format", "x"]]
+)
+def test_wrong_usage(gearwhine, arguments: list[str]) -> None:
+    outcome = gearwhine(*arguments)
+    assert outcome.code == 2
+    assert "Traceback" not in outcome.err
+    assert "--help" in outcome.err
+
+
+def test_modes_to_draw_that_do_not_exist(gearwhine, tmp_path: Path) -> None:
+    outcome = gearwhine("render", "steel-box", "--modes", "three", "-q")
+    assert outcome.code == 2
+    assert "three" in outcome.err
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,198 @@
+"""Every command on a bundled case, as a user runs it: the contract's JSON, the files, the screen."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from PIL import Image
+
+from gearwhine.cli import run_command
+
+
+def without_seconds(document: object) -> object:
+    """A document without what depends on the clock."""
+    if isinstance(document, dict):
+        timed = ("seconds", "steps_per_second")
+        return {key: without_seconds(value) for key, value in document.items() if key not in timed}
+    return [without_seconds(value) for value in document] if isinstance(document, list) else document
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The results of the main job on the small gearbox."""
+    folder = tmp_path_factory.mktemp("run") / "out"
+    shorter = ("--set", "transient.revolutions=12", "--set", "transient.discard=8")
+    assert run_command(["run", "small-gearbox", "-q", "-o", str(folder), *shorter]) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def run_summary(run_folder: Path) -> dict:
+    return json.loads((run_folder / "summary.json").read_text(encoding="utf-8"))
+
+
+def test_run_leaves_the_promised_files(run_folder: Path, run_summary: dict) -> None:
+    present = {path.name for path in run_folder.iterdir()}
+    assert set(run_summary["files"]) == present
+    assert {"results.nc", "summary.json", "case.toml", "spectrum.png", "mesh-force.png", "orbits.png"} <= present
+    assert any(name.startswith("mode-") for name in present)
+    for path in run_folder.glob("*.png"):
+        with Image.open(path) as image:
+            assert min(image.size) > 300
+            assert len(image.convert("RGB").getcolors(maxcolors=1 << 24) or ()) > 50
+
+
+def test_run_json_holds_the_contract(run_summary: dict) -> None:
+    assert run_summary["speed_rpm"] == pytest.approx(5500.0)
+    assert run_summary["steps"] > 10_000
+    assert run_summary["energy_error"] < 1e-3
+    assert {"total", "time_stepping"} <= set(run_summary["seconds"])
+    for sensor in run_summary["sensors"]:
+        assert sensor["peaks"]
+        assert all({"frequency_hz", "amplitude_m_per_s2"} <= set(peak) for peak in sensor["peaks"])
+    (pair,) = run_summary["gear_pairs"]
+    # The mean mesh force is the torque over the base radius.
+    assert pair["mean_force_n"] == pytest.approx(71.77 / (0.5 * 28 * 3.175e-3 * math.cos(math.radians(20))), rel=1e-3)
+    assert pair["peak_force_n"] > pair["mean_force_n"]
+    assert pair["contact_loss_fraction"] == 0.0
+
+
+def test_the_mesh_frequency_leads_the_spectra(run_summary: dict) -> None:
+    for sensor in run_summary["sensors"]:
+        assert sensor["peaks"][0]["frequency_hz"] == pytest.approx(28 * 5500 / 60, abs=1.0)
+
+
+def test_results_file_is_labelled(run_folder: Path, run_summary: dict) -> None:
+    with xr.open_dataset(run_folder / "results.nc") as data:
+        assert data.sensor_acceleration.attrs["units"] == "m/s2"
+        assert data.sensor_acceleration.dims == ("sensor", "time")
+        assert data.sensor_spectrum.dims == ("sensor", "frequency")
+        assert data.mesh_force.sel(contact="pinion -> wheel").mean() == pytest.approx(
+            run_summary["gear_pairs"][0]["mean_force_n"], rel=1e-3
+        )
+        spectrum = data.sensor_spectrum.isel(sensor=0)
+        loudest = float(spectrum.frequency[int(np.argmax(spectrum.values[1:])) + 1])
+        assert loudest == pytest.approx(28 * 5500 / 60, abs=1.0)
+        assert {"gear_displacement", "bearing_force", "housing_frequency", "mesh_stiffness"} <= set(data.variables)
+
+
+def test_the_resolved_case_runs_to_the_same_numbers(gearwhine, run_folder: Path, run_summary: dict) -> None:
+    outcome = gearwhine("gears", str(run_folder / "case.toml"), "--json", "-q")
+    assert outcome.code == 0
+    assert outcome.document["pairs"] == run_summary["pairs"]
+
+
+def test_check_solves_nothing_and_tells_what_follows(gearwhine) -> None:
+    document = gearwhine("check", "nasa-gear-noise-rig", "--json").document
+    assert document["gear_pairs"][0]["mesh_frequency_hz"] == pytest.approx(28 * 5500 / 60)
+    assert document["gear_pairs"][0]["contact_ratio"] == pytest.approx(1.638, abs=1e-4)
+    assert document["rotors"][1]["speed_rpm"] == pytest.approx(-5500.0)
+
+
+def test_modes(gearwhine, tmp_path: Path) -> None:
+    outcome = gearwhine("modes", "steel-box", "--json", "-q", "-o", "out")
+    document = outcome.document
+    certificate = document["certificate"]
+    assert certificate["complete"] is True
+    assert certificate["expected"] == certificate["found"] == len(document["modes"])
+    assert certificate["max_residual"] < 1e-8
+    assert {"number", "frequency_hz", "damping_ratio", "strength"} <= set(document["modes"][0])
+    assert document["mesh"]["dofs"] == 3 * document["mesh"]["nodes"]
+    assert {"mesh", "assembly", "factorisation", "eigensolver", "total"} <= set(document["seconds"])
+    assert {path.name for path in (tmp_path / "out").iterdir()} == set(document["files"])
+    again = gearwhine("modes", "steel-box", "--json", "-q").document
+    assert without_seconds({"modes": again["modes"]}) == without_seconds({"modes": document["modes"]})
+
+
+def test_rotors_hold_the_published_case(gearwhine) -> None:
+    """Friswell et al. (2010), example 5.9.1: six elements, so a few 1e-4 above the exact values."""
+    (rotor,) = gearwhine("rotors", "friswell-rotor", "--json", "-q").document["rotors"]
+    rest = [2 * math.pi * frequency for frequency in rotor["lateral_hz"][:5]]
+    assert rest == pytest.approx([86.66, 86.66, 274.31, 274.31, 716.78], rel=4e-4)
+    at_speed = next(whirl for whirl in rotor["whirl"] if abs(whirl["speed_rpm"] - 4000) < 1e-6)
+    turning = [2 * math.pi * frequency for frequency in at_speed["frequency_hz"][:5]]
+    assert turning == pytest.approx([85.39, 87.80, 251.78, 294.71, 600.18], rel=4e-4)
+    assert rotor["certificate"]["complete"] is True
+    assert rotor["critical_speeds_rpm"] == sorted(rotor["critical_speeds_rpm"])
+
+
+def test_gears(gearwhine) -> None:
+    (pair,) = gearwhine("gears", "gear-62-62", "--json", "-q").document["pairs"]
+    assert pair["contact_ratio"] == pytest.approx(1.7897798668, abs=1e-10)
+    stiffness = pair["stiffness_n_per_m"]
+    assert stiffness["min"] < stiffness["mean"] < stiffness["max"]
+    assert len(pair["roll_angle_rad"]) == len(pair["stiffness"])
+    assert pair["transmission_error_m"]["peak_to_peak"] > 0.0
+
+
+def test_system(gearwhine) -> None:
+    document = gearwhine("system", "spur-pair", "--json", "-q").document
+    kinds = {mode["kind"] for mode in document["modes"]}
+    assert kinds <= {"rigid", "rotor", "torsion", "mesh", "housing"}
+    assert "rigid" in kinds  # the train turns freely
+    assert all(mode["damping_ratio"] >= -1e-9 for mode in document["modes"])
+    frequencies = [mode["frequency_hz"] for mode in document["modes"]]
+    assert frequencies == sorted(frequencies)
+
+
+def test_compare(gearwhine) -> None:
+    document = gearwhine("compare", "small-gearbox", "--json", "-q").document
+    for pair in document["pairs"]:
+        assert pair["error_percent"] == pytest.approx(100 * (pair["model_hz"] / pair["measured_hz"] - 1))
+    errors = [abs(pair["error_percent"]) for pair in document["pairs"]]
+    assert document["max_error_percent"] == pytest.approx(max(errors))
+    assert {"gap", "measures_agree", "pairing", "rms_error_percent"} <= set(document)
+
+
+def test_mesh_in_another_format(gearwhine, tmp_path: Path) -> None:
+    outcome = gearwhine("mesh", "steel-box", "--format", "vtu", "-o", "out", "-q", "--json")
+    assert outcome.document["files"] == ["mesh.vtu"]
+    assert (tmp_path / "out" / "mesh.vtu").stat().st_size > 10_000
+
+
+def test_a_written_mesh_serves_as_geometry(gearwhine, tmp_path: Path) -> None:
+    assert gearwhine("mesh", "steel-box", "-o", "out", "-q").code == 0
+    changes = ("--set", "housing.box=", "--set", f'housing.mesh={{file="{tmp_path}/out/mesh.msh"}}')
+    from_file = gearwhine("modes", "steel-box", "--json", "-q", *changes).document["modes"]
+    from_box = gearwhine("modes", "steel-box", "--json", "-q").document["modes"]
+    assert [mode["frequency_hz"] for mode in from_file] == pytest.approx(
+        [mode["frequency_hz"] for mode in from_box], rel=1e-9
+    )
+
+
+def test_render(gearwhine, tmp_path: Path) -> None:
+    outcome = gearwhine("render", "steel-box", "--modes", "1-2", "--view", "top", "-o", "out", "-q", "--json")
+    assert outcome.code == 0
+    assert len(outcome.document["files"]) == 3
+    assert {path.name for path in (tmp_path / "out").iterdir()} == set(outcome.document["files"])
+
+
+def test_examples_copy(gearwhine, tmp_path: Path) -> None:
+    names = {example["name"] for example in gearwhine("examples", "--json").document["examples"]}
+    assert {"nasa-gear-noise-rig", "small-gearbox", "steel-box", "friswell-rotor", "gear-62-62", "spur-pair"} <= names
+    assert gearwhine("examples", "copy", "spur-pair").code == 0
+    assert gearwhine("check", "spur-pair.toml").code == 0
+    assert gearwhine("examples", "copy", "spur-pair").code == 2  # it would overwrite
+    assert [path.name for path in tmp_path.iterdir()] == ["spur-pair.toml"]
+
+
+@pytest.mark.parametrize(
+    ("command", "case", "said"),
+    [
+        ("check", "nasa-gear-noise-rig", ["2566.67", "contact ratio"]),
+        ("rotors", "friswell-rotor", ["lateral at rest", "critical speeds"]),
+        ("gears", "gear-62-62", ["1.78978", "N/µm"]),
+        ("system", "spur-pair", ["coordinates", "kinetic energy"]),
+        ("modes", "steel-box", ["inertia demands"]),
+        ("compare", "small-gearbox", ["coin toss", "weak evidence"]),
+        ("examples", None, ["friswell-rotor"]),
+    ],
+)
+def test_the_screen_is_for_people(gearwhine, command: str, case: str | None, said: list[str]) -> None:
+    outcome = gearwhine(command, *([case, "-q"] if case else []))
+    assert outcome.code == 0
+    for text in said:
+        assert text in outcome.out
