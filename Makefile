@@ -15,7 +15,7 @@ OUT    ?= results/nasa-gear-noise-rig
 export OMP_NUM_THREADS ?= 2
 export OPENBLAS_NUM_THREADS ?= 2
 
-.PHONY: demo test lint types check-format unit install install-dev system format constraints clean
+.PHONY: demo test lint types unit validation install install-dev system format constraints clean
 
 demo: install
 	$(BIN)/gearwhine run nasa-gear-noise-rig -o $(OUT)
@@ -53,6 +53,10 @@ $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
 	@echo "Installing with the development tools (about a minute) ..."
 	$(PIP) install -c constraints.txt -e .[dev]
 	@touch $@ $(VENV)/.installed
+
+# The validation page, from the tests against published values.
+validation: install-dev
+	$(BIN)/pytest tests/validation -q --validation-table docs/validation.md
 
 format: install-dev
 	$(BIN)/ruff check --fix .

@@ -122,12 +122,17 @@ def couple(
     Raises
     ------
     CouplingError
-        Where a name has no component, or a seat no housing.
+        Where a name has no component, two components share one, a rotor has no speed, or a seat no housing.
     """
     components: list[Component] = [*rotors]
     if housing is not None:
         components.append(housing)
     number = {component.name: i for i, component in enumerate(components)}
+    if len(number) < len(components):
+        raise CouplingError(f"components named {[part.name for part in components]}; expected each name once")
+    without = [rotor.name for rotor in rotors if rotor.name not in speeds]
+    if without:
+        raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
     size = sum(component.size for component in components)
 
     def rotor_named(name: str) -> tuple[int, RotorComponent]:

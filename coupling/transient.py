@@ -65,10 +65,12 @@ class TransientSettings:
     gamma: float = 0.5
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.record_from < self.duration:
+        if not 0.0 <= self.record_from < self.duration < np.inf:
             raise CouplingError(f"recording from {self.record_from} s of {self.duration} s; expected a part of it")
-        if min(self.sample_interval, self.largest_step, self.tolerance) <= 0.0:
-            raise CouplingError("sample interval, largest step and tolerance must be positive")
+        for what in ("sample_interval", "largest_step", "tolerance", "beta"):
+            value = getattr(self, what)
+            if not 0.0 < value < np.inf:
+                raise CouplingError(f"{what} of {value}; expected a positive number")
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,8 @@ RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
 _ATTEMPTS = 3
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
-_SHIFT = 0.06  # part of the limit: its square is small beside the wanted eigenvalues, large beside the rounding of K
+_SHIFT = 0.06  # part of the limit: its square is small beside the wanted eigenvalues
+_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: the shift stays above it, well clear of the rounding of K
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,8 @@ class Certificate:
     found : int
         Modes in the set.
     max_residual : float
-        Largest of |K φ - λ M φ| / ((λ + ω₀²) |M φ|), with ω₀ = 0.06 limit so that rigid modes have a scale too.
+        Largest of |K φ - λ M φ| / ((λ + limit² + |shift|) |M φ|): the limit gives rigid modes a scale too, and the
+        shift is never so small that the rounding of K alone would exceed the bound.
     max_overlap : float
         Largest |φᵢᵀ M φⱼ| of two modes: without it one mode found twice would hide another that is missing.
     """
@@ -140,6 +142,7 @@ def solve_modes(
     start = time.perf_counter()
     factorizer = Factorizer(reduced.shifted(0.0), backend=backend, threads=threads)
     expected = 0
+    shift = -_ROUNDING * float(np.max(reduced.stiffness.diagonal() / reduced.mass.diagonal()))
     if frequency_limit is not None:
         progress("counting the modes below the limit")
         expected = factorizer.factor(reduced.shifted(frequency_limit**2)).negative
@@ -149,9 +152,7 @@ def solve_modes(
             raise HousingError(
                 f"every mode of the mesh lies below {frequency_limit / (2 * np.pi):g} Hz; lower the limit or refine"
             )
-        shift = -((_SHIFT * frequency_limit) ** 2)
-    else:
-        shift = -1e-7 * float(np.max(reduced.stiffness.diagonal() / reduced.mass.diagonal()))
+        shift = min(shift, -((_SHIFT * frequency_limit) ** 2))
     progress("factoring")
     factor = factorizer.factor(reduced.shifted(shift))
     if factor.negative:
@@ -171,8 +172,7 @@ def solve_modes(
             limit = _gap_after(values, count, -shift)
             expected = factorizer.factor(reduced.shifted(limit**2)).negative if limit > 0.0 else -1
         keep = values < limit**2
-        floor = max((_SHIFT * limit) ** 2, -shift)
-        residual, overlap = _proofs(reduced, values[keep], vectors[:, keep], floor)
+        residual, overlap = _proofs(reduced, values[keep], vectors[:, keep], limit**2 - shift)
         certificate = Certificate(limit, expected, int(keep.sum()), residual, overlap)
         if certificate.complete:
             break
@@ -185,7 +185,7 @@ def solve_modes(
     shapes = np.zeros((certificate.found, 3 * matrices.n_nodes))
     shapes[:, free] = _oriented(vectors[:, keep]).T
     values = values[keep]
-    values[np.abs(values) < 1e-6 * floor] = 0.0
+    values[np.abs(values) < 1e-6 * -shift] = 0.0
     return ModeSet(
         frequencies=np.sqrt(np.maximum(values, 0.0)),
         shapes=shapes.reshape(len(shapes), -1, 3),
@@ -241,11 +241,11 @@ def _lanczos(
     return values[order], vectors
 
 
-def _proofs(reduced: _Reduced, values: FloatArray, vectors: FloatArray, floor: float) -> tuple[float, float]:
+def _proofs(reduced: _Reduced, values: FloatArray, vectors: FloatArray, scale: float) -> tuple[float, float]:
     """The largest residual and the largest overlap of the modes; see :class:`Certificate`."""
     inertia = reduced.mass @ vectors
     error = reduced.stiffness @ vectors - inertia * values
-    residuals = np.linalg.norm(error, axis=0) / ((np.abs(values) + floor) * np.linalg.norm(inertia, axis=0))
+    residuals = np.linalg.norm(error, axis=0) / ((np.abs(values) + scale) * np.linalg.norm(inertia, axis=0))
     overlaps = vectors.T @ inertia - np.eye(len(values))
     return float(residuals.max(initial=0.0)), float(np.abs(overlaps).max(initial=0.0))
 

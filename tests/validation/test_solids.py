@@ -54,7 +54,7 @@ def test_free_ring(tmp_path: Path) -> None:
         )
         gmsh.model.occ.cut([(3, outer)], [(3, inner)])
 
-    mesh = _solid(ring, 0.04, tmp_path / "ring.msh")
+    mesh = _solid(ring, 0.03, tmp_path / "ring.msh")
     matrices = assemble(mesh, Material(185e9, 0.3, 7800.0))
     assert matrices.total_mass == pytest.approx(7800.0 * 2 * np.pi * mean * thickness * length, rel=1e-4)
     modes = solve_modes(matrices, frequency_limit=2 * np.pi * 700.0)
@@ -69,7 +69,7 @@ def test_free_solid_cylinder(tmp_path: Path) -> None:
     def cylinder(gmsh: Any) -> None:
         gmsh.model.occ.addCylinder(0, 0, 0, 0, 0, length, radius)
 
-    modes = solve_modes(assemble(_solid(cylinder, 0.06, tmp_path / "cylinder.msh"), material), count=13)
+    modes = solve_modes(assemble(_solid(cylinder, 0.04, tmp_path / "cylinder.msh"), material), count=13)
     assert len(modes.frequencies) == 13
     error = _error(modes, CYLINDER_HZ, rigid=6)
     assert np.abs(error).max() < 0.001

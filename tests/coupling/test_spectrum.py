@@ -1,0 +1,92 @@
+"""Spectra against sines whose lines are known."""
+
+import numpy as np
+import pytest
+
+from coupling import Spectrum, amplitude_spectrum, spectrum_peaks
+
+INTERVAL = 1e-3
+
+
+@pytest.mark.parametrize("count", [400, 401])
+def test_sine_in_whole_periods(count: int) -> None:
+    times = INTERVAL * np.arange(count)
+    frequency = 23.0 / (count * INTERVAL)
+    signal = -4.0 + 2.5 * np.cos(2.0 * np.pi * frequency * times + 0.7)
+    spectrum = amplitude_spectrum(signal, INTERVAL)
+    assert spectrum.frequencies.shape == (count // 2 + 1,)
+    assert spectrum.frequencies[23] == pytest.approx(frequency, rel=1e-12)
+    assert spectrum.amplitude[23] == pytest.approx(2.5, rel=1e-12)
+    assert spectrum.phase[23] == pytest.approx(0.7, rel=1e-10)
+    assert spectrum.amplitude[0] == pytest.approx(4.0, rel=1e-12)
+    assert spectrum.phase[0] == pytest.approx(np.pi)
+    others = np.delete(spectrum.amplitude, [0, 23])
+    assert others.max() < 1e-12
+
+
+@pytest.mark.parametrize("count", [256, 255])
+def test_parseval(count: int) -> None:
+    """Mean square: the mean's square, half the square of every line, and the whole one at half the sampling rate."""
+    signal = np.random.default_rng(5).normal(1.0, 2.0, size=(3, count))
+    amplitude = amplitude_spectrum(signal, INTERVAL).amplitude
+    weights = np.full(amplitude.shape[-1], 0.5)
+    weights[0] = 1.0
+    if count % 2 == 0:
+        weights[-1] = 1.0
+    np.testing.assert_allclose((weights * amplitude**2).sum(axis=-1), (signal**2).mean(axis=-1), rtol=1e-12)
+
+
+def test_a_line_at_half_the_sampling_rate() -> None:
+    signal = 3.0 * (-1.0) ** np.arange(64)
+    spectrum = amplitude_spectrum(signal, INTERVAL)
+    assert spectrum.frequencies[-1] == pytest.approx(0.5 / INTERVAL)
+    assert spectrum.amplitude[-1] == pytest.approx(3.0, rel=1e-12)
+
+
+def test_hann_keeps_the_height() -> None:
+    count = 1000
+    times = INTERVAL * np.arange(count)
+    whole = amplitude_spectrum(7.0 + 2.5 * np.sin(2.0 * np.pi * 50.0 * times), INTERVAL, "hann")
+    assert whole.amplitude[50] == pytest.approx(2.5, rel=1e-9)
+    # Half the height on both sides, nothing beyond, and no leak of the mean.
+    np.testing.assert_allclose(whole.amplitude[[49, 51]], 1.25, rtol=1e-9)
+    assert whole.amplitude[[1, 2, 40, 47, 53, 60]].max() < 1e-9
+    assert whole.amplitude[0] == pytest.approx(7.0, rel=1e-12)
+    # Between two lines Hann's loss is at worst 1 - 8/(3π), about 15 %; the uniform window's 1 - 2/π, about 36 %.
+    between = np.sin(2.0 * np.pi * 50.5 * times)
+    assert amplitude_spectrum(between, INTERVAL, "hann").amplitude.max() == pytest.approx(8.0 / (3.0 * np.pi), rel=2e-3)
+    assert amplitude_spectrum(between, INTERVAL).amplitude.max() == pytest.approx(2.0 / np.pi, rel=2e-2)
+    far = slice(70, 400)
+    leak = amplitude_spectrum(between, INTERVAL).amplitude[far].max()
+    assert amplitude_spectrum(between, INTERVAL, "hann").amplitude[far].max() < 0.02 * leak
+
+
+def test_a_derivative_multiplies_lines() -> None:
+    """Acceleration lines are (2πf)² times those of the displacement, in opposite phase."""
+    times = np.arange(500) / 500.0
+    w = 2.0 * np.pi * 20.0
+    motion = amplitude_spectrum(np.cos(w * times + 0.3), 1.0 / 500.0)
+    acceleration = amplitude_spectrum(-(w**2) * np.cos(w * times + 0.3), 1.0 / 500.0)
+    assert acceleration.amplitude[20] / motion.amplitude[20] == pytest.approx(w**2, rel=1e-12)
+    assert np.cos(acceleration.phase[20] - motion.phase[20]) == pytest.approx(-1.0, abs=1e-12)
+
+
+def lines(*amplitudes: float) -> Spectrum:
+    a = np.array(amplitudes)
+    return Spectrum(10.0 * np.arange(a.size), a, np.zeros(a.size), "uniform")
+
+
+def test_peaks() -> None:
+    spectrum = lines(9.0, 0.1, 3.0, 0.2, 5.0, 4.0, 4.5, 0.1, 0.004, 0.001, 8.0)
+    found = [(peak.frequency, peak.amplitude) for peak in spectrum_peaks(spectrum)]
+    # Highest first; the mean and the last line have one neighbour each and are no peaks; 0.004 is below the floor.
+    assert found == [(40.0, 5.0), (60.0, 4.5), (20.0, 3.0)]
+    assert [peak.frequency for peak in spectrum_peaks(spectrum, count=2)] == [40.0, 60.0]
+    assert [peak.frequency for peak in spectrum_peaks(spectrum, above=20.0, limit=60.0)] == [40.0, 60.0]
+    assert [peak.frequency for peak in spectrum_peaks(spectrum, limit=59.0)] == [40.0, 20.0]
+    assert spectrum_peaks(spectrum, count=0) == []
+    assert spectrum_peaks(spectrum, above=1e3) == []
+    assert [peak.frequency for peak in spectrum_peaks(lines(0.0, 1.0, 0.0, 1e-4, 0.0), floor=1e-5)] == [10.0, 30.0]
+    assert spectrum_peaks(lines(0.0, 0.0, 0.0, 0.0)) == []
+    # Two equal neighbours are one peak.
+    assert [peak.frequency for peak in spectrum_peaks(lines(0.0, 2.0, 2.0, 0.0))] == [20.0]
