@@ -48,7 +48,7 @@ def kernel_arrays(system: CoupledSystem, outputs: _Rows, beta: float, gamma: flo
 
 def empty_samples(system: CoupledSystem, outputs: _Rows, grid: _Grid) -> Samples:
     """Room for the samples from ``record_from`` up to, not including, the end."""
-    count = int(np.floor((grid.duration - grid.record_from) / grid.sample_interval + 1e-6))
+    count = int(np.ceil((grid.duration - grid.record_from) / grid.sample_interval - 1e-6))
     return Samples(
         first=grid.record_from,
         interval=grid.sample_interval,

@@ -1,6 +1,7 @@
 """What each command does: stages, then files, then the document that it prints."""
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -70,8 +71,7 @@ def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
             _draw_modes(housing, comparison, "dominant", "iso", place, progress)
         timed("writing", begin)
         seconds["total"] = time.perf_counter() - start
-        names = sorted(str(path.relative_to(place)) for path in place.rglob("*") if path.is_file())
-        document |= {"seconds": seconds, "folder": str(folder), "files": [*names, "summary.json"]}
+        document |= {"seconds": seconds, "folder": str(folder), "files": [*_names(place), "summary.json"]}
         (place / "summary.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
     return document
 
@@ -103,14 +103,12 @@ def modes_case(case: Case, folder: Path | None, progress: Progress) -> dict[str,
     from gearwhine import results
 
     housing = housing_stage.solve_housing(case, progress)
-    document = housing_stage.modes_document(housing)
-    if folder is not None:
-        with staging(folder) as place:
-            results.write(place / "results.nc", case, housing, (), (), None, None)
-            results.write_shapes(place / "modes.vtu", housing)
-            _finish(place, case, document)
-        document |= {"folder": str(folder), "files": ["case.toml", "modes.vtu", "results.nc", "summary.json"]}
-    return document
+
+    def write(place: Path) -> None:
+        results.write(place / "results.nc", case, housing, (), (), None, None)
+        results.write_shapes(place / "modes.vtu", housing)
+
+    return _kept(housing_stage.modes_document(housing), case, folder, write)
 
 
 def rotors_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
@@ -118,13 +116,11 @@ def rotors_case(case: Case, folder: Path | None, progress: Progress) -> dict[str
     from gearwhine import results
 
     rotors = rotor_stage.solve_rotors(case, progress)
-    document = rotor_stage.rotors_document(rotors)
-    if folder is not None:
-        with staging(folder) as place:
-            results.write(place / "results.nc", case, None, rotors, (), None, None)
-            _finish(place, case, document)
-        document |= {"folder": str(folder), "files": ["case.toml", "results.nc", "summary.json"]}
-    return document
+
+    def write(place: Path) -> None:
+        results.write(place / "results.nc", case, None, rotors, (), None, None)
+
+    return _kept(rotor_stage.rotors_document(rotors), case, folder, write)
 
 
 def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
@@ -132,37 +128,27 @@ def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str,
     from gearwhine import figures, results
 
     pairs = gear_stage.solve_gears(case, progress)
-    document = gear_stage.gears_document(pairs)
-    if folder is not None:
-        with staging(folder) as place:
-            results.write(place / "results.nc", case, None, (), pairs, None, None)
-            pictures = figures.draw_gear_pairs(place, pairs)
-            _finish(place, case, document)
-        document |= {"folder": str(folder), "files": ["case.toml", *pictures, "results.nc", "summary.json"]}
-    return document
+
+    def write(place: Path) -> None:
+        results.write(place / "results.nc", case, None, (), pairs, None, None)
+        figures.draw_gear_pairs(place, pairs)
+
+    return _kept(gear_stage.gears_document(pairs), case, folder, write)
 
 
 def system_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
     """The coupled modes."""
     _, _, machine = machine_stage.solve_machine(case, progress)
-    document = machine_stage.system_document(case, machine, machine_stage.coupled_modes(machine))
-    if folder is not None:
-        with staging(folder) as place:
-            _finish(place, case, document)
-        document |= {"folder": str(folder), "files": ["case.toml", "summary.json"]}
-    return document
+    modes = machine_stage.coupled_modes(machine)
+    return _kept(machine_stage.system_document(case, machine, modes), case, folder)
 
 
 def compare_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
     """Model modes against measured ones."""
     require(case, "housing", "measured", command="compare")
     housing = housing_stage.solve_housing(case, progress)
-    document = housing_stage.comparison_document(housing_stage.compare_housing(case, housing), housing)
-    if folder is not None:
-        with staging(folder) as place:
-            _finish(place, case, document)
-        document |= {"folder": str(folder), "files": ["case.toml", "summary.json"]}
-    return document
+    comparison = housing_stage.compare_housing(case, housing)
+    return _kept(housing_stage.comparison_document(comparison, housing), case, folder)
 
 
 def render_case(case: Case, folder: Path, which: str, view: str, progress: Progress) -> dict[str, Any]:
@@ -248,6 +234,22 @@ def _draw_modes(
     return [path.name for path in files]
 
 
-def _finish(place: Path, case: Case, document: dict[str, Any]) -> None:
-    (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
-    (place / "summary.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
+def _kept(
+    document: dict[str, Any],
+    case: Case,
+    folder: Path | None,
+    write: Callable[[Path], None] = lambda place: None,
+) -> dict[str, Any]:
+    """The document; where a folder is given, also in it, with the resolved case and what ``write`` adds."""
+    if folder is None:
+        return document
+    with staging(folder) as place:
+        (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
+        write(place)
+        document |= {"folder": str(folder), "files": [*_names(place), "summary.json"]}
+        (place / "summary.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
+    return document
+
+
+def _names(place: Path) -> list[str]:
+    return sorted(str(path.relative_to(place)) for path in place.rglob("*") if path.is_file())

@@ -12,6 +12,7 @@ from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, pair_torq
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.progress import Progress, silent
+from gearwhine.stages.build import build_gear, build_rotor, gear_inertia
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,46 +39,6 @@ class SolvedPair:
     contact: room.ToothContact
     static: room.StaticMesh
     mesh_frequency: float | None
-
-
-def build_gear(case: Case, given: GivenGear) -> room.Gear:
-    """A gear of the case as the gear room's.
-
-    A gear known by its base radius alone has the module that gives it, and a nominal width where none is given.
-    """
-    module = given.module
-    if module is None:
-        assert given.base_radius is not None
-        module = room.module_from_base_radius(given.base_radius, given.teeth, given.pressure_angle)
-    steel = {} if (material := _material(case, given)) is None else {
-        "youngs_modulus": case.material[material].youngs_modulus,
-        "poisson_ratio": case.material[material].poisson_ratio,
-        "density": case.material[material].density,
-    }  # fmt: skip
-    return room.Gear(
-        name=given.name,
-        teeth=given.teeth,
-        module=module,
-        pressure_angle=given.pressure_angle,
-        face_width=given.face_width if given.face_width is not None else 10.0 * module,
-        profile_shift=given.profile_shift,
-        root_radius=given.root_radius,
-        bore=given.bore,
-        tip_relief=room.TipRelief(given.tip_relief.amount, given.tip_relief.start_roll_angle)
-        if given.tip_relief
-        else None,
-        eccentricity=given.errors.eccentricity,
-        eccentricity_phase=given.errors.phase,
-        **steel,
-    )
-
-
-def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
-    """Mass [kg], polar and diametral inertia [kg m²]: as given, or from the geometry."""
-    if given.mass is not None and given.polar_inertia is not None and given.diametral_inertia is not None:
-        return given.mass, given.polar_inertia, given.diametral_inertia
-    gear = build_gear(case, given)
-    return gear.mass, gear.polar_inertia, gear.diametral_inertia
 
 
 def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ...]:
@@ -145,12 +106,6 @@ def _pair_document(pair: SolvedPair) -> dict[str, Any]:
     }
 
 
-def _material(case: Case, given: GivenGear) -> str | None:
-    if given.material is not None:
-        return given.material
-    return case.rotor_named(given.rotor).material if given.rotor is not None else None
-
-
 def _model(pair: GivenPair, number: int) -> room.StiffnessModel:
     stiffness = pair.stiffness
     if stiffness.file is not None:
@@ -203,7 +158,5 @@ def _inertia_at(case: Case, given: GivenGear) -> float:
         rotor = case.rotor_named(given.rotor)
         inertia += sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - given.at) < 1e-6 * rotor.length)
         if inertia == 0.0:
-            from gearwhine.stages.rotors import build_rotor
-
             inertia = build_rotor(case, rotor).polar_inertia
     return inertia if inertia > 0.0 else build_gear(case, given).polar_inertia

@@ -7,19 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 import rotors as room
-from gearwhine.case import (
-    Case,
-    CaseError,
-    Problem,
-    RadialDamping,
-    RadialStiffness,
-    RollingStiffness,
-    require,
-    rotor_speeds,
-)
-from gearwhine.case import Rotor as GivenRotor
+from gearwhine.case import Case, require, rotor_speeds
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.gears import gear_inertia
+from gearwhine.stages.build import build_bearings, build_rotor
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -52,50 +42,6 @@ class SolvedRotor:
     torsional: room.TorsionalModes
     whirl: tuple[room.WhirlModes, ...]
     critical: room.CriticalSpeeds
-
-
-def build_rotor(case: Case, given: GivenRotor) -> room.Rotor:
-    """A rotor of the case, its gears on it as discs."""
-    discs = [room.Disc(disc.at, disc.mass, disc.polar_inertia, disc.diametral_inertia) for disc in given.discs]
-    for gear in case.gear:
-        if gear.rotor == given.name and gear.at is not None:
-            mass, polar, diametral = gear_inertia(case, gear)
-            if mass or polar or diametral:
-                discs.append(room.Disc(gear.at, mass, polar, diametral))
-    segments = []
-    for segment in given.segments:
-        steel = case.material[segment.material or given.material]
-        material = room.ShaftMaterial(steel.youngs_modulus, steel.shear_modulus, steel.density)
-        segments.append(room.Segment(segment.length, segment.diameter, segment.bore, material, given.shear_coefficient))
-    return room.Rotor(given.name, segments, discs, given.mass)
-
-
-def build_bearings(case: Case, rotor: str) -> tuple[room.Bearing, ...]:
-    """The bearings of one rotor, in the order of the file.
-
-    Raises
-    ------
-    CaseError
-        For stiffness given in a form that comes in a later version.
-    """
-    bearings = []
-    for index, given in enumerate(case.bearing):
-        if given.rotor != rotor:
-            continue
-        stiffness, damping = given.stiffness, given.damping
-        if not isinstance(stiffness, RadialStiffness) or not isinstance(damping, RadialDamping):
-            form = "rolling" if isinstance(stiffness, RollingStiffness) else "matrix"
-            expected = "{ xx, yy, xy, yx }: bearings by 5x5 matrix or rolling geometry come in a later version"
-            raise CaseError([Problem(f"bearing[{index}].stiffness", form, expected, label=f'bearing "{given.name}"')])
-        bearings.append(
-            room.Bearing(
-                given.name,
-                given.at,
-                np.array([[stiffness.xx, stiffness.xy], [stiffness.yx, stiffness.yy]]),
-                np.array([[damping.xx, damping.xy], [damping.yx, damping.yy]]),
-            )
-        )
-    return tuple(bearings)
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:

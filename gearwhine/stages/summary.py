@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from gearwhine.case import Case, applied_torques, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gears import pair_geometry
-from gearwhine.stages.rotors import build_rotor
 
 _RPM = 60.0 / (2.0 * np.pi)
 

@@ -82,7 +82,7 @@ def test_does_not_touch_its_arguments() -> None:
 
 def test_grid() -> None:
     system = two_masses(pair_contact(1.6), 0.45)
-    for duration, interval, count in ((60.0, 0.1, 400), (60.0, 7.0, 6), (60.0, 40.0, 1), (60.0, 40.1, 0)):
+    for duration, interval, count in ((60.0, 0.1, 400), (60.0, 7.0, 6), (60.0, 40.0, 1), (60.0, 41.0, 1)):
         settings = replace(SETTINGS, duration=duration, sample_interval=interval)
         result = simulate(system, settings, all_rows(system))
         assert result.times.shape == (count,)
@@ -151,7 +151,7 @@ def test_mean_over_whole_mesh_periods(rate: float) -> None:
     rigid = two_masses(contact, rate)
     for periods in (3, 7, 11, 13, 17, 29):
         for start in (periods / rate, periods * (1.0 / rate)):
-            settings = TransientSettings(start + 5.0 / rate, start, 0.05, 0.05, tolerance=1.0)
+            settings = TransientSettings(start + 5.0 / rate, start, 0.004, 0.02, tolerance=1.0)
             result = simulate(rigid, settings, all_rows(rigid))
             # The sum of the two pairs rises from 1.8 to 2.2 within a period: the force follows a little.
             assert result.mean_force[0] == pytest.approx(result.force.mean(), rel=2e-3)
@@ -173,22 +173,17 @@ def test_flanks_driven_apart() -> None:
 
 
 def test_contact_lost_for_a_known_part_of_the_time() -> None:
-    """A base that swings slowly under a light mass on a stiff contact: e = a cos(wt), flanks apart where it recedes.
-
-    With no inertia to speak of beside the springs the contact force is (load - k_g x), and the contact is open where
-    the profile error has run further than the soft spring follows.
-    """
+    """A profile error a cos(wt), slow beside a mass on a stiff contact; critical damping spares it the bounce."""
     soft, w, amplitude = 25.0, 0.05, 2.0
     body = Component("mass", ("torsion",), np.full((1, 1), soft), np.full((1, 1), 2.0), np.zeros((1, 1)))
-    contact = ToothContact(1.0, piecewise.constant(1e4, 1.0), piecewise.constant(0.0, 1.0))
+    contact = ToothContact(1.0, piecewise.constant(1e4, 1.0), piecewise.constant(0.0, 1.0), damping=200.0)
     tooth = ContactConnector("contact", np.ones(1), contact, 0.0, 0.0, np.array([[amplitude, w, 0.0]]))
     system = CoupledSystem((body,), (0.0,), contacts=(tooth,), load=np.array([25.0]))
-    # Free, the mass sits at x = load / k = 1; it touches where a cos(wt) < 1.
+    # Free, the mass sits at x = load / k = 1; it touches where a cos(wt) < 1, and follows the error there.
     period = 2.0 * np.pi / w
     settings = TransientSettings(3.0 * period, period, period / 500.0, 0.5, tolerance=1e-3)
     result = simulate(system, settings, all_rows(system))
     assert result.contact_loss[0] == pytest.approx(math.acos(1.0 / amplitude) / math.pi, abs=5e-3)
-    # In touch the mass follows the base: the force is what its spring and the load do there.
     assert result.peak_force[0] == pytest.approx(soft * (1.0 + amplitude), rel=1e-2)
 
 

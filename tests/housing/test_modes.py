@@ -24,7 +24,7 @@ from housing import (
 )
 from housing.factorization import FactorizationError
 from housing.ports import Seat
-from meshes import Mesh
+from meshes import BoxGeometry, Mesh, WallThickness, mesh_box
 
 BACKENDS = pytest.mark.parametrize("backend", ["rslab", "superlu"])
 
@@ -118,6 +118,19 @@ def test_free_body_has_six_rigid_modes_at_exactly_zero(
     shapes = box_modes.shapes[:6].reshape(6, -1)
     projected = (rigid @ box_matrices.mass @ shapes.T) @ shapes
     np.testing.assert_allclose(projected, rigid, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "asked", [{"frequency_limit": 2 * np.pi * 300.0}, {"frequency_limit": 2 * np.pi * 30.0}, {"count": 3}]
+)
+def test_rigid_modes_of_a_thin_box_are_certified_far_below_its_first_elastic_mode(
+    steel: Material, asked: dict[str, Any]
+) -> None:
+    """The rounding of K, far larger than any wanted eigenvalue here, must neither hide the modes nor pass for one."""
+    thin = assemble(mesh_box(BoxGeometry((0.3, 0.3, 0.33), WallThickness.uniform(0.01)), 0.06), steel)
+    modes = solve_modes(thin, **asked)
+    assert modes.frequencies.tolist() == [0.0] * 6
+    assert modes.certificate.complete
 
 
 def test_the_same_matrices_give_the_same_modes_bit_for_bit(box_matrices: Matrices, box_modes: ModeSet) -> None:
