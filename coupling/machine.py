@@ -165,10 +165,8 @@ def couple(
         drive.append(ContactConnector(name, direction, mesh.contact, 0.0, rate, errors))
         if mesh.backlash is not None:
             direction, errors = _flank(components, mesh, rotor_named, speeds, -sense)
-            offset = mesh.contact.back_flank_offset
-            back.append(
-                ContactConnector(f"{name}, back", direction, mesh.contact, offset, -rate, errors, mesh.backlash)
-            )
+            law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset
+            back.append(ContactConnector(f"{name}, back", direction, law_of_back, offset, -rate, errors, mesh.backlash))
 
     load = np.zeros(size)
     for torque in torques:

@@ -84,6 +84,8 @@ class Contacts(NamedTuple):
     rate: FloatArray  # (c,)
     errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
     clearance: FloatArray  # (c,)
+    pitch_gaps: FloatArray  # (c, pairs)
+    pairs: IntArray  # (c,) pairs of teeth in a hunting period; 0 without pitch deviations
 
 
 class Segments(NamedTuple):
@@ -152,7 +154,7 @@ def march(
     stored : float
         Energy in the teeth at the end [J].
     curvature : float
-        Σ |a₁ - 2 a + a₋₁|² over the steps that have two before them.
+        Σ |a₁ - 2 a + a₋₁|² over the steps that have one before them and in neither of which a contact opens or closes.
     acceleration : float
         Σ |a₁|² over the same steps.
     unsettled : int
@@ -182,6 +184,7 @@ def march(
         _acceleration(dynamics, contacts, q, v, t0, force, a)
         _powers(dynamics, contacts, q, v, t0 + inside, delta, rate, force, powers)
 
+        smooth = 0  # steps since the contacts last opened or closed
         for step in range(count):
             t = t0 + step * h
             time = t0 + (step + 1) * h
@@ -222,14 +225,18 @@ def march(
             for i in range(n):
                 kinetic += 0.5 * v1[i] * v1[i]
             totals[3] = max(totals[3], kinetic)
+            smooth += 1
             for k in range(c):
+                if (force[k] == 0.0) != (force1[k] == 0.0):
+                    # The damping force jumps here, whatever the step: a curvature would measure nothing.
+                    smooth = 0
                 contact_totals[k, 0] += 0.5 * h * (force[k] + force1[k])
                 if force1[k] == 0.0:
                     contact_totals[k, 1] += h
                 contact_totals[k, 2] = max(contact_totals[k, 2], force1[k])
                 force[k] = force1[k]
 
-            if step > 0:
+            if smooth > 1:
                 for i in range(n):
                     second = after[i] - 2.0 * a[i] + before[i]
                     curvature += second * second
@@ -279,6 +286,7 @@ def _law(
         contacts.knots[k, : contacts.pieces[k] + 1],
         contacts.deviation[k, : contacts.pieces[k]],
         contacts.damping[k],
+        contacts.pitch_gaps[k, : contacts.pairs[k]],
     )
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
+from coupling.connector import ContactConnector
 from coupling.errors import CouplingError, TransientError
 from coupling.system import CoupledSystem
 
@@ -43,15 +44,20 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
                 "rotation; check the torques in and out against the gear ratios"
             )
     penalty = float(values[-1]) * rigid @ rigid.T
-    q: FloatArray = np.linalg.solve(system.mean_stiffness() + penalty, system.load)
+    # Newton's method starts from teeth that touch: pitch deviations may hold them further apart than the load presses.
+    closing = np.zeros(system.size)
+    for contact in system.contacts:
+        if contact.contact.pitch_gaps.size and contact.clearance == 0.0:
+            first_touch = float(contact.contact.pairs(_phase(contact, time)).deviation.min())
+            closing += contact.contact.mean_stiffness * (first_touch + _error(contact, time)) * contact.direction
+    q: FloatArray = np.linalg.solve(system.mean_stiffness() + penalty, system.load + closing)
     for _ in range(_STEPS):
         residual = system.load - system.stiffness @ q - penalty @ q
         tangent = system.stiffness + penalty
         for contact in system.contacts:
-            error = float(np.sum(contact.errors[:, 0] * np.cos(contact.errors[:, 1] * time + contact.errors[:, 2])))
-            compression = float(contact.direction @ q) - error - contact.clearance
-            phase = contact.phase + contact.rate * time + 1e-9
-            force, slope = tooth_force(phase, compression, 0.0, *contact.contact.kernel_arguments)[:2]
+            compression = float(contact.direction @ q) - _error(contact, time) - contact.clearance
+            law = contact.contact.kernel_arguments
+            force, slope = tooth_force(_phase(contact, time), compression, 0.0, *law)[:2]
             residual = residual - force * contact.direction
             tangent = tangent + slope * np.outer(contact.direction, contact.direction)
         step = np.linalg.lstsq(tangent, residual, rcond=1e-13)[0]
@@ -61,3 +67,13 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     raise TransientError(
         f"no static equilibrium of the teeth after {_STEPS} Newton steps; the torque may be too small to close the mesh"
     )
+
+
+def _phase(contact: ContactConnector, time: float) -> float:
+    """Phase of a contact just after a time [mesh periods]."""
+    return contact.phase + contact.rate * time + 1e-9
+
+
+def _error(contact: ContactConnector, time: float) -> float:
+    """Runout error of a contact [m]."""
+    return float(np.sum(contact.errors[:, 0] * np.cos(contact.errors[:, 1] * time + contact.errors[:, 2])))

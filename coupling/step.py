@@ -158,12 +158,15 @@ def _contacts(system: CoupledSystem) -> Contacts:
     stiffness = np.zeros((c, max(intervals, default=0), 4))
     knots = np.zeros((c, max(pieces, default=0) + 1))
     deviation = np.zeros((c, max(pieces, default=0), 4))
+    pairs = [len(argument[5]) for argument in arguments]
     errors = np.zeros((c, harmonics, 3))
-    for k, (contact, (_, coefficients, places, gaps, _)) in enumerate(zip(system.contacts, arguments, strict=True)):
-        stiffness[k, : intervals[k]] = coefficients
+    pitch_gaps = np.zeros((c, max(pairs, default=0)))
+    for k, (contact, (_, curve, places, gaps, _, pitch)) in enumerate(zip(system.contacts, arguments, strict=True)):
+        stiffness[k, : intervals[k]] = curve
         knots[k, : pieces[k] + 1] = places
         deviation[k, : pieces[k]] = gaps
         errors[k, : len(contact.errors)] = contact.errors
+        pitch_gaps[k, : pairs[k]] = pitch
     return Contacts(
         direction=np.ascontiguousarray(system.contact_directions.T),
         ratio=np.array([argument[0] for argument in arguments], dtype=np.float64),
@@ -177,4 +180,6 @@ def _contacts(system: CoupledSystem) -> Contacts:
         rate=np.array([contact.rate for contact in system.contacts], dtype=np.float64),
         errors=errors,
         clearance=np.array([contact.clearance for contact in system.contacts], dtype=np.float64),
+        pitch_gaps=pitch_gaps,
+        pairs=np.array(pairs, dtype=np.int64),
     )

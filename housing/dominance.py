@@ -75,5 +75,5 @@ def dominance(frequencies: FloatArray, seats: FloatArray, skin: FloatArray) -> D
     acceleration = np.sqrt((radial**2).mean(axis=1)) * np.sqrt((skin**2).mean(axis=1))
     with np.errstate(divide="ignore"):
         velocity = np.where(frequencies > 0.0, acceleration / np.where(frequencies > 0.0, frequencies, 1.0), 0.0)
-    absolute = np.abs(seats).mean(axis=(1, 2)) * np.abs(skin).mean(axis=1)
+    absolute = radial.mean(axis=1) * np.abs(skin).mean(axis=1)
     return Dominance(acceleration, velocity, absolute, frequencies)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, eigsh
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
 from housing.assembly import Matrices
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
@@ -225,16 +225,21 @@ def _lanczos(
     reduced: _Reduced, factor: Factorization, shift: float, count: int, attempt: int
 ) -> tuple[FloatArray, FloatArray]:
     size = factor.size
-    values, vectors = eigsh(
-        reduced.stiffness,
-        k=count,
-        M=reduced.mass,
-        sigma=shift,
-        OPinv=LinearOperator((size, size), matvec=factor.solve, dtype=np.float64),
-        v0=np.random.default_rng(attempt).standard_normal(size),
-        ncv=min(size, max(2 * count + 10, 24)),
-        tol=0.0,
-    )
+    try:
+        values, vectors = eigsh(
+            reduced.stiffness,
+            k=count,
+            M=reduced.mass,
+            sigma=shift,
+            OPinv=LinearOperator((size, size), matvec=factor.solve, dtype=np.float64),
+            v0=np.random.default_rng(attempt).standard_normal(size),
+            ncv=min(size, max(2 * count + 10, 24)),
+            tol=0.0,
+        )
+    except ArpackNoConvergence as error:
+        raise IncompleteModesError(
+            f"Lanczos found {len(error.eigenvalues)} of {count} modes and stopped; ask for fewer, or refine the mesh"
+        ) from error
     order = np.argsort(values)
     vectors = vectors[:, order]
     vectors /= np.sqrt(np.einsum("ij,ij->j", vectors, reduced.mass @ vectors))

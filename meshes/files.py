@@ -2,6 +2,8 @@
 
 import os
 import tempfile
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +42,9 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     if not path.is_file():
         raise GeometryError(f"mesh file {path}: no such file")
     try:
-        content = meshio.read(path)
+        # meshio tells of trouble on the screen; standard output belongs to the caller.
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+            content = meshio.read(path)
     except SystemExit as error:  # meshio leaves through sys.exit where no reader takes the file
         raise GeometryError(f"mesh file {path} is broken, or of a format that meshio does not read") from error
     except Exception as error:  # a broken file fails in whatever way its reader happens to stumble

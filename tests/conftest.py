@@ -1,14 +1,41 @@
-"""Shared by all tests: the record of published values beside ours."""
+"""Shared by all tests: the record of published values beside ours, and the validation page made of it."""
 
 from collections import defaultdict
 from collections.abc import Callable
+from decimal import Decimal
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
 Published = Callable[..., None]
 
-_KEY = "published value"
+_VALUE = "published value"
+_REMARK = "remark on a source"
+_HEAD = """\
+# Validation
+
+Published values beside ours, as the tests in `tests/validation` met them. Each value has a tolerance of its own, absolute
+(in the value's unit) or relative (in per cent): the digits printed, or the source's own scatter. A test fails beyond it,
+and this page is not written then. Written by `make validation`.
+"""
+
+
+class Row(NamedTuple):
+    """A published value and ours; the tolerance is relative where that is how it was given."""
+
+    source: str
+    quantity: str
+    value: float
+    ours: float
+    unit: str
+    tolerance: float
+    relative: bool
+
+    @property
+    def difference(self) -> float:
+        """Ours less the published value, in the terms of the tolerance."""
+        return (self.ours - self.value) / (abs(self.value) if self.relative else 1.0)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -23,7 +50,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def published(record_property: Callable[[str, object], None]) -> Published:
     """Compare our value with a published one, and keep the row for the validation table.
 
-    ``published(source, quantity, value, ours, unit, rel=...)`` or ``abs=...`` fails where they differ by more.
+    ``published(source, quantity, value, ours, unit, rel=...)`` or ``abs=...`` fails where they differ by more. A relative
+    tolerance has no absolute floor, unlike that of ``pytest.approx``, whose 1e-12 is vast beside a tooth's compliance.
     """
 
     def compare(
@@ -36,39 +64,62 @@ def published(record_property: Callable[[str, object], None]) -> Published:
         rel: float | None = None,
         abs: float | None = None,  # noqa: A002 - as in pytest.approx
     ) -> None:
-        record_property(_KEY, [source, quantity, float(value), float(ours), unit])
-        assert ours == pytest.approx(value, rel=rel, abs=abs), f"{source}: {quantity}"
+        if (rel is None) == (abs is None):
+            raise TypeError(f"{source}: {quantity} needs one tolerance, rel or abs")
+        tolerance = rel if abs is None else abs
+        record_property(_VALUE, [source, quantity, float(value), float(ours), unit, tolerance, abs is None])
+        assert ours == pytest.approx(value, rel=rel or 0.0, abs=abs or 0.0), f"{source}: {quantity}"
 
     return compare
+
+
+@pytest.fixture
+def remark(record_property: Callable[[str, object], None]) -> Callable[[str, str], None]:
+    """Keep what a reader of the validation table must know of a source: ``remark(source, text)``."""
+    return lambda source, text: record_property(_REMARK, [source, text])
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     target = terminalreporter.config.getoption("--validation-table")
     if not target:
         return
-    rows: dict[str, list[list[object]]] = defaultdict(list)
-    for report in terminalreporter.stats.get("passed", []):
-        for key, row in report.user_properties:
-            if key == _KEY:
-                rows[row[0]].append(row[1:])
-    Path(target).write_text(_table(rows), encoding="utf-8")
+    if terminalreporter.stats.get("failed") or terminalreporter.stats.get("error"):
+        terminalreporter.write_line(f"{target} not written: a table without the failures would mislead")
+        return
+    rows: dict[str, list[Row]] = defaultdict(list)
+    remarks: dict[str, list[str]] = defaultdict(list)
+    # In the order of the files, whichever process was first.
+    for report in sorted(terminalreporter.stats.get("passed", []), key=lambda report: (*report.location[:2], report.nodeid)):
+        for key, kept in report.user_properties:
+            if key == _VALUE:
+                row = Row(*kept)
+                rows[row.source].append(row)
+            elif key == _REMARK and kept[1] not in remarks[kept[0]]:
+                remarks[kept[0]].append(kept[1])
+    Path(target).write_text(_page(rows, remarks), encoding="utf-8")
     terminalreporter.write_line(f"{sum(map(len, rows.values()))} published values written to {target}")
 
 
-def _table(rows: dict[str, list[list[object]]]) -> str:
-    lines = [
-        "# Validation",
-        "",
-        "Published values beside ours, as the tests in `tests/validation` met them. Each test holds its own tolerance, the",
-        "source's scatter. Written by `make validation`.",
-        "",
-    ]
-    for source in sorted(rows):
-        lines += [f"## {source}", "", "| quantity | published | ours | difference |", "|---|---:|---:|---:|"]
-        for quantity, value, ours, unit in rows[source]:
-            assert isinstance(value, float)
-            assert isinstance(ours, float)
-            difference = f"{100 * (ours / value - 1):+.3f} %" if value else f"{ours:+.3g}"
-            lines.append(f"| {quantity} | {value:.8g} {unit} | {ours:.8g} {unit} | {difference} |")
+def _page(rows: dict[str, list[Row]], remarks: dict[str, list[str]]) -> str:
+    lines = [_HEAD, "| source | values | largest part of its tolerance that a value takes |", "|---|---:|---:|"]
+    for source, group in sorted(rows.items()):
+        worst = max(abs(row.difference) / row.tolerance for row in group)
+        lines.append(f"| {source} | {len(group)} | {100 * worst:.0f} % |")
+    lines.append("")
+    for source, group in sorted(rows.items()):
+        lines += [f"## {source}", ""]
+        for text in remarks[source]:
+            lines += [text, ""]
+        lines += ["| quantity | published | ours | unit | difference | tolerance |", "|---|---:|---:|---|---:|---:|"]
+        lines += map(_line, group)
         lines.append("")
     return "\n".join(lines)
+
+
+def _line(row: Row) -> str:
+    published = f"{row.value:.12g}"
+    # A digit more than the source prints, and at least five.
+    digits = max(len(Decimal(published).normalize().as_tuple().digits) + 1, 5)
+    scale, sign = (100.0, " %") if row.relative else (1.0, "")
+    difference, tolerance = f"{scale * row.difference:+.2g}{sign}", f"±{scale * row.tolerance:.2g}{sign}"
+    return f"| {row.quantity} | {published} | {row.ours:.{digits}g} | {row.unit} | {difference} | {tolerance} |"

@@ -33,6 +33,7 @@ from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
+from coupling.gears.pitch_gaps import back_flank_pitch_gaps, pitch_gaps
 from coupling.gears.profile import tooth_outline
 from coupling.gears.runout import runout_error
 from coupling.gears.static import (
@@ -86,6 +87,7 @@ __all__ = [
     "ToothContact",
     "ToothModel",
     "UndercutError",
+    "back_flank_pitch_gaps",
     "equivalent_mass",
     "foundation_compliance",
     "hertz_compliance",
@@ -96,6 +98,7 @@ __all__ = [
     "mesh_period_phases",
     "mesh_stiffness",
     "module_from_base_radius",
+    "pitch_gaps",
     "potential_energy",
     "runout_error",
     "static_transmission_error",

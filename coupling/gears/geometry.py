@@ -64,6 +64,13 @@ class Gear:
     eccentricity, eccentricity_phase : float
         Distance from the shaft line to the gear's centre [m], and the angle of that offset from x at
         zero rotation [rad].
+    pitch_deviations : tuple of float
+        Index (cumulative pitch) deviation of each tooth: how far it stands from its ideal place, along the arc of
+        the working pitch circle [m].  One for each tooth in the order in which they come into mesh, tooth 0 at
+        phase 0; none for a perfect pitch.  Positive where the working flank stands ahead, so that it touches
+        early: a driver's tooth displaced in the sense of its rotation, a driven gear's against it.  The whole
+        tooth is displaced, so its idle flank is behind by as much.  Each mesh of a gear counts from its own
+        tooth 0, and reads the signs for its own working flanks.
 
     Raises
     ------
@@ -88,6 +95,7 @@ class Gear:
     tip_relief: TipRelief | None = None
     eccentricity: float = 0.0
     eccentricity_phase: float = 0.0
+    pitch_deviations: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_numbers()
@@ -205,6 +213,12 @@ class Gear:
             require_finite(label + quantity, getattr(self, quantity), minimum=0.0)
         for quantity in ("profile_shift", "eccentricity_phase"):
             require_finite(label + quantity, getattr(self, quantity))
+        if self.pitch_deviations and len(self.pitch_deviations) != self.teeth:
+            raise GearError(
+                f"{label}pitch_deviations must be one for each of {self.teeth} teeth, got {len(self.pitch_deviations)}"
+            )
+        for tooth, deviation in enumerate(self.pitch_deviations):
+            require_finite(f"{label}pitch_deviations[{tooth}]", deviation)
         if not 0.0 <= self.poisson_ratio < 0.5:
             raise GearError(f"{label}poisson_ratio must be in 0 ... 0.5, got {self.poisson_ratio!r}")
         if not math.radians(5.0) <= self.pressure_angle <= math.radians(45.0):

@@ -27,6 +27,7 @@ def tooth_force(
     deviation_knots: FloatArray,
     deviation: FloatArray,
     damping: float,
+    pitch_gaps: FloatArray,
 ) -> TangentForce:
     """Force of the tooth contact, its tangent, and its stored energy.
 
@@ -44,6 +45,8 @@ def tooth_force(
         Knots and cubic coefficients of a pair's profile deviation [m].
     damping : float
         Damping coefficient [N s/m] while any pair touches.
+    pitch_gaps : ndarray, shape (h,)
+        What pitch deviations add to the gap of the pair that enters at phase n, at n mod h [m]; empty for none.
 
     Returns
     -------
@@ -58,9 +61,11 @@ def tooth_force(
     touching : int
         Number of pairs that touch.
     """
-    position = phase - math.floor(phase)
+    number = math.floor(phase)
+    position = phase - number
     if position >= 1.0:  # a phase a hair below a whole number rounds up
         position -= 1.0
+        number += 1
     intervals = stiffness.shape[0]
     width = contact_ratio / intervals
     force, tangent, energy, slope = 0.0, 0.0, 0.0, 0.0
@@ -76,6 +81,8 @@ def tooth_force(
         span = deviation_knots[low + 1] - deviation_knots[low]
         u = (position - deviation_knots[low]) / span
         gap = deviation[low, 0] + u * (deviation[low, 1] + u * (deviation[low, 2] + u * deviation[low, 3]))
+        if pitch_gaps.size > 0:
+            gap += pitch_gaps[number % pitch_gaps.size]
         approach = compression - gap
         if approach > 0.0:
             gap_slope = deviation[low, 1] + u * (2.0 * deviation[low, 2] + 3.0 * u * deviation[low, 3])
@@ -89,6 +96,7 @@ def tooth_force(
             slope += 0.5 * k_slope / width * approach * approach - k * approach * gap_slope / span
             touching += 1
         position += 1.0
+        number -= 1
     if touching == 0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
     return force + damping * rate, tangent, damping, energy, slope, touching
@@ -104,13 +112,14 @@ def tooth_force_history(
     deviation_knots: FloatArray,
     deviation: FloatArray,
     damping: float,
+    pitch_gaps: FloatArray,
 ) -> FloatArray:
     """`tooth_force` at every sample of a history.
 
     Parameters
     ----------
     phase, compression, rate : ndarray, shape (t,)
-    contact_ratio, stiffness, deviation_knots, deviation, damping
+    contact_ratio, stiffness, deviation_knots, deviation, damping, pitch_gaps
         As for `tooth_force`.
 
     Returns
@@ -129,6 +138,7 @@ def tooth_force_history(
             deviation_knots,
             deviation,
             damping,
+            pitch_gaps,
         )
         history[i, 0], history[i, 1], history[i, 2] = force, tangent, viscous
         history[i, 3], history[i, 4], history[i, 5] = energy, slope, touching

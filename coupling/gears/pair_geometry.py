@@ -3,7 +3,8 @@
 Position along the path of contact is counted in base pitches: a pair of teeth comes into contact at
 ``s = 0`` (the driven gear's tip meets the driver's root) and leaves at ``s = contact_ratio`` (the driver's
 tip).  The dimensionless phase ``p = z_k theta_k / (2 pi)`` counts mesh periods; at phase ``p`` the pairs in
-contact are at ``s = frac(p) + j``, j = 0, 1, ... while ``s < contact_ratio``.
+contact are at ``s = frac(p) + j``, j = 0, 1, ... while ``s < contact_ratio``.  The pair that enters at phase n
+joins tooth ``n mod z_k`` of the driver and ``n mod z_i`` of the driven gear.
 
 With base radii ``rb_k, rb_i``, centre distance ``a`` and working pressure angle ``w``, the distance of the
 contact from the driver's tangent point is ``xi_k = xi_0 + s p_b`` with
@@ -23,6 +24,7 @@ from coupling.gears.geometry import Gear
 from coupling.gears.involute import inverse_involute, involute
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -136,8 +138,22 @@ class GearPairGeometry:
         they touch the driver's tip first.  A tooth whose working flank is at ``xi`` has its idle flank at
         ``2 rb_k (w + psi_k) - xi``, ``psi_k`` half its angle on the base circle.
         """
-        sum_of_distances = 2.0 * self.driver.base_radius * (self.working_pressure_angle + self.driver.base_half_angle)
-        return ((sum_of_distances - 2.0 * self._start_distance) / self.base_pitch) % 1.0
+        return self._back_flank_shift % 1.0
+
+    def meeting_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
+        """Teeth of driver and driven gear in the pairs that enter at whole phases `number`."""
+        n = np.asarray(number, dtype=np.int64)
+        return n % self.driver.teeth, n % self.driven.teeth
+
+    def meeting_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
+        """Teeth whose idle flanks meet in the pairs that enter at whole phases `number` of the idle flanks.
+
+        With B the offset before its whole periods are dropped, the idle flank of driver tooth n is at
+        ``s = B - p + n`` and so belongs to the pair that enters at ``-n - floor(B)`` of ``frac(B) - p``.  Its mate is
+        the driven tooth that follows, n + 1: n itself is on the other side.
+        """
+        n = -np.asarray(number, dtype=np.int64) - math.floor(self._back_flank_shift)
+        return n % self.driver.teeth, (n + 1) % self.driven.teeth
 
     def line_of_action_angle(self, centre_line_angle: float, sense: int = 1) -> float:
         """Angle from x of the unit vector along which the driver pushes the driven gear [rad].
@@ -184,6 +200,12 @@ class GearPairGeometry:
     def _tangent_distance(self) -> float:
         """Distance of the tangent points of the line of action on the two base circles [m]."""
         return self._base_radii_sum * math.tan(self.working_pressure_angle)
+
+    @property
+    def _back_flank_shift(self) -> float:
+        """Sum of the positions of a driver tooth's working and idle flanks when it enters at phase 0 [base pitches]."""
+        sum_of_distances = 2.0 * self.driver.base_radius * (self.working_pressure_angle + self.driver.base_half_angle)
+        return (sum_of_distances - 2.0 * self._start_distance) / self.base_pitch
 
     @property
     def _start_distance(self) -> float:

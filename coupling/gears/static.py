@@ -57,7 +57,7 @@ class StaticMesh:
 
     @property
     def mean_transmission_error(self) -> float:
-        """Mean over the period that `phases` covers [m]."""
+        """Mean over the whole periods that `phases` cover [m]."""
         return period_mean(self.phases, self.transmission_error)
 
     @property
@@ -67,28 +67,31 @@ class StaticMesh:
 
     @property
     def mean_stiffness(self) -> float:
-        """Mean of the tangent stiffness over the period that `phases` covers [N/m]."""
+        """Mean of the tangent stiffness over the whole periods that `phases` cover [N/m]."""
         return period_mean(self.phases, self.tangent_stiffness)
 
 
-def mesh_period_phases(contact: ToothContact, points: int = 400) -> FloatArray:
-    """Phases over one mesh period, with both sides of every step and every corner among them.
+def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 1) -> FloatArray:
+    """Phases over whole mesh periods, with both sides of every step and every corner among them.
 
     Parameters
     ----------
     contact : ToothContact
     points : int
-        Equally spaced phases before the events are added.
+        Equally spaced phases of a period before the events are added.
+    periods : int
+        Mesh periods; `ToothContact.hunting_period` for all that pitch deviations bring.
 
     Returns
     -------
     ndarray, shape (n,)
-        Ascending, in [0, 1).
+        Ascending, in [0, periods).
     """
     even = (np.arange(points) + 0.5) / points
     events = np.array(contact.event_phases)
     beside = np.concatenate([events - _BESIDE, events + _BESIDE, np.array(contact.corner_phases)]) % 1.0
-    return np.unique(np.concatenate([even, beside]))
+    period = np.unique(np.concatenate([even, beside]))
+    return np.asarray((np.arange(periods)[:, None] + period).ravel(), dtype=np.float64)
 
 
 def static_transmission_error(contact: ToothContact, force: float, phases: npt.ArrayLike | None = None) -> StaticMesh:
@@ -100,7 +103,8 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
     force : float
         Load along the line of action, torque over base radius [N], at least 0.
     phases : array_like, shape (n,), or None
-        Mesh periods; None for one period, `mesh_period_phases`.
+        Mesh periods; None for one period, `mesh_period_phases`: with pitch deviations that in which teeth 0 enter,
+        so that means over the hunting period need its phases given.
 
     Returns
     -------
@@ -153,7 +157,8 @@ def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
 
 
 def period_mean(phases: FloatArray, values: FloatArray) -> float:
-    """Mean of a periodic curve over one period, by the trapezoidal rule on ascending phases within it."""
-    closed_phases = np.append(phases, phases[0] + 1.0)
+    """Mean of a periodic curve by the trapezoidal rule on ascending phases, over the whole periods they lie in."""
+    periods = max(1, math.ceil(phases[-1] - phases[0] - 1e-9))
+    closed_phases = np.append(phases, phases[0] + periods)
     closed_values = np.append(values, values[0])
-    return float(np.sum(0.5 * np.diff(closed_phases) * (closed_values[1:] + closed_values[:-1])))
+    return float(np.sum(0.5 * np.diff(closed_phases) * (closed_values[1:] + closed_values[:-1]))) / float(periods)

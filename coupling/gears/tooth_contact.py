@@ -11,8 +11,13 @@ compression ``delta`` of the mesh along the line of action and its rate ``v``:
 (the parametric power ``dU/dp * dp/dt``), which an energy balance of a prescribed speed has to carry.
 A pair never pulls; the whole mesh may separate, and returns through the same law.
 
+Pitch deviations add a gap ``f_n`` to the pair that enters at phase n, so to the pair j at phase p the gap of
+``n = floor(p) - j``: ``d(s_j) + f_n`` then stands for ``d(s_j)`` above (:mod:`coupling.gears.pitch_gaps`).  It is
+constant while the pair is in contact, so ``dU/dp`` keeps its form, and repeats with the hunting period.
+
 The idle flanks are the same law in a mirror: phase ``back_flank_offset - p``, their own compression (the
-motion projected on the mirrored line of action, less the backlash), and ``dU/dp`` of opposite sign.
+motion projected on the mirrored line of action, less the backlash), and ``dU/dp`` of opposite sign; their own
+pitch gaps come with `ToothContact.back_flanks`.
 
 Contact is taken on the theoretical path: a deflected tooth without relief comes in and goes out with a
 step in force, as in the sources.  The step stands exactly at `event_phases`.
@@ -21,7 +26,7 @@ step in force, as in the sources.  The step stands exactly at `event_phases`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -31,10 +36,11 @@ from coupling.gears.deviation import tip_relief_deviation
 from coupling.gears.errors import GearError
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
+from coupling.gears.pitch_gaps import back_flank_pitch_gaps, pitch_gaps
 from coupling.gears.stiffness_models import StiffnessModel
 
 FloatArray = npt.NDArray[np.float64]
-KernelArguments = tuple[float, FloatArray, FloatArray, FloatArray, float]
+KernelArguments = tuple[float, FloatArray, FloatArray, FloatArray, float, FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +56,7 @@ class PairStates:
     stiffness : ndarray, shape (n, m)
         [N/m], 0 where absent.
     deviation : ndarray, shape (n, m)
-        [m], infinite where absent.
+        Gap by profile and pitch [m], infinite where absent.
     """
 
     position: FloatArray
@@ -75,6 +81,9 @@ class ToothContact:
         Damping coefficient while the mesh touches [N s/m].
     back_flank_offset : float
         Phase of the idle flanks, see `GearPairGeometry.back_flank_offset`.
+    pitch_gaps, back_pitch_gaps : ndarray, shape (h,)
+        What pitch deviations add to the gap of the pair that enters at phase n, at n mod h [m], on the working and
+        on the idle flanks; empty for none.
     """
 
     contact_ratio: float
@@ -82,6 +91,8 @@ class ToothContact:
     deviation: PiecewiseCubic
     damping: float = 0.0
     back_flank_offset: float = 0.0
+    pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
+    back_pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
@@ -95,6 +106,9 @@ class ToothContact:
                     f"tooth contact: {name} must cover 0 to {self.contact_ratio:.6g} base pitches, "
                     f"got {ends[0]:.6g} to {ends[1]:.6g}"
                 )
+        for name, gaps in (("pitch_gaps", self.pitch_gaps), ("back_pitch_gaps", self.back_pitch_gaps)):
+            if gaps.ndim != 1 or not np.all(np.isfinite(gaps)):
+                raise GearError(f"tooth contact: {name} must be a row of finite numbers, got shape {gaps.shape}")
         spacing = np.diff(self.stiffness.knots)
         if not np.allclose(spacing, spacing[0], rtol=1e-9, atol=0.0):
             raise GearError("tooth contact: the stiffness needs equally spaced knots")
@@ -110,12 +124,18 @@ class ToothContact:
             np.ascontiguousarray(self.deviation.knots, dtype=np.float64),
             np.ascontiguousarray(self.deviation.coefficients, dtype=np.float64),
             float(self.damping),
+            np.ascontiguousarray(self.pitch_gaps, dtype=np.float64),
         )
 
     @property
     def largest_pair_count(self) -> int:
         """The most pairs that are ever on the path of contact at once."""
         return math.ceil(self.contact_ratio)
+
+    @property
+    def hunting_period(self) -> int:
+        """Mesh periods after which the law repeats: 1 but for pitch deviations."""
+        return max(1, self.pitch_gaps.size)
 
     @property
     def mean_stiffness(self) -> float:
@@ -127,7 +147,7 @@ class ToothContact:
         """Phases in [0, 1) where a pair enters (0) or leaves, ascending.
 
         Empty for a mesh that is one unchanging number of pairs, i.e. a whole contact ratio with a stiffness
-        and a deviation that join up at the period's ends.
+        and a deviation that join up at the period's ends, and no pitch deviations.
         """
         leaving = self.contact_ratio % 1.0
         if leaving > 1e-12 and 1.0 - leaving > 1e-12:
@@ -137,7 +157,7 @@ class ToothContact:
         steady = math.isclose(stiffness[0], stiffness[1], rel_tol=1e-9) and math.isclose(
             deviation[0], deviation[1], abs_tol=1e-15
         )
-        return () if steady else (0.0,)
+        return () if steady and not self.pitch_gaps.size else (0.0,)
 
     @property
     def back_flank_event_phases(self) -> tuple[float, ...]:
@@ -155,6 +175,13 @@ class ToothContact:
         jumps = np.abs(after - before) > 1e-9 * max(float(np.max(np.abs(after), initial=0.0)), 1e-30)
         return tuple(sorted({float(phase) for phase in knots[jumps] % 1.0}))
 
+    @property
+    def back_flanks(self) -> ToothContact:
+        """The law of the idle flanks by their own phase: the same, with their own pitch gaps."""
+        if not (self.pitch_gaps.size or self.back_pitch_gaps.size):
+            return self
+        return replace(self, pitch_gaps=self.back_pitch_gaps, back_pitch_gaps=self.pitch_gaps)
+
     def with_damping(self, damping: float) -> ToothContact:
         """The same contact with another damping coefficient [N s/m]."""
         return replace(self, damping=damping)
@@ -162,15 +189,22 @@ class ToothContact:
     def pairs(self, phases: npt.ArrayLike) -> PairStates:
         """Where the pairs are at `phases` (n,), and how stiff and how relieved they are."""
         phase = np.atleast_1d(np.asarray(phases, dtype=np.float64))
-        fraction = phase - np.floor(phase)
+        number = np.floor(phase)
+        fraction = phase - number
+        number = np.where(fraction >= 1.0, number + 1.0, number)
         fraction = np.where(fraction >= 1.0, 0.0, fraction)
-        position = fraction[:, None] + np.arange(self.largest_pair_count)
+        behind = np.arange(self.largest_pair_count)
+        position = fraction[:, None] + behind
         present = position < self.contact_ratio
+        deviation = self.deviation(position)
+        if self.pitch_gaps.size:
+            entered = number.astype(np.int64)[:, None] - behind
+            deviation = deviation + self.pitch_gaps[entered % self.pitch_gaps.size]
         return PairStates(
             position=position,
             present=present,
             stiffness=np.where(present, self.stiffness(position), 0.0),
-            deviation=np.where(present, self.deviation(position), np.inf),
+            deviation=np.where(present, deviation, np.inf),
         )
 
     def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
@@ -188,7 +222,8 @@ def tooth_contact(geometry: GearPairGeometry, model: StiffnessModel, damping: fl
     geometry : GearPairGeometry
     model : StiffnessModel
         See `coupling.gears.stiffness_models`.  A model of the whole mesh (range exactly one base pitch, when
-        the contact ratio is not) leaves no single pairs to relieve: the deviation is then zero.
+        the contact ratio is not) leaves no single pairs to relieve: the deviation is then zero.  Pitch deviations
+        remain, as if each mesh period were one pair's alone.
     damping : float
         Damping coefficient [N s/m], e.g. from `mesh_damping`.
 
@@ -200,4 +235,12 @@ def tooth_contact(geometry: GearPairGeometry, model: StiffnessModel, damping: fl
     length = float(stiffness.knots[-1])
     whole_mesh = length == 1.0
     deviation = piecewise.constant(0.0, length) if whole_mesh else tip_relief_deviation(geometry, length)
-    return ToothContact(length, stiffness, deviation, damping, geometry.back_flank_offset)
+    return ToothContact(
+        length,
+        stiffness,
+        deviation,
+        damping,
+        geometry.back_flank_offset,
+        pitch_gaps(geometry),
+        back_flank_pitch_gaps(geometry),
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
-from pydantic import field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
@@ -24,6 +24,7 @@ from gearwhine.case.fields import (
     wrong,
 )
 
+PitchDeviation = Annotated[float, Quantity(units.LENGTH, at_least=-1e-3, at_most=1e-3)]
 PressureAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(10.0), at_most=math.radians(35.0))]
 
 
@@ -35,12 +36,17 @@ class TipRelief(Table):
 
 
 class GearErrors(Table):
-    """Manufacturing errors: eccentricity of the teeth [m] and its angle from x at rest [rad]."""
+    """Manufacturing errors.
 
-    later = frozenset({"pitch", "profile", "lead", "runout", "spacing", "cumulative_pitch", "helix"})
+    Eccentricity of the teeth [m] and its angle from x at rest [rad]; `pitch`: how far each tooth's working flank
+    stands ahead of its ideal place along the pitch circle [m], tooth by tooth as they come into mesh.
+    """
+
+    later = frozenset({"profile", "lead", "runout", "spacing", "cumulative_pitch", "helix"})
 
     eccentricity: LengthFromZero = 0.0
     phase: Angle = 0.0
+    pitch: Annotated[tuple[PitchDeviation, ...], Field(max_length=2000)] = ()
 
 
 class Gear(Table):
@@ -89,6 +95,8 @@ class Gear(Table):
             raise wrong("the face width of a gear that is given by its module", "face_width")
         if self.bore >= 2.0 * self.base_circle_radius:
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
+        if self.errors.pitch and len(self.errors.pitch) != self.teeth:
+            raise wrong(f"one deviation for each of {self.teeth} teeth, or none", "errors", "pitch")
         given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]
         if any(given) and not all(given):
             raise wrong("all of 'mass', 'polar_inertia' and 'diametral_inertia', or none of them")

@@ -37,6 +37,7 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
         else None,
         eccentricity=given.errors.eccentricity,
         eccentricity_phase=given.errors.phase,
+        pitch_deviations=given.errors.pitch,
         **steel,
     )
 

@@ -9,12 +9,15 @@ import numpy.typing as npt
 
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case import Sensor as GivenSensor
+from gearwhine.case import Support as GivenSupport
 from gearwhine.progress import Progress, silent
 from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
+_SENSOR_REACH = 0.05  # farthest a sensor may sit from the surface, as a part of the housing's diagonal
 _UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 
 
@@ -125,10 +128,7 @@ def solve_housing(case: Case, progress: Progress = silent) -> SolvedHousing:
         progress=progress,
     )
     seats = {seat.name: modes.project(room.seat_matrix(mesh, room.Seat(seat.name, seat.center))) for seat in given.seat}
-    sensors = {
-        sensor.name: room.sensor_port(mesh, room.Sensor(sensor.name, sensor.position, sensor.unit_vector))
-        for sensor in given.sensor
-    }
+    sensors = {entry.name: _sensor(mesh, index, entry) for index, entry in enumerate(given.sensor)}
     bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
     survey = room.survey_grid(mesh, bounds)
     strengths = None
@@ -201,6 +201,7 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
             "found": certificate.found,
             "complete": certificate.complete,
             "max_residual": certificate.max_residual,
+            "max_overlap": certificate.max_overlap,
         },
         "mesh": {
             "nodes": len(solved.mesh.points),
@@ -240,7 +241,19 @@ def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> d
     }
 
 
-def _support(entry: Any) -> room.Support:
+def _sensor(mesh: Mesh, index: int, entry: GivenSensor) -> room.SensorPort:
+    """A sensor on the surface; one that is not meant to sit there is refused rather than moved far."""
+    port = room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
+    reach = _SENSOR_REACH * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+    if port.distance > reach:
+        place = ", ".join(f"{1e3 * value:.4g}" for value in port.position)
+        expected = f"a place within {1e3 * reach:.3g} mm of the surface; the nearest point of it is ({place}) mm"
+        key, label = f"housing.sensor[{index}].position", f'sensor "{entry.name}"'
+        raise CaseError([Problem(key, list(entry.position), expected, label=label)])
+    return port
+
+
+def _support(entry: GivenSupport) -> room.Support:
     springs = entry.stiffness
     return room.Support(
         name=entry.name,

@@ -22,7 +22,16 @@ from coupling import (
     static_equilibrium,
 )
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, attach_loads, solve_lateral_modes, solve_torsional_modes
+from rotors import (
+    Bearing,
+    Disc,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    attach_loads,
+    solve_lateral_modes,
+    solve_torsional_modes,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -92,7 +101,7 @@ def machine(
             bearing = Bearing(name, at, matrix, 1e-5 * matrix)
             bearings.append(MountedBearing(bearing, rotor.name, name if housing else None))
     gears = [MountedGear(f"{name} gear", name, GEAR_AT[name], (axis[0], axis[1])) for name, axis in axes.items()]
-    mesh = GearMesh(*gears, PAIR, tooth_contact(PAIR, ConstantStiffness(MESH_STIFFNESS)), backlash)
+    mesh = GearMesh(gears[0], gears[1], PAIR, tooth_contact(PAIR, ConstantStiffness(MESH_STIFFNESS)), backlash)
     return couple(
         ROTORS,
         rigid_housing(centres) if housing else None,
@@ -282,7 +291,9 @@ def test_torques_that_do_not_balance() -> None:
 
 def test_unbalance_turns_with_the_shaft() -> None:
     for sense in (1, -1):
-        parts = machine(sense=sense, unbalances=(Unbalance("input", 0.2, 3e-5, 0.4), Unbalance("output", 0.1, 0.0, 0.0)))
+        parts = machine(
+            sense=sense, unbalances=(Unbalance("input", 0.2, 3e-5, 0.4), Unbalance("output", 0.1, 0.0, 0.0))
+        )
         (load,) = parts.system.harmonic_loads
         for time in (0.0, 0.003, 0.011):
             force = (load.amplitude * np.exp(1j * load.frequency * time)).real

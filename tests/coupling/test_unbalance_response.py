@@ -141,8 +141,8 @@ def test_unbalance_in_the_steady_state(speed: float) -> None:
     ):
         expected = (factor * response[None, :] * turning[:, None]).real
         np.testing.assert_allclose(signal, expected, rtol=0.0, atol=4e-3 * abs(factor) * size)
-    # The orbit's area per cycle, ∮ x dy, is positive counter-clockwise: with the shaft below both critical speeds,
-    # as at twice that for the isotropic part of the motion.
+    # The orbit's area per cycle, ∮ x dy, is positive counter-clockwise; below the first critical speed it follows
+    # the shaft.
     x, y = result.displacement[:64].T
     area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
     assert np.sign(area) == np.sign(np.imag(response[0] * np.conj(response[1])) * speed)
@@ -187,7 +187,9 @@ def test_cross_coupling_is_unstable(cross: float) -> None:
     result = simulate(parts.system, settings, TransientOutputs(middle, middle, middle), initial=start)
     radius = np.linalg.norm(result.displacement, axis=1)
     half = len(radius) // 2
-    assert np.log(radius[-1] / radius[half]) / (result.times[-1] - result.times[half]) == pytest.approx(growth, rel=2e-2)
+    assert np.log(radius[-1] / radius[half]) / (result.times[-1] - result.times[half]) == pytest.approx(
+        growth, rel=2e-2
+    )
     x, y = result.displacement[half:].T
     assert np.sign(np.sum(x[:-1] * y[1:] - y[:-1] * x[1:])) == direction
     assert result.energy.lost < 0.0

@@ -15,7 +15,7 @@ def test_strength_of_two_modes_by_hand() -> None:
     acceleration = np.sqrt((25.0 + 0.0) / 2) * np.sqrt((1.0 + 49.0) / 2)
     np.testing.assert_allclose(strength.acceleration, [acceleration, 0.0])
     np.testing.assert_allclose(strength.velocity, [acceleration / 10.0, 0.0])
-    np.testing.assert_allclose(strength.absolute, [(3 + 4) / 4 * (1 + 7) / 2, 0.0])
+    np.testing.assert_allclose(strength.absolute, [(5 + 0) / 2 * (1 + 7) / 2, 0.0])
 
 
 def test_rigid_modes_have_no_velocity_strength_rather_than_an_infinite_one() -> None:

@@ -29,19 +29,19 @@ def test_a_translated_patch_meets_its_stiffness(name: str, steel: Material, requ
         assert set(touched) <= set(np.unique(mesh.surface("foot-2")))
 
 
-def test_springs_store_the_energy_of_the_field(block: Callable[..., Mesh], steel: Material) -> None:
-    """u_z = x over a base of length a and width b: energy ½ k/(ab) ∫ x² dA = k a² / 6."""
+@pytest.mark.parametrize("power", [1, 2])
+def test_springs_store_the_energy_of_the_field(block: Callable[..., Mesh], steel: Material, power: int) -> None:
+    """u_z = x^p over a base of length a and width b: energy ½ k/(ab) ∫ x^2p dA = ½ k a^2p / (2p + 1)."""
     a, b = 0.10, 0.07
     mesh = block((a, b, 0.05), (2, 1, 1))
     free = assemble(mesh, steel)
-    added = (
-        with_springs(free, mesh, [Support("base", surface="bottom", stiffness=(0.0, 0.0, 1e12))]).blocks - free.blocks
-    )
+    base = Support("base", surface="bottom", stiffness=(0.0, 0.0, 1e12))
+    added = with_springs(free, mesh, [base]).blocks - free.blocks
     spring = Matrices(free.pointer, free.neighbors, added, free.node_mass).stiffness
-    tilt = np.zeros((len(mesh.points), 3))
-    tilt[:, 2] = mesh.points[:, 0]
-    energy = 0.5 * tilt.ravel() @ spring @ tilt.ravel()
-    assert energy == pytest.approx(1e12 * a**2 / 6, rel=1e-5)
+    field = np.zeros((len(mesh.points), 3))
+    field[:, 2] = mesh.points[:, 0] ** power
+    energy = 0.5 * field.ravel() @ spring @ field.ravel()
+    assert energy == pytest.approx(0.5e12 * a ** (2 * power) / (2 * power + 1), rel=1e-5)
 
 
 def test_springs_of_several_supports_add_up_and_leave_the_free_matrices_alone(

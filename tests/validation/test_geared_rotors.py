@@ -82,7 +82,7 @@ def turbo_generator(sense: int = 1, centre_line: float = 0.0, lateral: float = 3
         Gear(name, teeth, module_from_base_radius(radius, teeth, angle), angle, face_width=0.1)
         for name, teeth, radius in (("wheel", 328, 0.5086), ("pinion", 23, 0.03567))
     ]
-    pair = GearPairGeometry(*wheels)
+    pair = GearPairGeometry(wheels[0], wheels[1])
     distance = pair.working_centre_distance
     mesh = GearMesh(
         MountedGear("wheel", "generator", gears_at[0], (0.0, 0.0)),

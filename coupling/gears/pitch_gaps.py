@@ -1,0 +1,61 @@
+"""The gap that the pitch deviations of two meeting teeth leave between their flanks.
+
+A tooth that stands ahead by ``f`` along the arc of the working pitch circle has turned by ``f / r_w`` and its flank
+has moved by ``rb f / r_w = f cos(w)`` along the line of action, w the working pressure angle.  With the driver's
+tooth m and the driven gear's tooth n the pair's gap is
+
+    d(s) + f_pair,    f_pair = -(f_k[m] + f_i[n]) cos(w),
+
+constant while the pair is in contact.  The idle flanks of the same teeth are behind where the working ones are
+ahead: there the sign turns, and other teeth meet (`GearPairGeometry.meeting_back_teeth`).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.geometry import Gear
+from coupling.gears.pair_geometry import GearPairGeometry, IntArray
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
+    """Gap of each pair of working flanks over the hunting period.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+        The `pitch_deviations` of its gears are used.
+
+    Returns
+    -------
+    ndarray, shape (h,)
+        f_pair of the pair that enters at phase n, at n mod h [m].  h is the least common multiple of the numbers
+        of teeth, of the one gear's alone where the other has no deviations, and 0 where neither has.
+    """
+    return -_lead(geometry, *geometry.meeting_teeth(_numbers(geometry)))
+
+
+def back_flank_pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
+    """The same for the idle flanks, by the phase at which their pairs enter, ``back_flank_offset - p``."""
+    return _lead(geometry, *geometry.meeting_back_teeth(_numbers(geometry)))
+
+
+def _numbers(geometry: GearPairGeometry) -> IntArray:
+    """0, 1, ... over the hunting period."""
+    deviating = [gear.teeth for gear in (geometry.driver, geometry.driven) if any(gear.pitch_deviations)]
+    return np.arange(math.lcm(*deviating) if deviating else 0)
+
+
+def _lead(geometry: GearPairGeometry, driver_teeth: IntArray, driven_teeth: IntArray) -> FloatArray:
+    """How far the working flanks of pairs of teeth stand ahead along the line of action [m]."""
+    lead = _deviations(geometry.driver)[driver_teeth] + _deviations(geometry.driven)[driven_teeth]
+    return np.asarray(lead * math.cos(geometry.working_pressure_angle), dtype=np.float64)
+
+
+def _deviations(gear: Gear) -> FloatArray:
+    return np.array(gear.pitch_deviations or (0.0,) * gear.teeth, dtype=np.float64)

@@ -1,0 +1,177 @@
+"""Pitch deviations in motion: one mass on a tooth contact, exact, quasi-static, and its energies."""
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.linalg import expm
+
+from coupling import (
+    Component,
+    ContactConnector,
+    CoupledSystem,
+    TransientOutputs,
+    TransientResult,
+    TransientSettings,
+    simulate,
+    static_equilibrium,
+)
+from coupling.gears import (
+    Gear,
+    GearPairGeometry,
+    PotentialEnergyStiffness,
+    SquareStiffness,
+    StiffnessModel,
+    TipRelief,
+    ToothContact,
+    static_transmission_error,
+    tooth_contact,
+)
+
+FloatArray = npt.NDArray[np.float64]
+
+TEETH = (12, 18)
+PERIOD = 36
+RNG = np.random.default_rng(3)
+DEVIATIONS = tuple(RNG.uniform(-5e-6, 5e-6, teeth) for teeth in TEETH)
+MASS = 0.4
+LOAD = 2000.0
+
+
+def contact_of(model: StiffnessModel, scale: float = 1.0, damping: float = 0.0, relief: float = 0.0) -> ToothContact:
+    """A pair of 12 and 18 teeth at 25 degrees whose deviations are scaled."""
+    gears = [
+        Gear(
+            str(teeth),
+            teeth,
+            4e-3,
+            math.radians(25.0),
+            12e-3,
+            tip_relief=TipRelief(relief, math.radians(33.0)) if relief else None,
+            pitch_deviations=tuple((scale * deviations).tolist()),
+        )
+        for teeth, deviations in zip(TEETH, DEVIATIONS, strict=True)
+    ]
+    return tooth_contact(GearPairGeometry(*gears), model, damping)
+
+
+def system_of(contact: ToothContact, mesh_frequency: float, clearance: float = 0.0) -> CoupledSystem:
+    """A mass that a constant force presses onto the contact."""
+    direction = np.array([1.0 / math.sqrt(MASS)])
+    none = np.zeros((1, 1))
+    return CoupledSystem(
+        components=(Component("mass", ("torsional",), none, none, none),),
+        speeds=(0.0,),
+        contacts=(ContactConnector("mesh", direction, contact, 0.0, mesh_frequency, np.zeros((0, 3)), clearance),),
+        load=LOAD * direction,
+    )
+
+
+def run(system: CoupledSystem, settings: TransientSettings) -> TransientResult:
+    rows = system.contact_directions.T
+    return simulate(system, settings, TransientOutputs(rows, rows, rows))
+
+
+def exact_motion(contact: ToothContact, stiffness: float, mesh_frequency: float, times: FloatArray) -> FloatArray:
+    """Compression under unrelieved square pairs that never part: between events m x'' = F - c x' - Σ k (x - f)."""
+    eps = contact.contact_ratio
+    entries = np.arange(math.ceil(times[-1] * mesh_frequency) + 1.0)
+    marks = np.sort(np.concatenate([entries, entries + eps % 1.0])) / mesh_frequency
+    found = np.empty(times.size)
+    state = np.full(2, math.nan)
+    for start, end in itertools.pairwise(marks):
+        phase = 0.5 * (start + end) * mesh_frequency
+        whole = math.floor(phase)
+        gaps = [float(contact.pitch_gaps[(whole - b) % PERIOD]) for b in range(3) if phase - whole + b < eps]
+        rest = np.array([np.mean(gaps) + LOAD / (stiffness * len(gaps)), 0.0])
+        rates = np.array([[0.0, 1.0], [-stiffness * len(gaps) / MASS, -contact.damping / MASS]])
+        if np.isnan(state[0]):
+            state = rest
+        for sample in np.flatnonzero((times >= start) & (times < end)):
+            found[sample] = (rest + expm(rates * (times[sample] - start)) @ (state - rest))[0]
+        state = rest + expm(rates * (end - start)) @ (state - rest)
+    return found
+
+
+@pytest.mark.parametrize("contact_ratio", [1.4, 2.0])
+def test_motion_is_the_exact_one_between_jumps(contact_ratio: float) -> None:
+    contact = contact_of(SquareStiffness(2e8, contact_ratio), scale=0.2, damping=2.0 * 0.4 * math.sqrt(2e8 * MASS))
+    frequency = 300.0
+    settings = TransientSettings(40.0 / frequency, 0.0, 0.043 / frequency, 1e-5, tolerance=1e-4)
+    result = run(system_of(contact, frequency), settings)
+    expected = exact_motion(contact, 2e8, frequency, result.times)
+    assert expected.min() > contact.pitch_gaps.max()  # so every pair on its path touches throughout
+    swing = float(np.ptp(expected))
+    np.testing.assert_allclose(result.compression[:, 0], expected, atol=2e-4 * swing)
+    # With the teeth numbered one further on it is another motion: the comparison can fail.
+    shifted = replace(contact, pitch_gaps=np.roll(contact.pitch_gaps, 1))
+    other = exact_motion(shifted, 2e8, frequency, result.times)
+    assert np.max(np.abs(other - expected)) > 0.1 * swing
+
+
+@pytest.mark.parametrize("model", [PotentialEnergyStiffness(), SquareStiffness(2e8)])
+def test_energies_balance_across_the_jumps(model: StiffnessModel) -> None:
+    errors = []
+    for tolerance in (1e-3, 3e-5):
+        contact = contact_of(model, damping=200.0, relief=10e-6)
+        settings = TransientSettings(20.0 / 900.0, 0.0, 1e-4, 1e-5, tolerance=tolerance)
+        errors.append(run(system_of(contact, 900.0), settings).energy.error)
+    assert errors[1] < 1e-4
+    assert errors[1] < errors[0]
+
+
+def test_slow_gears_follow_the_static_transmission_error_over_the_hunting_period() -> None:
+    contact = contact_of(PotentialEnergyStiffness(), relief=25e-6)
+    contact = contact.with_damping(2.0 * 0.5 * math.sqrt(contact.mean_stiffness * MASS))
+    frequency = 4.0
+    settings = TransientSettings(PERIOD / frequency, 0.0, 0.0371 / frequency, 2e-4, tolerance=1e-2)
+    result = run(system_of(contact, frequency), settings)
+    static = static_transmission_error(contact, LOAD, frequency * result.times).transmission_error
+    # Where a pair enters or leaves the mass still rings for a moment; elsewhere it follows.
+    part = (frequency * result.times) % 1.0
+    leaving = contact.contact_ratio % 1.0
+    calm = (np.minimum(part, (part - leaving) % 1.0) > 0.05) & (result.times > 0.1 / frequency)
+    assert calm.mean() > 0.7
+    np.testing.assert_allclose(result.compression[calm, 0], static[calm], atol=2e-2 * np.ptp(static))
+    perfect = static_transmission_error(replace(contact, pitch_gaps=np.zeros(0)), LOAD, frequency * result.times)
+    assert np.ptp(static) > 1.2 * perfect.peak_to_peak_transmission_error
+
+
+def test_steady_motion_repeats_with_the_hunting_period_and_no_sooner() -> None:
+    contact = contact_of(PotentialEnergyStiffness(), relief=10e-6)
+    contact = contact.with_damping(2.0 * 0.1 * math.sqrt(contact.mean_stiffness * MASS))
+    frequency, samples = 800.0, 16
+    # Samples stand beside the jumps, never on them.
+    begin, end = (2.0 * PERIOD + 0.5 / samples) / frequency, (4.0 * PERIOD + 1.0) / frequency
+    settings = TransientSettings(end, begin, 1.0 / (samples * frequency), 1e-5, tolerance=1e-5)
+    force = run(system_of(contact, frequency), settings).force[:, 0]
+    first, second = force[: PERIOD * samples], force[PERIOD * samples : 2 * PERIOD * samples]
+    scale = float(np.ptp(first))
+    np.testing.assert_allclose(second, first, atol=1e-3 * scale)
+    for turn in TEETH:
+        assert np.max(np.abs(np.roll(first, turn * samples) - first)) > 0.05 * scale
+
+
+def test_no_deviation_moves_the_same_to_the_last_bit() -> None:
+    settings = TransientSettings(0.02, 0.0, 1e-4, 1e-5)
+    plain = contact_of(PotentialEnergyStiffness(), scale=0.0, damping=100.0, relief=10e-6)
+    assert plain.pitch_gaps.size == 0
+    written_out = replace(plain, pitch_gaps=np.zeros(PERIOD))
+    first, second = (run(system_of(contact, 900.0), settings) for contact in (plain, written_out))
+    np.testing.assert_array_equal(second.compression, first.compression)
+    np.testing.assert_array_equal(second.force, first.force)
+
+
+@pytest.mark.parametrize("gap", [-2e-3, 2e-3])
+def test_equilibrium_is_found_however_far_the_teeth_stand_apart(gap: float) -> None:
+    # All pairs equally late or early: the load's own compression, moved by the gap.
+    contact = contact_of(SquareStiffness(2e8), scale=0.0)
+    moved = replace(contact, pitch_gaps=np.full(PERIOD, gap))
+    here, there = (
+        float((static_equilibrium(system) @ system.contact_directions)[0])
+        for system in (system_of(contact, 50.0), system_of(moved, 50.0))
+    )
+    assert there == pytest.approx(here + gap, rel=1e-9)
