@@ -154,7 +154,7 @@ def march(
     stored : float
         Energy in the teeth at the end [J].
     curvature : float
-        Σ |a₁ - 2 a + a₋₁|² over the steps that have one before them and in neither of which a contact opens or closes.
+        Σ |a₁ - 2 a + a₋₁|² over the steps that have two before them.
     acceleration : float
         Σ |a₁|² over the same steps.
     unsettled : int
@@ -184,7 +184,6 @@ def march(
         _acceleration(dynamics, contacts, q, v, t0, force, a)
         _powers(dynamics, contacts, q, v, t0 + inside, delta, rate, force, powers)
 
-        smooth = 0  # steps since the contacts last opened or closed
         for step in range(count):
             t = t0 + step * h
             time = t0 + (step + 1) * h
@@ -225,18 +224,14 @@ def march(
             for i in range(n):
                 kinetic += 0.5 * v1[i] * v1[i]
             totals[3] = max(totals[3], kinetic)
-            smooth += 1
             for k in range(c):
-                if (force[k] == 0.0) != (force1[k] == 0.0):
-                    # The damping force jumps here, whatever the step: a curvature would measure nothing.
-                    smooth = 0
                 contact_totals[k, 0] += 0.5 * h * (force[k] + force1[k])
                 if force1[k] == 0.0:
                     contact_totals[k, 1] += h
                 contact_totals[k, 2] = max(contact_totals[k, 2], force1[k])
                 force[k] = force1[k]
 
-            if smooth > 1:
+            if step > 0:
                 for i in range(n):
                     second = after[i] - 2.0 * a[i] + before[i]
                     curvature += second * second

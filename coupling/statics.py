@@ -44,10 +44,11 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
                 "rotation; check the torques in and out against the gear ratios"
             )
     penalty = float(values[-1]) * rigid @ rigid.T
-    # Newton's method starts from teeth that touch: pitch deviations may hold them further apart than the load presses.
+    # Newton's method starts from teeth that touch: deviations and runout may hold them further apart than the load
+    # presses, and from open teeth it would stop at a motion that nothing holds.
     closing = np.zeros(system.size)
     for contact in system.contacts:
-        if contact.contact.pitch_gaps.size and contact.clearance == 0.0:
+        if contact.clearance == 0.0:
             first_touch = float(contact.contact.pairs(_phase(contact, time)).deviation.min())
             closing += contact.contact.mean_stiffness * (first_touch + _error(contact, time)) * contact.direction
     q: FloatArray = np.linalg.solve(system.mean_stiffness() + penalty, system.load + closing)

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable
-from decimal import Decimal
+from math import floor, log10
 from pathlib import Path
 from typing import NamedTuple
 
@@ -67,6 +67,8 @@ def published(record_property: Callable[[str, object], None]) -> Published:
         if (rel is None) == (abs is None):
             raise TypeError(f"{source}: {quantity} needs one tolerance, rel or abs")
         tolerance = rel if abs is None else abs
+        if tolerance <= 0.0 or (rel is not None and value == 0.0):
+            raise ValueError(f"{source}: {quantity} = {value} needs a tolerance above zero, got rel={rel}, abs={abs}")
         record_property(_VALUE, [source, quantity, float(value), float(ours), unit, tolerance, abs is None])
         assert ours == pytest.approx(value, rel=rel or 0.0, abs=abs or 0.0), f"{source}: {quantity}"
 
@@ -89,7 +91,9 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     rows: dict[str, list[Row]] = defaultdict(list)
     remarks: dict[str, list[str]] = defaultdict(list)
     # In the order of the files, whichever process was first.
-    for report in sorted(terminalreporter.stats.get("passed", []), key=lambda report: (*report.location[:2], report.nodeid)):
+    for report in sorted(
+        terminalreporter.stats.get("passed", []), key=lambda report: (*report.location[:2], report.nodeid)
+    ):
         for key, kept in report.user_properties:
             if key == _VALUE:
                 row = Row(*kept)
@@ -117,9 +121,10 @@ def _page(rows: dict[str, list[Row]], remarks: dict[str, list[str]]) -> str:
 
 
 def _line(row: Row) -> str:
-    published = f"{row.value:.12g}"
-    # A digit more than the source prints, and at least five.
-    digits = max(len(Decimal(published).normalize().as_tuple().digits) + 1, 5)
+    allowed = row.tolerance * abs(row.value) if row.relative else row.tolerance
+    decimals = max(0, 1 - floor(log10(allowed)))
+    ours = f"{row.ours:.0f}" if row.ours.is_integer() else f"{row.ours:.{decimals}f}"
+    value = f"{round(row.value, decimals + 2):.12g}"
     scale, sign = (100.0, " %") if row.relative else (1.0, "")
     difference, tolerance = f"{scale * row.difference:+.2g}{sign}", f"±{scale * row.tolerance:.2g}{sign}"
-    return f"| {row.quantity} | {published} | {row.ours:.{digits}g} | {row.unit} | {difference} | {tolerance} |"
+    return f"| {row.quantity} | {value} | {ours} | {row.unit} | {difference} | {tolerance} |"
