@@ -80,6 +80,7 @@ class Contacts(NamedTuple):
     deviation: FloatArray  # (c, pieces, 4)
     pieces: IntArray  # (c,)
     damping: FloatArray  # (c,)
+    damping_depth: FloatArray  # (c,)
     phase: FloatArray  # (c,)
     rate: FloatArray  # (c,)
     errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
@@ -282,6 +283,7 @@ def _law(
         contacts.deviation[k, : contacts.pieces[k]],
         contacts.damping[k],
         contacts.pitch_gaps[k, : contacts.pairs[k]],
+        contacts.damping_depth[k],
     )
 
 

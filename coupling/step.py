@@ -161,7 +161,7 @@ def _contacts(system: CoupledSystem) -> Contacts:
     pairs = [len(argument[5]) for argument in arguments]
     errors = np.zeros((c, harmonics, 3))
     pitch_gaps = np.zeros((c, max(pairs, default=0)))
-    for k, (contact, (_, curve, places, gaps, _, pitch)) in enumerate(zip(system.contacts, arguments, strict=True)):
+    for k, (contact, (_, curve, places, gaps, _, pitch, _)) in enumerate(zip(system.contacts, arguments, strict=True)):
         stiffness[k, : intervals[k]] = curve
         knots[k, : pieces[k] + 1] = places
         deviation[k, : pieces[k]] = gaps
@@ -176,6 +176,7 @@ def _contacts(system: CoupledSystem) -> Contacts:
         deviation=deviation,
         pieces=np.array(pieces, dtype=np.int64),
         damping=np.array([argument[4] for argument in arguments], dtype=np.float64),
+        damping_depth=np.array([argument[6] for argument in arguments], dtype=np.float64),
         phase=np.array([contact.phase for contact in system.contacts], dtype=np.float64),
         rate=np.array([contact.rate for contact in system.contacts], dtype=np.float64),
         errors=errors,

@@ -46,7 +46,7 @@ class CoupledSystem:
     linear : tuple of LinearConnector
     contacts : tuple of ContactConnector
     load : ndarray, shape (n,)
-        F, constant.
+        F, constant; zero by default.
     harmonic_loads : tuple of HarmonicLoad
     """
 
@@ -60,6 +60,8 @@ class CoupledSystem:
     def __post_init__(self) -> None:
         if len(self.speeds) != len(self.components):
             raise CouplingError(f"{len(self.speeds)} speeds for {len(self.components)} components; expected as many")
+        if self.load.shape == (0,):
+            object.__setattr__(self, "load", np.zeros(self.size))
         if self.load.shape != (self.size,):
             raise CouplingError(f"a load of shape {self.load.shape}; expected ({self.size},)")
 

@@ -15,9 +15,9 @@ _REMARK = "remark on a source"
 _HEAD = """\
 # Validation
 
-Published values beside ours, as the tests in `tests/validation` met them. Each value has a tolerance of its own, absolute
-(in the value's unit) or relative (in per cent): the digits printed, or the source's own scatter. A test fails beyond it,
-and this page is not written then. Written by `make validation`.
+Published values beside ours, as the tests in `tests/validation` met them. Each value has a tolerance of its own,
+absolute (in the value's unit) or relative (in per cent): the digits printed, or the source's own scatter. A test fails
+beyond it, and this page is not written then. Written by `make validation`.
 """
 
 
@@ -50,8 +50,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def published(record_property: Callable[[str, object], None]) -> Published:
     """Compare our value with a published one, and keep the row for the validation table.
 
-    ``published(source, quantity, value, ours, unit, rel=...)`` or ``abs=...`` fails where they differ by more. A relative
-    tolerance has no absolute floor, unlike that of ``pytest.approx``, whose 1e-12 is vast beside a tooth's compliance.
+    ``published(source, quantity, value, ours, unit, rel=...)`` or ``abs=...`` fails where they differ by more. A
+    relative tolerance has no absolute floor, unlike that of ``pytest.approx``, whose 1e-12 is vast beside a tooth's
+    compliance in m/N.
     """
 
     def compare(
@@ -105,12 +106,13 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 
 
 def _page(rows: dict[str, list[Row]], remarks: dict[str, list[str]]) -> str:
+    sections = sorted(rows.items(), key=lambda section: section[0].casefold())
     lines = [_HEAD, "| source | values | largest part of its tolerance that a value takes |", "|---|---:|---:|"]
-    for source, group in sorted(rows.items()):
+    for source, group in sections:
         worst = max(abs(row.difference) / row.tolerance for row in group)
         lines.append(f"| {source} | {len(group)} | {100 * worst:.0f} % |")
     lines.append("")
-    for source, group in sorted(rows.items()):
+    for source, group in sections:
         lines += [f"## {source}", ""]
         for text in remarks[source]:
             lines += [text, ""]

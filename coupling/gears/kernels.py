@@ -28,6 +28,7 @@ def tooth_force(
     deviation: FloatArray,
     damping: float,
     pitch_gaps: FloatArray,
+    damping_depth: float,
 ) -> TangentForce:
     """Force of the tooth contact, its tangent, and its stored energy.
 
@@ -44,9 +45,11 @@ def tooth_force(
     deviation_knots, deviation : ndarray, shapes (m + 1,), (m, 4)
         Knots and cubic coefficients of a pair's profile deviation [m].
     damping : float
-        Damping coefficient [N s/m] while any pair touches.
+        Damping coefficient [N s/m] of a mesh that is pressed together by ``damping_depth`` or more.
     pitch_gaps : ndarray, shape (h,)
         What pitch deviations add to the gap of the pair that enters at phase n, at n mod h [m]; empty for none.
+    damping_depth : float
+        Compression of the deepest pair [m] up to which the damping fades in; 0 for all of it at first touch.
 
     Returns
     -------
@@ -69,7 +72,7 @@ def tooth_force(
     intervals = stiffness.shape[0]
     width = contact_ratio / intervals
     force, tangent, energy, slope = 0.0, 0.0, 0.0, 0.0
-    touching = 0
+    touching, deepest = 0, 0.0
     while position < contact_ratio:
         low, high = 0, deviation_knots.size - 1
         while high - low > 1:
@@ -95,10 +98,14 @@ def tooth_force(
             energy += 0.5 * k * approach * approach
             slope += 0.5 * k_slope / width * approach * approach - k * approach * gap_slope / span
             touching += 1
+            deepest = max(deepest, approach)
         position += 1.0
         number -= 1
     if touching == 0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    if deepest < damping_depth:
+        tangent += damping * rate / damping_depth
+        damping *= deepest / damping_depth
     return force + damping * rate, tangent, damping, energy, slope, touching
 
 
@@ -113,13 +120,14 @@ def tooth_force_history(
     deviation: FloatArray,
     damping: float,
     pitch_gaps: FloatArray,
+    damping_depth: float,
 ) -> FloatArray:
     """`tooth_force` at every sample of a history.
 
     Parameters
     ----------
     phase, compression, rate : ndarray, shape (t,)
-    contact_ratio, stiffness, deviation_knots, deviation, damping, pitch_gaps
+    contact_ratio, stiffness, deviation_knots, deviation, damping, pitch_gaps, damping_depth
         As for `tooth_force`.
 
     Returns
@@ -139,6 +147,7 @@ def tooth_force_history(
             deviation,
             damping,
             pitch_gaps,
+            damping_depth,
         )
         history[i, 0], history[i, 1], history[i, 2] = force, tangent, viscous
         history[i, 3], history[i, 4], history[i, 5] = energy, slope, touching

@@ -4,12 +4,14 @@ At phase ``p`` (mesh periods of the driver) the pairs in contact are at ``s_j = 
 a stiffness ``k(s)`` and a profile deviation ``d(s) >= 0``, the gap that tip relief leaves it.  With the
 compression ``delta`` of the mesh along the line of action and its rate ``v``:
 
-    F = sum_j k(s_j) max(0, delta - d(s_j)) + c v [some pair touches]
+    F = sum_j k(s_j) max(0, delta - d(s_j)) + c r v,    r = min(1, max_j(delta - d(s_j)) / depth)
     U = sum_j 1/2 k(s_j) max(0, delta - d(s_j))^2
 
-``dU/d delta = F - c v``; the teeth's turning does the work ``dU/dp`` per mesh period on the contact besides
-(the parametric power ``dU/dp * dp/dt``), which an energy balance of a prescribed speed has to carry.
-A pair never pulls; the whole mesh may separate, and returns through the same law.
+The damping fades in over the first ``depth`` of compression: full at first touch, the force would jump at every
+impact, and would pull just before the teeth part.  ``dU/d delta = F - c r v``; the teeth's turning does the work
+``dU/dp`` per mesh period on the contact besides (the parametric power ``dU/dp * dp/dt``), which an energy balance
+of a prescribed speed has to carry.
+The springs never pull; the whole mesh may separate, and returns through the same law.
 
 Pitch deviations add a gap ``f_n`` to the pair that enters at phase n, so to the pair j at phase p the gap of
 ``n = floor(p) - j``: ``d(s_j) + f_n`` then stands for ``d(s_j)`` above (:mod:`coupling.gears.pitch_gaps`).  It is
@@ -40,7 +42,7 @@ from coupling.gears.pitch_gaps import back_flank_pitch_gaps, pitch_gaps
 from coupling.gears.stiffness_models import StiffnessModel
 
 FloatArray = npt.NDArray[np.float64]
-KernelArguments = tuple[float, FloatArray, FloatArray, FloatArray, float, FloatArray]
+KernelArguments = tuple[float, FloatArray, FloatArray, FloatArray, float, FloatArray, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,12 +80,14 @@ class ToothContact:
     deviation : PiecewiseCubic
         Gap of one pair [m] over [0, contact_ratio], any knots.
     damping : float
-        Damping coefficient while the mesh touches [N s/m].
+        Damping coefficient while the mesh is pressed together [N s/m].
     back_flank_offset : float
         Phase of the idle flanks, see `GearPairGeometry.back_flank_offset`.
     pitch_gaps, back_pitch_gaps : ndarray, shape (h,)
         What pitch deviations add to the gap of the pair that enters at phase n, at n mod h [m], on the working and
         on the idle flanks; empty for none.
+    damping_depth : float
+        Compression up to which the damping fades in [m]; 0 for all of it at first touch.
     """
 
     contact_ratio: float
@@ -93,12 +97,15 @@ class ToothContact:
     back_flank_offset: float = 0.0
     pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
     back_pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
+    damping_depth: float = 0.0
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
             raise GearError(f"tooth contact: contact_ratio must be at least 1, got {self.contact_ratio!r}")
         if not (math.isfinite(self.damping) and self.damping >= 0.0):
             raise GearError(f"tooth contact: damping must be at least 0 N s/m, got {self.damping!r}")
+        if not (math.isfinite(self.damping_depth) and self.damping_depth >= 0.0):
+            raise GearError(f"tooth contact: damping_depth must be at least 0 m, got {self.damping_depth!r}")
         for name, curve in (("stiffness", self.stiffness), ("deviation", self.deviation)):
             ends = curve.knots[[0, -1]]
             if not np.allclose(ends, [0.0, self.contact_ratio], rtol=1e-12, atol=1e-12):
@@ -125,6 +132,7 @@ class ToothContact:
             np.ascontiguousarray(self.deviation.coefficients, dtype=np.float64),
             float(self.damping),
             np.ascontiguousarray(self.pitch_gaps, dtype=np.float64),
+            float(self.damping_depth),
         )
 
     @property
@@ -147,15 +155,15 @@ class ToothContact:
         """Phases in [0, 1) where a pair enters (0) or leaves, ascending.
 
         Empty for a mesh that is one unchanging number of pairs, i.e. a whole contact ratio with a stiffness
-        and a deviation that join up at the period's ends, and no pitch deviations.
+        and a deviation that join up at the period's ends in value and slope, and no pitch deviations.
         """
         leaving = self.contact_ratio % 1.0
         if leaving > 1e-12 and 1.0 - leaving > 1e-12:
             return (0.0, leaving)
-        ends = np.array([0.0, self.contact_ratio])
-        stiffness, deviation = self.stiffness(ends), self.deviation(ends)
-        steady = math.isclose(stiffness[0], stiffness[1], rel_tol=1e-9) and math.isclose(
-            deviation[0], deviation[1], abs_tol=1e-15
+        steady = all(
+            math.isclose(*curve(np.array([0.0, self.contact_ratio]), derivative), rel_tol=1e-9, abs_tol=floor)
+            for derivative in (0, 1)
+            for curve, floor in ((self.stiffness, 1e-9 * self.stiffness.mean), (self.deviation, 1e-15))
         )
         return () if steady and not self.pitch_gaps.size else (0.0,)
 
@@ -182,9 +190,9 @@ class ToothContact:
             return self
         return replace(self, pitch_gaps=self.back_pitch_gaps, back_pitch_gaps=self.pitch_gaps)
 
-    def with_damping(self, damping: float) -> ToothContact:
-        """The same contact with another damping coefficient [N s/m]."""
-        return replace(self, damping=damping)
+    def with_damping(self, damping: float, depth: float = 0.0) -> ToothContact:
+        """The same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
+        return replace(self, damping=damping, damping_depth=depth)
 
     def pairs(self, phases: npt.ArrayLike) -> PairStates:
         """Where the pairs are at `phases` (n,), and how stiff and how relieved they are."""

@@ -16,6 +16,9 @@ from gearwhine.stages.build import build_gear, build_rotor, gear_inertia
 
 FloatArray = npt.NDArray[np.float64]
 
+# The mesh's damping is all there from this part of the mean compression on.
+_FADING = 0.1
+
 
 @dataclass(frozen=True)
 class SolvedPair:
@@ -57,8 +60,9 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
         progress(f"gear pair {pair.driver} -> {pair.driven}")
         geometry = pair_geometry(case, pair)
         contact = room.tooth_contact(geometry, _model(pair, number))
-        contact = contact.with_damping(_damping(case, pair, contact))
         force = abs(torque) / geometry.driver.base_radius
+        depth = _FADING * force / contact.mean_stiffness
+        contact = contact.with_damping(_damping(case, pair, contact), depth)
         static = room.static_transmission_error(contact, force)
         solved.append(SolvedPair(pair, geometry, contact, static, frequency))
     return tuple(solved)

@@ -53,8 +53,8 @@ Published = Callable[..., None]
 
 TURBO_GENERATOR = "Rao, Shiau & Chang (1998), turbo-generator of two geared shafts"
 REMARK = (
-    "Printed with one beam element per span, which is coarse: ours, exact in the shafts, must lie below, and does. The "
-    "values beside ours were computed apart from this toolkit with eight of ROSS's elements per span."
+    "Printed with one beam element per span, which is coarse: ours, from exact shaft modes, lie below, as they must. "
+    "The values beside ours were computed apart from this toolkit with eight of ROSS's elements per span."
 )
 BRANCH = "Friswell, Penny, Garvey & Lees (2010), torsion of a geared branch"
 

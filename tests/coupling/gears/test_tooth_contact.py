@@ -118,7 +118,7 @@ def test_square_mesh_with_a_printed_contact_ratio() -> None:
 
 def test_integers_compile_no_second_kernel() -> None:
     kernel_arguments = replace(CONTACT, damping=120).kernel_arguments
-    assert [type(value) for value in kernel_arguments] == [float, *[np.ndarray] * 3, float, np.ndarray]
+    assert [type(value) for value in kernel_arguments] == [float, *[np.ndarray] * 3, float, np.ndarray, float]
 
 
 def test_whole_mesh_table_steps_where_its_ends_differ() -> None:
@@ -203,3 +203,20 @@ def test_malformed_contacts_say_what_is_wrong(changes: dict[str, object], words:
 def test_the_package_loads_without_a_compiler() -> None:
     check = "import sys, coupling.gears; sys.exit(bool({'numba', 'gmsh', 'vtk', 'matplotlib'} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", check], check=False).returncode == 0
+
+
+def test_damping_fades_in_over_its_depth() -> None:
+    depth, rate, phase = 4e-6, 0.03, 0.8  # one pair in contact, beyond the reliefs
+    fading = CONTACT.with_damping(CONTACT.damping, depth).kernel_arguments
+    elastic = CONTACT.with_damping(0.0).kernel_arguments
+    gap = float(CONTACT.pairs(phase).deviation.min())
+    for part, share in ((0.0, 0.0), (1e-9, 1e-9), (0.25, 0.25), (1.0, 1.0), (3.0, 1.0)):
+        delta = gap + part * depth
+        viscous = tooth_force(phase, delta, rate, *fading)[0] - tooth_force(phase, delta, rate, *elastic)[0]
+        assert viscous == pytest.approx(share * CONTACT.damping * rate, rel=1e-6, abs=1e-9)
+    # Its tangent while it fades.
+    delta, step = gap + 0.4 * depth, 1e-11
+    _, tangent, damping, *_ = tooth_force(phase, delta, rate, *fading)
+    ahead, behind = (tooth_force(phase, delta + side * step, rate, *fading)[0] for side in (1.0, -1.0))
+    assert tangent == pytest.approx((ahead - behind) / (2 * step), rel=1e-4)
+    assert damping == pytest.approx(0.4 * CONTACT.damping)
