@@ -8,7 +8,7 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
-PIP    := $(BIN)/pip --disable-pip-version-check --quiet
+PIP    := $(BIN)/pip --disable-pip-version-check -qq
 OUT    ?= results/nasa-gear-noise-rig
 
 # Two cores are the rule; BLAS threads on top of worker processes cost far more than they give.
@@ -66,7 +66,7 @@ format: install-dev
 constraints:
 	rm -rf .venv-constraints
 	$(PYTHON) -m venv .venv-constraints
-	.venv-constraints/bin/pip --disable-pip-version-check --quiet install -e .[dev]
+	.venv-constraints/bin/pip --disable-pip-version-check -qq install -e .[dev]
 	{ sed -n '/^#/p' constraints.txt; .venv-constraints/bin/pip freeze --exclude-editable; } > constraints.new
 	mv constraints.new constraints.txt
 	rm -rf .venv-constraints

@@ -52,8 +52,8 @@ def test_dominant_modes_of_the_housing(published: Callable[..., None], remark: C
     agreement = "agree" if comparison.measures_agree else "do not all agree"
     remark(
         TABLE_II,
-        "The eight are the model's dominant modes, paired in order of frequency. The logarithm of the eighth's strength "
-        f"over the ninth's is {comparison.gap:.4f}, {verdict}; the three measures of dominance {agreement}.",
+        "The eight are the model's dominant modes, paired in order of frequency. The logarithm of the eighth strength "
+        f"over the ninth is {comparison.gap:.4f}, {verdict}; the three measures of dominance {agreement}.",
     )
     for number, (measured, pair) in enumerate(zip(MEASURED_HZ, comparison.pairs, strict=True), start=1):
         assert pair.measured == pytest.approx(2.0 * np.pi * measured)
