@@ -22,100 +22,19 @@ undamped linear system.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from coupling.gears.kernels import tooth_force
+from coupling.contact_kernels import compression_of, contact_state, law_of, settle
+from coupling.kernel_arrays import Contacts, Dynamics, Outputs, Samples, Segments, StepMatrices
 
 FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
-_NEWTON_STEPS = 30
 # Contacts are evaluated this part of a segment inside its ends, so that a pair that enters or leaves exactly
 # there counts on one side only.
 _INSIDE = 1e-7
-
-
-class StepMatrices(NamedTuple):
-    """What the step needs for each of m step sizes; n coordinates, c contacts, h harmonic loads."""
-
-    size: FloatArray  # (m,) h [s]
-    propagator: FloatArray  # (m, 2 n, n) Pᵀ: rows for q*, then for v*
-    constant: FloatArray  # (m, n) S⁻¹ F of the constant load
-    cosine: FloatArray  # (m, h, n) S⁻¹ Re F_w
-    sine: FloatArray  # (m, h, n) S⁻¹ Im F_w
-    contact: FloatArray  # (m, c, n) Wᵀ
-    flexibility: FloatArray  # (m, c, c) H
-
-
-class Dynamics(NamedTuple):
-    """The system itself."""
-
-    stiffness: FloatArray  # (n, n) Kᵀ
-    damping: FloatArray  # (n, n) Cᵀ
-    skew: FloatArray  # (n, n) (K - Kᵀ) / 2, transposed
-    has_skew: bool
-    loss_diagonal: FloatArray  # (n,) symmetric part of C: diagonal ...
-    loss_rows: FloatArray  # (r, n) ... plus rows of low rank ...
-    loss_weights: FloatArray  # (r,) ... with these weights
-    constant: FloatArray  # (n,) F
-    frequency: FloatArray  # (h,) w [rad/s]
-    cosine: FloatArray  # (h, n) Re F_w
-    sine: FloatArray  # (h, n) Im F_w
-    beta: float
-    gamma: float
-
-
-class Contacts(NamedTuple):
-    """The tooth contacts, padded to common lengths."""
-
-    direction: FloatArray  # (c, n) Dᵀ
-    ratio: FloatArray  # (c,) contact ratio
-    stiffness: FloatArray  # (c, intervals, 4)
-    intervals: IntArray  # (c,)
-    knots: FloatArray  # (c, pieces + 1)
-    deviation: FloatArray  # (c, pieces, 4)
-    pieces: IntArray  # (c,)
-    damping: FloatArray  # (c,)
-    damping_depth: FloatArray  # (c,)
-    phase: FloatArray  # (c,)
-    rate: FloatArray  # (c,)
-    errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
-    clearance: FloatArray  # (c,)
-    pitch_gaps: FloatArray  # (c, pairs)
-    pairs: IntArray  # (c,) pairs of teeth in a hunting period; 0 without pitch deviations
-
-
-class Segments(NamedTuple):
-    """Stretches of time between events, each cut into equal steps."""
-
-    start: FloatArray  # (s,)
-    end: FloatArray  # (s,)
-    steps: IntArray  # (s,)
-    kind: IntArray  # (s,) which step matrices
-
-
-class Outputs(NamedTuple):
-    """What is written at each sample."""
-
-    displacement: FloatArray  # (k0, n)
-    velocity: FloatArray  # (k1, n)
-    acceleration: FloatArray  # (k2, n)
-
-
-class Samples(NamedTuple):
-    """Where it is written; row i is the time first + i * interval."""
-
-    first: float
-    interval: float
-    displacement: FloatArray  # (samples, k0)
-    velocity: FloatArray  # (samples, k1)
-    acceleration: FloatArray  # (samples, k2)
-    compression: FloatArray  # (samples, c)
-    force: FloatArray  # (samples, c)
 
 
 @njit(cache=True, nogil=True)
@@ -178,8 +97,8 @@ def march(
         inside = _INSIDE * (t1 - t0)
         # The teeth change at the event: forces, powers and energy start afresh from the new set of pairs.
         for i in range(c):
-            delta[i], rate[i] = _compression(contacts, i, q, v, t0 + inside)
-        fresh = _contact_state(contacts, t0 + inside, delta, rate, force)
+            delta[i], rate[i] = compression_of(contacts, i, q, v, t0 + inside)
+        fresh = contact_state(contacts, t0 + inside, delta, rate, force)
         totals[2] += fresh - stored
         stored = fresh
         _acceleration(dynamics, contacts, q, v, t0, force, a)
@@ -204,7 +123,7 @@ def march(
             for i in range(n):
                 q1[i] = start[i] + beta * h * h * after[i]
                 v1[i] = start[n + i] + gamma * h * after[i]
-            settled = _settle(contacts, q1, v1, seen, matrices.flexibility[kind], beta * h * h, gamma * h, force1)
+            settled = settle(contacts, q1, v1, seen, matrices.flexibility[kind], beta * h * h, gamma * h, force1)
             if not settled:
                 unsettled += 1
             for k in range(c):
@@ -215,8 +134,8 @@ def march(
                 v1[i] = start[n + i] + gamma * h * after[i]
 
             for k in range(c):
-                delta[k], rate[k] = _compression(contacts, k, q1, v1, seen)
-            stored = _contact_state(contacts, seen, delta, rate, force1)
+                delta[k], rate[k] = compression_of(contacts, k, q1, v1, seen)
+            stored = contact_state(contacts, seen, delta, rate, force1)
             _powers(dynamics, contacts, q1, v1, seen, delta, rate, force1, powers1)
             for k in range(3):
                 totals[k] += 0.5 * h * (powers[k] + powers1[k])
@@ -241,61 +160,6 @@ def march(
             for i in range(n):
                 before[i], a[i], q[i], v[i] = a[i], after[i], q1[i], v1[i]
     return next_sample, stored, curvature, acceleration, unsettled
-
-
-@njit(cache=True, nogil=True)
-def contact_energy(contacts: Contacts, q: FloatArray, v: FloatArray, time: float) -> float:
-    """Energy stored in the teeth at a time [J]."""
-    energy = 0.0
-    for k in range(contacts.ratio.size):
-        delta, rate = _compression(contacts, k, q, v, time)
-        energy += _law(contacts, k, time, delta, rate)[3]
-    return energy
-
-
-@njit(cache=True, nogil=True)
-def _compression(contacts: Contacts, k: int, q: FloatArray, v: FloatArray, time: float) -> tuple[float, float]:
-    """δ and δ' of a contact."""
-    delta, rate = -contacts.clearance[k], 0.0
-    for i in range(q.size):
-        delta += contacts.direction[k, i] * q[i]
-        rate += contacts.direction[k, i] * v[i]
-    for m in range(contacts.errors.shape[1]):
-        amplitude, w = contacts.errors[k, m, 0], contacts.errors[k, m, 1]
-        angle = w * time + contacts.errors[k, m, 2]
-        delta -= amplitude * math.cos(angle)
-        rate += amplitude * w * math.sin(angle)
-    return delta, rate
-
-
-@njit(cache=True, nogil=True)
-def _law(
-    contacts: Contacts, k: int, time: float, delta: float, rate: float
-) -> tuple[float, float, float, float, float, int]:
-    """The contact law of one contact; see :func:`coupling.gears.kernels.tooth_force`."""
-    return tooth_force(
-        contacts.phase[k] + contacts.rate[k] * time,
-        delta,
-        rate,
-        contacts.ratio[k],
-        contacts.stiffness[k, : contacts.intervals[k]],
-        contacts.knots[k, : contacts.pieces[k] + 1],
-        contacts.deviation[k, : contacts.pieces[k]],
-        contacts.damping[k],
-        contacts.pitch_gaps[k, : contacts.pairs[k]],
-        contacts.damping_depth[k],
-    )
-
-
-@njit(cache=True, nogil=True)
-def _contact_state(contacts: Contacts, time: float, delta: FloatArray, rate: FloatArray, force: FloatArray) -> float:
-    """Fill in the forces; returns the energy stored in the teeth."""
-    energy = 0.0
-    for k in range(force.size):
-        law = _law(contacts, k, time, delta[k], rate[k])
-        force[k] = law[0]
-        energy += law[3]
-    return energy
 
 
 @njit(cache=True, nogil=True)
@@ -360,82 +224,13 @@ def _powers(
             for i in range(n):
                 out[1] += v[i] * dynamics.skew[j, i] * q[j]
     for k in range(force.size):
-        law = _law(contacts, k, time, delta[k], rate[k])
+        law = law_of(contacts, k, time, delta[k], rate[k])
         error_rate = rate[k]
         for i in range(n):
             error_rate -= contacts.direction[k, i] * v[i]
         # δ' = d v - e', so what is left of δ' is -e'.
         out[2] += law[4] * contacts.rate[k] + force[k] * error_rate
         out[1] += law[2] * rate[k] * rate[k]
-
-
-@njit(cache=True, nogil=True)
-def _settle(
-    contacts: Contacts,
-    q: FloatArray,
-    v: FloatArray,
-    time: float,
-    flexibility: FloatArray,
-    by_displacement: float,
-    by_velocity: float,
-    force: FloatArray,
-) -> bool:
-    """Contact forces from the motion without contact, by Newton's method on the compressions.
-
-    The law is piecewise linear, so the method ends after a few steps with the right set of touching pairs.
-    """
-    c = force.size
-    free, free_rate = np.zeros(c), np.zeros(c)
-    delta = np.zeros(c)
-    stiff = np.zeros(c)
-    for k in range(c):
-        free[k], free_rate[k] = _compression(contacts, k, q, v, time)
-        delta[k] = free[k]
-    for _ in range(_NEWTON_STEPS):
-        for k in range(c):
-            rate = free_rate[k] + by_velocity / by_displacement * (delta[k] - free[k])
-            law = _law(contacts, k, time, delta[k], rate)
-            force[k] = law[0]
-            stiff[k] = law[1] + law[2] * by_velocity / by_displacement
-        jacobian, residual = np.eye(c), np.zeros(c)
-        largest, scale = 0.0, 1e-300
-        for k in range(c):
-            residual[k] = free[k] - delta[k]
-            for j in range(c):
-                residual[k] -= by_displacement * flexibility[k, j] * force[j]
-                jacobian[k, j] += by_displacement * flexibility[k, j] * stiff[j]
-            scale = max(scale, abs(free[k]) + abs(delta[k]))
-            largest = max(largest, abs(residual[k]))
-        if largest <= 1e-13 * scale:
-            return True
-        _solve_in_place(jacobian, residual)
-        for k in range(c):
-            delta[k] += residual[k]
-    return False
-
-
-@njit(cache=True, nogil=True)
-def _solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
-    """Gaussian elimination with row exchanges for the few contacts; `right` becomes the solution."""
-    n = right.size
-    for column in range(n):
-        pivot = column
-        for row in range(column + 1, n):
-            if abs(matrix[row, column]) > abs(matrix[pivot, column]):
-                pivot = row
-        if pivot != column:
-            for j in range(n):
-                matrix[column, j], matrix[pivot, j] = matrix[pivot, j], matrix[column, j]
-            right[column], right[pivot] = right[pivot], right[column]
-        for row in range(column + 1, n):
-            factor = matrix[row, column] / matrix[column, column]
-            for j in range(column, n):
-                matrix[row, j] -= factor * matrix[column, j]
-            right[row] -= factor * right[column]
-    for row in range(n - 1, -1, -1):
-        for j in range(row + 1, n):
-            right[row] -= matrix[row, j] * right[j]
-        right[row] /= matrix[row, row]
 
 
 @njit(cache=True, nogil=True)
@@ -470,9 +265,9 @@ def _sample(
             x[i] = old * q[i] + slope_old * v[i] + new * q1[i] + slope_new * v1[i]
             y[i] = old * v[i] + slope_old * a[i] + new * v1[i] + slope_new * a1[i]
         for k in range(contacts.ratio.size):
-            delta, rate = _compression(contacts, k, x, y, time)
+            delta, rate = compression_of(contacts, k, x, y, time)
             samples.compression[number, k] = delta
-            samples.force[number, k] = _law(contacts, k, time, delta, rate)[0]
+            samples.force[number, k] = law_of(contacts, k, time, delta, rate)[0]
         for k in range(outputs.displacement.shape[0]):
             samples.displacement[number, k] = np.sum(outputs.displacement[k] * x)
         for k in range(outputs.velocity.shape[0]):

@@ -1,14 +1,11 @@
-"""The coupled system as the plain arrays that the time-stepping kernels take.
-
-Importing this module imports numba.
-"""
+"""The coupled system as the plain arrays that the time-stepping kernels take."""
 
 from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from coupling.newmark import Contacts, Dynamics, Outputs, Samples, Segments, StepMatrices
+from coupling.kernel_arrays import Contacts, Dynamics, Outputs, Samples, Segments, StepMatrices
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]

@@ -13,17 +13,15 @@ and stretches are repeated with finer steps until it is below the tolerance.
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError, TransientError
 from coupling.statics import static_equilibrium
+from coupling.step import KernelArrays, StepCache, cut, empty_samples, kernel_arrays
 from coupling.system import CoupledSystem
-
-if TYPE_CHECKING:
-    from coupling.step import KernelArrays
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -190,8 +188,8 @@ def simulate(
     TransientError
         Where the motion diverges, the step would have to be absurdly small, or the energies do not balance.
     """
-    from coupling.newmark import contact_energy, march
-    from coupling.step import StepCache, cut, empty_samples, kernel_arrays
+    from coupling.contact_kernels import contact_energy
+    from coupling.newmark import march
 
     arrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)
     cache = StepCache(system, settings.beta, settings.gamma)
@@ -295,7 +293,7 @@ class _State:
             self.q.copy(), self.v.copy(), self.sample, self.stored, self.totals.copy(), self.contact_totals.copy()
         )
 
-    def arguments(self, arrays: "KernelArrays", matrices: Any, segments: Any, samples: Any) -> tuple[Any, ...]:
+    def arguments(self, arrays: KernelArrays, matrices: Any, segments: Any, samples: Any) -> tuple[Any, ...]:
         head = (self.q, self.v, arrays.dynamics, arrays.contacts, matrices, segments, arrays.outputs, samples)
         return (*head, self.sample, self.stored, self.totals, self.contact_totals)
 
