@@ -17,6 +17,9 @@ export OPENBLAS_NUM_THREADS ?= 2
 
 .PHONY: demo test lint types unit validation install install-dev system format constraints clean
 
+# One environment: never two installations into it at once, whatever -j says.
+.NOTPARALLEL:
+
 demo: install
 	$(BIN)/gearwhine run nasa-gear-noise-rig -o $(OUT)
 
@@ -36,13 +39,13 @@ install: $(VENV)/.installed system
 install-dev: $(VENV)/.installed-dev system
 
 # gmsh and VTK need libraries from the system: this says which, and installs them where it may.
-system: | $(BIN)/python
+system: | $(VENV)/.installed
 	@sh scripts/system_libraries.sh $(BIN)/python
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed; name one with: make PYTHON=python3.12"; exit 2; }
-	$(PYTHON) -m venv $(VENV)
+	$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 2; }
 
 $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
 	@echo "Installing (about a minute) ..."

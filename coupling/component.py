@@ -88,17 +88,20 @@ class RotorComponent(Component):
         Free-free, the rigid rotation first.
     start : float
         z of the rotor's left end [m].
+    mixture : ndarray, shape (m, m)
+        The plane's coordinates in terms of the planar modes, orthogonal: columns diagonalise the free shaft.
     """
 
     lateral: LateralModes
     torsional: TorsionalModes
     start: float
+    mixture: FloatArray
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
         row = np.zeros(self.size)
         m = len(self.lateral.frequencies)
-        row[axis * m : (axis + 1) * m] = self.lateral.evaluate(np.array([at]))[0][:, 0]
+        row[axis * m : (axis + 1) * m] = self.mixture.T @ self.lateral.evaluate(np.array([at]))[0][:, 0]
         return row
 
     def rotation(self, at: float) -> FloatArray:
@@ -155,9 +158,11 @@ def rotor_component(
     """A rotor from its planar and torsional modes, freed of the springs that its basis was found on.
 
     The planar modes are those at averaged support stiffness k̄ (TM-101442 Eq. 7). The springs come back with the
-    bearings' connectors, so they are taken out here: K = diag(ω²) - Σ k̄ φ(z_b) φ(z_b)ᵀ in each plane, the
-    *compensation* of TM-104434 Eqs. 11 to 15. The gyroscopic coupling of the planes is +G in the x rows and -G in
-    the y rows, G_ij = ∫ φ'_i dI_p φ'_j, so that C + ΩG gives the terms G_v of Eqs. 1 and 2.
+    bearings' connectors, so they are taken out here, K = diag(ω²) - Σ k̄ φ(z_b) φ(z_b)ᵀ in each plane (the
+    *compensation* of TM-104434 Eqs. 11 to 15), and the same span is taken in coordinates that diagonalise K: the free
+    shaft's own. Its damping acts on these, so that it resists bending and twisting but no motion of the shaft as a
+    whole. The gyroscopic coupling of the planes is +G in the x rows and -G in the y rows, G_ij = ∫ φ'_i dI_p φ'_j, so
+    that C + ΩG gives the terms G_v of Eqs. 1 and 2.
 
     Parameters
     ----------
@@ -167,25 +172,26 @@ def rotor_component(
     start : float
         z of the rotor's left end [m].
     damping_ratio : float
-        Of the shaft's own material and fits, on every basis mode.
+        Of the shaft's own material and fits, on every mode of the free shaft.
     """
     m, t = len(lateral.frequencies), len(torsional.frequencies)
     n = 2 * m + t
-    plane = np.diag(lateral.frequencies**2) - lateral.support_matrix
-    omega = np.concatenate([lateral.frequencies, lateral.frequencies, torsional.frequencies])
-    stiffness_matrix = np.zeros((n, n))
-    stiffness_matrix[:m, :m] = stiffness_matrix[m : 2 * m, m : 2 * m] = plane
-    stiffness_matrix[2 * m :, 2 * m :] = np.diag(torsional.frequencies**2)
+    values, mixture = np.linalg.eigh(np.diag(lateral.frequencies**2) - lateral.support_matrix)
+    # Motions of the whole shaft have no stiffness; what rounding leaves of it is taken off.
+    values = np.where(np.abs(values) < 1e-9 * values[-1], 0.0, np.maximum(values, 0.0))
+    squared = np.concatenate([values, values, torsional.frequencies**2])
     gyroscopic = np.zeros((n, n))
-    gyroscopic[:m, m : 2 * m] = lateral.polar_inertia_matrix
-    gyroscopic[m : 2 * m, :m] = -lateral.polar_inertia_matrix
+    polar = mixture.T @ lateral.polar_inertia_matrix @ mixture
+    gyroscopic[:m, m : 2 * m] = polar
+    gyroscopic[m : 2 * m, :m] = -polar
     return RotorComponent(
         name=name,
         kinds=("rotor",) * (2 * m) + ("torsion",) * t,
-        stiffness=stiffness_matrix,
-        damping=np.diag(2.0 * damping_ratio * omega),
+        stiffness=np.diag(squared),
+        damping=np.diag(2.0 * damping_ratio * np.sqrt(squared)),
         gyroscopic=gyroscopic,
         lateral=lateral,
         torsional=torsional,
         start=start,
+        mixture=mixture,
     )

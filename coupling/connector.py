@@ -64,6 +64,8 @@ class ContactConnector:
         a [m], w [rad/s] and c [rad] of each harmonic of the runout error.
     clearance : float
         Gap to close before the flanks touch [m]: 0 for the drive flanks, the backlash for the back flanks.
+    drives : bool
+        Whether the mean load presses these flanks together.
     """
 
     name: str
@@ -73,6 +75,7 @@ class ContactConnector:
     rate: float
     errors: FloatArray
     clearance: float = 0.0
+    drives: bool = True
 
     def event_times(self, start: float, end: float) -> FloatArray:
         """Times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].

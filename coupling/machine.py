@@ -166,7 +166,11 @@ def couple(
         if mesh.backlash is not None:
             direction, errors = _flank(components, mesh, rotor_named, speeds, -sense)
             law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset
-            back.append(ContactConnector(f"{name}, back", direction, law_of_back, offset, -rate, errors, mesh.backlash))
+            back.append(
+                ContactConnector(
+                    f"{name}, back", direction, law_of_back, offset, -rate, errors, mesh.backlash, drives=False
+                )
+            )
 
     load = np.zeros(size)
     for torque in torques:

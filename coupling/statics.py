@@ -9,7 +9,7 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_RIGID = 1e-9  # stiffness below this part of the largest is a motion that nothing resists
+_RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
 _STEPS = 60
 
 
@@ -41,17 +41,19 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
         if np.any(np.abs(driven) > 1e-6 * scale):
             raise CouplingError(
                 "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
-                "rotation; check the torques in and out against the gear ratios"
+                "rotation or a housing without supports; check the torques in and out against the gear ratios, and the "
+                "supports' stiffness"
             )
     penalty = float(values[-1]) * rigid @ rigid.T
     # Newton's method starts from teeth that touch: deviations and runout may hold them further apart than the load
     # presses, and from open teeth it would stop at a motion that nothing holds.
     closing = np.zeros(system.size)
     for contact in system.contacts:
-        if contact.clearance == 0.0:
+        if contact.drives:
             first_touch = float(contact.contact.pairs(_phase(contact, time)).deviation.min())
             closing += contact.contact.mean_stiffness * (first_touch + _error(contact, time)) * contact.direction
     q: FloatArray = np.linalg.solve(system.mean_stiffness() + penalty, system.load + closing)
+    pressing = float(np.linalg.norm(system.load) + np.linalg.norm(closing)) or 1e-300
     for _ in range(_STEPS):
         residual = system.load - system.stiffness @ q - penalty @ q
         tangent = system.stiffness + penalty
@@ -61,10 +63,9 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
             force, slope = tooth_force(_phase(contact, time), compression, 0.0, *law)[:2]
             residual = residual - force * contact.direction
             tangent = tangent + slope * np.outer(contact.direction, contact.direction)
-        step = np.linalg.lstsq(tangent, residual, rcond=1e-13)[0]
-        q = q + step
-        if np.abs(step).max() <= 1e-12 * max(np.abs(q).max(), 1e-300):
+        if np.linalg.norm(residual) <= 1e-10 * pressing:
             return q
+        q = q + np.linalg.lstsq(tangent, residual, rcond=1e-15)[0]
     raise TransientError(
         f"no static equilibrium of the teeth after {_STEPS} Newton steps; the torque may be too small to close the mesh"
     )

@@ -106,8 +106,8 @@ class CoupledSystem:
         return self.damping + self._contact_sum([c.contact.damping for c in self.contacts])
 
     def _contact_sum(self, values: Sequence[float]) -> FloatArray:
-        """Σ value d dᵀ over the contacts that touch at rest; back flanks stand apart."""
-        touching = np.array([v * (c.clearance == 0.0) for v, c in zip(values, self.contacts, strict=True)])
+        """Σ value d dᵀ over the flanks that drive."""
+        touching = np.array([v * c.drives for v, c in zip(values, self.contacts, strict=True)])
         return np.asarray((self.contact_directions * touching) @ self.contact_directions.T)
 
     def _blocks(self, matrices: Sequence[FloatArray]) -> FloatArray:

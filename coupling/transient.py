@@ -32,6 +32,7 @@ _SAME_TIME = 1e-6  # part of the coarsest step within which two events are one
 _FINEST_LEVEL = 24  # 4096 times finer than the coarsest step
 _ROUNDING = 1e-9  # part of the energy held that a balance cannot speak of
 ENERGY_BOUND = 1e-2
+_RUNAWAY = 1e4  # times the motion at rest: beyond, the machine is unstable, not lively
 
 
 @dataclass(frozen=True)
@@ -211,6 +212,10 @@ def simulate(
     position, level, steps, rejected, unsettled = 0, 0, 0, 0, 0
     worst, smallest = 0.0, base
 
+    # Nothing that stays together moves so much further than its loads press it.
+    rest = np.abs(state.q).max() + np.abs(_resting(system)).max() + float(np.linalg.norm(state.v)) * settings.duration
+    bound = _RUNAWAY * float(rest) if rest > 0.0 else np.inf
+
     clock = time.perf_counter()
     while position < len(bounds) - 1:
         last = min(position + _SEGMENTS_PER_CHUNK, len(bounds) - 1)
@@ -224,7 +229,7 @@ def simulate(
             *trial.arguments(arrays, cache.matrices(), segments, samples)
         )
         n_steps = int(segments.steps.sum())
-        if not np.isfinite(curvature) or not np.isfinite(trial.q).all():
+        if not np.isfinite(curvature) or not float(np.abs(trial.q).max()) < bound:
             raise TransientError(
                 f"the motion diverged after t = {bounds[position]:.6g} s; the linear part may be unstable: look for "
                 "negative damping ratios among the coupled modes"
@@ -296,6 +301,13 @@ class _State:
     def arguments(self, arrays: KernelArrays, matrices: Any, segments: Any, samples: Any) -> tuple[Any, ...]:
         head = (self.q, self.v, arrays.dynamics, arrays.contacts, matrices, segments, arrays.outputs, samples)
         return (*head, self.sample, self.stored, self.totals, self.contact_totals)
+
+
+def _resting(system: CoupledSystem) -> FloatArray:
+    """Coordinates that the harmonic loads' amplitudes would hold if they stood still, shape (n,)."""
+    loads = sum((np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size))
+    stiffness = np.abs(np.diag(system.mean_stiffness()))
+    return np.asarray(loads / np.where(stiffness > 0.0, stiffness, np.inf))
 
 
 def _spring_energy(system: CoupledSystem, q: FloatArray, v: FloatArray) -> float:

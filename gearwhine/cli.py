@@ -4,6 +4,7 @@ Every command is a few lines: read the case, run the stages, hand the result on.
 imported where it is used, so that ``--help`` answers at once.
 """
 
+import os
 import signal
 import sys
 import threading
@@ -239,11 +240,25 @@ def _on_case(
     from gearwhine.progress import shown
 
     loaded = load_case(name, common.settings)
+    if common.output is not None:
+        _check_folder(common.output)
     for warning in loaded.warnings:
         sys.stderr.write(f"warning: {warning}\n")
     with shown(quiet=common.quiet) as progress:
         document = work(loaded.case, progress)
     _hand_over(document, common, show)
+
+
+def _check_folder(folder: Path) -> None:
+    """Refuse a place where no results can go before the work begins, and make nothing yet."""
+    from gearwhine.case import CaseError, Problem
+
+    place = folder
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    if not place.is_dir() or not os.access(place, os.W_OK):
+        what = "is a file" if place.is_file() else "cannot be written to"
+        raise CaseError([Problem("--output", str(folder), f"a folder for the results; {place} {what}")])
 
 
 def _hand_over(document: dict[str, Any], common: Common, show: Callable[[dict[str, Any]], None]) -> None:

@@ -14,11 +14,19 @@ from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import transient as transient_stage
 
+_MOST_MODES = 5000
+
 
 def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
     """Everything that the case asks for, and the results folder."""
     from gearwhine import figures, results
+    from housing import pictures
 
+    if case.transient is not None:
+        require(case, "rotor", "operation", command="run")
+    if case.housing is not None:
+        # Found out before the work, not after it.
+        pictures.load_pyvista()
     start = time.perf_counter()
     seconds: dict[str, float] = {}
     document: dict[str, Any] = {"title": case.title}
@@ -53,7 +61,9 @@ def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
         timed("system", begin)
         if case.transient is not None:
             begin = time.perf_counter()
-            transient = transient_stage.solve_transient(case, machine, mesh_frequencies(case), progress)
+            transient = transient_stage.solve_transient(
+                case, machine, mesh_frequencies(case), progress, housing=housing
+            )
             document |= transient_stage.transient_document(case, transient)
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
@@ -155,7 +165,10 @@ def render_case(case: Case, folder: Path, which: str, view: str, progress: Progr
     """Pictures of mode shapes."""
     if which not in ("dominant", "all"):
         parse_numbers(which, None)
-    housing = housing_stage.solve_housing(case, progress)
+    from housing import pictures
+
+    pictures.load_pyvista()
+    housing = housing_stage.solve_housing(case, progress, command="render")
     comparison = None
     if case.measured is not None and housing.strengths is not None:
         comparison = housing_stage.compare_housing(case, housing)
@@ -197,6 +210,8 @@ def parse_numbers(text: str, count: int | None) -> list[int]:
         first, _, last = part.partition("-")
         if not first.strip().isdecimal() or (last and not last.strip().isdecimal()):
             raise CaseError([Problem("--modes", text, "'dominant', 'all', or numbers such as '1,4,9' or '1-6'")])
+        if int(last or first) > _MOST_MODES:
+            raise CaseError([Problem("--modes", text, f"mode numbers of at most {_MOST_MODES}")])
         numbers += range(int(first), int(last or first) + 1)
     missing = [number for number in numbers if number < 1 or (count is not None and number > count)]
     if missing or not numbers:

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from gearwhine.case import load_case
+from gearwhine.failures import run_script
 from gearwhine.output import staging
 from gearwhine.results import write_shapes
 from gearwhine.stages.housing import modes_document, solve_housing
@@ -32,4 +33,4 @@ def main(case_name: str, folder: str, *changes: str) -> None:
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__)
-    main(*sys.argv[1:])
+    run_script(main, sys.argv[1:])

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from gearwhine.case import load_case
+from gearwhine.failures import run_script
 from gearwhine.output import staging
 from gearwhine.stages.housing import solve_housing
 from housing.pictures import render_gallery, render_modes
@@ -26,4 +27,4 @@ def main(case_name: str, folder: str, *changes: str) -> None:
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__)
-    main(*sys.argv[1:])
+    run_script(main, sys.argv[1:])

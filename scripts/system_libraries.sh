@@ -35,8 +35,8 @@ if command -v apt-get >/dev/null 2>&1; then
     fi
     if [ "$as_root" != none ]; then
         echo "Installing system libraries: $packages"
-        $as_root apt-get update -qq && \
-            DEBIAN_FRONTEND=noninteractive $as_root apt-get install -y -qq --no-install-recommends $packages >/dev/null
+        $as_root apt-get update -qq # fails for any broken source, so the installation is tried all the same
+        $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $packages >/dev/null
         packages=$(missing) || exit 1
         [ -n "$packages" ] || exit 0
     fi

@@ -56,7 +56,8 @@ def tooth_force(
     force : float
         Pushing the gears apart [N].
     stiffness_tangent, damping_tangent : float
-        Its derivatives by compression [N/m] and rate [N s/m].
+        Its derivatives by compression [N/m] and rate [N s/m]; where the force is held at zero, 0 and the
+        coefficient by which the springs' power is lost.
     energy : float
         Stored in the pairs [J].
     energy_phase_slope : float
@@ -106,6 +107,9 @@ def tooth_force(
     if deepest < damping_depth:
         tangent += damping * rate / damping_depth
         damping *= deepest / damping_depth
+    if force + damping * rate < 0.0:
+        # Teeth do not pull: the damping takes no more than the springs give, and all of that.
+        return 0.0, 0.0, -force / rate, energy, slope, touching
     return force + damping * rate, tangent, damping, energy, slope, touching
 
 

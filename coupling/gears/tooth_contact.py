@@ -11,7 +11,8 @@ The damping fades in over the first ``depth`` of compression: full at first touc
 impact, and would pull just before the teeth part.  ``dU/d delta = F - c r v``; the teeth's turning does the work
 ``dU/dp`` per mesh period on the contact besides (the parametric power ``dU/dp * dp/dt``), which an energy balance
 of a prescribed speed has to carry.
-The springs never pull; the whole mesh may separate, and returns through the same law.
+The mesh never pulls: where the damping would take F below zero, F is zero and the springs' power is lost.  The whole
+mesh may separate, and returns through the same law.
 
 Pitch deviations add a gap ``f_n`` to the pair that enters at phase n, so to the pair j at phase p the gap of
 ``n = floor(p) - j``: ``d(s_j) + f_n`` then stands for ``d(s_j)`` above (:mod:`coupling.gears.pitch_gaps`).  It is

@@ -18,6 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 
 # The mesh's damping is all there from this part of the mean compression on.
 _FADING = 0.1
+_HUNTING_POINTS = 60  # a mesh period, over the hunting period
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,9 @@ class SolvedPair:
     contact : coupling.gears.ToothContact
         With its damping.
     static : coupling.gears.StaticMesh
-        Over one mesh period.
+        Over one mesh period, the first.
+    hunting : coupling.gears.StaticMesh or None
+        Over the whole hunting period, where pitch deviations make the mesh periods differ.
     mesh_frequency : float or None
         [Hz]; None where the case gives no speed.
     """
@@ -41,6 +44,7 @@ class SolvedPair:
     geometry: room.GearPairGeometry
     contact: room.ToothContact
     static: room.StaticMesh
+    hunting: room.StaticMesh | None
     mesh_frequency: float | None
 
 
@@ -59,12 +63,16 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
     for number, (pair, torque, frequency) in enumerate(zip(case.gear_pair, torques, frequencies, strict=True)):
         progress(f"gear pair {pair.driver} -> {pair.driven}")
         geometry = pair_geometry(case, pair)
-        contact = room.tooth_contact(geometry, _model(pair, number))
         force = abs(torque) / geometry.driver.base_radius
+        contact = room.tooth_contact(geometry, _model(pair, number, geometry, force))
         depth = _FADING * force / contact.mean_stiffness
         contact = contact.with_damping(_damping(case, pair, contact), depth)
         static = room.static_transmission_error(contact, force)
-        solved.append(SolvedPair(pair, geometry, contact, static, frequency))
+        hunting = None
+        if contact.pitch_gaps.size:
+            phases = room.mesh_period_phases(contact, _HUNTING_POINTS, periods=contact.pitch_gaps.size)
+            hunting = room.static_transmission_error(contact, force, phases)
+        solved.append(SolvedPair(pair, geometry, contact, static, hunting, frequency))
     return tuple(solved)
 
 
@@ -102,6 +110,12 @@ def _pair_document(pair: SolvedPair) -> dict[str, Any]:
         "transmission_error_m": {
             "mean": pair.static.mean_transmission_error,
             "peak_to_peak": pair.static.peak_to_peak_transmission_error,
+            "over_hunting_period": None
+            if pair.hunting is None
+            else {
+                "mean": pair.hunting.mean_transmission_error,
+                "peak_to_peak": pair.hunting.peak_to_peak_transmission_error,
+            },
         },
         "roll_angle_rad": (2.0 * np.pi * phases / teeth).tolist(),
         "stiffness": stiffness.tolist(),
@@ -110,20 +124,28 @@ def _pair_document(pair: SolvedPair) -> dict[str, Any]:
     }
 
 
-def _model(pair: GivenPair, number: int) -> room.StiffnessModel:
+def _model(pair: GivenPair, number: int, geometry: room.GearPairGeometry, force: float) -> room.StiffnessModel:
     stiffness = pair.stiffness
     if stiffness.file is not None:
         position, values = _table(stiffness.file, f"gear_pair[{number}].stiffness.file")
         return room.stiffness_model("table", position=position, stiffness=values)
     if stiffness.value is not None:
         return room.stiffness_model(stiffness.model, value=stiffness.value)
+    if stiffness.model == "iso6336" and force > 0.0:
+        # F_t / b: tangential force at the reference circle over the common width, as the norm's load per width.
+        width = min(geometry.driver.face_width, geometry.driven.face_width)
+        tangential = force * geometry.driver.base_radius / geometry.driver.pitch_radius
+        return room.stiffness_model("iso6336", specific_load=tangential / width)
     return room.stiffness_model(stiffness.model)
 
 
 def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
     """Two columns of a CSV file: position in base pitches, stiffness [N/m]; a first line of names may stand."""
     rows = []
-    lines = Path(path).read_text(encoding="utf-8").splitlines()
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise CaseError([Problem(key, str(path), "a text file in UTF-8")]) from error
     for number, line in enumerate(lines, start=1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue

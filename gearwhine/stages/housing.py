@@ -94,7 +94,7 @@ def box_geometry(case: Case) -> BoxGeometry:
     )
 
 
-def solve_housing(case: Case, progress: Progress = silent) -> SolvedHousing:
+def solve_housing(case: Case, progress: Progress = silent, *, command: str = "modes") -> SolvedHousing:
     """Mesh the housing and find its modes with their certificate.
 
     Raises
@@ -104,7 +104,7 @@ def solve_housing(case: Case, progress: Progress = silent) -> SolvedHousing:
     housing.IncompleteModesError
         Where the modes fail their certificate.
     """
-    require(case, "housing", command="modes")
+    require(case, "housing", command=command)
     given = case.housing
     assert given is not None
     begin = time.perf_counter()
@@ -169,7 +169,15 @@ def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:
         raise CaseError(
             [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
         )
-    return room.compare_by_dominance(_HERTZ * np.array(case.measured.frequencies), solved.strengths)
+    comparison = room.compare_by_dominance(_HERTZ * np.array(case.measured.frequencies), solved.strengths)
+    limit = solved.modes.certificate.limit
+    if limit < comparison.band[1]:
+        expected = (
+            f"at least {comparison.band[1] / _HERTZ:.5g} Hz: dominant modes are looked for up to there, and the "
+            "model's are known only below the limit"
+        )
+        raise CaseError([Problem("housing.frequency_limit", f"{limit / _HERTZ:.5g} Hz", expected)])
+    return comparison
 
 
 def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
@@ -215,7 +223,9 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
 
 def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> dict[str, Any]:
     """The comparison as the command's JSON."""
-    highest = float(np.floor(comparison.pairs[-1].measured / _HERTZ / 1000.0 + 0.999) * 1000.0)
+    # Counted below the next full kilohertz over the measured modes, as far as the model's modes are known.
+    highest = float(np.ceil(comparison.pairs[-1].measured / _HERTZ / 1000.0) * 1000.0)
+    highest = min(highest, solved.modes.certificate.limit / _HERTZ)
     return {
         "pairs": [
             {
@@ -258,7 +268,7 @@ def _support(entry: GivenSupport) -> room.Support:
     return room.Support(
         name=entry.name,
         surface=entry.surface,
-        box=entry.box,
+        box=entry.corners,
         fixed=("x" in (entry.fixed or ()), "y" in (entry.fixed or ()), "z" in (entry.fixed or ())),
         stiffness=(springs.x, springs.y, springs.z) if springs else (0.0, 0.0, 0.0),
     )

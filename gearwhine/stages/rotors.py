@@ -93,6 +93,8 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                     for whirl in one.whirl
                 ],
                 "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
+                "critical_directions": one.critical.direction.round(6).tolist(),
+                "damping": "of the bearings; the shaft's own acts in the coupled system",
                 "certificate": {
                     "limit_hz": one.rest.certificate.limit / _HERTZ,
                     "expected": one.rest.certificate.expected,

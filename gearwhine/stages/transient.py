@@ -9,6 +9,7 @@ import numpy.typing as npt
 import coupling as room
 from gearwhine.case import Case, require, rotor_speeds
 from gearwhine.progress import Progress, silent
+from gearwhine.stages.housing import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -46,7 +47,12 @@ class SolvedTransient:
 
 
 def solve_transient(
-    case: Case, machine: room.Machine, mesh_frequencies: tuple[float, ...], progress: Progress = silent
+    case: Case,
+    machine: room.Machine,
+    mesh_frequencies: tuple[float, ...],
+    progress: Progress = silent,
+    *,
+    housing: SolvedHousing | None = None,
 ) -> SolvedTransient:
     """March the machine through the case's revolutions and take the spectra of those not discarded.
 
@@ -63,7 +69,7 @@ def solve_transient(
     assert case.transient is not None
     given = case.transient
     period = _HERTZ / abs(case.operation.speed)
-    limit = _trusted_limit(case, mesh_frequencies)
+    limit = _trusted_limit(housing, mesh_frequencies)
     per_revolution = _samples_per_revolution(period, limit, given.points_per_revolution)
     settings = room.TransientSettings(
         duration=given.revolutions * period,
@@ -158,9 +164,10 @@ def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float
     return float(solved.result.peak_force[drives + before])
 
 
-def _trusted_limit(case: Case, mesh_frequencies: tuple[float, ...]) -> float:
-    if case.housing is not None and case.housing.frequency_limit is not None:
-        return case.housing.frequency_limit
+def _trusted_limit(housing: SolvedHousing | None, mesh_frequencies: tuple[float, ...]) -> float:
+    """Up to where the housing's modes are complete [Hz]; without a housing, what the gears excite."""
+    if housing is not None:
+        return housing.modes.certificate.limit / _HERTZ
     return 4.0 * max(mesh_frequencies, default=1000.0)
 
 

@@ -210,7 +210,7 @@ def test_impacts_on_a_damped_contact(contact_damping: float) -> None:
         closing = state[0] - amplitude * np.cos(w * time)
         rate = state[1] + amplitude * w * np.sin(w * time)
         faded = contact_damping * min(1.0, max(closing, 0.0) / depth)
-        return [state[1], 1.0 - damping * state[1] - max(closing, 0.0) - faded * rate]
+        return [state[1], 1.0 - damping * state[1] - max(max(closing, 0.0) + faded * rate, 0.0)]
 
     start = (np.full(1, 3.0), np.zeros(1))
     times = 0.1 * np.arange(400)
