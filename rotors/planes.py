@@ -12,6 +12,7 @@ from .certificate import ModeCertificate
 from .chain import bending_chain
 from .errors import require, require_count
 from .lateral import LateralModes, solve_lateral_modes
+from .root_count import count_below
 from .shaft import Rotor
 from .shapes import SAME_ROOT
 from .whirl import (
@@ -94,6 +95,7 @@ def rest_frequencies(
     if any(bearing.has_cross_stiffness for bearing in bearings):
         undamped = [replace(bearing, damping=np.zeros((2, 2))) for bearing in bearings]
         modes = solve_whirl(rotor, undamped, 0.0, frequency_limit=frequency_limit, count=count)
+        # The planes' basis is proved complete; how many coupled roots it should have, no count says.
         return RestFrequencies(modes.damped_frequencies, modes.basis.certificate)
 
     wanted = count
@@ -113,7 +115,7 @@ def rest_frequencies(
         merged = merged[merged <= limit]
     certificate = ModeCertificate(
         limit=limit,
-        expected=sum(proof.expected for proof in proofs) if wanted is None else merged.size,
+        expected=sum(_counted(rotor, bearings, plane, limit) for plane in (0, 1)),
         found=merged.size,
         max_residual=max(proof.max_residual for proof in proofs),
         orthonormality=max(proof.orthonormality for proof in proofs),
@@ -172,6 +174,12 @@ def critical_speeds(
     kept = kept[speeds[kept].real < (speed_limit or np.inf)][:wanted]
     coordinates = (vectors[:, kept] / weight[:, None]).T
     return CriticalSpeeds(np.asarray(speeds[kept].real), whirl_direction(coordinates))
+
+
+def _counted(rotor: Rotor, bearings: Sequence[Bearing], plane: int, limit: float) -> int:
+    """How many frequencies of one plane lie below a limit (rad/s), by a count of its own."""
+    chain = bending_chain(rotor, tuple(bearing.plane_support(plane) for bearing in bearings), limit)
+    return int(count_below(chain, np.array([limit]))[0])
 
 
 def _plane_modes(
