@@ -33,7 +33,8 @@ def draw_transient(
     meshes = mesh_frequencies(case) if case.gear_pair else ()
     if solved.sensor_spectra:
         marked = _marked_modes(housing, comparison)
-        files.append(_save(_spectra(case, solved, meshes, marked), folder / "spectrum.png"))
+        legend = "housing modes" if comparison is None else "dominant housing modes"
+        files.append(_save(_spectra(case, solved, meshes, marked, legend), folder / "spectrum.png"))
     if solved.force_spectra:
         files.append(_save(_mesh_force(case, solved, meshes), folder / "mesh-force.png"))
     if solved.histories.gear_motion:
@@ -54,13 +55,26 @@ def draw_gear_pairs(folder: Path, pairs: tuple[SolvedPair, ...]) -> list[str]:
         left.legend(frameon=False, fontsize=8)
         right.plot(phases, 1e6 * pair.static.transmission_error, color=_BLUE)
         right.set(xlabel="mesh period", ylabel="transmission error [µm]", xlim=(0.0, 1.0))
-        right.set_title(f"static, at a mesh force of {pair.static.force:.0f} N", fontsize=10)
+        right.set_title(_static_title(pair), fontsize=10)
         for axes in (left, right):
             _tidy(axes)
     return [_save(figure, folder / "gear-pairs.png")]
 
 
-def _spectra(case: Case, solved: SolvedTransient, meshes: tuple[float, ...], marked: FloatArray) -> Figure:
+def _static_title(pair: SolvedPair) -> str:
+    title = f"static, at a mesh force of {pair.static.force:.0f} N"
+    if pair.hunting is None:
+        return title
+    mean, swing = pair.hunting.mean_transmission_error, pair.hunting.peak_to_peak_transmission_error
+    return (
+        f"{title}, in the first mesh period\n"
+        f"over the hunting period: {1e6 * mean:.3f} µm in the mean, {1e6 * swing:.3f} µm peak to peak"
+    )
+
+
+def _spectra(
+    case: Case, solved: SolvedTransient, meshes: tuple[float, ...], marked: FloatArray, marked_as: str
+) -> Figure:
     count = len(solved.sensor_spectra)
     figure = Figure(figsize=(9.0, 0.9 + 2.5 * count), layout="constrained")
     axes_list = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
@@ -76,7 +90,7 @@ def _spectra(case: Case, solved: SolvedTransient, meshes: tuple[float, ...], mar
     figure.suptitle(f"{case.title}: housing acceleration at {_speed(case)}", fontsize=11)
     legend = "dashed: mesh frequency and its harmonics"
     if marked.size:
-        legend += "    ▾ dominant housing modes"
+        legend += f"    ▾ {marked_as}"
     axes_list[0].set_title(legend, fontsize=8, loc="right", color=_GREY)
     return figure
 

@@ -1,28 +1,30 @@
 """What a person sees on the terminal."""
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 _WIDTH = 100
+_PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 
 
 def show_run(document: dict[str, Any]) -> None:
     """The main job's outcome."""
     console = _console()
-    console.print(f"[bold]{escape(document['title'])}[/bold]")
+    console.print(document["title"], style="bold")
     if "housing" in document:
         _modes_line(console, document["housing"])
     if "compare" in document:
         _comparison(console, document["compare"])
     for pair in document.get("gear_pairs", ()):
         console.print(
-            f"Gear mesh {escape(pair['driver'])} → {escape(pair['driven'])}: mean force {pair['mean_force_n']:.0f} N, "
-            f"peak {pair['peak_force_n']:.0f} N, apart {100 * pair['contact_loss_fraction']:.2g} % of the time"
+            f"Gear mesh {pair['driver']} → {pair['driven']}: mean force {pair['mean_force_n']:.0f} N, "
+            f"peak {pair['peak_force_n']:.0f} N, apart {_percent(pair['contact_loss_fraction'])} of the time"
         )
     if document.get("sensors"):
         _sensors(console, document)
@@ -32,7 +34,7 @@ def show_run(document: dict[str, Any]) -> None:
             f"to {document['energy_error']:.1e}; {document['coordinates']} modal coordinates"
         )
     elif "system" in document:
-        console.print(f"Coupled system: {len(document['system']['modes'])} modes")
+        console.print(f"Coupled system: {_count(len(document['system']['modes']), 'mode')}")
     _files(console, document)
     console.print(f"Time: {document['seconds']['total']:.1f} s")
 
@@ -40,10 +42,12 @@ def show_run(document: dict[str, Any]) -> None:
 def show_check(document: dict[str, Any]) -> None:
     """What the case means, a line for each part."""
     table = Table.grid(padding=(0, 2))
+    table.add_column(style="bold")
+    table.add_column()
     for part, text in _parts(document):
-        table.add_row(f"[bold]{part}[/bold]", escape(text))
+        table.add_row(part, text)
     console = _console()
-    console.print(f"[bold]{escape(document['title'])}[/bold]")
+    console.print(document["title"], style="bold")
     console.print(table)
 
 
@@ -70,7 +74,7 @@ def _parts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
             f"{all_of_them:g} revolutions, the last {recorded:g} recorded; tolerance {given['tolerance']:g}",
         )
     if "sweep" in document:
-        yield "sweep", f"{document['sweep']['speeds']} speeds"
+        yield "sweep", _count(document["sweep"]["speeds"], "speed")
     if "measured" in document:
         yield "measured", ", ".join(f"{one:g}" for one in document["measured"]["frequencies_hz"]) + " Hz"
     yield from _named("standing", [f"{key}: {text}" for key, text in document.get("provenance", {}).items()])
@@ -116,7 +120,7 @@ def show_mesh(document: dict[str, Any]) -> None:
     console.print(f"{mesh['nodes']} nodes, {mesh['elements']} tetrahedra of order {document['order']}")
     console.print(f"Volume {document['volume_m3']:.6g} m³; median edge {1e3 * edge['median']:.3g} mm")
     console.print(f"Shape number (1 is regular): median {shape['median']:.2f}, smallest {shape['min']:.2f}")
-    console.print(f"Surfaces: {escape(', '.join(document['surfaces'])) or 'none named'}")
+    console.print(f"Surfaces: {', '.join(document['surfaces']) or 'none named'}")
     _files(console, document)
 
 
@@ -138,16 +142,31 @@ def show_rotors(document: dict[str, Any]) -> None:
     """Each rotor's frequencies."""
     console = _console()
     for rotor in document["rotors"]:
-        console.print(f"[bold]{escape(rotor['name'])}[/bold]  {rotor['mass_kg']:.3f} kg")
+        console.print(Text.assemble((rotor["name"], "bold"), f"  {rotor['mass_kg']:.3f} kg"))
         rows = [("lateral at rest [Hz]", rotor["lateral_hz"]), ("torsional [Hz]", rotor["torsional_hz"])]
         rows += [(f"whirl at {whirl['speed_rpm']:.0f} rpm [Hz]", whirl["frequency_hz"]) for whirl in rotor["whirl"]]
-        rows += [("critical speeds [rpm]", rotor["critical_speeds_rpm"])]
         for name, values in rows:
             console.print(f"  {name:26s} {'  '.join(f'{value:.5g}' for value in values[:10])}")
-        certificate = rotor["certificate"]
-        console.print(f"  complete below {certificate['limit_hz']:.5g} Hz: {certificate['found']} found, "
-                      f"{certificate['expected']} counted")  # fmt: skip
+        console.print(_critical_speeds(rotor))
+        console.print(f"  {_rotor_proof(rotor['certificate'])}")
     _files(console, document)
+
+
+def _rotor_proof(certificate: dict[str, Any]) -> str:
+    if certificate["expected"] is None:
+        return "no count: the bearings' stiffness couples the planes"
+    found, counted = certificate["found"], certificate["expected"]
+    return f"complete below {certificate['limit_hz']:.5g} Hz: {found} found, {counted} counted"
+
+
+def _critical_speeds(rotor: dict[str, Any]) -> str:
+    """Critical speeds on one line; those of backward whirl carry a mark, since unbalance hardly excites them."""
+    speeds = rotor["critical_speeds_rpm"][:10]
+    directions = rotor.get("critical_directions") or [0.0] * len(speeds)
+    backward = [direction < -_PLANAR for direction in directions[: len(speeds)]]
+    marked = [f"{speed:.5g}{' (b)' if back else ''}" for speed, back in zip(speeds, backward, strict=True)]
+    note = "   (b): backward whirl" if any(backward) else ""
+    return f"  {'critical speeds [rpm]':26s} {'  '.join(marked)}{note}"
 
 
 def show_gears(document: dict[str, Any]) -> None:
@@ -155,7 +174,7 @@ def show_gears(document: dict[str, Any]) -> None:
     console = _console()
     for pair in document["pairs"]:
         stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
-        console.print(f"[bold]{escape(pair['driver'])} → {escape(pair['driven'])}[/bold]  {pair['model']}")
+        console.print(Text.assemble((f"{pair['driver']} → {pair['driven']}", "bold"), f"  {pair['model']}"))
         console.print(f"  contact ratio {pair['contact_ratio']:.5f}")
         if pair["mesh_frequency_hz"] is not None:
             console.print(
@@ -165,25 +184,34 @@ def show_gears(document: dict[str, Any]) -> None:
             f"  mesh stiffness {1e-6 * stiffness['mean']:.2f} N/µm in the mean, {1e-6 * stiffness['min']:.2f} to "
             f"{1e-6 * stiffness['max']:.2f}"
         )
-        console.print(
-            f"  static transmission error {1e6 * error['mean']:.3f} µm in the mean, "
-            f"{1e6 * error['peak_to_peak']:.3f} µm peak to peak"
-        )
+        console.print(f"  static transmission error {_error(error)}")
+        if error.get("over_hunting_period"):
+            console.print(f"    over the hunting period: {_error(error['over_hunting_period'])}")
     _files(console, document)
 
 
+def _error(error: dict[str, Any]) -> str:
+    return f"{1e6 * error['mean']:.3f} µm in the mean, {1e6 * error['peak_to_peak']:.3f} µm peak to peak"
+
+
 def show_system(document: dict[str, Any]) -> None:
-    """Coupled modes."""
+    """Coupled modes, up to twice the frequency below which the housing's modes are all there."""
     console = _console()
+    modes, trusted = document["modes"], document.get("trusted_below_hz")
+    shown = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
     console.print(f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm")
     table = Table("frequency [Hz]", "damping ratio", "kind", "housing", "rotor", "torsion", "teeth", box=SIMPLE_HEAD)
     for column in table.columns:
         column.justify = "right"
-    for mode in document["modes"]:
-        shares = [f"{100 * mode['energy'][kind]:.0f} %" for kind in ("housing", "rotor", "torsion", "mesh")]
-        table.add_row(f"{mode['frequency_hz']:.2f}", f"{mode['damping_ratio']:.4f}", mode["kind"], *shares)
+    for mode in shown:
+        # A rigid mode is the free turning of the train: its shares say nothing of vibration.
+        kinds = () if mode["kind"] == "rigid" else ("housing", "rotor", "torsion", "mesh")
+        shares = [f"{100 * mode['energy'][kind]:z.0f} %" for kind in kinds]
+        table.add_row(f"{mode['frequency_hz']:z.2f}", f"{mode['damping_ratio']:z.4f}", mode["kind"], *shares)
     console.print(table)
     console.print("Shares of the kinetic energy; teeth: share of the strain energy.")
+    if trusted and len(shown) < len(modes):
+        console.print(f"{_count(len(modes) - len(shown), 'more mode')} above {2.0 * trusted:.5g} Hz.")
     _files(console, document)
 
 
@@ -199,7 +227,7 @@ def show_examples(document: dict[str, Any]) -> None:
     console = _console()
     table = Table("name", "what it is", box=SIMPLE_HEAD)
     for example in document["examples"]:
-        table.add_row(escape(example["name"]), escape(example["title"]))
+        table.add_row(example["name"], example["title"])
     console.print(table)
     console.print("Run one:   gearwhine run NAME\nChange one: gearwhine examples copy NAME")
 
@@ -224,13 +252,17 @@ def _comparison(console: Console, document: dict[str, Any]) -> None:
     console.print(table)
     count = document["model_modes"]
     agree = "agree" if document["measures_agree"] else "do not all agree"
+    gap = document["gap"]
+    distance = "no other mode in the band"
+    if gap is not None and math.isfinite(gap):
+        distance = f"ln {gap:.3f} (below 0.1 the choice is a coin toss)"
     console.print(
         f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, "
-        f"rms {document['rms_error_percent']:.2f} %; {count['count']} model modes below {count['below_hz']:.0f} Hz."
+        f"rms {document['rms_error_percent']:.2f} %; "
+        f"{_count(count['count'], 'model mode')} below {count['below_hz']:.0f} Hz."
     )
     console.print(
-        f"Gap between the last chosen mode and the next: ln {document['gap']:.3f} (below 0.1 the choice is a coin "
-        f"toss); the three measures of dominance {agree}."
+        f"Gap between the last chosen mode and the next: {distance}; the three measures of dominance {agree}."
     )
     console.print(
         "Such a match is weak evidence where the model was calibrated to these frequencies: see the case's notes."
@@ -244,14 +276,14 @@ def _sensors(console: Console, document: dict[str, Any]) -> None:
         lines = "  ".join(
             f"{peak['frequency_hz']:.0f} ({peak['amplitude_m_per_s2']:.2g})" for peak in sensor["peaks"][:5]
         )
-        table.add_row(escape(sensor["name"]), f"{sensor['rms_m_per_s2']:.3g}", lines)
+        table.add_row(sensor["name"], f"{sensor['rms_m_per_s2']:.3g}", lines)
     console.print(table)
 
 
 def _modes_line(console: Console, document: dict[str, Any]) -> None:
     certificate, mesh = document["certificate"], document["mesh"]
     console.print(
-        f"Housing: {certificate['found']} modes below {certificate['limit_hz']:.5g} Hz, the inertia demands "
+        f"Housing: {_count(certificate['found'], 'mode')} below {certificate['limit_hz']:.5g} Hz, the inertia demands "
         f"{certificate['expected']}; largest residual {certificate['max_residual']:.0e}; {document['mass_kg']:.2f} kg, "
         f"{mesh['dofs']} degrees of freedom, {document['seconds']['total']:.1f} s"
     )
@@ -259,10 +291,21 @@ def _modes_line(console: Console, document: dict[str, Any]) -> None:
 
 def _files(console: Console, document: dict[str, Any]) -> None:
     if document.get("files"):
-        console.print(f"Written to {escape(document['folder'])}: {escape(', '.join(document['files']))}")
+        console.print(f"Written to {document['folder']}: {', '.join(document['files'])}")
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def _percent(part: float) -> str:
+    return "less than 0.01 %" if 0.0 < part < 1e-4 else f"{100 * part:.3g} %"
 
 
 def _console() -> Console:
-    console = Console(highlight=False)
+    # Without markup a bracket is a bracket: units and the names in a case are printed as they stand.
+    console = Console(highlight=False, markup=False, emoji=False)
+    if console.is_terminal:
+        return console
     # Where there is no terminal, lines are not cut at the 80 columns that rich then assumes.
-    return console if console.is_terminal else Console(highlight=False, width=_WIDTH, soft_wrap=True)
+    return Console(highlight=False, markup=False, emoji=False, width=_WIDTH, soft_wrap=True)

@@ -57,7 +57,7 @@ def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
         begin = time.perf_counter()
         machine = machine_stage.build_machine(case, housing, pairs, progress)
         system_modes = machine_stage.coupled_modes(machine)
-        document["system"] = machine_stage.system_document(case, machine, system_modes)
+        document["system"] = machine_stage.system_document(case, machine, system_modes, housing)
         timed("system", begin)
         if case.transient is not None:
             begin = time.perf_counter()
@@ -148,9 +148,9 @@ def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str,
 
 def system_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
     """The coupled modes."""
-    _, _, machine = machine_stage.solve_machine(case, progress)
+    housing, _, machine = machine_stage.solve_machine(case, progress)
     modes = machine_stage.coupled_modes(machine)
-    return _kept(machine_stage.system_document(case, machine, modes), case, folder)
+    return _kept(machine_stage.system_document(case, machine, modes, housing), case, folder)
 
 
 def compare_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:

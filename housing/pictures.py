@@ -26,6 +26,7 @@ _VIEWS = {
 VIEWS = tuple(_VIEWS)
 _COLOURS = "viridis"
 _SCALE = 0.07  # largest displacement drawn, as a part of the housing's diagonal
+_STRIP = 34  # height of the colour bar's strip under a sheet of modes [pixels]
 _INK = "#202428"
 
 
@@ -133,7 +134,7 @@ def render_gallery(
     view: str = "iso",
     tile: tuple[int, int] = (520, 440),
 ) -> Path:
-    """Draw several modes on one sheet, up to four in a row; see :func:`render_modes`."""
+    """Draw several modes on one sheet, up to four in a row, over a colour bar; see :func:`render_modes`."""
     _check(modes, numbers, view)
     pyvista = load_pyvista()
     surface, nodes = _outer_surface(pyvista, mesh)
@@ -141,13 +142,20 @@ def render_gallery(
     columns = min(4, len(numbers))
     rows = -(-len(numbers) // columns)
     plotter = pyvista.Plotter(
-        off_screen=True, shape=(rows, columns), window_size=(columns * tile[0], rows * tile[1]), border=False
+        off_screen=True,
+        shape=(rows + 1, columns),
+        row_weights=[(rows * tile[1] - _STRIP) / rows] * rows + [_STRIP],
+        groups=[(rows, slice(None))],
+        window_size=(columns * tile[0], rows * tile[1]),
+        border=False,
     )
     try:
         for place, number in enumerate(numbers):
             plotter.subplot(*divmod(place, columns))
             shape, note = modes.shapes[number - 1][nodes], (notes or {}).get(number, "")
             _draw(plotter, surface, outline, shape, _title(modes, number), note, view, bar=False)
+        plotter.subplot(rows, 0)
+        _draw_bar(pyvista, plotter, columns * tile[0] / _STRIP)
         _save(plotter.screenshot(None, return_img=True), path)
     finally:
         plotter.close()
@@ -229,6 +237,22 @@ def _draw(
     plotter.enable_parallel_projection()
     plotter.reset_camera(bounds=_frame(surface.bounds))
     plotter.camera.zoom(1.25)
+
+
+def _draw_bar(pyvista: Any, plotter: Any, width: float) -> None:
+    """A thin colour bar with its ends named, across a strip ``width`` times as wide as high."""
+    bar = pyvista.ImageData(dimensions=(256, 2, 1), spacing=(5.0 / 255, 0.3, 1.0), origin=(-2.5, -0.15, 0.0))
+    bar["displacement"] = bar.points[:, 0]
+    plotter.set_background("white")
+    plotter.add_mesh(bar, scalars="displacement", cmap=_COLOURS, lighting=False, show_scalar_bar=False)
+    for text, edge, side in (("displacement / largest   0 ", -2.5, "right"), (" 1", 2.5, "left")):
+        position = (0.5 + edge / width, 0.5)
+        actor = plotter.add_text(text, position=position, viewport=True, font_size=9, color=_INK)
+        actor.prop.justification_horizontal = side
+        actor.prop.justification_vertical = "center"
+    plotter.view_xy()
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = 0.5  # the strip is one unit high
 
 
 def _frame(bounds: Sequence[float]) -> list[float]:

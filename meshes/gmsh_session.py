@@ -1,5 +1,7 @@
 """One gmsh session: loaded late, quiet, deterministic, and closed whatever happens."""
 
+import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -49,7 +51,8 @@ def gmsh_session(name: str) -> Iterator[Any]:
     """
     gmsh = load_gmsh()
     # interruptible=False leaves the signal handlers alone, so it works off the main thread and Ctrl-C stays ours.
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    with _signals_kept():
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)
@@ -63,4 +66,20 @@ def gmsh_session(name: str) -> Iterator[Any]:
             raise
         raise GeometryError(f"gmsh could not mesh {name}: {error}") from error
     finally:
-        gmsh.finalize()
+        with _signals_kept():
+            gmsh.finalize()
+
+
+@contextmanager
+def _signals_kept() -> Iterator[None]:
+    """Give the process's handlers back: gmsh resets SIGTERM's on its own, and a killed run could not clear up."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            if handler is not None:
+                signal.signal(number, handler)

@@ -21,10 +21,13 @@ _NAMED = (
 
 
 def check_names(draft: Draft) -> Iterator[Finding]:
-    """Yield duplicate names and names that lead nowhere."""
+    """Yield duplicate names, names that are taken and names that lead nowhere."""
     yield from _check_unique(draft)
     yield from _check_materials(draft)
     rotors, gears, seats = draft.names("rotor"), draft.names("gear"), draft.names("housing", "seat")
+    for index, rotor in draft.raw_entries("rotor"):
+        if rotor.get("name") == "housing":
+            yield Finding(("rotor", index, "name"), "another name than 'housing', which stands for the housing itself")
     for index, bearing in draft.raw_entries("bearing"):
         yield from _check_reference(bearing, ("bearing", index, "rotor"), "rotor", rotors)
         yield from _check_reference(bearing, ("bearing", index, "seat"), "seat", (*seats, "ground"))

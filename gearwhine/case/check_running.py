@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from gearwhine.case.check_shafts import check_station
 from gearwhine.case.draft import Draft
-from gearwhine.case.problems import NOTHING, Finding
+from gearwhine.case.model import Case
+from gearwhine.case.motion import pair_torques
+from gearwhine.case.problems import NOTHING, UNSAID, Finding
 from gearwhine.case.running import Operation
 from gearwhine.case.train import gear_train, shaft_of
 
 LARGEST_IMBALANCE = 0.01
 """How far given outputs may be from the input, as a part of it."""
 
+LARGEST_RATIO = 1e12
+"""Speed over the first driver's beyond which a train is a mistake, long before numbers overflow."""
+
+_NO_TORQUE = 1e-9
+"""Part of the input torque below which a gear pair carries none but for rounding."""
+
 
 def check_running(draft: Draft) -> Iterator[Finding]:
     """Yield what keeps a case from running as it says."""
     document, operation = draft.document, draft.operation
+    if all(document.get(key, []) == [] for key in ("housing", "rotor", "gear", "gear_pair")):
+        yield Finding((), "at least one of [housing], [[rotor]] and [[gear_pair]]", UNSAID)
     if "transient" in document and "operation" not in document:
         yield Finding(("operation",), "a speed to run the [transient] at", NOTHING)
     if operation is None:
@@ -56,6 +66,10 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
             kind = "rotor" if draft.rotors else "gear"
             expected = f'a gear pair that turns it: no pair leads here from "{first}", the first driver'
             yield Finding((kind, index, "name"), expected)
+    if any(not 1.0 / LARGEST_RATIO <= abs(ratio) <= LARGEST_RATIO for ratio in ratios.values()):
+        expected = f"pairs that gear no shaft up or down more than {LARGEST_RATIO:g} times in all"
+        yield Finding(("gear_pair",), expected, UNSAID)
+        return
     if train.clashes:
         return
     rotor = draft.rotor(first) if draft.gear_pairs else None
@@ -66,7 +80,20 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
             if output.rotor == first:
                 expected = f'a rotor other than "{first}", where the torque comes in'
                 yield Finding(("operation", "output", place, "rotor"), expected)
-    if not operation.output or any(output.rotor not in ratios for output in operation.output):
+    if any(output.rotor not in ratios for output in operation.output):
+        return
+    if not draft.gear_pairs and len(shafts) > 1:
+        yield from _check_each_shaft(draft, operation)
+        return
+    imbalances = list(_check_balance(operation, ratios))
+    yield from imbalances
+    if draft.gear_pairs and not imbalances and all(shaft in ratios for shaft in shafts):
+        yield from _check_flow(draft, operation)
+
+
+def _check_balance(operation: Operation, ratios: Mapping[str, Fraction]) -> Iterator[Finding]:
+    """Yield outputs that, through the gears, take another power than comes in."""
+    if not operation.output:
         return
     taken = sum(output.torque * abs(float(ratios[output.rotor])) for output in operation.output)
     if abs(taken - operation.torque) > LARGEST_IMBALANCE * max(operation.torque, taken):
@@ -75,3 +102,37 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
             f"amount to {taken:g} N*m"
         )
         yield Finding(("operation", "output"), expected, [f"{output.torque:g} N*m" for output in operation.output])
+
+
+def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield shafts, none geared to another, whose own torques do not balance; the first output's takes the input."""
+    kind = "rotor" if draft.rotors else "gear"
+    first: dict[str, int] = {}
+    for place, output in enumerate(operation.output):
+        first.setdefault(output.rotor, place)
+    for shaft, place in first.items():
+        entering = operation.torque if place == 0 else 0.0
+        taken = sum(output.torque for output in operation.output if output.rotor == shaft)
+        if abs(taken - entering) > LARGEST_IMBALANCE * max(entering, taken):
+            expected = (
+                f'torques that balance on {kind} "{shaft}", as no gear pair leads to or from it; it takes in '
+                f"{entering:g} N*m and gives out {taken:g} N*m"
+            )
+            yield Finding(("operation", "output", place), expected, UNSAID)
+
+
+def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield gear pairs whose driven gear drives the driver."""
+    names = draft.names("gear")
+    if operation.torque == 0.0 or len(set(names)) < len(names):
+        return
+    turning = Case.model_construct(
+        rotor=tuple(rotor for _, rotor in draft.rotors),
+        gear=tuple(gear for _, gear in draft.gears),
+        gear_pair=tuple(pair for _, pair in draft.gear_pairs),
+        operation=operation,
+    )
+    for (index, _), torque in zip(draft.gear_pairs, pair_torques(turning), strict=True):
+        if torque < -_NO_TORQUE * operation.torque:
+            expected = "power to flow from driver to driven; swap the two names"
+            yield Finding(("gear_pair", index), expected, UNSAID)

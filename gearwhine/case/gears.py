@@ -56,7 +56,7 @@ class Gear(Table):
     inertia comes from its geometry unless `mass`, `polar_inertia` and `diametral_inertia` are all given.
     """
 
-    later = frozenset({"fault"})
+    later = frozenset({"fault", "rim"})
 
     name: Name
     rotor: Name | None = None
@@ -70,7 +70,6 @@ class Gear(Table):
     )
     profile_shift: Annotated[float, Quantity(units.RATIO, at_least=-2.0, at_most=2.0)] = 0.0
     bore: LengthFromZero = 0.0
-    rim: PositiveLength | None = None
     root_radius: LengthFromZero | None = None
     tip_relief: TipRelief | None = None
     material: Name | None = None

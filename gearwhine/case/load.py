@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from gearwhine.case.bundled import bundled_case, bundled_names
+from gearwhine.case.check_provenance import without_changed
 from gearwhine.case.checks import check, warnings_of
 from gearwhine.case.draft import draft_of_case, draft_of_document
 from gearwhine.case.explain import findings_of
@@ -62,7 +63,8 @@ def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> 
     source
         A case file, or the name of a bundled case. A file of that name goes before a bundled case.
     overrides
-        Changes such as ``"housing.box.wall=10 mm"``, see `apply_overrides`.
+        Changes such as ``"housing.box.wall=10 mm"``, see `apply_overrides`; they end what `[provenance]` says of
+        the values they change.
 
     Raises
     ------
@@ -70,8 +72,9 @@ def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> 
         With everything that is wrong.
     """
     path, content = _read(source)
-    document = _parse(content, path.name)
-    document, sources = apply_overrides(document, overrides)
+    written = _parse(content, path.name)
+    document, sources = apply_overrides(written, overrides)
+    document = without_changed(document, written, sources.keys())
     case = parse_case(document, folder=path.parent, source=path.name, sources=sources)
     return LoadedCase(case, path, warnings_of(case))
 

@@ -86,7 +86,9 @@ def coupled_modes(machine: room.Machine) -> room.CoupledModes:
     return room.coupled_modes(machine.system)
 
 
-def system_document(case: Case, machine: room.Machine, modes: room.CoupledModes) -> dict[str, Any]:
+def system_document(
+    case: Case, machine: room.Machine, modes: room.CoupledModes, housing: SolvedHousing | None = None
+) -> dict[str, Any]:
     """The coupled modes as the command's JSON."""
     assert case.operation is not None
     return {
@@ -103,6 +105,7 @@ def system_document(case: Case, machine: room.Machine, modes: room.CoupledModes)
             )
         ],
         "coordinates": machine.system.size,
+        "trusted_below_hz": None if housing is None else housing.modes.certificate.limit / _HERTZ,
     }
 
 

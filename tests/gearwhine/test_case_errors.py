@@ -81,6 +81,26 @@ ONE_WRONG = {
     "misspelt key": ("gear.0.facewidth", "6 mm", "gear[0].facewidth", "did you mean 'face_width'?"),
     "unknown table": ("gaer", [], "gaer", "did you mean 'gear'?"),
     "later key": ("gear.0.fault", {}, "gear[0].fault", "comes in a later version"),
+    "rim": ("gear.0.rim", "5 mm", "gear[0].rim", "comes in a later version"),
+    "bow": ("rotor.0.bow", [{"at": 0, "amplitude": "1 um"}], "rotor[0].bow", "residual bow comes in a later version"),
+    "stiffness by matrix": (
+        "bearing.0.stiffness",
+        {"matrix": [[1.0] * 5] * 5},
+        "bearing[0].stiffness",
+        "5x5 matrix comes in a later version",
+    ),
+    "damping by matrix": (
+        "bearing.1.damping",
+        {"matrix": [[1.0] * 5] * 5},
+        "bearing[1].damping",
+        "5x5 matrix comes in a later version",
+    ),
+    "rolling bearing": (
+        "bearing.2.stiffness",
+        {"rolling": {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}},
+        "bearing[2].stiffness",
+        "rolling geometry comes in a later version",
+    ),
     "later error": ("gear.0.errors", {"profile": "1 um"}, "gear[0].errors.profile", "comes in a later version"),
     "pitch of some teeth": ("gear.0.errors", {"pitch": ["1 um"] * 27}, "gear[0].errors.pitch", "each of 28 teeth"),
     "pitch of one tooth": ("gear.0.errors", {"pitch": "1 um"}, "gear[0].errors.pitch", "a list"),
@@ -131,6 +151,7 @@ ONE_WRONG = {
     "seat": ("bearing.0.seat", "input-bakc", "bearing[0].seat", "did you mean 'input-back'?"),
     "gear": ("gear_pair.0.driven", "weel", "gear_pair[0].driven", "did you mean 'wheel'?"),
     "output rotor": ("operation.output", [{"rotor": "y", "torque": 1}], "operation.output[0].rotor", "of a rotor"),
+    "rotor named housing": ("rotor.0.name", "housing", "rotor[0].name", "another name than 'housing'"),
     "same name": ("rotor.1.name", "input", "rotor[1].name", "rotor[0] has this one"),
     # places
     "bearing off the rotor": ("bearing.0.at", "1 m", "bearing[0].at", "which is 200 mm long"),
@@ -215,7 +236,7 @@ def test_one_wrong_value_is_named_with_its_place_and_what_was_expected(kind: str
 
 WHEEL = {"name": "wheel", "rotor": "output", "at": "100 mm", "teeth": 28}
 
-SEVERAL_CHANGES = {
+SEVERAL_CHANGES: dict[str, tuple[list[tuple[str, Any]], str, str]] = {
     "support that misses": (
         [("housing.support.0.surface", GONE), ("housing.support.0.box", NOWHERE_BOX)],
         "housing.support[0].box",
@@ -235,6 +256,11 @@ SEVERAL_CHANGES = {
         [("housing.cad", {"file": "a.step", "mesh_size": "9 mm"})],
         "housing",
         "['box', 'cad']",
+    ),
+    "geometry from CAD": (
+        [("housing.box", GONE), ("housing.cad", {"file": __file__, "mesh_size": "9 mm"})],
+        "housing.cad",
+        "comes in a later version",
     ),
     "a loop that locks": (
         [

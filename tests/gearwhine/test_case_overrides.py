@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from gearwhine.case import Case, CaseError, load_case
+from gearwhine.case import Case, CaseError, dump_case, load_case
 
 
 def changed(*overrides: str) -> Case:
@@ -92,3 +94,33 @@ def test_the_bundled_case_itself_is_not_changed() -> None:
     before = load_case("small-gearbox").case
     changed("title=other")
     assert load_case("small-gearbox").case == before
+
+
+STANDING = load_case("small-gearbox").case.provenance
+
+
+def test_a_changed_value_loses_its_provenance_and_the_others_keep_theirs() -> None:
+    assert {"housing.*", "gear.*.bore", "gear.*.teeth"} <= set(STANDING)
+    for override in ("gear.pinion.bore=21 mm", "gear.0.bore=21 mm", "gear.0.bore="):
+        assert set(STANDING) - set(changed(override).provenance) == {"gear.*.bore"}
+    assert "housing.*" not in changed("housing.box.wall=12 mm").provenance  # an entry above the change
+    assert changed("title=other").provenance == STANDING
+
+
+def test_a_key_taken_away_takes_its_provenance_along() -> None:
+    assert set(STANDING) - set(changed("measured=").provenance) == {"measured"}
+    lost = set(STANDING) - set(changed("gear.0.tip_relief=", "gear.1.tip_relief=").provenance)
+    assert lost == {"gear.*.tip_relief"}  # an entry that would lead nowhere
+
+
+def test_provenance_from_the_command_line_stays() -> None:
+    case = changed("gear.0.bore=21 mm", "provenance.'gear.*.bore'=found")
+    assert case.provenance["gear.*.bore"] == "found"
+    assert changed("measured=", "provenance={ title = 'nominal' }").provenance == {"title": "nominal"}
+
+
+def test_provenance_that_led_nowhere_before_is_still_an_error(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(dump_case(load_case("small-gearbox").case).replace('measured = "', 'measurd = "'), "utf-8")
+    with pytest.raises(CaseError, match=r"provenance\.measurd: expected as a key the path"):
+        load_case(path, ["title=other"])

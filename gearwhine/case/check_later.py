@@ -1,0 +1,28 @@
+"""Checks for what a case may already say and only a later version will compute: refused rather than ignored."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from gearwhine.case.draft import Draft
+from gearwhine.case.problems import UNSAID, Finding
+
+_FORMS = {"matrix": "5x5 matrix", "rolling": "rolling geometry"}
+
+
+def check_later(draft: Draft) -> Iterator[Finding]:
+    """Yield bows, bearings by matrix or rolling geometry and housings from CAD, sound or not."""
+    housing = draft.document.get("housing")
+    if isinstance(housing, Mapping) and "cad" in housing:
+        expected = "[housing.box] or [housing.mesh]: geometry from CAD comes in a later version"
+        yield Finding(("housing", "cad"), expected)
+    for index, rotor in draft.raw_entries("rotor"):
+        if rotor.get("bow"):
+            yield Finding(("rotor", index, "bow"), "no points: residual bow comes in a later version", UNSAID)
+    for index, bearing in draft.raw_entries("bearing"):
+        for key, forms in (("stiffness", ("matrix", "rolling")), ("damping", ("matrix",))):
+            given = bearing.get(key)
+            form = next((form for form in forms if isinstance(given, Mapping) and form in given), None)
+            if form is not None:
+                expected = f"{{ xx, yy, xy, yx }}: {key} by {_FORMS[form]} comes in a later version"
+                yield Finding(("bearing", index, key), expected)

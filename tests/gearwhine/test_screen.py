@@ -1,0 +1,126 @@
+"""The screen, from documents built by hand: units in brackets, counts, shares and what is left out."""
+
+import io
+import math
+from collections.abc import Callable
+from contextlib import redirect_stdout
+from typing import Any
+
+import pytest
+
+from gearwhine import screen
+
+Document = dict[str, Any]
+
+
+def _said(show: Callable[[Document], None], document: Document) -> str:
+    with redirect_stdout(io.StringIO()) as out:
+        show(document)
+    return out.getvalue()
+
+
+def _rotors(**more: Any) -> Document:
+    certificate = {"limit_hz": 500.0, "found": 2, "expected": 2}
+    rotor = {"name": "shaft [left]", "mass_kg": 2.0, "lateral_hz": [10.0], "torsional_hz": [0.0], "whirl": []}
+    return {"rotors": [rotor | {"critical_speeds_rpm": [600.0, 640.0, 900.0], "certificate": certificate} | more]}
+
+
+def _run(loss: float = 0.0) -> Document:
+    pair = {"driver": "a", "driven": "b", "mean_force_n": 100.0, "peak_force_n": 150.0, "contact_loss_fraction": loss}
+    sensor = {"name": "top", "rms_m_per_s2": 1.5, "peaks": [{"frequency_hz": 100.0, "amplitude_m_per_s2": 2.0}]}
+    housing = {
+        "certificate": {"found": 1, "expected": 1, "limit_hz": 900.0, "max_residual": 1e-12},
+        "mesh": {"dofs": 300},
+        "mass_kg": 4.0,
+        "seconds": {"total": 0.5},
+    }
+    return {
+        "title": "case [bold] :warning: [/nothing]",
+        "housing": housing,
+        "gear_pairs": [pair],
+        "sensors": [sensor],
+        "seconds": {"total": 1.0},
+    }
+
+
+def _system(**more: Any) -> Document:
+    shares = {"housing": 0.0, "rotor": -1e-9, "torsion": 1.0, "mesh": -1e-3}
+    modes = [
+        {"frequency_hz": frequency, "damping_ratio": damping, "kind": kind, "energy": shares}
+        for frequency, damping, kind in ((-0.0, -0.0, "rigid"), (900.0, -1e-9, "torsion"), (2500.0, 0.01, "torsion"))
+    ]
+    return {"coordinates": 3, "speed_rpm": 1000.0, "modes": modes} | more
+
+
+def _comparison(gap: float | None) -> Document:
+    pair = {"mode": 1, "measured_hz": 100.0, "model_hz": 101.0, "error_percent": 1.0, "strength": 0.01}
+    errors = {"rms_error_percent": 1.0, "max_error_percent": 1.0}
+    counted = {"model_modes": {"count": 1, "below_hz": 900.0}}
+    return {"pairs": [pair], "pairing": "order", "gap": gap, "measures_agree": True} | errors | counted
+
+
+def test_brackets_are_printed_as_they_stand() -> None:
+    rotors, run = _said(screen.show_rotors, _rotors()), _said(screen.show_run, _run())
+    for unit in ("lateral at rest [Hz]", "torsional [Hz]", "critical speeds [rpm]", "shaft [left]"):
+        assert unit in rotors
+    assert "rms [m/s²]" in run
+    assert "case [bold] :warning: [/nothing]" in run
+    assert "measured [Hz]" in _said(screen.show_comparison, _comparison(0.5))
+
+
+@pytest.mark.parametrize(
+    ("loss", "said"),
+    [(0.0, "0 %"), (0.003, "0.3 %"), (0.5, "50 %"), (1.0, "100 %"), (1e-6, "less than 0.01 %")],
+)
+def test_the_time_apart_is_a_plain_percentage(loss: float, said: str) -> None:
+    assert f"apart {said} of the time" in _said(screen.show_run, _run(loss))
+
+
+def test_one_mode_is_no_modes() -> None:
+    assert "Housing: 1 mode below 900 Hz" in _said(screen.show_run, _run())
+    assert "1 model mode below 900 Hz" in _said(screen.show_comparison, _comparison(0.5))
+
+
+def test_no_share_is_minus_nothing_and_rigid_modes_have_none() -> None:
+    out = _said(screen.show_system, _system())
+    assert "-0" not in out
+    rows = [line for line in out.splitlines() if "rigid" in line or "torsion" in line][1:]  # the first is the head
+    assert rows[0].split() == ["0.00", "0.0000", "rigid"]
+    assert rows[1].split() == ["900.00", "0.0000", "torsion", "0", "%", "0", "%", "100", "%", "0", "%"]
+    assert len(rows) == 3
+    assert "above" not in out
+
+
+def test_modes_far_above_the_housing_limit_are_counted_only() -> None:
+    out = _said(screen.show_system, _system(trusted_below_hz=1000.0))
+    assert "2500.00" not in out
+    assert out.rstrip().endswith("1 more mode above 2000 Hz.")
+    assert "above" not in _said(screen.show_system, _system(trusted_below_hz=1250.0))
+    assert "2500.00" in _said(screen.show_system, _system(trusted_below_hz=None))
+
+
+@pytest.mark.parametrize("gap", [None, math.inf])
+def test_a_gap_to_nothing_is_said_in_words(gap: float | None) -> None:
+    out = _said(screen.show_comparison, _comparison(gap))
+    assert "no other mode in the band" in out
+    assert "coin toss" not in out
+    assert "ln 0.050 (below 0.1 the choice is a coin toss)" in _said(screen.show_comparison, _comparison(0.05))
+
+
+def test_backward_critical_speeds_are_marked() -> None:
+    out = _said(screen.show_rotors, _rotors(critical_directions=[-1.0, 1.0, -0.0]))
+    assert "600 (b)  640  900   (b): backward whirl" in out
+    assert "(b)" not in _said(screen.show_rotors, _rotors())
+
+
+def test_the_hunting_period_has_its_own_line() -> None:
+    error: Document = {"mean": 5e-6, "peak_to_peak": 2e-6}
+    pair = {"driver": "a", "driven": "b", "model": "constant", "contact_ratio": 1.5, "mesh_frequency_hz": None}
+    pair |= {"stiffness_n_per_m": {"mean": 1e8, "min": 1e8, "max": 1e8}, "transmission_error_m": error}
+    assert "hunting" not in _said(screen.show_gears, {"pairs": [pair]})
+    error["over_hunting_period"] = None
+    assert "hunting" not in _said(screen.show_gears, {"pairs": [pair]})
+    error["over_hunting_period"] = {"mean": 6e-6, "peak_to_peak": 9e-6}
+    out = _said(screen.show_gears, {"pairs": [pair]})
+    assert "static transmission error 5.000 µm in the mean, 2.000 µm peak to peak" in out
+    assert "over the hunting period: 6.000 µm in the mean, 9.000 µm peak to peak" in out
