@@ -241,17 +241,18 @@ def _draw(
 
 def _draw_bar(pyvista: Any, plotter: Any, width: float) -> None:
     """A thin colour bar with its ends named, across a strip ``width`` times as wide as high."""
-    bar = pyvista.ImageData(dimensions=(256, 2, 1), spacing=(5.0 / 255, 0.3, 1.0), origin=(-2.5, -0.15, 0.0))
+    bar = pyvista.ImageData(dimensions=(256, 2, 1), spacing=(5.0 / 255, 0.3, 1.0), origin=(0.5, -0.15, 0.0))
     bar["displacement"] = bar.points[:, 0]
     plotter.set_background("white")
     plotter.add_mesh(bar, scalars="displacement", cmap=_COLOURS, lighting=False, show_scalar_bar=False)
-    for text, edge, side in (("displacement / largest   0 ", -2.5, "right"), (" 1", 2.5, "left")):
+    for text, edge, side in (("displacement / largest   0 ", 0.5, "right"), (" 1", 5.5, "left")):
         position = (0.5 + edge / width, 0.5)
         actor = plotter.add_text(text, position=position, viewport=True, font_size=9, color=_INK)
         actor.prop.justification_horizontal = side
         actor.prop.justification_vertical = "center"
     plotter.view_xy()
     plotter.enable_parallel_projection()
+    plotter.camera.focal_point, plotter.camera.position = (0.0, 0.0, 0.0), (0.0, 0.0, 10.0)
     plotter.camera.parallel_scale = 0.5  # the strip is one unit high
 
 
