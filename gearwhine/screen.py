@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-_WIDTH = 100
+_WIDTH = 120
 _PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 
 

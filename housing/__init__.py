@@ -10,12 +10,13 @@ What the room offers:
 - ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
 """
 
-from housing.assembly import Matrices, assemble
+from housing.assembly import assemble
 from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.dominance import Dominance, dominance
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Factorization, Factorizer
 from housing.material import Material
+from housing.matrices import Matrices
 from housing.modes import Certificate, ModeSet, solve_modes
 from housing.ports import Seat, Sensor, SensorPort, seat_matrix, sensor_port
 from housing.supports import Support, fixed_freedoms, with_springs

@@ -14,9 +14,9 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
-from housing.assembly import Matrices
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Backend, Factorization, Factorizer
+from housing.matrices import Matrices
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

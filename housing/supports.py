@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from housing.assembly import Matrices
 from housing.errors import HousingError
+from housing.matrices import Matrices
 from housing.surface import IntArray, facets_in_box, surface_quadrature
 from meshes import Mesh
 
