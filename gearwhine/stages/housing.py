@@ -116,7 +116,7 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     material = room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
     free = room.assemble(mesh, material)
     supports = [_support(entry) for entry in given.support]
-    matrices = room.with_springs(free, mesh, supports)
+    matrices = room.attach(free, mesh, supports)
     assembled = time.perf_counter()
     # Without a limit or a number, what a first look wants.
     count = given.modes if given.modes is not None else (None if given.frequency_limit is not None else 20)

@@ -17,10 +17,10 @@ from housing import (
     ModeSet,
     Support,
     assemble,
+    attach,
     fixed_freedoms,
     seat_matrix,
     solve_modes,
-    with_springs,
 )
 from housing.factorization import FactorizationError
 from housing.ports import Seat
@@ -87,7 +87,7 @@ def test_clamped_and_sprung_blocks_match_dense_eigenvalues(
         Support("base", surface="bottom", fixed=(True, False, True)),
         Support("cover", surface="top", stiffness=(1e8, 2e8, 0.0)),
     ]
-    matrices, fixed = with_springs(assemble(mesh, steel), mesh, supports), fixed_freedoms(mesh, supports)
+    matrices, fixed = attach(assemble(mesh, steel), mesh, supports), fixed_freedoms(mesh, supports)
     free = np.setdiff1d(np.arange(3 * len(mesh.points)), fixed)
     stiffness, mass = (m.toarray()[np.ix_(free, free)] for m in (matrices.stiffness, matrices.mass))
     expected = np.sqrt(linalg.eigh(stiffness, mass, eigvals_only=True))
