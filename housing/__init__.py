@@ -15,13 +15,13 @@ What the room offers:
 
 from housing.assembly import assemble
 from housing.attachments import Attachment, attach
-from housing.bushings import Axial, Bushing, Joint, Mount, axes_along
+from housing.bushings import GLOBAL_AXES, Axial, Bushing, Joint, Mount, axes_along
 from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.damping import damping_ratios, modal_damping
 from housing.dominance import Dominance, dominance
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Factorization, Factorizer
-from housing.lumped_mass import LumpedMass
+from housing.lumped_mass import NO_INERTIA, LumpedMass
 from housing.material import Material
 from housing.matrices import Matrices
 from housing.modes import Certificate, ModeSet, solve_modes
@@ -33,6 +33,8 @@ from housing.supports import Support, fixed_freedoms
 from housing.survey import SURVEY_COUNTS, Survey, survey_grid
 
 __all__ = [
+    "GLOBAL_AXES",
+    "NO_INERTIA",
     "SURVEY_COUNTS",
     "Additions",
     "Attachment",
