@@ -35,6 +35,23 @@ def build_supports(case: Case) -> list[room.Support]:
     return [_support(entry) for entry in case.housing.support]
 
 
+def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
+    """All that is fastened, each with its key and label."""
+    given = case.housing
+    assert given is not None
+    for index, support in enumerate(given.support):
+        yield f"housing.support[{index}]", f'support "{support.name}"', _support(support)
+    for index, mount in enumerate(given.mount):
+        fastened = room.Mount(mount.name, _patch(mount), _bushing(mount), mount.center)
+        yield f"housing.mount[{index}]", f'mount "{mount.name}"', fastened
+    for index, joint in enumerate(given.joint):
+        first, second = (room.Patch(surface) for surface in joint.surfaces)
+        tied = room.Joint(joint.name, first, second, _bushing(joint), joint.center)
+        yield f"housing.joint[{index}]", f'joint "{joint.name}"', tied
+    for index, mass in enumerate(given.mass):
+        yield f"housing.mass[{index}]", f'mass "{mass.name}"', _mass(mass)
+
+
 def attach_all(case: Case, mesh: Mesh, free: room.Matrices) -> room.Matrices:
     """The free housing's matrices with supports, mounts, joints and masses of a case on it.
 
@@ -47,7 +64,7 @@ def attach_all(case: Case, mesh: Mesh, free: room.Matrices) -> room.Matrices:
     if problems:
         raise CaseError(problems)
     additions = room.Additions()
-    for key, label, attachment in _attachments(case):
+    for key, label, attachment in build_attachments(case):
         try:
             additions += attachment.additions(mesh)
         except (room.HousingError, GeometryError) as error:
@@ -77,23 +94,6 @@ def check_reach(
         place = ", ".join(f"{1e3 * value:.4g}" for value in found)
         expected = f"a place within {1e3 * reach:.3g} mm of the surface; the nearest point of it is ({place}) mm"
         yield Problem(key, list(asked), expected, label=label)
-
-
-def _attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
-    """All that is fastened, each with its key and label."""
-    given = case.housing
-    assert given is not None
-    for index, support in enumerate(given.support):
-        yield f"housing.support[{index}]", f'support "{support.name}"', _support(support)
-    for index, mount in enumerate(given.mount):
-        fastened = room.Mount(mount.name, _patch(mount), _bushing(mount), mount.center)
-        yield f"housing.mount[{index}]", f'mount "{mount.name}"', fastened
-    for index, joint in enumerate(given.joint):
-        first, second = (room.Patch(surface) for surface in joint.surfaces)
-        tied = room.Joint(joint.name, first, second, _bushing(joint), joint.center)
-        yield f"housing.joint[{index}]", f'joint "{joint.name}"', tied
-    for index, mass in enumerate(given.mass):
-        yield f"housing.mass[{index}]", f'mass "{mass.name}"', _mass(mass)
 
 
 def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:

@@ -8,10 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.case.checks import warnings_of
 from gearwhine.screen import show_check
+from gearwhine.stages.attachments import build_attachments
 from gearwhine.stages.housing import modes_document, solve_housing
 from gearwhine.stages.summary import check_document
 from meshes import BoxGeometry, Mesh, WallThickness, mesh_box, write_mesh
@@ -136,6 +139,39 @@ def test_all_that_is_wrong_comes_at_once() -> None:
         parse_case(changed(*(ONE_WRONG[name][:2] for name in names)))
     keys = {problem.key for problem in caught.value.problems}
     assert keys == {ONE_WRONG[name][2] for name in names}
+
+
+ANYTHING = st.one_of(
+    st.none(),
+    st.floats(),
+    st.sampled_from(["x", "top", "3 mm", "3 kg", "1 N/m", "2 N*m/rad", "1 N*s/m", "1 kg*m^2", "bush", [], {}]),
+    st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3),
+    st.dictionaries(st.sampled_from(["x", "rx", "axial", "tilting", "xx", "xy"]), st.floats(-1.0, 1e9), max_size=3),
+)
+
+
+@given(st.data())
+@settings(max_examples=200, deadline=None)
+def test_anything_anywhere_makes_a_case_or_a_case_error(data: st.DataObject) -> None:
+    document = copy.deepcopy(BOX)
+    for _ in range(data.draw(st.integers(1, 3))):
+        here: Any = document["housing"][data.draw(st.sampled_from(["support", "mount", "joint", "mass"]))]
+        while isinstance(here, (dict, list)) and here:
+            step = data.draw(st.sampled_from(sorted(here) if isinstance(here, dict) else range(len(here))))
+            if not isinstance(here[step], (dict, list)) or data.draw(st.booleans()):
+                here[step] = data.draw(ANYTHING)
+                break
+            here = here[step]
+    try:
+        case = parse_case(document, source="any.toml")
+    except CaseError as error:
+        lines = str(error).splitlines()
+    else:
+        # What the case lets pass, the housing takes: no second opinion on amounts, axes and inertias.
+        entries = sum(len(document["housing"][kind]) for kind in ("support", "mount", "joint", "mass"))
+        assert len(list(build_attachments(case))) == entries
+        lines = []
+    assert all(": expected " in line for line in lines)
 
 
 def test_the_resolved_case_loads_back_equal(tmp_path: Path) -> None:
