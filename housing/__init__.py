@@ -6,6 +6,7 @@ What the room offers:
 - :class:`Support`, :func:`with_springs`, :func:`fixed_freedoms` -- what holds it.
 - :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`.
 - :class:`Seat`, :func:`seat_matrix`, :class:`Sensor`, :func:`sensor_port` -- where the rest of the machine meets it.
+- :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
 - :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance` -- model against measured modes.
 - ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
 """
@@ -13,10 +14,14 @@ What the room offers:
 from housing.assembly import assemble
 from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.dominance import Dominance, dominance
-from housing.errors import FactorizationError, HousingError, IncompleteModesError
+from housing.errors import FactorizationError, HousingError, IncompleteModesError, ModeFileError
 from housing.factorization import Factorization, Factorizer
+from housing.labelled import LabelledArray
 from housing.material import Material
 from housing.matrices import Matrices
+from housing.mesh_arrays import mesh_digest
+from housing.mode_file import read_modes, write_modes
+from housing.mode_record import ModeRecord
 from housing.modes import Certificate, ModeSet, solve_modes
 from housing.ports import Seat, Sensor, SensorPort, seat_matrix, sensor_port
 from housing.supports import Support, fixed_freedoms, with_springs
@@ -32,9 +37,12 @@ __all__ = [
     "Factorizer",
     "HousingError",
     "IncompleteModesError",
+    "LabelledArray",
     "Material",
     "Matrices",
+    "ModeFileError",
     "ModePair",
+    "ModeRecord",
     "ModeSet",
     "Seat",
     "Sensor",
@@ -45,9 +53,12 @@ __all__ = [
     "compare_by_dominance",
     "dominance",
     "fixed_freedoms",
+    "mesh_digest",
+    "read_modes",
     "seat_matrix",
     "sensor_port",
     "solve_modes",
     "survey_grid",
     "with_springs",
+    "write_modes",
 ]
