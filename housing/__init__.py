@@ -8,6 +8,7 @@ What the room offers:
 - :class:`Seat`, :func:`seat_matrix`, :class:`Sensor`, :func:`sensor_port` -- where the rest of the machine meets it.
 - :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
 - :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance` -- model against measured modes.
+- ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
 - ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
 """
 
@@ -16,12 +17,12 @@ from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.dominance import Dominance, dominance
 from housing.errors import FactorizationError, HousingError, IncompleteModesError, ModeFileError
 from housing.factorization import Factorization, Factorizer
-from housing.labelled import LabelledArray
+from housing.labelled import LabelledArray, content_key
 from housing.material import Material
 from housing.matrices import Matrices
 from housing.mesh_arrays import mesh_digest
 from housing.mode_file import read_modes, write_modes
-from housing.mode_record import ModeRecord
+from housing.mode_record import ModeRecord, with_sensors
 from housing.modes import Certificate, ModeSet, solve_modes
 from housing.ports import Seat, Sensor, SensorPort, seat_matrix, sensor_port
 from housing.supports import Support, fixed_freedoms, with_springs
@@ -51,6 +52,7 @@ __all__ = [
     "Survey",
     "assemble",
     "compare_by_dominance",
+    "content_key",
     "dominance",
     "fixed_freedoms",
     "mesh_digest",
@@ -59,6 +61,7 @@ __all__ = [
     "sensor_port",
     "solve_modes",
     "survey_grid",
+    "with_sensors",
     "with_springs",
     "write_modes",
 ]

@@ -1,8 +1,8 @@
 """A solved housing as one record, and the record as labelled arrays: what a mode-set file holds."""
 
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from housing.errors import HousingError
 from housing.labelled import LabelledArray, canonical_json, content_key
 from housing.mesh_arrays import mesh_arrays, mesh_from_arrays
 from housing.modes import Certificate, ModeSet
-from housing.ports import Seat, Sensor
+from housing.ports import Seat, Sensor, SensorPort
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -87,6 +87,18 @@ class ModeRecord:
     def key(self) -> str:
         """SHA-256 of the inputs: records of the same key hold the same modes."""
         return content_key(self.inputs)
+
+
+def with_sensors(record: ModeRecord, ports: Iterable[SensorPort]) -> ModeRecord:
+    """The record with these sensors in place of its own, put on the modes afresh."""
+    placed = list(ports)
+    motions = [record.modes.project(port.matrix)[:, 0] for port in placed]
+    sensors = []
+    for port in placed:
+        (x, y, z), (a, b, c) = port.position.tolist(), port.direction.tolist()
+        sensors.append(Sensor(port.name, (x, y, z), (a, b, c)))
+    nothing = np.empty((len(record.modes.frequencies), 0))
+    return replace(record, sensors=tuple(sensors), sensor_motions=np.stack(motions, axis=1) if motions else nothing)
 
 
 def record_arrays(record: ModeRecord) -> dict[str, LabelledArray]:
