@@ -47,7 +47,7 @@ def canonical_json(document: Mapping[str, Any]) -> str:
 
 def content_key(document: Mapping[str, Any]) -> str:
     """SHA-256 of a document's canonical JSON, as hexadecimal digits."""
-    return hashlib.sha256(canonical_json(document).encode("utf-8")).hexdigest()
+    return hashlib.sha256(_bytes(document)).hexdigest()
 
 
 def digest(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, Any] | None = None) -> str:
@@ -55,7 +55,7 @@ def digest(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, Any] | 
 
     Numbers count by their bytes, so two arrays share a digest only where they are the same bit for bit.
     """
-    total = hashlib.sha256(canonical_json({"attributes": dict(attributes or {})}).encode("utf-8"))
+    total = hashlib.sha256(_bytes({"attributes": dict(attributes or {})}))
     for name in sorted(arrays):
         array = arrays[name]
         values = np.ascontiguousarray(array.values)
@@ -70,7 +70,12 @@ def digest(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, Any] | 
         }
         if array.is_text:
             labels["text"] = [str(entry) for entry in values.ravel()]
-        total.update(canonical_json(labels).encode("utf-8"))
+        total.update(_bytes(labels))
         if not array.is_text:
             total.update(values.astype(values.dtype.newbyteorder("<"), copy=False).reshape(-1).view(np.uint8).data)
     return total.hexdigest()
+
+
+def _bytes(document: Mapping[str, Any]) -> bytes:
+    # Text of a damaged file may hold halves of characters: those count too.
+    return canonical_json(document).encode("utf-8", "surrogatepass")
