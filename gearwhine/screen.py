@@ -232,6 +232,7 @@ def show_system(document: dict[str, Any]) -> None:
     console.print("Shares of the kinetic energy; teeth: share of the strain energy.")
     if trusted and len(shown) < len(modes):
         console.print(f"{_count(len(modes) - len(shown), 'more mode')} above {2.0 * trusted:.5g} Hz.")
+    _origin(console, document)
     _files(console, document)
 
 
@@ -239,6 +240,7 @@ def show_comparison(document: dict[str, Any]) -> None:
     """Measured beside model modes."""
     console = _console()
     _comparison(console, document)
+    _origin(console, document)
     _files(console, document)
 
 
@@ -254,7 +256,9 @@ def show_examples(document: dict[str, Any]) -> None:
 
 def show_files(document: dict[str, Any]) -> None:
     """What was written."""
-    _files(_console(), document)
+    console = _console()
+    _origin(console, document)
+    _files(console, document)
 
 
 def _comparison(console: Console, document: dict[str, Any]) -> None:
@@ -307,11 +311,19 @@ def _modes_line(console: Console, document: dict[str, Any]) -> None:
         f"{certificate['expected']}; largest residual {certificate['max_residual']:.0e}; {document['mass_kg']:.2f} kg, "
         f"{mesh['dofs']} degrees of freedom, {document['seconds']['total']:.1f} s"
     )
+    _origin(console, document)
+
+
+def _origin(console: Console, document: dict[str, Any]) -> None:
+    if document.get("reused"):
+        console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
 
 
 def _files(console: Console, document: dict[str, Any]) -> None:
-    if document.get("files"):
-        console.print(f"Written to {document['folder']}: {', '.join(document['files'])}")
+    read = document["modes_read_from"].rpartition("/")[2] if document.get("reused") else None
+    written = [name for name in document.get("files", ()) if name != read]
+    if written:
+        console.print(f"Written to {document['folder']}: {', '.join(written)}")
 
 
 def _count(number: int, what: str) -> str:

@@ -9,7 +9,9 @@ What the room offers:
 - :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` -- what
   dashpots do to them.
 - :class:`Seat`, :func:`seat_matrix`, :class:`Sensor`, :func:`sensor_port` -- where the rest of the machine meets it.
+- :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
 - :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance` -- model against measured modes.
+- ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
 - ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
 """
 
@@ -19,11 +21,15 @@ from housing.bushings import GLOBAL_AXES, Axial, Bushing, Joint, Mount, axes_alo
 from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.damping import damping_ratios, modal_damping
 from housing.dominance import Dominance, dominance
-from housing.errors import FactorizationError, HousingError, IncompleteModesError
+from housing.errors import FactorizationError, HousingError, IncompleteModesError, ModeFileError
 from housing.factorization import Factorization, Factorizer
+from housing.labelled import LabelledArray, content_key
 from housing.lumped_mass import NO_INERTIA, LumpedMass
 from housing.material import Material
 from housing.matrices import Matrices
+from housing.mesh_arrays import mesh_digest
+from housing.mode_file import read_modes, write_modes
+from housing.mode_record import ModeRecord, with_sensors
 from housing.modes import Certificate, ModeSet, solve_modes
 from housing.node_blocks import Additions, NodeBlocks
 from housing.patches import Patch, patch_center, patch_matrix, point_matrix
@@ -49,10 +55,13 @@ __all__ = [
     "HousingError",
     "IncompleteModesError",
     "Joint",
+    "LabelledArray",
     "LumpedMass",
     "Material",
     "Matrices",
+    "ModeFileError",
     "ModePair",
+    "ModeRecord",
     "ModeSet",
     "Mount",
     "NodeBlocks",
@@ -67,17 +76,22 @@ __all__ = [
     "attach",
     "axes_along",
     "compare_by_dominance",
+    "content_key",
     "damping_ratios",
     "dominance",
     "fixed_freedoms",
+    "mesh_digest",
     "modal_damping",
     "patch_center",
     "patch_matrix",
     "point_matrix",
+    "read_modes",
     "rigid_body",
     "rigid_motions",
     "seat_matrix",
     "sensor_port",
     "solve_modes",
     "survey_grid",
+    "with_sensors",
+    "write_modes",
 ]

@@ -11,3 +11,7 @@ class IncompleteModesError(RuntimeError):
 
 class FactorizationError(RuntimeError):
     """A matrix could not be factored, or its factor does not solve; the message says what to try."""
+
+
+class ModeFileError(HousingError):
+    """A mode-set file cannot be used: missing, damaged, of another kind or another version."""

@@ -78,6 +78,10 @@ class ModeSet:
         Time taken by ``factorisation`` and ``eigensolver`` [s].
     backend : str
         Which factorisation was used.
+    shift : float
+        The eigenvalue about which the modes were searched [rad²/s²].
+    threads : int
+        Workers of the factorisation.
     """
 
     frequencies: FloatArray
@@ -85,6 +89,8 @@ class ModeSet:
     certificate: Certificate
     seconds: dict[str, float]
     backend: str
+    shift: float
+    threads: int
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -198,6 +204,8 @@ def solve_modes(
         certificate=certificate,
         seconds={"factorisation": factored, "eigensolver": time.perf_counter() - start},
         backend=factor.backend,
+        shift=shift,
+        threads=threads,
     )
 
 

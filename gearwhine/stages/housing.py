@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import Sensor as GivenSensor
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_supports, check_reach
+from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
 from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -43,7 +45,15 @@ class SolvedHousing:
     strengths : housing.Dominance or None
         None where there are no seats.
     seconds : dict of str to float
-        Time taken by mesh, assembly, factorisation, eigensolver and in total.
+        Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
+    record : housing.ModeRecord
+        What a mode-set file holds of it.
+    source : Path or None
+        The file that the modes were read from; None where they were solved.
+    source_holds : bool
+        Whether that file also holds these sensors, so that it need not be written again.
+    warnings : tuple of str
+        What the user should know, a sentence each.
     """
 
     mesh: Mesh
@@ -57,6 +67,10 @@ class SolvedHousing:
     survey: room.Survey
     strengths: room.Dominance | None
     seconds: dict[str, float]
+    record: room.ModeRecord
+    source: Path | None = None
+    source_holds: bool = False
+    warnings: tuple[str, ...] = ()
 
     @property
     def total_damping_ratios(self) -> FloatArray:
@@ -107,8 +121,27 @@ def box_geometry(case: Case) -> BoxGeometry:
     )
 
 
-def solve_housing(case: Case, progress: Progress = silent, *, command: str = "modes") -> SolvedHousing:
-    """Mesh the housing and find its modes with their certificate.
+def solve_housing(
+    case: Case,
+    progress: Progress = silent,
+    *,
+    command: str = "modes",
+    folder: Path | None = None,
+    fresh: bool = False,
+) -> SolvedHousing:
+    """Mesh the housing and find its modes with their certificate; or read them where they are kept.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable
+        Told in words what happens next.
+    command : str
+        On whose behalf, for messages.
+    folder : path, optional
+        A results folder; modes of the same housing kept there are read in place of solving.
+    fresh : bool
+        Solve also where they are.
 
     Raises
     ------
@@ -121,15 +154,82 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     given = case.housing
     assert given is not None
     begin = time.perf_counter()
-    progress("meshing the housing")
-    mesh = build_mesh(case)
-    meshed = time.perf_counter()
+    mesh = build_mesh(case) if given.mesh is not None else None
+    inputs = solution_inputs(case, mesh)
+    kept, warning = find_modes(folder, inputs) if folder is not None and not fresh else (None, None)
+    if kept is not None and folder is not None:
+        mesh = kept.mesh
+        progress(f"modes read from {folder / MODES_FILE} (unchanged housing)")
+    elif mesh is None:
+        progress("meshing the housing")
+        mesh = build_mesh(case)
+    meshed = time.perf_counter() - begin
+    # Ports before modes: what is wrong with them is found out before the long work.
+    seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
+    seat_matrices = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
+    sensors = {entry.name: _sensor(mesh, index, entry) for index, entry in enumerate(given.sensor)}
+    bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
+    survey = room.survey_grid(mesh, bounds)
+    if kept is None:
+        modes, mass, damping_matrix, seconds = _solve_modes(case, mesh, progress)
+        seconds = {"mesh": meshed, **seconds}
+    else:
+        modes, mass = kept.modes, kept.mass
+        damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
+        seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
+    seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_matrices.items()}
+    strengths = None
+    if seats:
+        radial = np.stack([motion[:, :2] for motion in seats_in_modes.values()], axis=1)
+        strengths = room.dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
+    seconds["total"] = time.perf_counter() - begin
+    record = kept or room.ModeRecord(
+        mesh,
+        modes,
+        mass,
+        seats=seats,
+        seat_motions=np.stack(list(seats_in_modes.values()), axis=1) if seats else np.empty((0, 0, 6)),
+        inputs=inputs,
+        notes={"seconds": seconds},
+        extras={} if damping_matrix is None else {_DAMPING: _damping_array(damping_matrix)},
+    )
+    record = room.with_sensors(record, sensors.values())
+    return SolvedHousing(
+        mesh=mesh,
+        mass=mass,
+        attached_mass=sum(entry.mass for entry in given.mass),
+        modes=modes,
+        damping_ratios=_damping(case, modes.frequencies_hz),
+        damping_matrix=damping_matrix,
+        seats=seats_in_modes,
+        sensors=sensors,
+        survey=survey,
+        strengths=strengths,
+        seconds=seconds,
+        record=record,
+        source=None if kept is None or folder is None else folder / MODES_FILE,
+        source_holds=kept is not None and kept.sensors == record.sensors,
+        warnings=() if warning is None else (warning,),
+    )
+
+
+def _damping_array(matrix: FloatArray) -> room.LabelledArray:
+    return room.LabelledArray(("mode", "other_mode"), matrix, "s-1", "damping of what is attached, in the modes")
+
+
+def _solve_modes(
+    case: Case, mesh: Mesh, progress: Progress
+) -> tuple[room.ModeSet, float, FloatArray | None, dict[str, float]]:
+    """The modes, the housing's mass [kg], what damps it in its modes, and the seconds that each step took."""
+    given = case.housing
+    assert given is not None
+    begin = time.perf_counter()
     progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
     steel = case.material[given.material]
     material = room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
     free = room.assemble(mesh, material)
     matrices = attach_all(case, mesh, free)
-    assembled = time.perf_counter()
+    assembled = time.perf_counter() - begin
     # Without a limit or a number, what a first look wants.
     count = given.modes if given.modes is not None else (None if given.frequency_limit is not None else 20)
     modes = room.solve_modes(
@@ -139,32 +239,8 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
         count=count,
         progress=progress,
     )
-    seats = {seat.name: modes.project(room.seat_matrix(mesh, room.Seat(seat.name, seat.center))) for seat in given.seat}
-    sensors = {entry.name: _sensor(mesh, index, entry) for index, entry in enumerate(given.sensor)}
-    bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
-    survey = room.survey_grid(mesh, bounds)
-    strengths = None
-    if seats:
-        radial = np.stack([motion[:, :2] for motion in seats.values()], axis=1)
-        strengths = room.dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
-    return SolvedHousing(
-        mesh=mesh,
-        mass=matrices.total_mass,
-        attached_mass=sum(entry.mass for entry in given.mass),
-        modes=modes,
-        damping_ratios=_damping(case, modes.frequencies_hz),
-        damping_matrix=room.modal_damping(modes, matrices) if matrices.damping.nnz else None,
-        seats=seats,
-        sensors=sensors,
-        survey=survey,
-        strengths=strengths,
-        seconds={
-            "mesh": meshed - begin,
-            "assembly": assembled - meshed,
-            **modes.seconds,
-            "total": time.perf_counter() - begin,
-        },
-    )
+    damping = room.modal_damping(modes, matrices) if matrices.damping.nnz else None
+    return modes, matrices.total_mass, damping, {"assembly": assembled, **modes.seconds}
 
 
 def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:
@@ -233,6 +309,21 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
         "mass_kg": solved.mass,
         "attached_mass_kg": solved.attached_mass,
         "seconds": solved.seconds,
+        **origin_document(solved),
+    }
+
+
+def origin_document(solved: SolvedHousing | None) -> dict[str, Any]:
+    """Where a housing's modes come from, as every command's JSON says it; nothing without a housing."""
+    if solved is None:
+        return {}
+    if solved.source is None:
+        return {"reused": False, "warnings": list(solved.warnings)}
+    return {
+        "reused": True,
+        "modes_read_from": str(solved.source),
+        "seconds_when_solved": solved.record.notes["seconds"],
+        "warnings": list(solved.warnings),
     }
 
 
