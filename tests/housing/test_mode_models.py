@@ -147,9 +147,7 @@ def test_normals_of_a_cube_point_out_of_it(cube: tuple[Mesh, Matrices]) -> None:
     assert normals[inside_a_face] == pytest.approx(expected)
 
 
-def test_the_target_is_the_shape_at_the_scale_of_the_pictures(
-    model: Model, box: Mesh, modes: ModeSet
-) -> None:
+def test_the_target_is_the_shape_at_the_scale_of_the_pictures(model: Model, box: Mesh, modes: ModeSet) -> None:
     nodes = np.unique(box.boundary)
     shape = modes.shapes[6][nodes]
     moved = model.array(model.primitive["targets"][0]["POSITION"])
