@@ -19,6 +19,7 @@ from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box,
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
+_DAMPING = "modal_damping"  # its name in a mode-set file
 _UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 
 
