@@ -11,9 +11,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import gearwhine
 import housing as room
 import meshes
-from gearwhine import __version__
 from gearwhine.case import Case
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def solution_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, An
     return {
         "housing": _with_contents(written, files),
         "material": {name: one.model_dump(mode="json") for name, one in case.material.items() if name in named},
-        "versions": {"gearwhine": __version__} | {name: _installed(name) for name in _LIBRARIES},
+        "versions": {"gearwhine": gearwhine.__version__} | {name: _installed(name) for name in _LIBRARIES},
         "source": _source_digest(),
     }
 
@@ -113,12 +113,14 @@ def _installed(library: str) -> str | None:
 
 
 def _source_digest() -> str:
-    """SHA-256 of the code between geometry and modes, which changes between releases under one version number."""
+    """SHA-256 of the code between case and modes, which changes between releases under one version number.
+
+    Whole rooms count, what does not bear on modes too: that costs a solution now and then, and forgets nothing.
+    """
     total = hashlib.sha256()
-    for package in (meshes.__file__, room.__file__):
+    for package in (meshes.__file__, room.__file__, gearwhine.__file__):
         folder = Path(package).parent
         for path in sorted(folder.rglob("*.py")):
             total.update(f"{path.relative_to(folder.parent).as_posix()}\0".encode())
             total.update(path.read_bytes())
-    total.update((Path(__file__).parent / "housing.py").read_bytes())
     return total.hexdigest()
