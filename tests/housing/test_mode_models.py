@@ -116,7 +116,7 @@ def test_arrays_of_vertices_are_equally_long_and_indices_in_range(model: Model, 
     assert count == len(facet_nodes(box.boundary))
     assert {len(model.attribute(name)) for name in ("NORMAL", "COLOR_0")} == {count}
     assert {len(model.array(number)) for number in model.primitive["targets"][0].values()} == {count}
-    assert len(model.triangles) == 4 * len(box.boundary)
+    assert len(model.triangles) == 4 * len(box.boundary[0].nodes)
     assert set(np.unique(model.triangles)) == set(range(count))
     colours = model.attribute("COLOR_0")
     assert colours.min() >= 0.0
