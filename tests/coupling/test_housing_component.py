@@ -15,7 +15,7 @@ RATIOS = np.array([0.01, 0.02])
 @pytest.fixture(scope="module")
 def modes() -> ModeSet:
     """Two masses of 1 kg in their modal coordinates: only frequencies matter here."""
-    return ModeSet(OMEGA, np.zeros((2, 1, 3)), Certificate(200.0, 2, 2, 0.0, 0.0), {}, "rslab")
+    return ModeSet(OMEGA, np.zeros((2, 1, 3)), Certificate(200.0, 2, 2, 0.0, 0.0), {}, "rslab", 0.0, 1)
 
 
 def _component(modes: ModeSet, matrix: FloatArray | None) -> HousingComponent:
