@@ -6,27 +6,36 @@ What the room offers:
 - :class:`Support`, :func:`with_springs`, :func:`fixed_freedoms` -- what holds it.
 - :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`.
 - :class:`Seat`, :func:`seat_matrix`, :class:`Sensor`, :func:`sensor_port` -- where the rest of the machine meets it.
+- :func:`attach_ports` -- residual :class:`Attachments`, which make the static compliance at ports exact.
+- :func:`receptance`, :func:`select_modes`, :func:`effective_mass` -- what each mode carries between ports, and of mass.
 - :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance` -- model against measured modes.
 - ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
 """
 
 from housing.assembly import assemble
+from housing.attach import attach_ports
 from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.dominance import Dominance, dominance
-from housing.errors import FactorizationError, HousingError, IncompleteModesError
+from housing.effective_mass import EffectiveMass, effective_mass
+from housing.errors import FactorizationError, HousingError, IncompleteModesError, ReductionError
 from housing.factorization import Factorization, Factorizer
 from housing.material import Material
 from housing.matrices import Matrices
 from housing.modes import Certificate, ModeSet, solve_modes
 from housing.ports import Seat, Sensor, SensorPort, seat_matrix, sensor_port
+from housing.receptance import Selection, receptance, residues, select_modes
+from housing.reduction import Attachments, StaticProof
+from housing.rigid import RigidBody, rigid_body, rigid_fields
 from housing.supports import Support, fixed_freedoms, with_springs
 from housing.survey import SURVEY_COUNTS, Survey, survey_grid
 
 __all__ = [
     "SURVEY_COUNTS",
+    "Attachments",
     "Certificate",
     "Comparison",
     "Dominance",
+    "EffectiveMass",
     "Factorization",
     "FactorizationError",
     "Factorizer",
@@ -36,16 +45,27 @@ __all__ = [
     "Matrices",
     "ModePair",
     "ModeSet",
+    "ReductionError",
+    "RigidBody",
     "Seat",
+    "Selection",
     "Sensor",
     "SensorPort",
+    "StaticProof",
     "Support",
     "Survey",
     "assemble",
+    "attach_ports",
     "compare_by_dominance",
     "dominance",
+    "effective_mass",
     "fixed_freedoms",
+    "receptance",
+    "residues",
+    "rigid_body",
+    "rigid_fields",
     "seat_matrix",
+    "select_modes",
     "sensor_port",
     "solve_modes",
     "survey_grid",

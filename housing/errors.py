@@ -11,3 +11,7 @@ class IncompleteModesError(RuntimeError):
 
 class FactorizationError(RuntimeError):
     """A matrix could not be factored, or its factor does not solve; the message says what to try."""
+
+
+class ReductionError(RuntimeError):
+    """A reduced housing fails its own proof; the message says by how much and what to try."""

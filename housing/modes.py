@@ -17,6 +17,7 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Backend, Factorization, Factorizer
 from housing.matrices import Matrices
+from housing.reduction import Attachments, residual_attachments
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -76,6 +77,8 @@ class ModeSet:
         Time taken by ``factorisation`` and ``eigensolver`` [s].
     backend : str
         Which factorisation was used.
+    attachments : Attachments or None
+        What the modes lack of the static response to loads at the ports, where ports were given.
     """
 
     frequencies: FloatArray
@@ -83,6 +86,7 @@ class ModeSet:
     certificate: Certificate
     seconds: dict[str, float]
     backend: str
+    attachments: Attachments | None = None
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -100,6 +104,7 @@ def solve_modes(
     *,
     frequency_limit: float | None = None,
     count: int | None = None,
+    ports: sparse.csr_array | None = None,
     backend: Backend | None = None,
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
@@ -116,6 +121,8 @@ def solve_modes(
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
         The lowest so many; one or two more where the last would split a multiple mode.
+    ports : scipy.sparse.csr_array, shape (r, 3 n_nodes), optional
+        Motions whose static compliance the mode set is to hold exactly: it then has attachments.
     backend, threads
         See :class:`housing.factorization.Factorizer`.
     progress : callable
@@ -127,6 +134,8 @@ def solve_modes(
         Where neither or both of limit and count are given, or they ask for nothing or for everything.
     IncompleteModesError
         Where the certificate cannot be made good after three searches.
+    ReductionError
+        Where the static compliance at the ports fails its proof.
     """
     if (frequency_limit is None) == (count is None):
         raise HousingError("give a frequency limit or a number of modes, one of the two")
@@ -182,16 +191,28 @@ def solve_modes(
             f"{certificate.expected}, largest residual {certificate.max_residual:.1e}, largest overlap "
             f"{certificate.max_overlap:.1e}; move the limit a little or refine the mesh"
         )
+    vectors = _oriented(vectors[:, keep])
     shapes = np.zeros((certificate.found, 3 * matrices.n_nodes))
-    shapes[:, free] = _oriented(vectors[:, keep]).T
+    shapes[:, free] = vectors.T
     values = values[keep]
     values[np.abs(values) < 1e-6 * -shift] = 0.0
+    seconds = {"factorisation": factored, "eigensolver": time.perf_counter() - start}
+    attachments = None
+    if ports is not None:
+        start = time.perf_counter()
+        progress("attaching the static response at the ports")
+        stiffness, mass, at_free = reduced.stiffness, reduced.mass, ports[:, free]
+        attachments = residual_attachments(
+            stiffness, mass, factor.solve, shift, values, vectors, at_free, free=free, n_nodes=matrices.n_nodes
+        )
+        seconds["reduction"] = time.perf_counter() - start
     return ModeSet(
         frequencies=np.sqrt(np.maximum(values, 0.0)),
         shapes=shapes.reshape(len(shapes), -1, 3),
         certificate=certificate,
-        seconds={"factorisation": factored, "eigensolver": time.perf_counter() - start},
+        seconds=seconds,
         backend=factor.backend,
+        attachments=attachments,
     )
 
 
