@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from housing.matrices import Matrices
 from housing.modes import ModeSet
-from housing.rigid import rigid_body, rigid_fields
+from housing.rigid import rigid_body, rigid_motions
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -79,16 +79,15 @@ def effective_mass(matrices: Matrices, points: FloatArray, fixed: IntArray | Non
     modes : ModeSet
         Of these matrices and this support.
     """
-    mass = matrices.mass
-    center = rigid_body(mass, points).center
-    fields = rigid_fields(points, center)
-    total = np.einsum("ij,ji->i", fields, mass @ fields.T)
+    center = rigid_body(points, matrices).center
+    fields = rigid_motions(points, center).reshape(-1, 6)
+    total = np.einsum("ij,ij->j", fields, matrices.mass @ fields)
     if fixed is not None:
-        fields[:, fixed] = 0.0
-    moved = mass @ fields.T
+        fields[fixed] = 0.0
+    moved = matrices.mass @ fields
     return EffectiveMass(
         participation=np.asarray(modes.shapes.reshape(len(modes.shapes), -1) @ moved),
         total=total,
-        free=np.einsum("ij,ji->i", fields, moved),
+        free=np.einsum("ij,ij->j", fields, moved),
         center=center,
     )

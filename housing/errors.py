@@ -15,3 +15,7 @@ class FactorizationError(RuntimeError):
 
 class ReductionError(RuntimeError):
     """A reduced housing fails its own proof; the message says by how much and what to try."""
+
+
+class HealthError(RuntimeError):
+    """The housing's model contradicts its geometry or itself; the message names every check that failed."""

@@ -97,6 +97,11 @@ class ModeSet:
         """The modes' motions at a port, shape (n_modes, n_motions)."""
         return np.asarray((port @ self.shapes.reshape(len(self.shapes), -1).T).T)
 
+    def project_all(self, port: sparse.csr_array) -> FloatArray:
+        """Motions at a port of the modes, then of the attachments, shape (n_modes + n_attachments, n_motions)."""
+        modes = self.project(port)
+        return modes if self.attachments is None else np.vstack([modes, self.attachments.project(port)])
+
 
 def solve_modes(
     matrices: Matrices,

@@ -42,8 +42,8 @@ Solve = Callable[[FloatArray], FloatArray]
 
 STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
-_SETTLED = 1e-10  # part of a port's whole response, in energy, that a last sweep may still move
-_PROBE_SETTLED = 1e-8  # the probes' compliance errs by the square of this
+_SETTLED = 1e-9  # part of a port's whole response, in energy, that a last sweep may still move
+_PROBE_SETTLED = 1e-6  # the probes' compliance errs by the square of this
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
 _MOST_SWEEPS = 200
 _PROBES = 4  # loads that the proof solves for: every port alone, or so many random combinations of all
