@@ -7,7 +7,8 @@ mean over what is moving is measured by the second difference of the acceleratio
 
     error = |a₁ - 2 a₀ + a₋₁| / (12 |a|),
 
-and stretches are repeated with finer steps until it is below the tolerance.
+and stretches are repeated with finer steps until it is below the tolerance. Residual coordinates of the housing have
+no part in this measure: they stand for static compliance, and their own high frequencies are not meant to be followed.
 """
 
 import time
@@ -322,8 +323,11 @@ def _balance(change: float, totals: FloatArray, held: float) -> EnergyBalance:
 
 
 def _resolving_step(system: CoupledSystem) -> float:
-    """The step that gives the highest natural frequency its least number of points a period [s]."""
-    stiffness = system.mean_stiffness()
+    """The step that gives the highest natural frequency its least number of points a period [s].
+
+    Residual coordinates are held for it: the method is stable at any step, and they follow their loads as springs do.
+    """
+    stiffness = system.mean_stiffness()[np.ix_(system.resolved, system.resolved)]
     highest = float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max()))
     return 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
@@ -34,6 +35,10 @@ class SolvedHousing:
     damping_ratios : ndarray, shape (n_modes,)
     seats : dict of str to ndarray, shape (n_modes, 6)
         Modes' motions at each bearing seat.
+    seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
+        The seats' motions from the nodes'.
+    loaded : dict of str to sparse array, shape (2, 3 n_nodes)
+        x and y of each place where the machine bears on the housing: the modes' attachments are for these.
     sensors : dict of str to housing.SensorPort
     survey : housing.Survey
     strengths : housing.Dominance or None
@@ -47,6 +52,8 @@ class SolvedHousing:
     modes: room.ModeSet
     damping_ratios: FloatArray
     seats: dict[str, FloatArray]
+    seat_ports: dict[str, sparse.csr_array]
+    loaded: dict[str, sparse.csr_array]
     sensors: dict[str, room.SensorPort]
     survey: room.Survey
     strengths: room.Dominance | None
@@ -118,6 +125,8 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     supports = [_support(entry) for entry in given.support]
     matrices = room.with_springs(free, mesh, supports)
     assembled = time.perf_counter()
+    seat_ports = {seat.name: room.seat_matrix(mesh, room.Seat(seat.name, seat.center)) for seat in given.seat}
+    loaded = _loaded_ports(case, seat_ports)
     # Without a limit or a number, what a first look wants.
     count = given.modes if given.modes is not None else (None if given.frequency_limit is not None else 20)
     modes = room.solve_modes(
@@ -125,9 +134,10 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
         room.fixed_freedoms(mesh, supports),
         frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
         count=count,
+        ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
         progress=progress,
     )
-    seats = {seat.name: modes.project(room.seat_matrix(mesh, room.Seat(seat.name, seat.center))) for seat in given.seat}
+    seats = {name: modes.project(port) for name, port in seat_ports.items()}
     sensors = {entry.name: _sensor(mesh, index, entry) for index, entry in enumerate(given.sensor)}
     bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
     survey = room.survey_grid(mesh, bounds)
@@ -141,6 +151,8 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
         modes=modes,
         damping_ratios=_damping(case, modes.frequencies_hz),
         seats=seats,
+        seat_ports=seat_ports,
+        loaded=loaded,
         sensors=sensors,
         survey=survey,
         strengths=strengths,
@@ -221,6 +233,20 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
     }
 
 
+def static_error_document(solved: SolvedHousing) -> dict[str, Any] | None:
+    """How far the static compliance where the machine bears on the housing is from exact, as the command's JSON."""
+    attached = solved.modes.attachments
+    if attached is None:
+        return None
+    missing = attached.proof.missing_parts.reshape(-1, 2).max(axis=1)
+    return {
+        "without_attachments": float(missing.max()),
+        "with_attachments": attached.proof.error,
+        "attachments": len(attached.frequencies),
+        "without_attachments_at": dict(zip(solved.loaded, missing.tolist(), strict=True)),
+    }
+
+
 def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> dict[str, Any]:
     """The comparison as the command's JSON."""
     # Counted below the next full kilohertz over the measured modes, as far as the model's modes are known.
@@ -249,6 +275,21 @@ def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> d
             "count": int(np.count_nonzero(solved.modes.frequencies_hz < highest)),
         },
     }
+
+
+def _loaded_ports(case: Case, seats: dict[str, sparse.csr_array]) -> dict[str, sparse.csr_array]:
+    """x and y of the housing under each bearing, at the bearing's own z; of each seat's centre where none has one."""
+    assert case.housing is not None
+    centers = {seat.name: seat.center[2] for seat in case.housing.seat}
+    loaded = {}
+    for bearing in case.bearing:
+        if not bearing.grounded and bearing.seat in seats:
+            motion = seats[bearing.seat]
+            # A rotation about y moves a point above the centre towards +x, one about x towards -y.
+            arm = case.rotor_named(bearing.rotor).start + bearing.at - centers[bearing.seat]
+            turned = sparse.diags_array([arm, -arm], dtype=np.float64)
+            loaded[bearing.name] = sparse.csr_array(motion[[0, 1]] + turned @ motion[[4, 3]])
+    return loaded or {name: motion[[0, 1]] for name, motion in seats.items()}
 
 
 def _sensor(mesh: Mesh, index: int, entry: GivenSensor) -> room.SensorPort:
