@@ -108,7 +108,7 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
     }
 
 
-def modes_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
+def modes_case(case: Case, folder: Path | None, progress: Progress, *, detail: bool = False) -> dict[str, Any]:
     """The housing's modes; with a folder, also as VTU and in a results file."""
     from gearwhine import results
 
@@ -118,7 +118,7 @@ def modes_case(case: Case, folder: Path | None, progress: Progress) -> dict[str,
         results.write(place / "results.nc", case, housing, (), (), None, None)
         results.write_shapes(place / "modes.vtu", housing)
 
-    return _kept(housing_stage.modes_document(housing), case, folder, write)
+    return _kept(housing_stage.modes_document(housing, detail=detail), case, folder, write)
 
 
 def rotors_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:

@@ -162,7 +162,7 @@ def _mass_lines(
                 "centre of gravity",
                 float(np.linalg.norm(body.center - center)) / size,
                 CENTER_BOUND,
-                f"({x:.5g}, {y:.5g}, {z:.5g}) mm from the matrices, against the geometry's",
+                f"({x:.3f}, {y:.3f}, {z:.3f}) mm from the matrices, against the geometry's",
             )
         )
     return lines

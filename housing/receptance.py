@@ -23,6 +23,7 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
 _EVEN_POINTS = 400  # across a band, beside those that each resonance in it gets
+_CHUNK = 1024  # frequencies at a time: bounds the working memory
 _AROUND = np.array([-6.0, -3.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 3.0, 6.0])  # half-power half-widths
 
 
@@ -137,20 +138,28 @@ def select_modes(
     if not tolerance > 0.0:
         raise HousingError(f"a tolerance of {tolerance:g}; expected it above 0")
     grid = _band_grid(modes.frequencies, damping_ratios, band)
-    gains = _gains(modes, damping_ratios, grid)
     pairs = residues(modes, port_a, port_b)
-    whole = np.tensordot(gains, pairs, axes=1) + _attached(modes, damping_ratios, port_a, port_b, grid)
-    largest = float(np.linalg.norm(whole, axis=(1, 2)).max())
-    strength = np.abs(gains).max(axis=0) * np.linalg.norm(pairs, axis=(1, 2))
+    parts = np.array_split(grid, -(-len(grid) // _CHUNK))
+    gains = [np.abs(_gains(modes, damping_ratios, part)).max(axis=0) for part in parts]
+    strength = np.max(gains, axis=0) * np.linalg.norm(pairs, axis=(1, 2))
     ranking = np.argsort(-strength, kind="stable")
-    missing = np.tensordot(gains, pairs, axes=1)
-    errors = [float(np.linalg.norm(missing, axis=(1, 2)).max())]
-    for mode in ranking:
-        missing = missing - gains[:, mode, None, None] * pairs[mode]
-        errors.append(float(np.linalg.norm(missing, axis=(1, 2)).max()))
-    error_left = np.array(errors) / (largest if largest > 0.0 else 1.0)
-    error_left[-1] = 0.0
+    largest, left = 0.0, np.zeros(len(ranking) + 1)
+    for part in parts:
+        gain = _gains(modes, damping_ratios, part)
+        missing = np.tensordot(gain, pairs, axes=1)
+        whole = missing + _attached(modes, damping_ratios, port_a, port_b, part)
+        largest = max(largest, _largest(whole))
+        left[0] = max(left[0], _largest(missing))
+        for place, mode in enumerate(ranking[:-1], start=1):
+            missing -= gain[:, mode, None, None] * pairs[mode]
+            left[place] = max(left[place], _largest(missing))
+    error_left = left / (largest if largest > 0.0 else 1.0)
     return Selection(band, ranking, strength[ranking], error_left, tolerance)
+
+
+def _largest(values: ComplexArray) -> float:
+    """Of the norms over both ports' motions."""
+    return float(np.linalg.norm(values, axis=(1, 2)).max())
 
 
 def _gains(modes: ModeSet, damping_ratios: FloatArray, frequencies: FloatArray) -> ComplexArray:

@@ -13,6 +13,7 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import Sensor as GivenSensor
 from gearwhine.case import Support as GivenSupport
 from gearwhine.progress import Progress, silent
+from gearwhine.stages.housing_checks import housing_checks, selection_document, static_error_document
 from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -43,6 +44,8 @@ class SolvedHousing:
     survey : housing.Survey
     strengths : housing.Dominance or None
         None where there are no seats.
+    checks : dict
+        Health report and effective masses as their documents.
     seconds : dict of str to float
         Time taken by mesh, assembly, factorisation, eigensolver and in total.
     """
@@ -57,6 +60,7 @@ class SolvedHousing:
     sensors: dict[str, room.SensorPort]
     survey: room.Survey
     strengths: room.Dominance | None
+    checks: dict[str, Any]
     seconds: dict[str, float]
 
 
@@ -108,8 +112,8 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     ------
     CaseError, meshes.GeometryError, housing.HousingError
         Where the case cannot be solved as it stands.
-    housing.IncompleteModesError
-        Where the modes fail their certificate.
+    housing.IncompleteModesError, housing.ReductionError, housing.HealthError
+        Where the modes fail their certificate, their static compliance its proof, or the model its checks.
     """
     require(case, "housing", command=command)
     given = case.housing
@@ -145,6 +149,8 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     if seats:
         radial = np.stack([motion[:, :2] for motion in seats.values()], axis=1)
         strengths = room.dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
+    progress("checking the housing against its geometry")
+    checks = housing_checks(mesh, free, matrices, supports, modes, steel.density)
     return SolvedHousing(
         mesh=mesh,
         mass=free.total_mass,
@@ -156,6 +162,7 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
         sensors=sensors,
         survey=survey,
         strengths=strengths,
+        checks=checks,
         seconds={
             "mesh": meshed - begin,
             "assembly": assembled - meshed,
@@ -199,17 +206,19 @@ def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
     return [int(mode) + 1 for mode in solved.strengths.strongest(count, (0.0, np.inf))]
 
 
-def modes_document(solved: SolvedHousing) -> dict[str, Any]:
-    """The modes as the command's JSON."""
+def modes_document(solved: SolvedHousing, *, detail: bool = False) -> dict[str, Any]:
+    """The modes as the command's JSON; in detail also which of them carry the motion from bearings to sensors."""
     certificate = solved.modes.certificate
     strengths = solved.strengths
-    return {
+    masses = solved.checks["effective_mass"]
+    document = {
         "modes": [
             {
                 "number": number,
                 "frequency_hz": float(frequency),
                 "damping_ratio": float(damping),
                 "strength": None if strengths is None else float(strengths.acceleration[number - 1]),
+                "effective_mass": masses["fractions"][number - 1],
             }
             for number, (frequency, damping) in enumerate(
                 zip(solved.modes.frequencies_hz, solved.damping_ratios, strict=True), start=1
@@ -229,22 +238,14 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
             "dofs": 3 * len(solved.mesh.points),
         },
         "mass_kg": solved.mass,
+        "effective_mass": {key: value for key, value in masses.items() if key != "fractions"},
+        "static_error": static_error_document(solved.modes, solved.loaded),
+        "health": solved.checks["health"],
         "seconds": solved.seconds,
     }
-
-
-def static_error_document(solved: SolvedHousing) -> dict[str, Any] | None:
-    """How far the static compliance where the machine bears on the housing is from exact, as the command's JSON."""
-    attached = solved.modes.attachments
-    if attached is None:
-        return None
-    missing = attached.proof.missing_parts.reshape(-1, 2).max(axis=1)
-    return {
-        "without_attachments": float(missing.max()),
-        "with_attachments": attached.proof.error,
-        "attachments": len(attached.frequencies),
-        "without_attachments_at": dict(zip(solved.loaded, missing.tolist(), strict=True)),
-    }
+    if detail:
+        document["selection"] = selection_document(solved.modes, solved.damping_ratios, solved.loaded, solved.sensors)
+    return document
 
 
 def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> dict[str, Any]:

@@ -10,7 +10,8 @@ from gearwhine.case import Case, CaseError, Problem, applied_torques, require, r
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import build_bearings, build_rotor
 from gearwhine.stages.gears import SolvedPair, solve_gears
-from gearwhine.stages.housing import SolvedHousing, solve_housing, static_error_document
+from gearwhine.stages.housing import SolvedHousing, solve_housing
+from gearwhine.stages.housing_checks import static_error_document
 
 _HERTZ = 2.0 * np.pi
 
@@ -106,7 +107,7 @@ def system_document(
         ],
         "coordinates": machine.system.size,
         "trusted_below_hz": None if housing is None else housing.modes.certificate.limit / _HERTZ,
-        "static_error": None if housing is None else static_error_document(housing),
+        "static_error": None if housing is None else static_error_document(housing.modes, housing.loaded),
     }
 
 
