@@ -178,7 +178,9 @@ def _matrix_lines(mesh: Mesh, unsupported: Matrices, supported: Matrices, body: 
         HealthLine(
             "rigid-body strain", float(strained.max()), STRAIN_BOUND, "elastic forces when the unsupported body moves"
         ),
-        HealthLine("symmetry", asymmetry, SYMMETRY_BOUND, "largest |A - Aᵀ| of stiffness and mass over their largest"),
+        HealthLine(
+            "symmetry", asymmetry, SYMMETRY_BOUND, "|A x - Aᵀ x| of stiffness and mass, relative, for a random x"
+        ),
     ]
 
 
@@ -245,4 +247,7 @@ def _port_lines(modes: ModeSet) -> list[HealthLine]:
 
 
 def _asymmetry(matrix: sparse.csr_array) -> float:
-    return float(abs(matrix - matrix.T).max() / abs(matrix).max())
+    """|A x - Aᵀ x| / |A x| for a random x: as telling as every entry's difference, and far cheaper to find."""
+    probe = np.random.default_rng(0).standard_normal(matrix.shape[0])
+    forward = matrix @ probe
+    return float(np.linalg.norm(forward - matrix.T @ probe) / np.linalg.norm(forward))

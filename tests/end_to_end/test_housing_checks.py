@@ -89,6 +89,16 @@ def test_the_coupled_system_uses_the_attachments(gearwhine) -> None:
     assert min(residual) > document["trusted_below_hz"]
 
 
+def test_few_modes_with_attachments_stand_for_many(gearwhine) -> None:
+    """Coupled modes below half the limit are those of a housing with all its modes up to three times the limit."""
+    few = gearwhine("system", "small-gearbox", "--json", "-q").document
+    many = gearwhine("system", "small-gearbox", "--json", "-q", "--set", "housing.frequency_limit=9 kHz").document
+    below = [mode["frequency_hz"] for mode in few["modes"] if mode["frequency_hz"] < 0.5 * few["trusted_below_hz"]]
+    assert len(below) > 4
+    assert many["static_error"]["without_attachments"] < few["static_error"]["without_attachments"]
+    assert below == pytest.approx([mode["frequency_hz"] for mode in many["modes"][: len(below)]], rel=2e-4)
+
+
 def test_a_bearing_off_its_seat_loads_the_seats_rotation(gearwhine) -> None:
     """4 mm outward the seat's rotations join in: another port, other compliance, exact as well."""
     centred = gearwhine("modes", "small-gearbox", "--json", "-q").document["static_error"]
