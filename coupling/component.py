@@ -20,6 +20,8 @@ from rotors import LateralModes, TorsionalModes
 
 FloatArray = npt.NDArray[np.float64]
 
+_ROUNDING = 1e-10  # part of the largest entry that a damping matrix may miss of being symmetric and without gain
+
 
 @dataclass(frozen=True)
 class Component:
@@ -120,9 +122,10 @@ def housing_component(
     seats: Mapping[str, FloatArray],
     seat_z: Mapping[str, float],
     sensors: Mapping[str, FloatArray],
+    damping_matrix: FloatArray | None = None,
     name: str = "housing",
 ) -> HousingComponent:
-    """The housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω).
+    """The housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
 
     Parameters
     ----------
@@ -132,11 +135,14 @@ def housing_component(
         Parts of critical. Attachments take the highest of them.
     seats, seat_z, sensors
         See :class:`HousingComponent`; by :meth:`housing.ModeSet.project_all`.
+    damping_matrix : ndarray, shape (n, n), optional
+        Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
 
     Raises
     ------
     CouplingError
-        Where there are not as many damping ratios as modes, or as many motions as coordinates.
+        Where the damping does not fit the modes, the matrix would drive them, or there are not as many motions as
+        coordinates.
     """
     m = len(modes.frequencies)
     if damping_ratios.shape != (m,):
@@ -149,16 +155,31 @@ def housing_component(
     for place, motion in [*seats.items(), *sensors.items()]:
         if len(motion) != n:
             raise CouplingError(f"{place!r}: motions of {len(motion)} coordinates; expected {n}, attachments included")
+    damping = np.diag(2.0 * ratios * omega)
+    if damping_matrix is not None:
+        _check_damping(damping_matrix, n)
+        damping = damping + damping_matrix
     return HousingComponent(
         name=name,
         kinds=("housing",) * m + ("residual",) * (n - m),
         stiffness=np.diag(omega**2),
-        damping=np.diag(2.0 * ratios * omega),
+        damping=damping,
         gyroscopic=np.zeros((n, n)),
         seats=seats,
         seat_z=seat_z,
         sensors=sensors,
     )
+
+
+def _check_damping(matrix: FloatArray, n: int) -> None:
+    """Refuse a damping matrix of another order, or one that is not symmetric and free of gain."""
+    if matrix.shape != (n, n):
+        raise CouplingError(f"damping matrix of shape {matrix.shape} for {n} housing modes; expected ({n}, {n})")
+    scale = float(np.abs(matrix).max(initial=0.0))
+    if not np.isfinite(scale) or np.abs(matrix - matrix.T).max(initial=0.0) > _ROUNDING * scale:
+        raise CouplingError("the damping matrix of the housing modes is not symmetric, or not finite")
+    if n and np.linalg.eigvalsh(matrix)[0] < -_ROUNDING * n * scale:
+        raise CouplingError("the damping matrix of the housing modes has a negative eigenvalue: it feeds energy in")
 
 
 def rotor_component(

@@ -52,17 +52,20 @@ class Common:
 
 
 _DEFAULTS = Common()
+Fresh = Annotated[
+    bool, Parameter(name="--fresh", negative=(), help="Solve the housing's modes also where OUT keeps them unchanged.")
+]
 CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a bundled case.")]
 
 
 @app.command
-def run(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+def run(case: CaseName, *, fresh: Fresh = False, common: Common = _DEFAULTS) -> None:
     """Everything the case asks for, start to end; results go to OUT (default: ./<case>-results)."""
     from gearwhine.screen import show_run
     from gearwhine.work import run_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return run_case(given, _folder(case, common), progress)
+        return run_case(given, _folder(case, common), progress, fresh=fresh)
 
     _on_case(case, common, work, show_run)
 
@@ -104,6 +107,7 @@ def modes(
             help="Also effective masses, what each support holds, and which modes carry the bearings' forces.",
         ),
     ] = False,
+    fresh: Fresh = False,
     common: Common = _DEFAULTS,
 ) -> None:
     """Housing modes, proved complete, with a report on the model's health."""
@@ -111,7 +115,7 @@ def modes(
     from gearwhine.work import modes_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return modes_case(given, common.output, progress, detail=detail)
+        return modes_case(given, common.output, progress, detail=detail, fresh=fresh)
 
     _on_case(case, common, work, show_modes_in_detail if detail else show_modes)
 
@@ -135,21 +139,27 @@ def gears(case: CaseName, *, common: Common = _DEFAULTS) -> None:
 
 
 @app.command
-def system(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+def system(case: CaseName, *, fresh: Fresh = False, common: Common = _DEFAULTS) -> None:
     """Complex natural modes of the whole coupled system at its speed."""
     from gearwhine.screen import show_system
     from gearwhine.work import system_case
 
-    _on_case(case, common, lambda given, progress: system_case(given, common.output, progress), show_system)
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return system_case(given, common.output, progress, fresh=fresh)
+
+    _on_case(case, common, work, show_system)
 
 
 @app.command
-def compare(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+def compare(case: CaseName, *, fresh: Fresh = False, common: Common = _DEFAULTS) -> None:
     """Model modes of the housing against measured ones."""
     from gearwhine.screen import show_comparison
     from gearwhine.work import compare_case
 
-    _on_case(case, common, lambda given, progress: compare_case(given, common.output, progress), show_comparison)
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return compare_case(given, common.output, progress, fresh=fresh)
+
+    _on_case(case, common, work, show_comparison)
 
 
 @app.command
@@ -162,14 +172,19 @@ def render(
     view: Annotated[
         Literal["iso", "front", "back", "left", "right", "top"], Parameter(help="From where to look.")
     ] = "iso",
+    format: Annotated[  # noqa: A002 - the name of the option
+        Literal["png", "glb"], Parameter(help="Pictures, or glTF models that move in any 3D viewer.")
+    ] = "png",
+    fresh: Fresh = False,
     common: Common = _DEFAULTS,
 ) -> None:
-    """Pictures of the housing's mode shapes, off-screen, in OUT (default: ./<case>-results)."""
+    """The housing's mode shapes, as pictures or moving models, in OUT (default: ./<case>-results)."""
     from gearwhine.screen import show_files
     from gearwhine.work import render_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return render_case(given, _folder(case, common), modes, view, progress)
+        folder = _folder(case, common)
+        return render_case(given, folder, modes, view, progress, mode_format=format, fresh=fresh)
 
     _on_case(case, common, work, show_files)
 
@@ -261,6 +276,8 @@ def _on_case(
         sys.stderr.write(f"warning: {warning}\n")
     with shown(quiet=common.quiet) as progress:
         document = work(loaded.case, progress)
+    for warning in document.get("warnings", ()):
+        sys.stderr.write(f"warning: {warning}\n")
     _hand_over(document, common, show)
 
 
@@ -286,4 +303,7 @@ def _hand_over(document: dict[str, Any], common: Common, show: Callable[[dict[st
 
 
 def _folder(case: str, common: Common) -> Path:
-    return common.output if common.output is not None else Path(f"{Path(case).stem}-results")
+    """The folder for a command that always writes, once it is known to take files."""
+    folder = common.output if common.output is not None else Path(f"{Path(case).stem}-results")
+    _check_folder(folder)
+    return folder

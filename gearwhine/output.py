@@ -5,38 +5,75 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from gearwhine.locks import alone_in, held, in_use
+
+SUMMARY = "summary.json"
 _STAGING = ".partial-"
+_DRAWN = (".png", ".glb", ".vtu")
 
 
 @contextmanager
-def staging(folder: Path) -> Iterator[Path]:
+def staging(folder: Path, *, replacing: bool = False) -> Iterator[Path]:
     """A folder inside the output folder whose files move out to it, one by one and whole, at the end.
 
     Where the work fails or is interrupted, the output folder keeps what it had. What a killed run left behind is
-    cleared away first.
+    cleared away first; what a living one is still at is left alone, and two runs move their files one after the other.
+
+    Parameters
+    ----------
+    folder : path
+        The output folder.
+    replacing : bool
+        Whether this run replaces all results: drawings that the earlier run's summary lists and this one does not draw
+        anew are then cleared away, so that no old mode stands among the new ones.
     """
     made = not folder.exists()
-    folder.mkdir(parents=True, exist_ok=True)
-    for stale in folder.glob(f"{_STAGING}*"):
-        if stale.is_dir() and not stale.is_symlink():
-            shutil.rmtree(stale, ignore_errors=True)
-    place = Path(tempfile.mkdtemp(prefix=_STAGING, dir=folder))
+    with ExitStack() as stack:
+        with alone_in(folder):
+            for stale in folder.glob(f"{_STAGING}*"):
+                if stale.is_dir() and not stale.is_symlink() and not in_use(stale):
+                    shutil.rmtree(stale, ignore_errors=True)
+            place = Path(tempfile.mkdtemp(prefix=_STAGING, dir=folder))
+            stack.enter_context(held(place))
+        try:
+            yield place
+            with alone_in(folder):
+                _move_out(place, folder, replacing=replacing)
+        finally:
+            shutil.rmtree(place, ignore_errors=True)
+            if made:
+                with suppress(OSError):  # it holds results, or another run is at work in it
+                    folder.rmdir()
+
+
+def earlier_drawings(folder: Path) -> list[str]:
+    """Drawings in an output folder that the summary of an earlier run lists: plain names of files, no others."""
     try:
-        yield place
-        # The summary moves last: where it is new, all is new.
-        for path in sorted(place.rglob("*"), key=lambda path: (path.name == "summary.json", path)):
-            if path.is_file():
-                target = folder / path.relative_to(place)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                os.replace(path, target)
-    finally:
-        shutil.rmtree(place, ignore_errors=True)
-        if made and not any(folder.iterdir()):
-            folder.rmdir()
+        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+        listed = [*summary.get("files", ()), *summary.get("earlier_drawings", ())]
+    except (OSError, ValueError, AttributeError, TypeError):  # none there, or not one of ours
+        return []
+    names = {name for name in listed if isinstance(name, str) and Path(name).name == name}
+    drawn = (name for name in names if name.endswith(_DRAWN))
+    return sorted(name for name in drawn if (folder / name).is_file() and not (folder / name).is_symlink())
+
+
+def _move_out(place: Path, folder: Path, *, replacing: bool) -> None:
+    """Move a run's files to the output folder, and clear away what it does not draw anew."""
+    names = [path.relative_to(place) for path in sorted(place.rglob("*")) if path.is_file()]
+    stale = [name for name in earlier_drawings(folder) if Path(name) not in names] if replacing else []
+    # The summary moves last: where it is new, all is new, and until then the old one lists what is to be cleared.
+    for name in sorted(names, key=lambda name: name.name == SUMMARY):
+        if name.name == SUMMARY:
+            for old in stale:
+                (folder / old).unlink(missing_ok=True)
+        target = folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(place / name, target)
 
 
 def json_text(document: Mapping[str, Any]) -> str:

@@ -95,7 +95,27 @@ def _housing_lines(housing: dict[str, Any]) -> list[str]:
     limit, count = housing["frequency_limit_hz"], housing["modes"]
     wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {count or 20} modes"
     lines = [f"{shape}, {housing['material']}; {wanted}"]
-    return lines + [f"{kind}: {', '.join(housing[kind])}" for kind in ("seats", "supports", "sensors") if housing[kind]]
+    lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("seats", "supports") if housing[kind]]
+    for kind in ("mounts", "joints"):
+        lines += [_bushing_line(kind[:-1], one) for one in housing[kind]]
+    if housing["masses"]:
+        lines.append("masses: " + ", ".join(f"{one['name']} {one['mass_kg']:g} kg" for one in housing["masses"]))
+    return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
+
+
+def _bushing_line(kind: str, bushing: dict[str, Any]) -> str:
+    between = f" ({' to '.join(bushing['surfaces'])})" if "surfaces" in bushing else ""
+    parts = [
+        f"{motion} {amount:.4g} {unit}"
+        for key, unit in (
+            ("stiffness_n_per_m", "N/m"),
+            ("stiffness_n_m_per_rad", "N·m/rad"),
+            ("damping_n_s_per_m", "N·s/m"),
+            ("damping_n_m_s_per_rad", "N·m·s/rad"),
+        )
+        for motion, amount in bushing.get(key, {}).items()
+    ]
+    return f"{kind} {bushing['name']}{between}: {', '.join(parts)}"
 
 
 def _rotor_line(rotor: dict[str, Any]) -> str:
@@ -226,6 +246,7 @@ def show_system(document: dict[str, Any]) -> None:
         console.print(static_error_line(error))
     if trusted and len(shown) < len(modes):
         console.print(f"{_count(len(modes) - len(shown), 'more mode')} above {2.0 * trusted:.5g} Hz.")
+    _origin(console, document)
     _files(console, document)
 
 
@@ -233,6 +254,7 @@ def show_comparison(document: dict[str, Any]) -> None:
     """Measured beside model modes."""
     console = _console()
     _comparison(console, document)
+    _origin(console, document)
     _files(console, document)
 
 
@@ -248,7 +270,9 @@ def show_examples(document: dict[str, Any]) -> None:
 
 def show_files(document: dict[str, Any]) -> None:
     """What was written."""
-    _files(_console(), document)
+    console = _console()
+    _origin(console, document)
+    _files(console, document)
 
 
 def _comparison(console: Console, document: dict[str, Any]) -> None:
@@ -301,11 +325,19 @@ def _modes_line(console: Console, document: dict[str, Any]) -> None:
         f"{certificate['expected']}; largest residual {certificate['max_residual']:.0e}; {document['mass_kg']:.2f} kg, "
         f"{mesh['dofs']} degrees of freedom, {document['seconds']['total']:.1f} s"
     )
+    _origin(console, document)
+
+
+def _origin(console: Console, document: dict[str, Any]) -> None:
+    if document.get("reused"):
+        console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
 
 
 def _files(console: Console, document: dict[str, Any]) -> None:
-    if document.get("files"):
-        console.print(f"Written to {document['folder']}: {', '.join(document['files'])}")
+    read = document["modes_read_from"].rpartition("/")[2] if document.get("reused") else None
+    written = [name for name in document.get("files", ()) if name != read]
+    if written:
+        console.print(f"Written to {document['folder']}: {', '.join(written)}")
 
 
 def _count(number: int, what: str) -> str:

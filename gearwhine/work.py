@@ -3,21 +3,24 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases, dump_case, mesh_frequencies, require
-from gearwhine.output import finite, json_text, staging
+from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
+from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import transient as transient_stage
+from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
 
-_MOST_MODES = 5000
+if TYPE_CHECKING:
+    from gearwhine.stages.housing import SolvedHousing
 
 
-def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
+def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
     """Everything that the case asks for, and the results folder."""
     from gearwhine import figures, results
     from housing import pictures
@@ -39,7 +42,7 @@ def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
     pairs = gear_stage.solve_gears(case, progress) if case.gear_pair else ()
     timed("rotors_and_gears", begin)
     begin = time.perf_counter()
-    housing = housing_stage.solve_housing(case, progress) if case.housing else None
+    housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     timed("housing", begin)
     if rotors:
         document |= rotor_stage.rotors_document(rotors)
@@ -48,6 +51,7 @@ def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
     comparison = None
     if housing is not None:
         document["housing"] = housing_stage.modes_document(housing)
+        document |= housing_stage.origin_document(housing)
         if case.measured is not None:
             comparison = housing_stage.compare_housing(case, housing)
             document["compare"] = housing_stage.comparison_document(comparison, housing)
@@ -69,7 +73,7 @@ def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
             seconds["time_stepping"] = transient.result.seconds
 
     begin = time.perf_counter()
-    with staging(folder) as place:
+    with staging(folder, replacing=True) as place:
         progress("writing results")
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
         results.write(place / "results.nc", case, housing, rotors, pairs, system_modes, transient)
@@ -78,11 +82,13 @@ def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
         if transient is not None:
             figures.draw_transient(place, case, transient, housing, comparison)
         if housing is not None:
-            _draw_modes(housing, comparison, "dominant", "iso", place, progress)
+            results.write_shapes(place / "modes.vtu", housing)
+            keep_modes(place, housing)
+            draw_modes(housing, comparison, "dominant", "iso", "png", place, progress)
         timed("writing", begin)
         seconds["total"] = time.perf_counter() - start
-        document |= {"seconds": seconds, "folder": str(folder), "files": [*_names(place), "summary.json"]}
-        (place / "summary.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
+        document |= {"seconds": seconds, "folder": str(folder), "files": _files(place, housing)}
+        (place / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
     return document
 
 
@@ -97,9 +103,9 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
     with staging(folder) as place:
         write_mesh(mesh, place / name)
     return {
-        "mesh": {"nodes": len(mesh.points), "elements": len(mesh.cells), "dofs": 3 * len(mesh.points)},
+        "mesh": {"nodes": len(mesh.points), "elements": mesh.n_elements, "dofs": 3 * len(mesh.points)},
         "order": mesh.order,
-        "surfaces": {surface: len(facets) for surface, facets in sorted(mesh.surfaces.items())},
+        "surfaces": {surface: sum(map(len, facets)) for surface, facets in sorted(mesh.surfaces.items())},
         "volume_m3": quality.volume,
         "edge_length_m": dict(zip(("min", "median", "max"), quality.edge_length, strict=True)),
         "shape_number": dict(zip(("min", "median"), quality.shape, strict=True)),
@@ -108,17 +114,19 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
     }
 
 
-def modes_case(case: Case, folder: Path | None, progress: Progress, *, detail: bool = False) -> dict[str, Any]:
-    """The housing's modes; with a folder, also as VTU and in a results file."""
+def modes_case(
+    case: Case, folder: Path | None, progress: Progress, *, detail: bool = False, fresh: bool = False
+) -> dict[str, Any]:
+    """The housing's modes; with a folder, also on file: for later commands, as VTU and in a results file."""
     from gearwhine import results
 
-    housing = housing_stage.solve_housing(case, progress)
+    housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
 
     def write(place: Path) -> None:
         results.write(place / "results.nc", case, housing, (), (), None, None)
         results.write_shapes(place / "modes.vtu", housing)
 
-    return _kept(housing_stage.modes_document(housing, detail=detail), case, folder, write)
+    return _kept(housing_stage.modes_document(housing, detail=detail), case, folder, write, housing)
 
 
 def rotors_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
@@ -146,35 +154,49 @@ def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str,
     return _kept(gear_stage.gears_document(pairs), case, folder, write)
 
 
-def system_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
+def system_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
     """The coupled modes."""
-    housing, _, machine = machine_stage.solve_machine(case, progress)
+    housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
     modes = machine_stage.coupled_modes(machine)
-    return _kept(machine_stage.system_document(case, machine, modes, housing), case, folder)
+    document = machine_stage.system_document(case, machine, modes, housing)
+    return _kept(document | housing_stage.origin_document(housing), case, folder, housing=housing)
 
 
-def compare_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
+def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
     """Model modes against measured ones."""
     require(case, "housing", "measured", command="compare")
-    housing = housing_stage.solve_housing(case, progress)
+    housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
     comparison = housing_stage.compare_housing(case, housing)
-    return _kept(housing_stage.comparison_document(comparison, housing), case, folder)
+    document = housing_stage.comparison_document(comparison, housing)
+    return _kept(document | housing_stage.origin_document(housing), case, folder, housing=housing)
 
 
-def render_case(case: Case, folder: Path, which: str, view: str, progress: Progress) -> dict[str, Any]:
-    """Pictures of mode shapes."""
+def render_case(
+    case: Case,
+    folder: Path,
+    which: str,
+    view: str,
+    progress: Progress,
+    *,
+    mode_format: ModeFormat = "png",
+    fresh: bool = False,
+) -> dict[str, Any]:
+    """Pictures of mode shapes, or moving models of them."""
     if which not in ("dominant", "all"):
         parse_numbers(which, None)
-    from housing import pictures
+    if mode_format == "png":
+        from housing import pictures
 
-    pictures.load_pyvista()
-    housing = housing_stage.solve_housing(case, progress, command="render")
+        pictures.load_pyvista()
+    housing = housing_stage.solve_housing(case, progress, command="render", folder=folder, fresh=fresh)
     comparison = None
     if case.measured is not None and housing.strengths is not None:
         comparison = housing_stage.compare_housing(case, housing)
     with staging(folder) as place:
-        files = _draw_modes(housing, comparison, which, view, place, progress)
-    return {"folder": str(folder), "files": files}
+        draw_modes(housing, comparison, which, view, mode_format, place, progress)
+        keep_modes(place, housing)
+        files = _files(place, housing, summary=False)
+    return {"folder": str(folder), "files": files, **housing_stage.origin_document(housing)}
 
 
 def list_examples() -> dict[str, Any]:
@@ -197,74 +219,33 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
     return {"folder": str(folder), "files": [source.name]}
 
 
-def parse_numbers(text: str, count: int | None) -> list[int]:
-    """Mode numbers from text such as ``1,4-6``; ``count`` is how many modes there are, where that is known.
-
-    Raises
-    ------
-    CaseError
-        For anything else, or a mode that does not exist.
-    """
-    numbers: list[int] = []
-    for part in text.split(","):
-        first, _, last = part.partition("-")
-        if not first.strip().isdecimal() or (last and not last.strip().isdecimal()):
-            raise CaseError([Problem("--modes", text, "'dominant', 'all', or numbers such as '1,4,9' or '1-6'")])
-        if int(last or first) > _MOST_MODES:
-            raise CaseError([Problem("--modes", text, f"mode numbers of at most {_MOST_MODES}")])
-        numbers += range(int(first), int(last or first) + 1)
-    missing = [number for number in numbers if number < 1 or (count is not None and number > count)]
-    if missing or not numbers:
-        raise CaseError(
-            [Problem("--modes", text, f"mode numbers from 1 to {count if count is not None else 'the last'}")]
-        )
-    return numbers
-
-
-def _draw_modes(
-    housing: housing_stage.SolvedHousing, comparison: Any, which: str, view: str, place: Path, progress: Progress
-) -> list[str]:
-    from housing import pictures
-
-    count = len(housing.modes.frequencies)
-    notes = {}
-    if comparison is not None:
-        notes = {
-            pair.mode: f"measured {pair.measured / 6.283185307179586:.0f} Hz ({pair.error_percent:+.1f} %)"
-            for pair in comparison.pairs
-        }
-    if which == "all":
-        numbers = list(range(1, count + 1))
-    elif which == "dominant":
-        numbers = sorted(notes) if notes else housing_stage.strongest_modes(housing, 8)
-    else:
-        numbers = parse_numbers(which, count)
-    files = pictures.render_modes(
-        housing.mesh, housing.modes, numbers, place, notes=notes, view=view, progress=progress
-    )
-    if len(numbers) > 1:
-        progress("drawing all on one sheet")
-        sheet = place / "modes.png"
-        files.append(pictures.render_gallery(housing.mesh, housing.modes, numbers, sheet, notes=notes, view=view))
-    return [path.name for path in files]
-
-
 def _kept(
     document: dict[str, Any],
     case: Case,
     folder: Path | None,
     write: Callable[[Path], None] = lambda place: None,
+    housing: "SolvedHousing | None" = None,
 ) -> dict[str, Any]:
-    """The document; where a folder is given, also in it, with the resolved case and what ``write`` adds."""
+    """The document; where a folder is given, also in it, with the resolved case, the modes and what ``write`` adds."""
     if folder is None:
         return document
     with staging(folder) as place:
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
         write(place)
-        document |= {"folder": str(folder), "files": [*_names(place), "summary.json"]}
-        (place / "summary.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
+        if housing is not None:
+            keep_modes(place, housing)
+        files = _files(place, housing)
+        document |= {"folder": str(folder), "files": files}
+        # Drawings that stay from an earlier run are listed on, so that the next one that draws anew clears them.
+        if stay := [name for name in earlier_drawings(folder) if name not in files]:
+            document["earlier_drawings"] = stay
+        (place / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
     return document
 
 
-def _names(place: Path) -> list[str]:
-    return sorted(str(path.relative_to(place)) for path in place.rglob("*") if path.is_file())
+def _files(place: Path, housing: "SolvedHousing | None", *, summary: bool = True) -> list[str]:
+    """The results' files: those staged, the mode file that was read and stays, and the summary last."""
+    names = {str(path.relative_to(place)) for path in place.rglob("*") if path.is_file()}
+    if housing is not None and housing.source is not None:
+        names.add(MODES_FILE)
+    return sorted(names) + ([SUMMARY] if summary else [])

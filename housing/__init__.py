@@ -3,39 +3,67 @@
 What the room offers:
 
 - :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid.
-- :class:`Support`, :func:`with_springs`, :func:`fixed_freedoms` -- what holds it.
-- :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`.
+- :class:`Support`, :func:`fixed_freedoms` -- what holds it; :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, each
+  on a :class:`Patch` -- what else is fastened to it; :func:`attach` -- the matrices with all of these.
+- :func:`rigid_body` -- mass, centre of gravity and inertia of the whole (:class:`RigidBody`).
+- :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` -- what
+  dashpots do to them.
 - :class:`Seat`, :func:`seat_matrix`, :class:`Sensor`, :func:`sensor_port` -- where the rest of the machine meets it.
 - :func:`attach_ports` -- residual :class:`Attachments`, which make the static compliance at ports exact.
 - :func:`receptance`, :func:`select_modes`, :func:`effective_mass` -- what each mode carries between ports, and of mass.
 - :func:`health_report` -- mass, rigid motions, grounding, orthogonality, static error: each with its bound.
+- :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
 - :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance` -- model against measured modes.
+- ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
 - ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
 """
 
 from housing.assembly import assemble
+from housing.attachments import Attachment, attach
+from housing.bushings import GLOBAL_AXES, Axial, Bushing, Joint, Mount, axes_along
 from housing.comparison import Comparison, ModePair, compare_by_dominance
+from housing.damping import damping_ratios, modal_damping
 from housing.dominance import Dominance, dominance
 from housing.effective_mass import EffectiveMass, effective_mass
 from housing.enclosure import enclosed
-from housing.errors import FactorizationError, HealthError, HousingError, IncompleteModesError, ReductionError
+from housing.errors import (
+    FactorizationError,
+    HealthError,
+    HousingError,
+    IncompleteModesError,
+    ModeFileError,
+    ReductionError,
+)
 from housing.factorization import Factorization, Factorizer
 from housing.grounding import Grounding, SupportHold
 from housing.health import HealthLine, HealthReport, health_report
+from housing.labelled import LabelledArray, content_key
+from housing.lumped_mass import NO_INERTIA, LumpedMass
 from housing.material import Material
 from housing.matrices import Matrices
+from housing.mesh_arrays import mesh_digest
+from housing.mode_file import read_modes, write_modes
+from housing.mode_record import ModeRecord, with_sensors
 from housing.modes import Certificate, ModeSet, solve_modes
+from housing.node_blocks import Additions, NodeBlocks
+from housing.patches import Patch, patch_center, patch_matrix, point_matrix
 from housing.port_attachments import attach_ports
 from housing.ports import Seat, Sensor, SensorPort, seat_matrix, sensor_port
 from housing.receptance import Selection, receptance, residues, select_modes
 from housing.reduction import Attachments, StaticProof
 from housing.rigid import RigidBody, rigid_body, rigid_motions
-from housing.supports import Support, fixed_freedoms, with_springs
+from housing.supports import Support, fixed_freedoms
 from housing.survey import SURVEY_COUNTS, Survey, survey_grid
 
 __all__ = [
+    "GLOBAL_AXES",
+    "NO_INERTIA",
     "SURVEY_COUNTS",
+    "Additions",
+    "Attachment",
     "Attachments",
+    "Axial",
+    "Bushing",
     "Certificate",
     "Comparison",
     "Dominance",
@@ -49,10 +77,18 @@ __all__ = [
     "HealthReport",
     "HousingError",
     "IncompleteModesError",
+    "Joint",
+    "LabelledArray",
+    "LumpedMass",
     "Material",
     "Matrices",
+    "ModeFileError",
     "ModePair",
+    "ModeRecord",
     "ModeSet",
+    "Mount",
+    "NodeBlocks",
+    "Patch",
     "ReductionError",
     "RigidBody",
     "Seat",
@@ -64,13 +100,23 @@ __all__ = [
     "SupportHold",
     "Survey",
     "assemble",
+    "attach",
     "attach_ports",
+    "axes_along",
     "compare_by_dominance",
+    "content_key",
+    "damping_ratios",
     "dominance",
     "effective_mass",
     "enclosed",
     "fixed_freedoms",
     "health_report",
+    "mesh_digest",
+    "modal_damping",
+    "patch_center",
+    "patch_matrix",
+    "point_matrix",
+    "read_modes",
     "receptance",
     "residues",
     "rigid_body",
@@ -80,5 +126,6 @@ __all__ = [
     "sensor_port",
     "solve_modes",
     "survey_grid",
-    "with_springs",
+    "with_sensors",
+    "write_modes",
 ]

@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from meshes import Mesh
+from meshes.shapes import quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -25,22 +26,14 @@ def enclosed(mesh: Mesh) -> tuple[float, FloatArray]:
     """
     # About the middle of the body, where the sums cancel least.
     middle = mesh.bounds.mean(axis=0)
-    values, gradients, weights = _facet_functions(mesh.boundary.shape[1])
-    nodes = mesh.points[mesh.boundary] - middle
-    places = np.einsum("fai,qa->fqi", nodes, values)
-    tangents = np.einsum("fai,qaj->fqij", nodes, gradients)
-    flux = np.einsum("fqi,fqi,q->fq", places, np.cross(tangents[..., 0], tangents[..., 1]), weights)
-    volume = float(flux.sum() / 3.0)
-    return volume, np.asarray(middle + np.einsum("fqi,fq->i", places, flux) / (4.0 * volume))
-
-
-def _facet_functions(n_shape: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    from skfem import ElementTriP1, ElementTriP2
-    from skfem.quadrature import get_quadrature
-
-    element = ElementTriP1() if n_shape == 3 else ElementTriP2()
-    points, weights = get_quadrature(element.refdom, _DEGREE)
-    pairs = [element.lbasis(points, number) for number in range(n_shape)]
-    values = np.array([np.broadcast_to(value, weights.shape) for value, _ in pairs]).T
-    gradients = np.array([np.broadcast_to(gradient, points.shape) for _, gradient in pairs]).transpose(2, 0, 1)
-    return values, gradients, np.asarray(weights)
+    volume, moment = 0.0, np.zeros(3)
+    for block in mesh.boundary:
+        places, weights = quadrature(block.kind, _DEGREE)
+        values, gradients = shape_functions(block.kind, places)
+        nodes = mesh.points[block.nodes] - middle
+        points = np.einsum("fai,qa->fqi", nodes, values, optimize=True)
+        tangents = np.einsum("fai,qaj->fqij", nodes, gradients, optimize=True)
+        flux = np.einsum("fqi,fqi,q->fq", points, np.cross(tangents[..., 0], tangents[..., 1]), weights)
+        volume += float(flux.sum() / 3.0)
+        moment += np.einsum("fqi,fq->i", points, flux) / 4.0
+    return volume, np.asarray(middle + moment / volume)

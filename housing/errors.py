@@ -19,3 +19,7 @@ class ReductionError(RuntimeError):
 
 class HealthError(RuntimeError):
     """The housing's model contradicts its geometry or itself; the message names every check that failed."""
+
+
+class ModeFileError(HousingError):
+    """A mode-set file cannot be used: missing, damaged, of another kind or another version."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from housing.bushings import Mount
 from housing.rigid import rigid_motions
 from housing.supports import Support, fixed_freedoms
-from housing.surface import surface_quadrature
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -58,25 +58,26 @@ class Grounding:
     supports: tuple[SupportHold, ...]
 
 
-def grounding(mesh: Mesh, supports: Sequence[Support], center: FloatArray) -> Grounding:
+def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArray) -> Grounding:
     """How the supports hold the body as a whole.
 
     A rigid motion r is free where it moves no fixed freedom and strains no spring: where
-    rᵀ [Σ_fixed R Rᵀ + Σ_springs (k / A) ∫ R Rᵀ dA] r vanishes, each of the two sums taken by its own size, and
+    rᵀ [Σ_fixed R Rᵀ + Σ_springs R K Rᵀ] r vanishes, each of the two sums taken by its own size, and
     rotations measured as displacement at half the body's diagonal.
 
     Parameters
     ----------
     mesh : Mesh
-    supports : sequence of Support
+    supports : sequence of Support or Mount
+        Whatever stands on the ground.
     center : ndarray, shape (3,)
         Centre of gravity [m].
     """
     reach = 0.5 * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
     scale = np.array([1.0] * 3 + [1.0 / reach] * 3)
-    fields = rigid_motions(mesh.points, center).reshape(-1, 6) * scale
-    springs = [_spring_stiffness(mesh, support, center) for support in supports]
-    held = [fields[fixed_freedoms(mesh, [support])] for support in supports]
+    fields = rigid_motions(mesh.points, center).reshape(-1, 6)
+    springs = [_spring_stiffness(mesh, support, fields) for support in supports]
+    held = [_fixed_rows(mesh, support, fields * scale) for support in supports]
     own = [_by_size(rows.T @ rows) for rows in held]
     total = np.sum(springs, axis=0) if springs else np.zeros((6, 6))
     whole = _by_size(total * np.outer(scale, scale)) + np.sum(own, axis=0) if springs else total
@@ -99,14 +100,15 @@ def grounding(mesh: Mesh, supports: Sequence[Support], center: FloatArray) -> Gr
     )
 
 
-def _spring_stiffness(mesh: Mesh, support: Support, center: FloatArray) -> FloatArray:
-    """Σ_c (k_c / A) ∫ R_c R_cᵀ dA of the support's springs with the six rigid motions R, shape (6, 6)."""
-    if not any(support.stiffness):
-        return np.zeros((6, 6))
-    patch = surface_quadrature(mesh, support.facets(mesh))
-    motions = rigid_motions(patch.points, center)
-    weights = patch.areas[:, :, None] * np.array(support.stiffness) / patch.area
-    return np.asarray(np.einsum("fqcr,fqcs,fqc->rs", motions, motions, weights, optimize=True))
+def _spring_stiffness(mesh: Mesh, support: Support | Mount, fields: FloatArray) -> FloatArray:
+    """Rᵀ K R of what the support's springs add to the stiffness, with the six rigid motions R, shape (6, 6)."""
+    added = support.additions(mesh).stiffness
+    return np.asarray(fields.T @ (added.matrix(len(mesh.points)) @ fields)) if len(added) else np.zeros((6, 6))
+
+
+def _fixed_rows(mesh: Mesh, support: Support | Mount, fields: FloatArray) -> FloatArray:
+    """The rigid motions at the degrees of freedom that a support holds, shape (n, 6)."""
+    return fields[fixed_freedoms(mesh, [support])] if isinstance(support, Support) else fields[:0]
 
 
 def _by_size(matrix: FloatArray) -> FloatArray:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
+from housing.bushings import Mount
 from housing.errors import HealthError
 from housing.grounding import Grounding, grounding
 from housing.matrices import Matrices
@@ -23,8 +24,8 @@ from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
-MASS_BOUND = 1e-9
-CENTER_BOUND = 1e-6  # part of the diagonal: elements with curved sides are integrated closely, not exactly
+MASS_BOUND = 1e-6  # of mass, and of the centre over the diagonal: curved elements are integrated closely, not exactly
+REGULAR_BOUND = 1e-9
 STRAIN_BOUND = 1e-10  # what rounding leaves of K R is some 1e-14
 SYMMETRY_BOUND = 1e-12
 
@@ -97,7 +98,7 @@ def health_report(
     mesh: Mesh,
     unsupported: Matrices,
     supported: Matrices,
-    supports: Sequence[Support],
+    supports: Sequence[Support | Mount],
     modes: ModeSet,
     *,
     mass: float,
@@ -109,8 +110,9 @@ def health_report(
     ----------
     mesh : Mesh
     unsupported, supported : Matrices
-        Without and with the supports' springs.
-    supports : sequence of Support
+        The bare solid, and the same with all that is fastened to it.
+    supports : sequence of Support or Mount
+        What of this stands on the ground.
     modes : ModeSet
         Of ``supported`` with what the supports fix, with or without attachments.
     mass : float
@@ -118,10 +120,10 @@ def health_report(
     center : ndarray, shape (3,), optional
         Centre of gravity by geometry, where it is known [m].
     """
-    body = rigid_body(mesh.points, unsupported)
+    body = rigid_body(mesh.points, supported)
     held = grounding(mesh, supports, body.center)
     lines = [
-        *_mass_lines(mesh, body, mass, center, unsupported),
+        *_mass_lines(mesh, body, mass, center, supported),
         *_matrix_lines(mesh, unsupported, supported, body),
         *_grounding_lines(held, modes),
         *_mode_lines(supported, modes),
@@ -150,7 +152,7 @@ def _mass_lines(
         HealthLine(
             "rigid-body mass",
             float(np.abs(foreign).max()),
-            MASS_BOUND,
+            REGULAR_BOUND,
             "entries of the mass matrix, moved rigidly, that no rigid body has",
         ),
     ]
@@ -161,7 +163,7 @@ def _mass_lines(
             HealthLine(
                 "centre of gravity",
                 float(np.linalg.norm(body.center - center)) / size,
-                CENTER_BOUND,
+                MASS_BOUND,
                 f"({x:.3f}, {y:.3f}, {z:.3f}) mm from the matrices, against the geometry's",
             )
         )
@@ -242,7 +244,9 @@ def _port_lines(modes: ModeSet) -> list[HealthLine]:
     without = float(proof.missing_parts.max(initial=0.0))
     return [
         HealthLine("static error, modes alone", without, None, "compliance at the ports that the modes lack"),
-        HealthLine("static error, with attachments", proof.error, STATIC_BOUND, "against solves that know of no modes"),
+        HealthLine(
+            "static error, with attachments", proof.error, STATIC_BOUND, "bound from what the loads leave unbalanced"
+        ),
     ]
 
 

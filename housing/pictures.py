@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from housing.errors import HousingError
 from housing.modes import ModeSet
+from housing.skin import DRAWN_SCALE, check_numbers, drawn_name, outer_skin
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -25,7 +26,6 @@ _VIEWS = {
 }
 VIEWS = tuple(_VIEWS)
 _COLOURS = "viridis"
-_SCALE = 0.07  # largest displacement drawn, as a part of the housing's diagonal
 _STRIP = 34  # height of the colour bar's strip under a sheet of modes [pixels]
 _INK = "#202428"
 
@@ -112,7 +112,7 @@ def render_modes(
     files = []
     for number in numbers:
         progress(f"drawing mode {number}")
-        path = folder / f"mode-{number:02d}-{modes.frequencies_hz[number - 1]:.0f}Hz.png"
+        path = folder / f"{drawn_name(modes, number)}.png"
         plotter = pyvista.Plotter(off_screen=True, window_size=size)
         try:
             shape, note = modes.shapes[number - 1][nodes], (notes or {}).get(number, "")
@@ -163,23 +163,16 @@ def render_gallery(
 
 
 def _check(modes: ModeSet, numbers: Sequence[int], view: str) -> None:
-    missing = [number for number in numbers if not 1 <= number <= len(modes.shapes)]
-    if missing or not numbers:
-        raise HousingError(f"modes {missing or 'none'} asked for; give numbers from 1 to {len(modes.shapes)}")
+    check_numbers(modes, numbers)
     if view not in _VIEWS:
         raise HousingError(f"no view {view!r}; there are {', '.join(VIEWS)}")
 
 
 def _outer_surface(pyvista: Any, mesh: Mesh) -> tuple[Any, npt.NDArray[np.int64]]:
-    """The boundary as triangles between neighbouring nodes, and the nodes that it uses."""
-    boundary = mesh.boundary
-    if boundary.shape[1] == 6:
-        # Four triangles for each quadratic facet, so that its middle nodes bend too.
-        boundary = boundary[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
-    nodes, triangles = np.unique(boundary, return_inverse=True)
-    triangles = triangles.reshape(-1, 3)
-    faces = np.hstack([np.full((len(triangles), 1), 3), triangles])
-    return pyvista.PolyData(mesh.points[nodes], faces), nodes
+    """The boundary as PyVista's triangles, and the nodes that it uses."""
+    skin = outer_skin(mesh)
+    faces = np.hstack([np.full((len(skin.triangles), 1), 3), skin.triangles])
+    return pyvista.PolyData(mesh.points[skin.nodes], faces), skin.nodes
 
 
 def _title(modes: ModeSet, number: int) -> str:
@@ -200,7 +193,7 @@ def _draw(
     amplitude = np.linalg.norm(shape, axis=1)
     largest = float(amplitude.max())
     deformed = surface.copy()
-    deformed.points = surface.points + shape * (_SCALE * surface.length / largest)
+    deformed.points = surface.points + shape * (DRAWN_SCALE * surface.length / largest)
     deformed["displacement"] = amplitude / largest
     plotter.set_background("white")
     plotter.add_mesh(
@@ -259,7 +252,7 @@ def _draw_bar(pyvista: Any, plotter: Any, width: float) -> None:
 def _frame(bounds: Sequence[float]) -> list[float]:
     """The undeformed bounds with room for the largest displacement, so that every mode has the same scale."""
     low, high = np.array(bounds[::2]), np.array(bounds[1::2])
-    room = _SCALE * float(np.linalg.norm(high - low))
+    room = DRAWN_SCALE * float(np.linalg.norm(high - low))
     return [float(value) for pair in zip(low - room, high + room, strict=True) for value in pair]
 
 

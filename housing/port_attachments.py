@@ -14,7 +14,7 @@ from housing.reduction import residual_attachments
 
 IntArray = npt.NDArray[np.int64]
 
-_SHIFT = 0.06  # part of the modes' limit: few sweeps, and rounding stays far below it
+_FLOOR = 0.06  # part of the modes' limit: a shift so far below zero needs few sweeps
 _ROUNDING = 3e-8  # part of the largest K_ii / M_ii, below which the shift would drown in the rounding of K
 
 
@@ -42,7 +42,7 @@ def attach_ports(
     ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
         Such as those of :func:`housing.seat_matrix`; the attachments' order follows theirs.
     factor, shift : Factorization and float, optional
-        A factor of K - shift M on the free degrees of freedom, shift < 0 [rad²/s²], where one is at hand; both or
+        A factor of K - shift M on the free degrees of freedom, where one is at hand, and its shift [rad²/s²]; both or
         neither.
     backend, threads
         See :class:`housing.factorization.Factorizer`; used where no factor is given.
@@ -58,21 +58,22 @@ def attach_ports(
     free = np.flatnonzero(~held)
     stiffness = _reduced(matrices.stiffness, free)
     mass = _reduced(matrices.mass, free)
+    floor = max(
+        (_FLOOR * modes.certificate.limit) ** 2, _ROUNDING * float(np.max(stiffness.diagonal() / mass.diagonal()))
+    )
     if factor is None or shift is None:
-        shift = -max(
-            (_SHIFT * modes.certificate.limit) ** 2,
-            _ROUNDING * float(np.max(stiffness.diagonal() / mass.diagonal())),
-        )
+        shift = -floor
         definite = _reduced(matrices.shifted(shift), free)
         factor = Factorizer(definite, backend=backend, threads=threads).factor(definite)
     attachments = residual_attachments(
         stiffness,
         mass,
         factor.solve,
-        shift,
         modes.frequencies**2,
         modes.shapes.reshape(len(modes.shapes), -1).T[free],
         stacked(ports)[:, free],
+        shift=shift,
+        floor=floor,
         free=free,
         n_nodes=matrices.n_nodes,
     )

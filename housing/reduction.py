@@ -6,15 +6,16 @@ together answer with the *residual vectors*
     X = Σ_discarded φ φᵀ Pᵀ / λ,        K X = F,   F = (I - M Φ Φᵀ) Pᵀ,   Φᵀ M X = 0,                    (1)
 
 which need no discarded mode to be known: on the M-orthogonal complement of Φ the stiffness is positive definite,
-free body or not, since a free body's rigid modes are among Φ. There (1) is solved with the factor of
-A = K - σM, σ < 0, that the eigensolution has at hand. In the sweep
+free body or not, since a free body's rigid modes are among Φ. There (1) is solved with the factor of A = K - σM that
+the eigensolution has at hand, σ below all modes or between the kept and the discarded ones, so that A is positive
+definite on the complement too. In the sweep
 
     X <- X + A⁻¹ (F - K X)                                                                               (2)
 
-the error becomes (I - A⁻¹ K) E. Both matrices are diagonal in the modes, so that each discarded mode's part shrinks by
-1 - λ / (λ - σ) = |σ| / (λ + |σ|), at most by |σ| / (λ_first discarded + |σ|): for a shift at 6 % of the limit's
-circular frequency by a factor of 280, whatever the mesh. Conjugate gradients preconditioned by A⁻¹ take the same
-sweeps, need fewer of them, and bear a shift that lies further below.
+the error becomes (I - A⁻¹ K) E. Both matrices are diagonal in the modes, so that each discarded mode's part is
+multiplied by -σ / (λ - σ): small for σ slightly below zero, where the plain sweep settles quickly, and for modes well
+above a positive σ. Conjugate gradients preconditioned by A⁻¹ take the same sweeps, need fewer of them, and converge for
+the modes just above a positive σ too: a handful of eigenvalues λ / (λ - σ) of A⁻¹ K apart from a cluster at one.
 
 The span of X is then made a set of modes of its own: orthonormal in M to Φ and in itself, with a diagonal stiffness
 (Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2006, chapter 17, on residual attachment modes; after
@@ -22,8 +23,17 @@ MacNeal 1971 and Rubin 1975). By Galerkin's argument its compliance at the ports
 of X. Modes and attachments side by side are a component with the unit mass, a diagonal stiffness and the exact static
 compliance at its ports.
 
-The compliance spoken of is the elastic one: modes with λ <= |σ| are left out of it, rigid and nearly rigid ones. For a
-free body this is its inertia-relief compliance Aᵀ G A with A = I - M Φ_rigid Φ_rigidᵀ: the load is balanced by the
+*Proof.* Let U be the displacements that modes and attachments claim for the loads F of all ports, and R = F - K U what
+these leave unbalanced. Whatever U is, the exact compliance is
+
+    C = Uᵀ F + Fᵀ U - Uᵀ K U + Rᵀ K⁻¹ R,                                                                 (3)
+
+all of it computable but the last term, of second order, which is bounded by one more solve: the kept modes' part of R
+divided by λ, and for the rest rᵀ K⁻¹ r <= (1 + |min(σ, 0)| / λ_kept) rᵀ A⁻¹ r, since A differs from K by σM. What C so
+found has beside the claimed compliance, and the bound, are the error reported.
+
+The compliance spoken of is the elastic one: modes with λ <= floor are left out of it, rigid and nearly rigid ones. For
+a free body this is its inertia-relief compliance Sᵀ G S with S = I - M Φ_rigid Φ_rigidᵀ: the load is balanced by the
 inertia of the accelerated body. A body on mounts that are soft beside the limit is held to the same, stricter measure.
 """
 
@@ -42,11 +52,9 @@ Solve = Callable[[FloatArray], FloatArray]
 
 STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
-_SETTLED = 1e-9  # part of a port's whole response, in energy, that a last sweep may still move
-_PROBE_SETTLED = 1e-6  # the probes' compliance errs by the square of this
+_SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
 _MOST_SWEEPS = 200
-_PROBES = 4  # loads that the proof solves for: every port alone, or so many random combinations of all
 
 
 @dataclass(frozen=True)
@@ -60,12 +68,12 @@ class StaticProof:
     missing : ndarray, shape (r, r)
         The part of it that the kept modes alone lack.
     error : float
-        Largest |C_ab - C'_ab| / sqrt(C_aa C_bb) over probing loads a, b, with C' by modes and attachments and C by
-        solves of K x = f that know of neither.
+        Bound on |C_ab - C'_ab| / sqrt(C_aa C_bb) over all pairs of motions, with C' by modes and attachments and C the
+        exact compliance of Eq. (3).
     overlap : float
         Largest |φᵀ M ψ| of two different vectors among modes and attachments, and |ψᵀ M ψ - 1|.
     sweeps : int
-        Solves with the factor of A for all ports at once.
+        Solves with the factor of A for all ports at once, before the last one for the bound.
     """
 
     compliance: FloatArray
@@ -108,11 +116,12 @@ def residual_attachments(
     stiffness: sparse.csr_array,
     mass: sparse.csr_array,
     solve: Solve,
-    shift: float,
     values: FloatArray,
     vectors: FloatArray,
     ports: sparse.csr_array,
     *,
+    shift: float,
+    floor: float,
     free: IntArray,
     n_nodes: int,
 ) -> Attachments:
@@ -124,14 +133,16 @@ def residual_attachments(
         K [N/m] and M [kg] on the free degrees of freedom.
     solve : callable
         X = A⁻¹ B with A = K - shift M, for B of shape (n, m).
-    shift : float
-        σ < 0 [rad²/s²].
     values : ndarray, shape (p,)
         λ = ω² of the kept modes [rad²/s²], every one below some limit.
     vectors : ndarray, shape (n, p)
         Φ, with Φᵀ M Φ = I.
     ports : scipy.sparse.csr_array, shape (r, n)
         P: motions at the ports from the free degrees of freedom; loads act by its transpose.
+    shift : float
+        σ [rad²/s²]: below zero, or above every kept eigenvalue and below every discarded one.
+    floor : float
+        λ up to which a mode counts as rigid [rad²/s²].
     free : ndarray of int, shape (n,)
         Where these degrees of freedom stand among the mesh's 3 n_nodes.
     n_nodes : int
@@ -140,7 +151,7 @@ def residual_attachments(
     Raises
     ------
     HousingError
-        Where the shapes of the arrays do not fit, or the shift is not negative.
+        Where the shapes of the arrays do not fit, or the shift stands among the kept modes.
     ReductionError
         Where the sweeps do not settle or the result fails its proof.
     """
@@ -150,22 +161,26 @@ def residual_attachments(
             f"ports of shape {ports.shape}, modes of shape {vectors.shape} with {len(values)} values and {len(free)} "
             f"places for a stiffness of order {n}; expected (r, {n}), ({n}, p) with p values, and {n} places"
         )
-    if not shift < 0.0:
-        raise HousingError(f"a shift of {shift:g} rad²/s²; expected it below zero, where K - shift M is definite")
+    if not (shift < 0.0 or shift > values.max(initial=0.0)):
+        raise HousingError(f"a shift of {shift:g} rad²/s²; expected it below zero or above every kept mode")
     inertia = np.asarray(mass @ vectors)
     loads = np.asarray(ports.T.toarray(), dtype=np.float64)
     motions = vectors.T @ loads
-    elastic = values > -shift
+    elastic = values > floor
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
 
     residual, sweeps = _static_response(stiffness, solve, loads, vectors, inertia, _SETTLED, modal.diagonal())
     squared, shapes = _orthonormal(stiffness, mass, residual, modal.diagonal(), vectors, inertia)
     found = (ports @ shapes).T
     missing = (found.T / squared) @ found
+    # Each load without what accelerates the rigid modes, and the displacements claimed for it.
+    balanced = loads - inertia[:, ~elastic] @ motions[~elastic]
+    claimed = vectors[:, elastic] @ (motions[elastic] / values[elastic][:, None]) + shapes @ (found / squared[:, None])
+    slack = 1.0 + max(-shift, 0.0) / max(float(values.max(initial=0.0)), floor)
     proof = StaticProof(
         compliance=modal + missing,
         missing=missing,
-        error=_probed_error(stiffness, solve, loads, vectors[:, ~elastic], inertia[:, ~elastic], modal + missing),
+        error=_static_error(stiffness, solve, balanced, claimed, modal + missing, values, vectors, inertia, slack),
         overlap=_overlap(mass, shapes, inertia),
         sweeps=sweeps,
     )
@@ -250,32 +265,32 @@ def _overlap(mass: sparse.csr_array, shapes: FloatArray, inertia: FloatArray) ->
     return float(max(np.abs(own).max(initial=0.0), np.abs(inertia.T @ shapes).max(initial=0.0)))
 
 
-def _probed_error(
+def _static_error(
     stiffness: sparse.csr_array,
     solve: Solve,
     loads: FloatArray,
-    soft: FloatArray,
-    soft_inertia: FloatArray,
+    claimed: FloatArray,
     compliance: FloatArray,
+    values: FloatArray,
+    vectors: FloatArray,
+    inertia: FloatArray,
+    slack: float,
 ) -> float:
-    """What independent solves find wrong with the compliance; see :class:`StaticProof`.
-
-    They are made in the complement of the rigid and soft modes alone, where A⁻¹ K has its eigenvalues between one half
-    and one: no other mode has a part in them. The compliance of two loads, aᵀ y + xᵀ b - xᵀ K y, errs by the product
-    of the errors of x and y.
-    """
+    """The bound of :class:`StaticProof` by Eq. (3), from the displacements claimed for the balanced loads."""
+    held = np.asarray(stiffness @ claimed)
+    left = loads - held
+    cross = claimed.T @ loads
+    exact = cross + cross.T - claimed.T @ held
+    along = vectors.T @ left
+    beyond = left - inertia @ along
+    solved = solve(beyond)
+    unknown = slack * np.maximum(np.einsum("ij,ij->j", beyond, solved - vectors @ (inertia.T @ solved)), 0.0)
+    elastic = values > 0.0
+    unknown += (along[elastic] ** 2 / values[elastic][:, None]).sum(axis=0)
     own = compliance.diagonal()
-    size = 1.0 / np.sqrt(np.where(own > 0.0, own, 1.0))
-    r = len(own)
-    chosen = np.eye(r) if r <= _PROBES else np.random.default_rng(0).choice([-1.0, 1.0], size=(r, _PROBES))
-    probes = size[:, None] * chosen
-    right = loads @ probes
-    x, _ = _static_response(stiffness, solve, right, soft, soft_inertia, _PROBE_SETTLED)
-    cross = right.T @ x
-    exact = cross + cross.T - x.T @ (stiffness @ x)
-    claimed = probes.T @ compliance @ probes
-    diagonal = np.where(exact.diagonal() > 0.0, exact.diagonal(), 1.0)
-    return float(np.abs((exact - claimed) / np.sqrt(np.outer(diagonal, diagonal))).max(initial=0.0))
+    size = np.sqrt(np.where(own > 0.0, own, 1.0))
+    rest = np.sqrt(unknown)
+    return float(((np.abs(exact - compliance) + np.outer(rest, rest)) / np.outer(size, size)).max(initial=0.0))
 
 
 def _ratio(top: FloatArray, bottom: FloatArray) -> FloatArray:

@@ -2,7 +2,7 @@
 
 What the room offers:
 
-- :class:`Mesh` -- nodes, tetrahedra and named regions, in metres.
+- :class:`Mesh` -- nodes, blocks of solid elements (:class:`ElementBlock`) and named regions, in metres.
 - :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet` -- a gearbox
   housing described by its dimensions; :func:`mesh_box` meshes it with gmsh.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
@@ -13,23 +13,43 @@ gmsh itself is imported only when a mesh is made.
 """
 
 from meshes.box import Bore, Boss, BoxGeometry, Feet, WallThickness, mesh_box
+from meshes.elements import (
+    KINDS,
+    ElementBlock,
+    ElementKind,
+    Facets,
+    facet_centers,
+    facet_corners,
+    facet_nodes,
+    facets_of,
+    pick_facets,
+)
 from meshes.errors import GeometryError, MesherUnavailableError
 from meshes.files import read_mesh, write_mesh
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
 
 __all__ = [
+    "KINDS",
     "Bore",
     "Boss",
     "BoxGeometry",
+    "ElementBlock",
+    "ElementKind",
+    "Facets",
     "Feet",
     "GeometryError",
     "Mesh",
     "MeshQuality",
     "MesherUnavailableError",
     "WallThickness",
+    "facet_centers",
+    "facet_corners",
+    "facet_nodes",
+    "facets_of",
     "mesh_box",
     "mesh_quality",
+    "pick_facets",
     "read_mesh",
     "write_mesh",
 ]

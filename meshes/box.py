@@ -10,9 +10,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from meshes.elements import IntArray
 from meshes.errors import GeometryError
 from meshes.gmsh_session import gmsh_session
-from meshes.mesh import IntArray, Mesh
+from meshes.mesh import Mesh
 
 # gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
 _GMSH_TO_VTK = {4: [0, 1, 2, 3], 10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
@@ -353,4 +354,4 @@ def _collect(gmsh: Any, order: int, named: dict[str, list[int]]) -> Mesh:
     for name, faces in named.items():
         parts = [gmsh.model.mesh.getElementsByType(triangle, face)[1] for face in faces]
         surfaces[name] = number[np.concatenate(parts).astype(np.int64)].reshape(-1, n_facet)
-    return Mesh(points=points, cells=cells, surfaces=surfaces, volumes={"housing": np.arange(len(cells))})
+    return Mesh.of_tetrahedra(points, cells, surfaces, {"housing": np.arange(len(cells))})

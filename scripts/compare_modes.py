@@ -10,13 +10,15 @@ from gearwhine.case import load_case
 from gearwhine.failures import run_script
 from gearwhine.output import finite, json_text, staging
 from gearwhine.stages.housing import compare_housing, comparison_document, solve_housing
+from gearwhine.stages.kept_modes import keep_modes
 
 
 def main(case_name: str, folder: str, *changes: str) -> None:
     case = load_case(case_name, changes).case
-    housing = solve_housing(case)
+    housing = solve_housing(case, folder=Path(folder))
     document = comparison_document(compare_housing(case, housing), housing)
     with staging(Path(folder)) as place:
+        keep_modes(place, housing)
         (place / "comparison.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
     print("measured [Hz]  model [Hz]  error")
     for pair in document["pairs"]:

@@ -1,6 +1,7 @@
 """Regenerate a housing's modes from its geometry: regenerate_modes.py CASE OUT [key.path=value ...]
 
-Writes OUT/modes.csv (number, frequency, damping ratio, strength) and OUT/modes.vtu (every shape, for ParaView).
+Writes OUT/modes.csv (number, frequency, damping ratio, strength), OUT/modes.vtu (every shape, for ParaView) and
+OUT/modes.nc, from which later commands and scripts on OUT read the modes in place of solving them again.
 """
 
 import csv
@@ -12,6 +13,7 @@ from gearwhine.failures import run_script
 from gearwhine.output import staging
 from gearwhine.results import write_shapes
 from gearwhine.stages.housing import modes_document, solve_housing
+from gearwhine.stages.kept_modes import keep_modes
 
 
 def main(case_name: str, folder: str, *changes: str) -> None:
@@ -24,6 +26,7 @@ def main(case_name: str, folder: str, *changes: str) -> None:
             writer.writeheader()
             writer.writerows(document["modes"])
         write_shapes(place / "modes.vtu", housing)
+        keep_modes(place, housing)
     for mode in document["modes"]:
         print(f"{mode['number']:3d} {mode['frequency_hz']:10.2f} Hz")
     certificate = document["certificate"]

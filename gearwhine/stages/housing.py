@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,15 +12,23 @@ from scipy import sparse
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import Sensor as GivenSensor
-from gearwhine.case import Support as GivenSupport
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.housing_checks import housing_checks, selection_document, static_error_document
+from gearwhine.stages.attachments import attach_all, build_supports, check_reach
+from gearwhine.stages.housing_checks import (
+    bearing_places,
+    bearing_port,
+    housing_checks,
+    selection_document,
+    static_error_document,
+)
+from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
 from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
-_SENSOR_REACH = 0.05  # farthest a sensor may sit from the surface, as a part of the housing's diagonal
+_COORDINATES = ("coordinate", "other_coordinate")
+_DAMPING = "modal_damping"  # its name in a mode-set file
 _UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 
 
@@ -31,9 +40,14 @@ class SolvedHousing:
     ----------
     mesh : Mesh
     mass : float
-        [kg].
+        With the masses attached [kg].
+    attached_mass : float
+        Of these alone [kg].
     modes : housing.ModeSet
     damping_ratios : ndarray, shape (n_modes,)
+        As the case gives them; see :attr:`total_damping_ratios`.
+    damping_matrix : ndarray, shape (n_modes, n_modes), or None
+        What dashpots, mounts and joints add in modal coordinates [1/s]; None where nothing damps.
     seats : dict of str to ndarray, shape (n_modes, 6)
         Modes' motions at each bearing seat.
     seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
@@ -47,13 +61,23 @@ class SolvedHousing:
     checks : dict
         Health report and effective masses as their documents.
     seconds : dict of str to float
-        Time taken by mesh, assembly, factorisation, eigensolver and in total.
+        Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
+    record : housing.ModeRecord
+        What a mode-set file holds of it.
+    source : Path or None
+        The file that the modes were read from; None where they were solved.
+    source_holds : bool
+        Whether that file also holds these sensors, so that it need not be written again.
+    warnings : tuple of str
+        What the user should know, a sentence each.
     """
 
     mesh: Mesh
     mass: float
+    attached_mass: float
     modes: room.ModeSet
     damping_ratios: FloatArray
+    damping_matrix: FloatArray | None
     seats: dict[str, FloatArray]
     seat_ports: dict[str, sparse.csr_array]
     loaded: dict[str, sparse.csr_array]
@@ -62,6 +86,17 @@ class SolvedHousing:
     strengths: room.Dominance | None
     checks: dict[str, Any]
     seconds: dict[str, float]
+    record: room.ModeRecord
+    source: Path | None = None
+    source_holds: bool = False
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def total_damping_ratios(self) -> FloatArray:
+        """Each mode's ratio with its own share of what is attached; the coupling of modes by it left aside."""
+        if self.damping_matrix is None:
+            return self.damping_ratios
+        return room.damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
 
 
 def build_mesh(case: Case) -> Mesh:
@@ -105,8 +140,27 @@ def box_geometry(case: Case) -> BoxGeometry:
     )
 
 
-def solve_housing(case: Case, progress: Progress = silent, *, command: str = "modes") -> SolvedHousing:
-    """Mesh the housing and find its modes with their certificate.
+def solve_housing(
+    case: Case,
+    progress: Progress = silent,
+    *,
+    command: str = "modes",
+    folder: Path | None = None,
+    fresh: bool = False,
+) -> SolvedHousing:
+    """Mesh the housing and find its modes with their certificate; or read them where they are kept.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable
+        Told in words what happens next.
+    command : str
+        On whose behalf, for messages.
+    folder : path, optional
+        A results folder; modes of the same housing kept there are read in place of solving.
+    fresh : bool
+        Solve also where they are.
 
     Raises
     ------
@@ -119,57 +173,102 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     given = case.housing
     assert given is not None
     begin = time.perf_counter()
-    progress("meshing the housing")
-    mesh = build_mesh(case)
-    meshed = time.perf_counter()
-    progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
-    steel = case.material[given.material]
-    material = room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
-    free = room.assemble(mesh, material)
-    supports = [_support(entry) for entry in given.support]
-    matrices = room.with_springs(free, mesh, supports)
-    assembled = time.perf_counter()
-    seat_ports = {seat.name: room.seat_matrix(mesh, room.Seat(seat.name, seat.center)) for seat in given.seat}
-    loaded = _loaded_ports(case, seat_ports)
-    # Without a limit or a number, what a first look wants.
-    count = given.modes if given.modes is not None else (None if given.frequency_limit is not None else 20)
-    modes = room.solve_modes(
-        matrices,
-        room.fixed_freedoms(mesh, supports),
-        frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
-        count=count,
-        ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
-        progress=progress,
-    )
-    seats = {name: modes.project(port) for name, port in seat_ports.items()}
+    mesh = build_mesh(case) if given.mesh is not None else None
+    inputs = solution_inputs(case, mesh)
+    kept, warning = find_modes(folder, inputs) if folder is not None and not fresh else (None, None)
+    if kept is not None and folder is not None:
+        mesh = kept.mesh
+        progress(f"modes read from {folder / MODES_FILE} (unchanged housing)")
+    elif mesh is None:
+        progress("meshing the housing")
+        mesh = build_mesh(case)
+    meshed = time.perf_counter() - begin
+    # Ports before modes: what is wrong with them is found out before the long work.
+    seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
+    seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
+    loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
     sensors = {entry.name: _sensor(mesh, index, entry) for index, entry in enumerate(given.sensor)}
     bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
     survey = room.survey_grid(mesh, bounds)
+    if kept is None:
+        modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
+        seconds = {"mesh": meshed, **seconds}
+    else:
+        modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
+        damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
+        seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
+    seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_ports.items()}
     strengths = None
     if seats:
-        radial = np.stack([motion[:, :2] for motion in seats.values()], axis=1)
+        radial = np.stack([motion[:, :2] for motion in seats_in_modes.values()], axis=1)
         strengths = room.dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
-    progress("checking the housing against its geometry")
-    checks = housing_checks(mesh, free, matrices, supports, modes, steel.density)
+    seconds["total"] = time.perf_counter() - begin
+    record = kept or room.ModeRecord(
+        mesh,
+        modes,
+        mass,
+        seats=seats,
+        seat_motions=np.stack(list(seats_in_modes.values()), axis=1) if seats else np.empty((0, 0, 6)),
+        inputs=inputs,
+        notes={"seconds": seconds, "checks": checks},
+        extras={} if damping_matrix is None else {_DAMPING: _damping_array(damping_matrix)},
+    )
+    record = room.with_sensors(record, sensors.values())
     return SolvedHousing(
         mesh=mesh,
-        mass=free.total_mass,
+        mass=mass,
+        attached_mass=sum(entry.mass for entry in given.mass),
         modes=modes,
         damping_ratios=_damping(case, modes.frequencies_hz),
-        seats=seats,
+        damping_matrix=damping_matrix,
+        seats=seats_in_modes,
         seat_ports=seat_ports,
         loaded=loaded,
         sensors=sensors,
         survey=survey,
         strengths=strengths,
         checks=checks,
-        seconds={
-            "mesh": meshed - begin,
-            "assembly": assembled - meshed,
-            **modes.seconds,
-            "total": time.perf_counter() - begin,
-        },
+        seconds=seconds,
+        record=record,
+        source=None if kept is None or folder is None else folder / MODES_FILE,
+        source_holds=kept is not None and kept.sensors == record.sensors,
+        warnings=() if warning is None else (warning,),
     )
+
+
+def _damping_array(matrix: FloatArray) -> room.LabelledArray:
+    return room.LabelledArray(_COORDINATES, matrix, "s-1", "damping of what is fastened, by modes and attachments")
+
+
+def _solve_modes(
+    case: Case, mesh: Mesh, loaded: dict[str, sparse.csr_array], progress: Progress
+) -> tuple[room.ModeSet, float, FloatArray | None, dict[str, Any], dict[str, float]]:
+    """The modes, the housing's mass [kg], what damps it in its modes, its checks, and the seconds of each step."""
+    given = case.housing
+    assert given is not None
+    begin = time.perf_counter()
+    progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
+    steel = case.material[given.material]
+    material = room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
+    free = room.assemble(mesh, material)
+    matrices = attach_all(case, mesh, free)
+    assembled = time.perf_counter() - begin
+    # Without a limit or a number, what a first look wants.
+    count = given.modes if given.modes is not None else (None if given.frequency_limit is not None else 20)
+    modes = room.solve_modes(
+        matrices,
+        room.fixed_freedoms(mesh, build_supports(case)),
+        frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
+        count=count,
+        ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
+        progress=progress,
+    )
+    damping = room.modal_damping(modes, matrices) if matrices.damping.nnz else None
+    progress("checking the housing against its geometry")
+    begin = time.perf_counter()
+    checks = housing_checks(case, mesh, free, matrices, modes)
+    seconds = {"assembly": assembled, **modes.seconds, "checks": time.perf_counter() - begin}
+    return modes, matrices.total_mass, damping, checks, seconds
 
 
 def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:
@@ -221,7 +320,7 @@ def modes_document(solved: SolvedHousing, *, detail: bool = False) -> dict[str, 
                 "effective_mass": masses["fractions"][number - 1],
             }
             for number, (frequency, damping) in enumerate(
-                zip(solved.modes.frequencies_hz, solved.damping_ratios, strict=True), start=1
+                zip(solved.modes.frequencies_hz, solved.total_damping_ratios, strict=True), start=1
             )
         ],
         "certificate": {
@@ -234,18 +333,35 @@ def modes_document(solved: SolvedHousing, *, detail: bool = False) -> dict[str, 
         },
         "mesh": {
             "nodes": len(solved.mesh.points),
-            "elements": len(solved.mesh.cells),
+            "elements": solved.mesh.n_elements,
             "dofs": 3 * len(solved.mesh.points),
         },
         "mass_kg": solved.mass,
+        "attached_mass_kg": solved.attached_mass,
         "effective_mass": {key: value for key, value in masses.items() if key != "fractions"},
         "static_error": static_error_document(solved.modes, solved.loaded),
         "health": solved.checks["health"],
         "seconds": solved.seconds,
+        **origin_document(solved),
     }
     if detail:
-        document["selection"] = selection_document(solved.modes, solved.damping_ratios, solved.loaded, solved.sensors)
+        ratios = solved.total_damping_ratios
+        document["selection"] = selection_document(solved.modes, ratios, solved.loaded, solved.sensors)
     return document
+
+
+def origin_document(solved: SolvedHousing | None) -> dict[str, Any]:
+    """Where a housing's modes come from, as every command's JSON says it; nothing without a housing."""
+    if solved is None:
+        return {}
+    if solved.source is None:
+        return {"reused": False, "warnings": list(solved.warnings)}
+    return {
+        "reused": True,
+        "modes_read_from": str(solved.source),
+        "seconds_when_solved": solved.record.notes["seconds"],
+        "warnings": list(solved.warnings),
+    }
 
 
 def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> dict[str, Any]:
@@ -278,42 +394,13 @@ def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> d
     }
 
 
-def _loaded_ports(case: Case, seats: dict[str, sparse.csr_array]) -> dict[str, sparse.csr_array]:
-    """x and y of the housing under each bearing, at the bearing's own z; of each seat's centre where none has one."""
-    assert case.housing is not None
-    centers = {seat.name: seat.center[2] for seat in case.housing.seat}
-    loaded = {}
-    for bearing in case.bearing:
-        if not bearing.grounded and bearing.seat in seats:
-            motion = seats[bearing.seat]
-            # A rotation about y moves a point above the centre towards +x, one about x towards -y.
-            arm = case.rotor_named(bearing.rotor).start + bearing.at - centers[bearing.seat]
-            turned = sparse.diags_array([arm, -arm], dtype=np.float64)
-            loaded[bearing.name] = sparse.csr_array(motion[[0, 1]] + turned @ motion[[4, 3]])
-    return loaded or {name: motion[[0, 1]] for name, motion in seats.items()}
-
-
 def _sensor(mesh: Mesh, index: int, entry: GivenSensor) -> room.SensorPort:
     """A sensor on the surface; one that is not meant to sit there is refused rather than moved far."""
     port = room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
-    reach = _SENSOR_REACH * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
-    if port.distance > reach:
-        place = ", ".join(f"{1e3 * value:.4g}" for value in port.position)
-        expected = f"a place within {1e3 * reach:.3g} mm of the surface; the nearest point of it is ({place}) mm"
-        key, label = f"housing.sensor[{index}].position", f'sensor "{entry.name}"'
-        raise CaseError([Problem(key, list(entry.position), expected, label=label)])
+    key, label = f"housing.sensor[{index}].position", f'sensor "{entry.name}"'
+    if problems := list(check_reach(mesh, key, label, entry.position, port.position)):
+        raise CaseError(problems)
     return port
-
-
-def _support(entry: GivenSupport) -> room.Support:
-    springs = entry.stiffness
-    return room.Support(
-        name=entry.name,
-        surface=entry.surface,
-        box=entry.corners,
-        fixed=("x" in (entry.fixed or ()), "y" in (entry.fixed or ()), "z" in (entry.fixed or ())),
-        stiffness=(springs.x, springs.y, springs.z) if springs else (0.0, 0.0, 0.0),
-    )
 
 
 def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:

@@ -1,6 +1,5 @@
 """What a solved housing says of itself: its health report, effective masses and static error, as the command's JSON."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -8,10 +7,11 @@ import numpy.typing as npt
 from scipy import sparse
 
 import housing as room
+from gearwhine.case import Case
+from gearwhine.stages.attachments import build_attachments, build_supports
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 DIRECTIONS = ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")
 SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
@@ -19,25 +19,63 @@ SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sen
 _HERTZ = 2.0 * np.pi
 
 
+def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
+    """Where the machine bears on the housing: by bearing, its seat and how far beyond the seat's centre it sits [m].
+
+    Where no bearing has a seat, each seat stands for one at its centre. The housing's attachments are for these.
+    """
+    assert case.housing is not None
+    centers = {seat.name: seat.center[2] for seat in case.housing.seat}
+    places = {
+        bearing.name: (bearing.seat, case.rotor_named(bearing.rotor).start + bearing.at - centers[bearing.seat])
+        for bearing in case.bearing
+        if bearing.seat in centers
+    }
+    return places or {name: (name, 0.0) for name in centers}
+
+
+def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
+    """x and y of a seat's rigid motion at a distance from its centre along z [m], shape (2, 3 n_nodes)."""
+    # A rotation about y moves a point above the centre towards +x, one about x towards -y.
+    turned = sparse.diags_array([arm, -arm], dtype=np.float64) @ seat[[4, 3]]
+    return sparse.csr_array(seat[[0, 1]] + turned)
+
+
 def housing_checks(
-    mesh: Mesh,
-    unsupported: room.Matrices,
-    supported: room.Matrices,
-    supports: Sequence[room.Support],
-    modes: room.ModeSet,
-    density: float,
+    case: Case, mesh: Mesh, bare: room.Matrices, whole: room.Matrices, modes: room.ModeSet
 ) -> dict[str, Any]:
     """Health report and effective masses, for the documents and for whatever keeps the modes.
+
+    Parameters
+    ----------
+    case : Case
+    mesh : Mesh
+    bare, whole : housing.Matrices
+        Of the solid alone, and with all that is fastened to it.
+    modes : housing.ModeSet
+        Of the latter.
 
     Raises
     ------
     housing.HealthError
         Where the model fails a check without which its numbers are wrong.
     """
+    assert case.housing is not None
     volume, center = room.enclosed(mesh)
-    health = room.health_report(mesh, unsupported, supported, supports, modes, mass=density * volume, center=center)
+    fastened = sum(entry.mass for entry in case.housing.mass)
+    grounds = [one for _, _, one in build_attachments(case) if isinstance(one, room.Support | room.Mount)]
+    health = room.health_report(
+        mesh,
+        bare,
+        whole,
+        grounds,
+        modes,
+        mass=case.material[case.housing.material].density * volume + fastened,
+        # The centre of what is fastened is not the geometry's to know.
+        center=None if fastened else center,
+    )
     health.require()
-    masses = room.effective_mass(supported, mesh.points, room.fixed_freedoms(mesh, supports), modes)
+    masses = room.effective_mass(whole, mesh.points, room.fixed_freedoms(mesh, build_supports(case)), modes)
     return {"health": _health_document(health), "effective_mass": _mass_document(masses)}
 
 

@@ -1,5 +1,6 @@
 """The whole machine of a case: rotors, housing, bearings, gears and loads in one system; its complex modes."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -73,12 +74,15 @@ def build_machine(
 
 
 def solve_machine(
-    case: Case, progress: Progress = silent
+    case: Case, progress: Progress = silent, *, folder: Path | None = None, fresh: bool = False
 ) -> tuple[SolvedHousing | None, tuple[SolvedPair, ...], room.Machine]:
-    """Solve the housing and the gears that the case has, and couple everything."""
+    """Solve the housing and the gears that the case has, and couple everything.
+
+    ``folder`` and ``fresh`` are those of :func:`gearwhine.stages.housing.solve_housing`.
+    """
     require(case, "rotor", "operation", command="system")
     pairs = solve_gears(case, progress) if case.gear_pair else ()
-    housing = solve_housing(case, progress) if case.housing else None
+    housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     return housing, pairs, build_machine(case, housing, pairs, progress)
 
 
@@ -141,6 +145,7 @@ def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingCompone
         solved.damping_ratios,
         seats={name: solved.modes.project_all(port) for name, port in solved.seat_ports.items()},
         seat_z={seat.name: seat.center[2] for seat in case.housing.seat},
+        damping_matrix=solved.damping_matrix,
         sensors={name: solved.modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
     )
 

@@ -80,7 +80,7 @@ def test_sums_reach_the_mass_that_is_free(block: Callable[..., Mesh], steel: Mat
     shapes = np.zeros((len(values), 3 * matrices.n_nodes))
     shapes[:, free] = vectors.T
     certificate = Certificate(1.0, len(values), len(values), 0.0, 0.0)
-    modes = ModeSet(np.sqrt(values), shapes.reshape(len(values), -1, 3), certificate, {}, "dense")
+    modes = ModeSet(np.sqrt(values), shapes.reshape(len(values), -1, 3), certificate, {}, "dense", 0.0, 1)
     result = effective_mass(matrices, mesh.points, fixed, modes)
     np.testing.assert_allclose(result.mass.sum(axis=0), result.free, rtol=1e-9)
     np.testing.assert_allclose(result.missing, 0.0, atol=1e-9)
@@ -104,7 +104,7 @@ def test_mass_properties_of_a_block(block: Callable[..., Mesh], steel: Material)
     """m (b² + c²) / 12 about the middle, wherever the block stands."""
     size = np.array([0.05, 0.06, 0.3])
     mesh = block(tuple(size), (1, 1, 2))
-    away = Mesh(mesh.points + [0.4, -0.2, 0.1], mesh.cells)
+    away = Mesh(mesh.points + [0.4, -0.2, 0.1], mesh.blocks)
     body = rigid_body(away.points, assemble(away, steel))
     mass = 7850.0 * size.prod()
     assert body.mass == pytest.approx(mass, rel=1e-12)

@@ -1,0 +1,118 @@
+"""A mode set on file: everything that later work takes from a solved housing, as labelled NetCDF4.
+
+The file opens in xarray, ncdump and whatever else reads NetCDF4 or HDF5. It holds the mesh, the modes with their
+certificate, the bearing seats' and sensors' motions, what the modes were solved from, and a digest.
+
+What stands for the proof on reading: the certificate was made where the stiffness and mass matrices were at hand, and
+the digest (SHA-256 over every array, label and attribute) shows that what is read is, bit for bit, what was proved.
+That finds every damage; it is no signature against forgery.
+"""
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from housing.errors import HousingError, ModeFileError
+from housing.labelled import LabelledArray, digest
+from housing.mode_record import ModeRecord, record_arrays, record_attributes, record_of
+
+FORMAT = "gearwhine mode set"
+SCHEMA = "1"
+
+
+def write_modes(path: str | Path, record: ModeRecord) -> None:
+    """Write a mode set; the file appears whole or not at all.
+
+    Raises
+    ------
+    HousingError
+        Where an array of the record does not fit its labels.
+    OSError
+        Where the file cannot be written.
+    """
+    import xarray as xr
+
+    path = Path(path)
+    arrays = record_arrays(record)
+    attributes = {
+        "title": "Natural modes of a gearbox housing",
+        "format": FORMAT,
+        "schema": SCHEMA,
+        **record_attributes(record),
+    }
+    attributes["digest"] = digest(arrays, attributes)
+    variables = {
+        name: (array.dimensions, array.values, {"units": array.units, "long_name": array.long_name, **array.attributes})
+        for name, array in arrays.items()
+    }
+    try:
+        dataset = xr.Dataset(variables, attrs=attributes)
+    except ValueError as error:
+        raise HousingError(f"the arrays of a mode set do not fit each other: {error}") from error
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
+        staged = Path(folder) / path.name
+        # Without a fill value no number is taken for a missing one.
+        encoding = {name: {"_FillValue": None} for name in dataset.variables}
+        dataset.to_netcdf(staged, engine="h5netcdf", encoding=encoding)
+        os.replace(staged, path)
+
+
+def read_modes(path: str | Path) -> ModeRecord:
+    """Read a mode set, and check that it is what was proved.
+
+    Raises
+    ------
+    ModeFileError
+        Where the file is missing, damaged, of another kind or schema, or its certificate is not complete.
+    """
+    path = Path(path)
+    arrays, attributes = _open(path)
+    try:
+        record = record_of(arrays, attributes)
+    except (KeyError, ValueError, TypeError, IndexError) as error:
+        raise ModeFileError(f"mode file {path} lacks a part or holds a wrong one: {error}") from error
+    if not record.modes.certificate.complete:
+        raise ModeFileError(f"mode file {path} holds modes whose certificate is not complete; solve them again")
+    return record
+
+
+def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
+    """The arrays and attributes of a file, once its kind, schema and digest are found right."""
+    import h5py
+    import xarray as xr
+
+    if not path.is_file():
+        raise ModeFileError(f"mode file {path}: no such file")
+    try:
+        # A look through HDF5 alone: on a file cut short it fails without a sound, which the layers above it do not.
+        with h5py.File(path, "r") as file:
+            kind, schema = file.attrs.get("format"), file.attrs.get("schema")
+        if kind != FORMAT:
+            raise ModeFileError(f"{path} holds something else than a mode set of gearwhine")
+        if schema != SCHEMA:
+            raise ModeFileError(f"mode file {path} has schema {schema}; this version reads schema {SCHEMA}")
+        # Undecoded: bytes as they stand, no unit of time turned into dates.
+        with xr.open_dataset(path, engine="h5netcdf", decode_cf=False, cache=False) as dataset:
+            arrays = {str(name): _labelled(variable) for name, variable in dataset.variables.items()}
+            attributes = {str(name): value for name, value in dataset.attrs.items()}
+        claimed = attributes.pop("digest", None)
+        whole = digest(arrays, attributes) == claimed
+    except ModeFileError:
+        raise
+    except Exception as error:  # a damaged file fails wherever its reader happens to stumble
+        raise ModeFileError(f"mode file {path} is no NetCDF4 file, or a damaged one: {error}") from error
+    if not whole:
+        raise ModeFileError(f"mode file {path} is damaged or was changed: its content does not have its digest")
+    return arrays, attributes
+
+
+def _labelled(variable: Any) -> LabelledArray:
+    labels = {str(name): str(text) for name, text in variable.attrs.items()}
+    dimensions = tuple(str(name) for name in variable.dims)
+    return LabelledArray(
+        dimensions, np.asarray(variable.values), labels.pop("units", ""), labels.pop("long_name", ""), labels
+    )
