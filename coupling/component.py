@@ -31,7 +31,9 @@ class Component:
     ----------
     name : str
     kinds : tuple of str
-        For each coordinate what it moves: ``housing``, ``rotor`` (lateral) or ``torsion``.
+        For each coordinate what it moves: ``housing``, ``rotor`` (lateral), ``torsion``, or ``residual``: an
+        attachment of the housing, which stands for the static response of all that its modes leave out. Its own
+        frequency is no natural frequency of the housing, and motion at that frequency means nothing.
     stiffness : ndarray, shape (n, n)
         K [1/s²], symmetric.
     damping : ndarray, shape (n, n)
@@ -54,16 +56,16 @@ class Component:
 
 @dataclass(frozen=True)
 class HousingComponent(Component):
-    """The housing on its supports.
+    """The housing on its supports: its modes, then its residual attachments where it has them.
 
     Attributes
     ----------
     seats : mapping of str to ndarray, shape (n, 6)
-        Modes' motions at each seat: translations x, y, z, rotations about x, y, z, at the seat's centre.
+        Coordinates' motions at each seat: translations x, y, z, rotations about x, y, z, at the seat's centre.
     seat_z : mapping of str to float
         z of each seat's centre [m].
     sensors : mapping of str to ndarray, shape (n,)
-        Modes' motions along each sensor.
+        Coordinates' motions along each sensor.
     """
 
     seats: Mapping[str, FloatArray]
@@ -123,35 +125,43 @@ def housing_component(
     damping_matrix: FloatArray | None = None,
     name: str = "housing",
 ) -> HousingComponent:
-    """The housing from its modes: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
+    """The housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
 
     Parameters
     ----------
     modes : ModeSet
-        With n modes.
-    damping_ratios : ndarray, shape (n,)
-        Parts of critical.
+        With m modes and, where it has attachments, k of them: n = m + k coordinates.
+    damping_ratios : ndarray, shape (m,)
+        Parts of critical. Attachments take the highest of them.
     seats, seat_z, sensors
-        See :class:`HousingComponent`.
+        See :class:`HousingComponent`; by :meth:`housing.ModeSet.project_all`.
     damping_matrix : ndarray, shape (n, n), optional
-        Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the modes.
+        Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
 
     Raises
     ------
     CouplingError
-        Where the damping does not fit the modes, or the matrix would drive them.
+        Where the damping does not fit the modes, the matrix would drive them, or there are not as many motions as
+        coordinates.
     """
-    omega = modes.frequencies
-    if damping_ratios.shape != omega.shape:
-        raise CouplingError(f"{len(damping_ratios)} damping ratios for {len(omega)} housing modes; expected as many")
+    m = len(modes.frequencies)
+    if damping_ratios.shape != (m,):
+        raise CouplingError(f"{len(damping_ratios)} damping ratios for {m} housing modes; expected as many")
+    omega, ratios = modes.frequencies, damping_ratios
+    if modes.attachments is not None:
+        omega = np.concatenate([omega, modes.attachments.frequencies])
+        ratios = np.concatenate([ratios, np.full(len(omega) - m, damping_ratios.max(initial=0.0))])
     n = len(omega)
-    damping = np.diag(2.0 * damping_ratios * omega)
+    for place, motion in [*seats.items(), *sensors.items()]:
+        if len(motion) != n:
+            raise CouplingError(f"{place!r}: motions of {len(motion)} coordinates; expected {n}, attachments included")
+    damping = np.diag(2.0 * ratios * omega)
     if damping_matrix is not None:
         _check_damping(damping_matrix, n)
         damping = damping + damping_matrix
     return HousingComponent(
         name=name,
-        kinds=("housing",) * n,
+        kinds=("housing",) * m + ("residual",) * (n - m),
         stiffness=np.diag(omega**2),
         damping=damping,
         gyroscopic=np.zeros((n, n)),

@@ -35,6 +35,7 @@ class Dynamics(NamedTuple):
     loss_rows: FloatArray  # (r, n) ... plus rows of low rank ...
     loss_weights: FloatArray  # (r,) ... with these weights
     constant: FloatArray  # (n,) F
+    resolved: IntArray  # numbers of the coordinates that the error measure looks at
     frequency: FloatArray  # (h,) w [rad/s]
     cosine: FloatArray  # (h, n) Re F_w
     sine: FloatArray  # (h, n) Im F_w

@@ -10,6 +10,8 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+COORDINATE_KINDS = ("housing", "rotor", "torsion", "residual")
+
 _MESH_SHARE = 0.3  # a mode with more of its strain energy than this in the teeth is called a mesh mode
 
 
@@ -24,7 +26,8 @@ class CoupledModes:
     shapes : ndarray of complex, shape (m, n)
         Coordinates, of unit norm.
     kinds : tuple of str
-        What moves: ``housing``, ``rotor``, ``torsion``, ``mesh``, or ``rigid`` where nothing resists.
+        What moves: ``housing``, ``rotor``, ``torsion``, ``mesh``, or ``rigid`` where nothing resists; ``residual``
+        where it is the local compliance that the housing's modes leave out, and the frequency means nothing.
     energy : tuple of dict
         Share of each kind of coordinate in the mode's kinetic energy, and under ``mesh`` the teeth's share in its
         strain energy.
@@ -74,7 +77,7 @@ def coupled_modes(system: CoupledSystem) -> CoupledModes:
         elif share["mesh"] > _MESH_SHARE:
             kinds.append("mesh")
         else:
-            kinds.append(max(("housing", "rotor", "torsion"), key=lambda kind: share[kind]))
+            kinds.append(max(COORDINATE_KINDS, key=lambda kind: share[kind]))
     values = np.where(np.abs(values) < 1e-6 * scale, 0.0, values)
     return CoupledModes(np.asarray(values[chosen]), np.asarray(shapes), tuple(kinds), tuple(energy))
 
@@ -84,7 +87,7 @@ def _shares(
 ) -> dict[str, float]:
     kinetic = np.abs(shape) ** 2
     labels = np.array(system.kinds)
-    share = {kind: float(kinetic[labels == kind].sum() / kinetic.sum()) for kind in ("housing", "rotor", "torsion")}
+    share = {kind: float(kinetic[labels == kind].sum() / kinetic.sum()) for kind in COORDINATE_KINDS}
     strain = float((shape.conj() @ (stiffness @ shape)).real)
     mesh = float((shape.conj() @ (contact_stiffness @ shape)).real)
     share["mesh"] = mesh / strain if strain > 0.0 else 0.0

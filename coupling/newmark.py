@@ -74,9 +74,9 @@ def march(
     stored : float
         Energy in the teeth at the end [J].
     curvature : float
-        Σ |a₁ - 2 a + a₋₁|² over the steps that have two before them.
+        Σ |a₁ - 2 a + a₋₁|² over the steps that have two before them, of the coordinates to be resolved.
     acceleration : float
-        Σ |a₁|² over the same steps.
+        Σ |a₁|² over the same steps and coordinates.
     unsettled : int
         Steps whose contact forces Newton's method left unsettled.
     """
@@ -89,6 +89,7 @@ def march(
     powers, powers1 = np.zeros(3), np.zeros(3)
     curvature, acceleration, unsettled = 0.0, 0.0, 0
     beta, gamma = dynamics.beta, dynamics.gamma
+    resolved = dynamics.resolved
 
     for segment in range(segments.start.size):
         t0, t1, count = segments.start[segment], segments.end[segment], segments.steps[segment]
@@ -152,7 +153,7 @@ def march(
                 force[k] = force1[k]
 
             if step > 0:
-                for i in range(n):
+                for i in resolved:
                     second = after[i] - 2.0 * a[i] + before[i]
                     curvature += second * second
                     acceleration += after[i] * after[i]

@@ -31,6 +31,16 @@ class Spectrum:
     phase: FloatArray
     window: Window
 
+    def rms(self, limit: float) -> FloatArray:
+        """Root mean square of the lines above 0 Hz and up to a limit [Hz], shape (...), in the signal's unit.
+
+        Parseval's sum over the lines, for a limit below half the sampling rate; under Hann's window a sine stands in
+        three of them, whose squares add up to 3/2.
+        """
+        inside = (self.frequencies > 0.0) & (self.frequencies <= limit)
+        noise_bandwidth = 1.0 if self.window == "uniform" else 1.5
+        return np.asarray(np.sqrt(0.5 * (self.amplitude[..., inside] ** 2).sum(axis=-1) / noise_bandwidth))
+
 
 def amplitude_spectrum(signal: FloatArray, interval: float, window: Window = "uniform") -> Spectrum:
     """Amplitude and phase of the lines of a record.

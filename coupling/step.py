@@ -138,6 +138,7 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
         loss_rows=np.ascontiguousarray(vectors[:, kept].T),
         loss_weights=values[kept],
         constant=system.load,
+        resolved=np.flatnonzero(system.resolved),
         frequency=np.array([load.frequency for load in system.harmonic_loads], dtype=np.float64),
         cosine=cosine,
         sine=sine,

@@ -76,6 +76,15 @@ class CoupledSystem:
         return tuple(kind for component in self.components for kind in component.kinds)
 
     @cached_property
+    def resolved(self) -> npt.NDArray[np.bool_]:
+        """Coordinates whose own vibration is to be followed in time, shape (n,): all but the residual ones.
+
+        A residual coordinate answers as a spring does. The frequency that its stiffness and mass make is an artefact
+        of the reduction, above every frequency that the component is good for.
+        """
+        return np.array([kind != "residual" for kind in self.kinds])
+
+    @cached_property
     def stiffness(self) -> FloatArray:
         """K without the tooth contacts [1/s²], shape (n, n)."""
         total = self._blocks([component.stiffness for component in self.components])

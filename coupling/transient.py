@@ -7,7 +7,9 @@ mean over what is moving is measured by the second difference of the acceleratio
 
     error = |a₁ - 2 a₀ + a₋₁| / (12 |a|),
 
-and stretches are repeated with finer steps until it is below the tolerance.
+and stretches are repeated with finer steps until it is below the tolerance. Residual coordinates of the housing have
+no part in this measure: they stand for static compliance, and their own frequencies are not meant to be followed. The
+stiffest of them are not marched at all, see :mod:`coupling.condensation`.
 """
 
 import time
@@ -18,6 +20,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from coupling.condensation import condensed, highest_frequency
 from coupling.errors import CouplingError, TransientError
 from coupling.statics import static_equilibrium
 from coupling.step import KernelArrays, StepCache, cut, empty_samples, kernel_arrays
@@ -192,6 +195,11 @@ def simulate(
     from coupling.contact_kernels import contact_energy
     from coupling.newmark import march
 
+    followed = condensed(system)
+    if followed.system is not system:
+        system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
+        outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
+        initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
     arrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)
     cache = StepCache(system, settings.beta, settings.gamma)
     q, v = initial or (static_equilibrium(system), np.zeros(system.size))
@@ -323,8 +331,7 @@ def _balance(change: float, totals: FloatArray, held: float) -> EnergyBalance:
 
 def _resolving_step(system: CoupledSystem) -> float:
     """The step that gives the highest natural frequency its least number of points a period [s]."""
-    stiffness = system.mean_stiffness()
-    highest = float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max()))
+    highest = highest_frequency(system)
     return 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
 
 

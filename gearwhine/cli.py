@@ -96,15 +96,28 @@ def mesh(
 
 
 @app.command
-def modes(case: CaseName, *, fresh: Fresh = False, common: Common = _DEFAULTS) -> None:
-    """Housing modes, proved complete."""
-    from gearwhine.screen import show_modes
+def modes(
+    case: CaseName,
+    *,
+    detail: Annotated[
+        bool,
+        Parameter(
+            name=["--detail"],
+            negative=(),
+            help="Also effective masses, what each support holds, and which modes carry the bearings' forces.",
+        ),
+    ] = False,
+    fresh: Fresh = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """Housing modes, proved complete, with a report on the model's health."""
+    from gearwhine.screen import show_modes, show_modes_in_detail
     from gearwhine.work import modes_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return modes_case(given, common.output, progress, fresh=fresh)
+        return modes_case(given, common.output, progress, detail=detail, fresh=fresh)
 
-    _on_case(case, common, work, show_modes)
+    _on_case(case, common, work, show_modes_in_detail if detail else show_modes)
 
 
 @app.command

@@ -12,7 +12,7 @@ def explain(error: Exception) -> tuple[int, str | None]:
     from coupling.errors import CouplingError, TransientError
     from coupling.gears.errors import ContactAccuracyError, GearError
     from gearwhine.case import CaseError
-    from housing.errors import FactorizationError, HousingError, IncompleteModesError
+    from housing.errors import FactorizationError, HealthError, HousingError, IncompleteModesError, ReductionError
     from meshes.errors import GeometryError, MesherUnavailableError
     from rotors.errors import IncompleteModesError as IncompleteRotorModesError
     from rotors.errors import RotorError
@@ -26,9 +26,11 @@ def explain(error: Exception) -> tuple[int, str | None]:
     proofs = (
         ContactAccuracyError,
         FactorizationError,
+        HealthError,
         IncompleteModesError,
         IncompleteRotorModesError,
         MesherUnavailableError,
+        ReductionError,
         TransientError,
     )
     # The renderer's error lives beside VTK, which must not be imported for its sake.

@@ -9,6 +9,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from gearwhine.screen_health import show_detail, show_health, static_error_line
+
 _WIDTH = 120
 _PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 
@@ -155,7 +157,14 @@ def show_modes(document: dict[str, Any]) -> None:
         table.add_row(str(mode["number"]), f"{mode['frequency_hz']:.2f}", f"{mode['damping_ratio']:.4g}", strength)
     console.print(table)
     _modes_line(console, document)
+    show_health(console, document)
     _files(console, document)
+
+
+def show_modes_in_detail(document: dict[str, Any]) -> None:
+    """The same, with effective masses, supports and the modes that matter between bearings and sensors."""
+    show_modes(document)
+    show_detail(_console(), document)
 
 
 def show_rotors(document: dict[str, Any]) -> None:
@@ -220,16 +229,21 @@ def show_system(document: dict[str, Any]) -> None:
     modes, trusted = document["modes"], document.get("trusted_below_hz")
     shown = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
     console.print(f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm")
-    table = Table("frequency [Hz]", "damping ratio", "kind", "housing", "rotor", "torsion", "teeth", box=SIMPLE_HEAD)
+    shares_of = ("housing", "rotor", "torsion", "residual", "teeth")
+    table = Table("frequency [Hz]", "damping ratio", "kind", *shares_of, box=SIMPLE_HEAD)
     for column in table.columns:
         column.justify = "right"
     for mode in shown:
         # A rigid mode is the free turning of the train: its shares say nothing of vibration.
-        kinds = () if mode["kind"] == "rigid" else ("housing", "rotor", "torsion", "mesh")
+        kinds = () if mode["kind"] == "rigid" else ("housing", "rotor", "torsion", "residual", "mesh")
         shares = [f"{100 * mode['energy'][kind]:z.0f} %" for kind in kinds]
         table.add_row(f"{mode['frequency_hz']:z.2f}", f"{mode['damping_ratio']:z.4f}", mode["kind"], *shares)
     console.print(table)
     console.print("Shares of the kinetic energy; teeth: share of the strain energy.")
+    if any(mode["kind"] == "residual" for mode in shown):
+        console.print("Residual: local compliance at the seats, no mode of the housing; its frequency means nothing.")
+    if error := document.get("static_error"):
+        console.print(static_error_line(error))
     if trusted and len(shown) < len(modes):
         console.print(f"{_count(len(modes) - len(shown), 'more mode')} above {2.0 * trusted:.5g} Hz.")
     _origin(console, document)

@@ -114,7 +114,9 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
     }
 
 
-def modes_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
+def modes_case(
+    case: Case, folder: Path | None, progress: Progress, *, detail: bool = False, fresh: bool = False
+) -> dict[str, Any]:
     """The housing's modes; with a folder, also on file: for later commands, as VTU and in a results file."""
     from gearwhine import results
 
@@ -124,7 +126,7 @@ def modes_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bo
         results.write(place / "results.nc", case, housing, (), (), None, None)
         results.write_shapes(place / "modes.vtu", housing)
 
-    return _kept(housing_stage.modes_document(housing), case, folder, write, housing)
+    return _kept(housing_stage.modes_document(housing, detail=detail), case, folder, write, housing)
 
 
 def rotors_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:

@@ -9,6 +9,9 @@ What the room offers:
 - :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` -- what
   dashpots do to them.
 - :class:`Seat`, :func:`seat_matrix`, :class:`Sensor`, :func:`sensor_port` -- where the rest of the machine meets it.
+- :func:`attach_ports` -- residual :class:`Attachments`, which make the static compliance at ports exact.
+- :func:`receptance`, :func:`select_modes`, :func:`effective_mass` -- what each mode carries between ports, and of mass.
+- :func:`health_report` -- mass, rigid motions, grounding, orthogonality, static error: each with its bound.
 - :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
 - :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance` -- model against measured modes.
 - ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
@@ -21,8 +24,19 @@ from housing.bushings import GLOBAL_AXES, Axial, Bushing, Joint, Mount, axes_alo
 from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.damping import damping_ratios, modal_damping
 from housing.dominance import Dominance, dominance
-from housing.errors import FactorizationError, HousingError, IncompleteModesError, ModeFileError
+from housing.effective_mass import EffectiveMass, effective_mass
+from housing.enclosure import enclosed
+from housing.errors import (
+    FactorizationError,
+    HealthError,
+    HousingError,
+    IncompleteModesError,
+    ModeFileError,
+    ReductionError,
+)
 from housing.factorization import Factorization, Factorizer
+from housing.grounding import Grounding, SupportHold
+from housing.health import HealthLine, HealthReport, health_report
 from housing.labelled import LabelledArray, content_key
 from housing.lumped_mass import NO_INERTIA, LumpedMass
 from housing.material import Material
@@ -33,7 +47,10 @@ from housing.mode_record import ModeRecord, with_sensors
 from housing.modes import Certificate, ModeSet, solve_modes
 from housing.node_blocks import Additions, NodeBlocks
 from housing.patches import Patch, patch_center, patch_matrix, point_matrix
+from housing.port_attachments import attach_ports
 from housing.ports import Seat, Sensor, SensorPort, seat_matrix, sensor_port
+from housing.receptance import Selection, receptance, residues, select_modes
+from housing.reduction import Attachments, StaticProof
 from housing.rigid import RigidBody, rigid_body, rigid_motions
 from housing.supports import Support, fixed_freedoms
 from housing.survey import SURVEY_COUNTS, Survey, survey_grid
@@ -44,14 +61,20 @@ __all__ = [
     "SURVEY_COUNTS",
     "Additions",
     "Attachment",
+    "Attachments",
     "Axial",
     "Bushing",
     "Certificate",
     "Comparison",
     "Dominance",
+    "EffectiveMass",
     "Factorization",
     "FactorizationError",
     "Factorizer",
+    "Grounding",
+    "HealthError",
+    "HealthLine",
+    "HealthReport",
     "HousingError",
     "IncompleteModesError",
     "Joint",
@@ -66,29 +89,40 @@ __all__ = [
     "Mount",
     "NodeBlocks",
     "Patch",
+    "ReductionError",
     "RigidBody",
     "Seat",
+    "Selection",
     "Sensor",
     "SensorPort",
+    "StaticProof",
     "Support",
+    "SupportHold",
     "Survey",
     "assemble",
     "attach",
+    "attach_ports",
     "axes_along",
     "compare_by_dominance",
     "content_key",
     "damping_ratios",
     "dominance",
+    "effective_mass",
+    "enclosed",
     "fixed_freedoms",
+    "health_report",
     "mesh_digest",
     "modal_damping",
     "patch_center",
     "patch_matrix",
     "point_matrix",
     "read_modes",
+    "receptance",
+    "residues",
     "rigid_body",
     "rigid_motions",
     "seat_matrix",
+    "select_modes",
     "sensor_port",
     "solve_modes",
     "survey_grid",

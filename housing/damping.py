@@ -13,14 +13,17 @@ def modal_damping(modes: ModeSet, matrices: Matrices) -> FloatArray:
     """Φᵀ C Φ: dashpots, and mounts and joints that damp, in the coordinates of mass-normalised modes.
 
     With the modes' own ratios ζ the equation of motion is q'' + (diag(2ζω) + Φᵀ C Φ) q' + diag(ω²) q = f. A dashpot
-    stands where it stands and couples the modes: the matrix is full.
+    stands where it stands and couples the modes: the matrix is full. Residual attachments, where the mode set has
+    them, follow the modes.
 
     Returns
     -------
-    ndarray, shape (n_modes, n_modes)
-        [1/s], symmetric, positive semidefinite.
+    ndarray, shape (n, n)
+        n modes and attachments [1/s], symmetric, positive semidefinite.
     """
     shapes = modes.shapes.reshape(len(modes.shapes), -1)
+    if modes.attachments is not None:
+        shapes = np.vstack([shapes, modes.attachments.shapes.reshape(-1, shapes.shape[1])])
     full = shapes @ (matrices.damping @ shapes.T)
     return np.asarray(0.5 * (full + full.T))
 
@@ -34,8 +37,8 @@ def damping_ratios(frequencies: FloatArray, ratios: FloatArray, damping: FloatAr
         ω [rad/s]; a rigid-body mode has none, so its ratio stays as it is.
     ratios : ndarray, shape (n_modes,)
         ζ, parts of critical.
-    damping : ndarray, shape (n_modes, n_modes)
-        Φᵀ C Φ [1/s].
+    damping : ndarray, shape (n, n)
+        Φᵀ C Φ [1/s], the modes first.
 
     Returns
     -------
@@ -43,5 +46,5 @@ def damping_ratios(frequencies: FloatArray, ratios: FloatArray, damping: FloatAr
     """
     elastic = frequencies > 0.0
     added = np.zeros_like(ratios)
-    added[elastic] = damping.diagonal()[elastic] / (2.0 * frequencies[elastic])
+    added[elastic] = damping.diagonal()[: len(ratios)][elastic] / (2.0 * frequencies[elastic])
     return np.asarray(ratios + added)

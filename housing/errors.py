@@ -13,5 +13,13 @@ class FactorizationError(RuntimeError):
     """A matrix could not be factored, or its factor does not solve; the message says what to try."""
 
 
+class ReductionError(RuntimeError):
+    """A reduced housing fails its own proof; the message says by how much and what to try."""
+
+
+class HealthError(RuntimeError):
+    """The housing's model contradicts its geometry or itself; the message names every check that failed."""
+
+
 class ModeFileError(HousingError):
     """A mode-set file cannot be used: missing, damaged, of another kind or another version."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from housing.attachment_arrays import attachment_arrays, attachments_of
 from housing.errors import HousingError
 from housing.labelled import LabelledArray, canonical_json, content_key
 from housing.mesh_arrays import mesh_arrays, mesh_from_arrays
@@ -164,7 +165,7 @@ def _mode_arrays(modes: ModeSet) -> dict[str, LabelledArray]:
     for name, value in asdict(modes.certificate).items():
         units, long_name = _CERTIFIED[name]
         arrays[f"certificate_{name}"] = LabelledArray((), np.array(value), units, long_name)
-    return arrays
+    return arrays | attachment_arrays(modes.attachments)
 
 
 def _modes(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, str]) -> ModeSet:
@@ -178,6 +179,7 @@ def _modes(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, str]) -
         backend=attributes["solver_backend"],
         shift=arrays["solver_shift"].values.item(),
         threads=arrays["solver_threads"].values.item(),
+        attachments=attachments_of(arrays, arrays["shape"].values.shape[1]),
     )
 
 

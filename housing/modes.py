@@ -19,6 +19,7 @@ from housing.errors import FactorizationError, HousingError, IncompleteModesErro
 from housing.factorization import Backend, Factorizer
 from housing.lanczos import shift_invert
 from housing.matrices import Matrices
+from housing.reduction import Attachments, residual_attachments
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -82,6 +83,8 @@ class ModeSet:
         The eigenvalue about which the modes were searched [rad²/s²].
     threads : int
         Workers of the factorisation.
+    attachments : Attachments or None
+        What the modes lack of the static response to loads at the ports, where ports were given.
     """
 
     frequencies: FloatArray
@@ -91,6 +94,7 @@ class ModeSet:
     backend: str
     shift: float
     threads: int
+    attachments: Attachments | None = None
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -101,6 +105,11 @@ class ModeSet:
         """The modes' motions at a port, shape (n_modes, n_motions)."""
         return np.asarray((port @ self.shapes.reshape(len(self.shapes), -1).T).T)
 
+    def project_all(self, port: sparse.csr_array) -> FloatArray:
+        """Motions at a port of the modes, then of the attachments, shape (n_modes + n_attachments, n_motions)."""
+        modes = self.project(port)
+        return modes if self.attachments is None else np.vstack([modes, self.attachments.project(port)])
+
 
 def solve_modes(
     matrices: Matrices,
@@ -108,6 +117,7 @@ def solve_modes(
     *,
     frequency_limit: float | None = None,
     count: int | None = None,
+    ports: sparse.csr_array | None = None,
     backend: Backend | None = None,
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
@@ -124,6 +134,8 @@ def solve_modes(
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
         The lowest so many; one or two more where the last would split a multiple mode.
+    ports : scipy.sparse.csr_array, shape (r, 3 n_nodes), optional
+        Motions whose static compliance the mode set is to hold exactly: it then has attachments.
     backend, threads
         See :class:`housing.factorization.Factorizer`.
     progress : callable
@@ -135,6 +147,8 @@ def solve_modes(
         Where neither or both of limit and count are given, or they ask for nothing or for everything.
     IncompleteModesError
         Where the certificate cannot be made good after three searches.
+    ReductionError
+        Where the static compliance at the ports fails its proof.
     """
     if (frequency_limit is None) == (count is None):
         raise HousingError("give a frequency limit or a number of modes, one of the two")
@@ -192,20 +206,39 @@ def solve_modes(
             f"{certificate.expected}, largest residual {certificate.max_residual:.1e}, largest overlap "
             f"{certificate.max_overlap:.1e}; move the limit a little or refine the mesh"
         )
-    values = values[keep]
+    vectors, values = _oriented(vectors[:, keep]), values[keep]
     values[np.abs(values) < 1e-6 * floor] = 0.0
     if values[0] < -floor:
         raise _not_a_stiffness(f"the lowest eigenvalue of K is {values[0]:g} rad²/s²")
+    seconds = {"factorisation": factored, "eigensolver": time.perf_counter() - start}
     shapes = np.zeros((certificate.found, 3 * matrices.n_nodes))
-    shapes[:, free] = _oriented(vectors[:, keep]).T
+    shapes[:, free] = vectors.T
+    attachments = None
+    if ports is not None:
+        start = time.perf_counter()
+        progress("attaching the static response at the ports")
+        attachments = residual_attachments(
+            reduced.stiffness,
+            reduced.mass,
+            factor.solve,
+            values,
+            vectors,
+            ports[:, free],
+            shift=shift,
+            floor=floor,
+            free=free,
+            n_nodes=matrices.n_nodes,
+        )
+        seconds["reduction"] = time.perf_counter() - start
     return ModeSet(
         frequencies=np.sqrt(np.maximum(values, 0.0)),
         shapes=shapes.reshape(len(shapes), -1, 3),
         certificate=certificate,
-        seconds={"factorisation": factored, "eigensolver": time.perf_counter() - start},
+        seconds=seconds,
         backend=factor.backend,
         shift=shift,
         threads=threads,
+        attachments=attachments,
     )
 
 

@@ -7,18 +7,27 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import Sensor as GivenSensor
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_supports, check_reach
+from gearwhine.stages.housing_checks import (
+    bearing_places,
+    bearing_port,
+    housing_checks,
+    selection_document,
+    static_error_document,
+)
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
 from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
+_COORDINATES = ("coordinate", "other_coordinate")
 _DAMPING = "modal_damping"  # its name in a mode-set file
 _UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 
@@ -41,10 +50,16 @@ class SolvedHousing:
         What dashpots, mounts and joints add in modal coordinates [1/s]; None where nothing damps.
     seats : dict of str to ndarray, shape (n_modes, 6)
         Modes' motions at each bearing seat.
+    seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
+        The seats' motions from the nodes'.
+    loaded : dict of str to sparse array, shape (2, 3 n_nodes)
+        x and y of each place where the machine bears on the housing: the modes' attachments are for these.
     sensors : dict of str to housing.SensorPort
     survey : housing.Survey
     strengths : housing.Dominance or None
         None where there are no seats.
+    checks : dict
+        Health report and effective masses as their documents.
     seconds : dict of str to float
         Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
     record : housing.ModeRecord
@@ -64,9 +79,12 @@ class SolvedHousing:
     damping_ratios: FloatArray
     damping_matrix: FloatArray | None
     seats: dict[str, FloatArray]
+    seat_ports: dict[str, sparse.csr_array]
+    loaded: dict[str, sparse.csr_array]
     sensors: dict[str, room.SensorPort]
     survey: room.Survey
     strengths: room.Dominance | None
+    checks: dict[str, Any]
     seconds: dict[str, float]
     record: room.ModeRecord
     source: Path | None = None
@@ -148,8 +166,8 @@ def solve_housing(
     ------
     CaseError, meshes.GeometryError, housing.HousingError
         Where the case cannot be solved as it stands.
-    housing.IncompleteModesError
-        Where the modes fail their certificate.
+    housing.IncompleteModesError, housing.ReductionError, housing.HealthError
+        Where the modes fail their certificate, their static compliance its proof, or the model its checks.
     """
     require(case, "housing", command=command)
     given = case.housing
@@ -167,18 +185,19 @@ def solve_housing(
     meshed = time.perf_counter() - begin
     # Ports before modes: what is wrong with them is found out before the long work.
     seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
-    seat_matrices = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
+    seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
+    loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
     sensors = {entry.name: _sensor(mesh, index, entry) for index, entry in enumerate(given.sensor)}
     bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
     survey = room.survey_grid(mesh, bounds)
     if kept is None:
-        modes, mass, damping_matrix, seconds = _solve_modes(case, mesh, progress)
+        modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
         seconds = {"mesh": meshed, **seconds}
     else:
-        modes, mass = kept.modes, kept.mass
+        modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
         damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
         seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
-    seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_matrices.items()}
+    seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_ports.items()}
     strengths = None
     if seats:
         radial = np.stack([motion[:, :2] for motion in seats_in_modes.values()], axis=1)
@@ -191,7 +210,7 @@ def solve_housing(
         seats=seats,
         seat_motions=np.stack(list(seats_in_modes.values()), axis=1) if seats else np.empty((0, 0, 6)),
         inputs=inputs,
-        notes={"seconds": seconds},
+        notes={"seconds": seconds, "checks": checks},
         extras={} if damping_matrix is None else {_DAMPING: _damping_array(damping_matrix)},
     )
     record = room.with_sensors(record, sensors.values())
@@ -203,9 +222,12 @@ def solve_housing(
         damping_ratios=_damping(case, modes.frequencies_hz),
         damping_matrix=damping_matrix,
         seats=seats_in_modes,
+        seat_ports=seat_ports,
+        loaded=loaded,
         sensors=sensors,
         survey=survey,
         strengths=strengths,
+        checks=checks,
         seconds=seconds,
         record=record,
         source=None if kept is None or folder is None else folder / MODES_FILE,
@@ -215,13 +237,13 @@ def solve_housing(
 
 
 def _damping_array(matrix: FloatArray) -> room.LabelledArray:
-    return room.LabelledArray(("mode", "other_mode"), matrix, "s-1", "damping of what is attached, in the modes")
+    return room.LabelledArray(_COORDINATES, matrix, "s-1", "damping of what is fastened, by modes and attachments")
 
 
 def _solve_modes(
-    case: Case, mesh: Mesh, progress: Progress
-) -> tuple[room.ModeSet, float, FloatArray | None, dict[str, float]]:
-    """The modes, the housing's mass [kg], what damps it in its modes, and the seconds that each step took."""
+    case: Case, mesh: Mesh, loaded: dict[str, sparse.csr_array], progress: Progress
+) -> tuple[room.ModeSet, float, FloatArray | None, dict[str, Any], dict[str, float]]:
+    """The modes, the housing's mass [kg], what damps it in its modes, its checks, and the seconds of each step."""
     given = case.housing
     assert given is not None
     begin = time.perf_counter()
@@ -238,10 +260,15 @@ def _solve_modes(
         room.fixed_freedoms(mesh, build_supports(case)),
         frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
         count=count,
+        ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
         progress=progress,
     )
     damping = room.modal_damping(modes, matrices) if matrices.damping.nnz else None
-    return modes, matrices.total_mass, damping, {"assembly": assembled, **modes.seconds}
+    progress("checking the housing against its geometry")
+    begin = time.perf_counter()
+    checks = housing_checks(case, mesh, free, matrices, modes)
+    seconds = {"assembly": assembled, **modes.seconds, "checks": time.perf_counter() - begin}
+    return modes, matrices.total_mass, damping, checks, seconds
 
 
 def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:
@@ -278,17 +305,19 @@ def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
     return [int(mode) + 1 for mode in solved.strengths.strongest(count, (0.0, np.inf))]
 
 
-def modes_document(solved: SolvedHousing) -> dict[str, Any]:
-    """The modes as the command's JSON."""
+def modes_document(solved: SolvedHousing, *, detail: bool = False) -> dict[str, Any]:
+    """The modes as the command's JSON; in detail also which of them carry the motion from bearings to sensors."""
     certificate = solved.modes.certificate
     strengths = solved.strengths
-    return {
+    masses = solved.checks["effective_mass"]
+    document = {
         "modes": [
             {
                 "number": number,
                 "frequency_hz": float(frequency),
                 "damping_ratio": float(damping),
                 "strength": None if strengths is None else float(strengths.acceleration[number - 1]),
+                "effective_mass": masses["fractions"][number - 1],
             }
             for number, (frequency, damping) in enumerate(
                 zip(solved.modes.frequencies_hz, solved.total_damping_ratios, strict=True), start=1
@@ -309,9 +338,16 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
         },
         "mass_kg": solved.mass,
         "attached_mass_kg": solved.attached_mass,
+        "effective_mass": {key: value for key, value in masses.items() if key != "fractions"},
+        "static_error": static_error_document(solved.modes, solved.loaded),
+        "health": solved.checks["health"],
         "seconds": solved.seconds,
         **origin_document(solved),
     }
+    if detail:
+        ratios = solved.total_damping_ratios
+        document["selection"] = selection_document(solved.modes, ratios, solved.loaded, solved.sensors)
+    return document
 
 
 def origin_document(solved: SolvedHousing | None) -> dict[str, Any]:

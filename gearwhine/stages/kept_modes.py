@@ -1,7 +1,8 @@
 """Housing modes kept in the results folder, and read again in place of solving where the housing is unchanged.
 
 Modes are known again by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys
-that do not enter the modes, the materials it names, the content of its files, and the versions and source of the code.
+that do not enter the modes, the materials it names, the places of the bearings for which the modes have attachments,
+the content of its files, and the versions and source of the code.
 A new key of the housing therefore counts until somebody says that it does not.
 """
 
@@ -15,6 +16,7 @@ import gearwhine
 import housing as room
 import meshes
 from gearwhine.case import Case
+from gearwhine.stages.housing_checks import bearing_places
 
 if TYPE_CHECKING:
     from gearwhine.stages.housing import SolvedHousing
@@ -42,10 +44,12 @@ def solution_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, An
     files = {str(path): _file_content(path) for path in _paths(given.model_dump())}
     if given.mesh is not None and mesh is not None:
         files[str(given.mesh.file)] = {"mesh": room.mesh_digest(mesh)}
+    bearings = {name: list(place) for name, place in bearing_places(case).items()}
     written = given.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=set(_WITHOUT_EFFECT))
     named = _texts(written)
     return {
         "housing": _with_contents(written, files),
+        "bearings": bearings,
         "material": {name: one.model_dump(mode="json") for name, one in case.material.items() if name in named},
         "versions": {"gearwhine": gearwhine.__version__} | {name: _installed(name) for name in _LIBRARIES},
         "source": _source_digest(),

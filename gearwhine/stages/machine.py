@@ -12,6 +12,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import build_bearings, build_rotor
 from gearwhine.stages.gears import SolvedPair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, solve_housing
+from gearwhine.stages.housing_checks import static_error_document
 
 _HERTZ = 2.0 * np.pi
 
@@ -110,6 +111,7 @@ def system_document(
         ],
         "coordinates": machine.system.size,
         "trusted_below_hz": None if housing is None else housing.modes.certificate.limit / _HERTZ,
+        "static_error": None if housing is None else static_error_document(housing.modes, housing.loaded),
     }
 
 
@@ -141,10 +143,10 @@ def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingCompone
     return room.housing_component(
         solved.modes,
         solved.damping_ratios,
-        seats=solved.seats,
+        seats={name: solved.modes.project_all(port) for name, port in solved.seat_ports.items()},
         seat_z={seat.name: seat.center[2] for seat in case.housing.seat},
         damping_matrix=solved.damping_matrix,
-        sensors={name: solved.modes.project(port.matrix)[:, 0] for name, port in solved.sensors.items()},
+        sensors={name: solved.modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
     )
 
 

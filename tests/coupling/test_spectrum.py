@@ -1,5 +1,7 @@
 """Spectra against sines whose lines are known."""
 
+from typing import Literal
+
 import numpy as np
 import pytest
 
@@ -34,6 +36,17 @@ def test_parseval(count: int) -> None:
     if count % 2 == 0:
         weights[-1] = 1.0
     np.testing.assert_allclose((weights * amplitude**2).sum(axis=-1), (signal**2).mean(axis=-1), rtol=1e-12)
+
+
+@pytest.mark.parametrize("window", ["uniform", "hann"])
+def test_rms_of_a_band(window: Literal["uniform", "hann"]) -> None:
+    """Two sines and a mean: a/√2 of each sine in the band."""
+    times = INTERVAL * np.arange(1000)
+    signal = 9.0 + 3.0 * np.sin(2 * np.pi * 40.0 * times) + 4.0 * np.sin(2 * np.pi * 200.0 * times + 1.0)
+    spectrum = amplitude_spectrum(signal, INTERVAL, window)
+    assert spectrum.rms(100.0) == pytest.approx(3.0 / np.sqrt(2.0), rel=1e-9)
+    assert spectrum.rms(400.0) == pytest.approx(5.0 / np.sqrt(2.0), rel=1e-9)
+    assert spectrum.rms(10.0) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_line_at_half_the_sampling_rate() -> None:

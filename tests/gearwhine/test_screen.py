@@ -44,7 +44,7 @@ def _run(loss: float = 0.0) -> Document:
 
 
 def _system(**more: Any) -> Document:
-    shares = {"housing": 0.0, "rotor": -1e-9, "torsion": 1.0, "mesh": -1e-3}
+    shares = {"housing": 0.0, "rotor": -1e-9, "torsion": 1.0, "residual": 0.0, "mesh": -1e-3}
     modes = [
         {"frequency_hz": frequency, "damping_ratio": damping, "kind": kind, "energy": shares}
         for frequency, damping, kind in ((-0.0, -0.0, "rigid"), (900.0, -1e-9, "torsion"), (2500.0, 0.01, "torsion"))
@@ -86,7 +86,7 @@ def test_no_share_is_minus_nothing_and_rigid_modes_have_none() -> None:
     assert "-0" not in out
     rows = [line for line in out.splitlines() if "rigid" in line or "torsion" in line][1:]  # the first is the head
     assert rows[0].split() == ["0.00", "0.0000", "rigid"]
-    assert rows[1].split() == ["900.00", "0.0000", "torsion", "0", "%", "0", "%", "100", "%", "0", "%"]
+    assert rows[1].split() == ["900.00", "0.0000", "torsion", "0", "%", "0", "%", "100", "%", "0", "%", "0", "%"]
     assert len(rows) == 3
     assert "above" not in out
 

@@ -1,0 +1,62 @@
+"""Residual attachments as labelled arrays, and back: how they stand in a mode-set file."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from housing.labelled import LabelledArray
+from housing.reduction import Attachments, StaticProof
+
+_ONE = ("attachment",)
+_PORTS = ("loaded_motion", "moved_motion")
+
+
+def attachment_arrays(attachments: Attachments | None) -> dict[str, LabelledArray]:
+    """The arrays that hold attachments and their proof; nothing where there are none.
+
+    Attachments without a single shape, at ports that bring nothing new, keep their proof: a dimension of length 0
+    means another thing in NetCDF.
+    """
+    if attachments is None:
+        return {}
+    proof = attachments.proof
+    arrays = {
+        "static_compliance": LabelledArray(_PORTS, proof.compliance, "m N-1", "elastic compliance at the ports"),
+        "static_missing": LabelledArray(_PORTS, proof.missing, "m N-1", "the part of it that the modes lack"),
+        "static_error": LabelledArray((), np.array(proof.error), "1", "bound on the compliance's relative error"),
+        "static_overlap": LabelledArray((), np.array(proof.overlap), "1", "largest overlap of an attachment in mass"),
+        "static_sweeps": LabelledArray((), np.array(proof.sweeps), "1", "solves that the attachments took"),
+    }
+    if len(attachments.frequencies):
+        shape = ("attachment", "node", "component")
+        arrays |= {
+            "attachment_circular_frequency": LabelledArray(
+                _ONE, attachments.frequencies, "rad s-1", "root of stiffness over mass; no natural frequency"
+            ),
+            "attachment_shape": LabelledArray(
+                shape, attachments.shapes, "kg-0.5", "residual attachment modes of unit modal mass"
+            ),
+        }
+    return arrays
+
+
+def attachments_of(arrays: Mapping[str, LabelledArray], n_nodes: int) -> Attachments | None:
+    """The attachments that these arrays were made of, equal bit for bit.
+
+    Raises
+    ------
+    KeyError
+        Where a part is missing.
+    """
+    if "static_compliance" not in arrays:
+        return None
+    proof = StaticProof(
+        compliance=arrays["static_compliance"].values,
+        missing=arrays["static_missing"].values,
+        error=arrays["static_error"].values.item(),
+        overlap=arrays["static_overlap"].values.item(),
+        sweeps=arrays["static_sweeps"].values.item(),
+    )
+    if "attachment_shape" not in arrays:
+        return Attachments(np.empty(0), np.empty((0, n_nodes, 3)), proof)
+    return Attachments(arrays["attachment_circular_frequency"].values, arrays["attachment_shape"].values, proof)

@@ -1,0 +1,93 @@
+"""Effective modal mass: how much of the housing's mass each mode moves when its ground is shaken.
+
+For a ground that moves rigidly, u = q + R s(t), the free degrees of freedom are driven by -M R s''. In the mode r that
+is the participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is a mass: the one that, hung on a spring
+of the mode's frequency, would pull at the ground as the mode does. Over all modes of the free degrees of freedom
+
+    Σ_r L_r² = Rᵀ M R,
+
+by completeness, so that what the kept modes lack of it is known. A free body's rigid modes carry all of it; elastic
+modes are M-orthogonal to R and carry none. A fixed patch moves with the ground: its own mass is in no mode.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.matrices import Matrices
+from housing.modes import ModeSet
+from housing.rigid import rigid_body, rigid_motions
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class EffectiveMass:
+    """Effective mass along x, y, z [kg] and about axes along them through the centre of gravity [kg m²].
+
+    Attributes
+    ----------
+    participation : ndarray, shape (n_modes, 6)
+        L [√kg, √(kg m²)].
+    total : ndarray, shape (6,)
+        Of the whole body.
+    free : ndarray, shape (6,)
+        Of the degrees of freedom that no support fixes: what all the modes together reach.
+    center : ndarray, shape (3,)
+        Centre of gravity [m].
+    """
+
+    participation: FloatArray
+    total: FloatArray
+    free: FloatArray
+    center: FloatArray
+
+    @property
+    def mass(self) -> FloatArray:
+        """Of each mode, L² [kg, kg m²], shape (n_modes, 6)."""
+        return self.participation**2
+
+    @property
+    def fractions(self) -> FloatArray:
+        """Of each mode as a part of the whole body's, shape (n_modes, 6)."""
+        return np.asarray(self.mass / self.total)
+
+    @property
+    def captured(self) -> FloatArray:
+        """Of the modes together as a part of the whole body's, shape (6,)."""
+        return np.asarray(self.mass.sum(axis=0) / self.total)
+
+    @property
+    def missing(self) -> FloatArray:
+        """What modes above the limit hold of it, as a part of the whole body's, shape (6,)."""
+        return np.asarray((self.free - self.mass.sum(axis=0)) / self.total)
+
+
+def effective_mass(matrices: Matrices, points: FloatArray, fixed: IntArray | None, modes: ModeSet) -> EffectiveMass:
+    """Participation factors and effective masses for the six rigid motions of the ground.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        Of n_nodes nodes.
+    points : ndarray, shape (n_nodes, 3)
+        Their places [m].
+    fixed : ndarray of int, optional
+        Degrees of freedom held at zero.
+    modes : ModeSet
+        Of these matrices and this support.
+    """
+    center = rigid_body(points, matrices).center
+    fields = rigid_motions(points, center).reshape(-1, 6)
+    total = np.einsum("ij,ij->j", fields, matrices.mass @ fields)
+    if fixed is not None:
+        fields[fixed] = 0.0
+    moved = matrices.mass @ fields
+    return EffectiveMass(
+        participation=np.asarray(modes.shapes.reshape(len(modes.shapes), -1) @ moved),
+        total=total,
+        free=np.einsum("ij,ij->j", fields, moved),
+        center=center,
+    )

@@ -1,0 +1,298 @@
+"""The housing reduced to its ports: what its modes lack there, added as residual attachment modes.
+
+Kept modes Φ (φᵀ M φ = 1, eigenvalues λ) answer a static port load f = Pᵀ with Σ φ φᵀ f / λ. All the discarded ones
+together answer with the *residual vectors*
+
+    X = Σ_discarded φ φᵀ Pᵀ / λ,        K X = F,   F = (I - M Φ Φᵀ) Pᵀ,   Φᵀ M X = 0,                    (1)
+
+which need no discarded mode to be known: on the M-orthogonal complement of Φ the stiffness is positive definite,
+free body or not, since a free body's rigid modes are among Φ. There (1) is solved with the factor of A = K - σM that
+the eigensolution has at hand, σ below all modes or between the kept and the discarded ones, so that A is positive
+definite on the complement too. In the sweep
+
+    X <- X + A⁻¹ (F - K X)                                                                               (2)
+
+the error becomes (I - A⁻¹ K) E. Both matrices are diagonal in the modes, so that each discarded mode's part is
+multiplied by -σ / (λ - σ): small for σ slightly below zero, where the plain sweep settles quickly, and for modes well
+above a positive σ. Conjugate gradients preconditioned by A⁻¹ take the same sweeps, need fewer of them, and converge for
+the modes just above a positive σ too: a handful of eigenvalues λ / (λ - σ) of A⁻¹ K apart from a cluster at one.
+
+The span of X is then made a set of modes of its own: orthonormal in M to Φ and in itself, with a diagonal stiffness
+(Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2006, chapter 17, on residual attachment modes; after
+MacNeal 1971 and Rubin 1975). By Galerkin's argument its compliance at the ports errs by the square of the error
+of X. Modes and attachments side by side are a component with the unit mass, a diagonal stiffness and the exact static
+compliance at its ports.
+
+*Proof.* Let U be the displacements that modes and attachments claim for the loads F of all ports, and R = F - K U what
+these leave unbalanced. Whatever U is, the exact compliance is
+
+    C = Uᵀ F + Fᵀ U - Uᵀ K U + Rᵀ K⁻¹ R,                                                                 (3)
+
+all of it computable but the last term, of second order, which is bounded by one more solve: the kept modes' part of R
+divided by λ, and for the rest rᵀ K⁻¹ r <= (1 + |min(σ, 0)| / λ_kept) rᵀ A⁻¹ r, since A differs from K by σM. What C so
+found has beside the claimed compliance, and the bound, are the error reported.
+
+The compliance spoken of is the elastic one: modes with λ <= floor are left out of it, rigid and nearly rigid ones. For
+a free body this is its inertia-relief compliance Sᵀ G S with S = I - M Φ_rigid Φ_rigidᵀ: the load is balanced by the
+inertia of the accelerated body. A body on mounts that are soft beside the limit is held to the same, stricter measure.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg, sparse
+
+from housing.errors import HousingError, ReductionError
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+Solve = Callable[[FloatArray], FloatArray]
+
+STATIC_BOUND = 1e-10
+OVERLAP_BOUND = 1e-8
+_SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
+_NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
+_MOST_SWEEPS = 200
+
+
+@dataclass(frozen=True)
+class StaticProof:
+    """The static compliance at the ports, and how it was proved; r port motions.
+
+    Attributes
+    ----------
+    compliance : ndarray, shape (r, r)
+        Elastic compliance: motion of one port by a unit load on another [m/N, rad/N, rad/(N m)].
+    missing : ndarray, shape (r, r)
+        The part of it that the kept modes alone lack.
+    error : float
+        Bound on |C_ab - C'_ab| / sqrt(C_aa C_bb) over all pairs of motions, with C' by modes and attachments and C the
+        exact compliance of Eq. (3).
+    overlap : float
+        Largest |φᵀ M ψ| of two different vectors among modes and attachments, and |ψᵀ M ψ - 1|.
+    sweeps : int
+        Solves with the factor of A for all ports at once, before the last one for the bound.
+    """
+
+    compliance: FloatArray
+    missing: FloatArray
+    error: float
+    overlap: float
+    sweeps: int
+
+    @property
+    def missing_parts(self) -> FloatArray:
+        """Part of each port's own compliance that the kept modes lack, shape (r,): the error without attachments."""
+        own = self.compliance.diagonal()
+        return np.asarray(self.missing.diagonal() / np.where(own > 0.0, own, 1.0))
+
+
+@dataclass(frozen=True)
+class Attachments:
+    """Residual attachment modes: k of them, at most one for each port motion.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (k,)
+        ω with ψᵀ K ψ = ω² [rad/s], ascending. Where the stiffness of what the modes lack balances its mass: not a
+        natural frequency of the housing, and above all of the kept ones.
+    shapes : ndarray, shape (k, n_nodes, 3)
+        ψᵀ M ψ = 1 [1/√kg], and no mass in common with the modes or each other.
+    proof : StaticProof
+    """
+
+    frequencies: FloatArray
+    shapes: FloatArray
+    proof: StaticProof
+
+    def project(self, port: sparse.csr_array) -> FloatArray:
+        """The attachments' motions at a port, shape (k, n_motions)."""
+        return np.asarray((port @ self.shapes.reshape(len(self.shapes), port.shape[1]).T).T)
+
+
+def residual_attachments(
+    stiffness: sparse.csr_array,
+    mass: sparse.csr_array,
+    solve: Solve,
+    values: FloatArray,
+    vectors: FloatArray,
+    ports: sparse.csr_array,
+    *,
+    shift: float,
+    floor: float,
+    free: IntArray,
+    n_nodes: int,
+) -> Attachments:
+    """Residual attachment modes of a set of modes, proved to make the static compliance at the ports exact.
+
+    Parameters
+    ----------
+    stiffness, mass : scipy.sparse.csr_array, shape (n, n)
+        K [N/m] and M [kg] on the free degrees of freedom.
+    solve : callable
+        X = A⁻¹ B with A = K - shift M, for B of shape (n, m).
+    values : ndarray, shape (p,)
+        λ = ω² of the kept modes [rad²/s²], every one below some limit.
+    vectors : ndarray, shape (n, p)
+        Φ, with Φᵀ M Φ = I.
+    ports : scipy.sparse.csr_array, shape (r, n)
+        P: motions at the ports from the free degrees of freedom; loads act by its transpose.
+    shift : float
+        σ [rad²/s²]: below zero, or above every kept eigenvalue and below every discarded one.
+    floor : float
+        λ up to which a mode counts as rigid [rad²/s²].
+    free : ndarray of int, shape (n,)
+        Where these degrees of freedom stand among the mesh's 3 n_nodes.
+    n_nodes : int
+        Nodes of the mesh.
+
+    Raises
+    ------
+    HousingError
+        Where the shapes of the arrays do not fit, or the shift stands among the kept modes.
+    ReductionError
+        Where the sweeps do not settle or the result fails its proof.
+    """
+    n = stiffness.shape[0]
+    if ports.shape[1] != n or vectors.shape != (n, len(values)) or len(free) != n:
+        raise HousingError(
+            f"ports of shape {ports.shape}, modes of shape {vectors.shape} with {len(values)} values and {len(free)} "
+            f"places for a stiffness of order {n}; expected (r, {n}), ({n}, p) with p values, and {n} places"
+        )
+    if not (shift < 0.0 or shift > values.max(initial=0.0)):
+        raise HousingError(f"a shift of {shift:g} rad²/s²; expected it below zero or above every kept mode")
+    inertia = np.asarray(mass @ vectors)
+    loads = np.asarray(ports.T.toarray(), dtype=np.float64)
+    motions = vectors.T @ loads
+    elastic = values > floor
+    modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
+
+    residual, sweeps = _static_response(stiffness, solve, loads, vectors, inertia, _SETTLED, modal.diagonal())
+    squared, shapes = _orthonormal(stiffness, mass, residual, modal.diagonal(), vectors, inertia)
+    found = (ports @ shapes).T
+    missing = (found.T / squared) @ found
+    # Each load without what accelerates the rigid modes, and the displacements claimed for it.
+    balanced = loads - inertia[:, ~elastic] @ motions[~elastic]
+    claimed = vectors[:, elastic] @ (motions[elastic] / values[elastic][:, None]) + shapes @ (found / squared[:, None])
+    slack = 1.0 + max(-shift, 0.0) / max(float(values.max(initial=0.0)), floor)
+    proof = StaticProof(
+        compliance=modal + missing,
+        missing=missing,
+        error=_static_error(stiffness, solve, balanced, claimed, modal + missing, values, vectors, inertia, slack),
+        overlap=_overlap(mass, shapes, inertia),
+        sweeps=sweeps,
+    )
+    if not (proof.error <= STATIC_BOUND and proof.overlap <= OVERLAP_BOUND):
+        raise ReductionError(
+            f"modes and residual attachments miss the static compliance at the ports by {proof.error:.1e} and overlap "
+            f"by {proof.overlap:.1e}, bounds {STATIC_BOUND:.0e} and {OVERLAP_BOUND:.0e}: the modes are not exact "
+            "ones of this stiffness and mass; solve for them again"
+        )
+    full = np.zeros((len(squared), 3 * n_nodes))
+    full[:, free] = shapes.T
+    return Attachments(np.sqrt(squared), full.reshape(len(squared), n_nodes, 3), proof)
+
+
+def _static_response(
+    stiffness: sparse.csr_array,
+    solve: Solve,
+    loads: FloatArray,
+    vectors: FloatArray,
+    inertia: FloatArray,
+    settled: float,
+    known: FloatArray | float = 0.0,
+) -> tuple[FloatArray, int]:
+    """X with K X = (I - M V Vᵀ) F and Vᵀ M X = 0 for some modes V, and the sweeps it took.
+
+    Conjugate gradients in the M-orthogonal complement of V, preconditioned by A⁻¹, each column by itself, until a
+    sweep moves no column by more than a part ``settled`` in the norm of the strain energy. ``known`` [m/N] is
+    compliance beside the columns' own to measure against, where little may be left.
+    """
+    x = np.zeros_like(loads)
+    left = loads - inertia @ (vectors.T @ loads)
+    direction, before = np.zeros_like(loads), np.ones(loads.shape[1])
+    for sweep in range(1, _MOST_SWEEPS + 1):
+        step = solve(left)
+        step -= vectors @ (inertia.T @ step)
+        power = np.einsum("ij,ij->j", left, step)
+        direction = step + direction * (_ratio(power, before) if sweep > 1 else 0.0)
+        before = power
+        product = np.asarray(stiffness @ direction)
+        length = _ratio(power, np.einsum("ij,ij->j", direction, product))
+        x += direction * length
+        left = left - product * length
+        if np.all(length * power <= settled**2 * (known + np.einsum("ij,ij->j", loads, x))):
+            return x - vectors @ (inertia.T @ x), sweep
+    raise ReductionError(
+        f"the static response to the ports' loads has not settled after {_MOST_SWEEPS} sweeps: the stiffness is not "
+        "positive semidefinite, or the modes are not its own"
+    )
+
+
+def _orthonormal(
+    stiffness: sparse.csr_array,
+    mass: sparse.csr_array,
+    residual: FloatArray,
+    known: FloatArray,
+    vectors: FloatArray,
+    inertia: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """ω² and M-orthonormal shapes that span the residual vectors and diagonalise K in them, ascending.
+
+    Loads are measured by the response that they find, so that a port of rotations counts like one of translations;
+    combinations of them whose response adds less than a part of 1e-12 to the ports' compliance are dropped.
+    """
+    energy = residual.T @ (stiffness @ residual)
+    whole = known + energy.diagonal()
+    scale = 1.0 / np.sqrt(np.where(whole > 0.0, whole, 1.0))
+    shares, mixture = linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
+    new = shares > _NOTHING_NEW
+    shapes = (residual * scale) @ (mixture[:, new] / np.sqrt(shares[new]))
+    # Twice: the first pass mixes vectors of very different mass, whose rounding the second takes off.
+    squared = np.zeros(shapes.shape[1])
+    for _ in range(2):
+        shapes = shapes - vectors @ (inertia.T @ shapes)
+        squared, mixture = linalg.eigh(shapes.T @ (stiffness @ shapes), shapes.T @ (mass @ shapes))
+        shapes = shapes @ mixture
+    largest = shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]
+    return squared, np.asarray(shapes * np.sign(largest))
+
+
+def _overlap(mass: sparse.csr_array, shapes: FloatArray, inertia: FloatArray) -> float:
+    own = shapes.T @ (mass @ shapes) - np.eye(shapes.shape[1])
+    return float(max(np.abs(own).max(initial=0.0), np.abs(inertia.T @ shapes).max(initial=0.0)))
+
+
+def _static_error(
+    stiffness: sparse.csr_array,
+    solve: Solve,
+    loads: FloatArray,
+    claimed: FloatArray,
+    compliance: FloatArray,
+    values: FloatArray,
+    vectors: FloatArray,
+    inertia: FloatArray,
+    slack: float,
+) -> float:
+    """The bound of :class:`StaticProof` by Eq. (3), from the displacements claimed for the balanced loads."""
+    held = np.asarray(stiffness @ claimed)
+    left = loads - held
+    cross = claimed.T @ loads
+    exact = cross + cross.T - claimed.T @ held
+    along = vectors.T @ left
+    beyond = left - inertia @ along
+    solved = solve(beyond)
+    unknown = slack * np.maximum(np.einsum("ij,ij->j", beyond, solved - vectors @ (inertia.T @ solved)), 0.0)
+    elastic = values > 0.0
+    unknown += (along[elastic] ** 2 / values[elastic][:, None]).sum(axis=0)
+    own = compliance.diagonal()
+    size = np.sqrt(np.where(own > 0.0, own, 1.0))
+    rest = np.sqrt(unknown)
+    return float(((np.abs(exact - compliance) + np.outer(rest, rest)) / np.outer(size, size)).max(initial=0.0))
+
+
+def _ratio(top: FloatArray, bottom: FloatArray) -> FloatArray:
+    """top / bottom, and 0 where a column has settled to nothing."""
+    return np.asarray(np.divide(top, bottom, out=np.zeros_like(top), where=bottom > 0.0))

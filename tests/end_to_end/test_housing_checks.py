@@ -1,0 +1,119 @@
+"""The housing's own checks as the command shows them: health, effective masses, static error, modes that matter."""
+
+import json
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def gearbox_modes(tmp_path_factory: pytest.TempPathFactory) -> dict:
+    """The small gearbox's modes in detail, solved once."""
+    from gearwhine.cli import run_command
+
+    folder = tmp_path_factory.mktemp("modes") / "out"
+    assert run_command(["modes", "small-gearbox", "-q", "--detail", "-o", str(folder), "--json"]) == 0
+    document: dict = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    return document
+
+
+def test_health_in_json(gearbox_modes: dict) -> None:
+    health = gearbox_modes["health"]
+    assert health["ok"] is True
+    assert {"name", "value", "bound", "ok", "essential", "why"} <= set(health["lines"][0])
+    for line in health["lines"]:
+        assert line["ok"] == (line["bound"] is None or line["value"] <= line["bound"])
+    assert health["mass_kg"] == pytest.approx(gearbox_modes["mass_kg"], rel=1e-9)
+    # Four equal springs at the corners of a box that is symmetric about x = 0 and z = 0.
+    assert health["free_motions"] == 0
+    assert [foot["share"]["y"] for foot in health["supports"]] == pytest.approx([0.25] * 4)
+    assert sum(foot["stiffness_n_per_m"][1] for foot in health["supports"]) == pytest.approx(4 * 5e9)
+    x, _, z = health["center_of_gravity_m"]
+    assert abs(x) + abs(z) < 1e-6
+
+
+def test_effective_masses_add_up(gearbox_modes: dict) -> None:
+    parts = np.array([mode["effective_mass"] for mode in gearbox_modes["modes"]])
+    mass = gearbox_modes["effective_mass"]
+    assert mass["directions"] == ["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]
+    np.testing.assert_allclose(parts.sum(axis=0), mass["captured"], rtol=1e-12)
+    np.testing.assert_allclose(np.add(mass["captured"], mass["missing"]), 1.0, rtol=1e-9)  # no patch is fixed
+    assert (parts >= 0.0).all()
+
+
+def test_static_error_is_told_with_and_without(gearbox_modes: dict) -> None:
+    error = gearbox_modes["static_error"]
+    assert error["with_attachments"] <= 1e-10
+    assert 0.01 < error["without_attachments"] < 1.0
+    assert set(error["without_attachments_at"]) == {"input-back", "input-front", "output-back", "output-front"}
+    assert error["attachments"] == 8  # x and y under each of four bearings
+
+
+def test_the_modes_that_matter(gearbox_modes: dict) -> None:
+    selection = gearbox_modes["selection"]
+    numbers = [mode["number"] for mode in gearbox_modes["modes"]]
+    assert sorted(selection["ranking"]) == numbers
+    assert set(selection["keep"]) < set(numbers)
+    assert len(selection["error_left"]) == len(numbers) + 1
+    assert selection["error_left"][len(selection["keep"])] <= selection["tolerance"]
+    assert selection["band_hz"][1] == pytest.approx(gearbox_modes["certificate"]["limit_hz"])
+
+
+def test_a_free_housing_is_held_by_nothing_and_its_rigid_modes_carry_it(gearwhine) -> None:
+    document = gearwhine("modes", "steel-box", "--json", "-q", "--set", "housing.support=[]").document
+    health = document["health"]
+    assert health["ok"] is True
+    assert (health["free_motions"], health["supports"]) == (6, [])
+    rigid = [mode for mode in document["modes"] if mode["frequency_hz"] == 0.0]
+    assert len(rigid) == 6
+    assert np.sum([mode["effective_mass"] for mode in rigid], axis=0) == pytest.approx(np.ones(6), rel=1e-8)
+    assert document["static_error"] is None or document["static_error"]["with_attachments"] <= 1e-10
+
+
+def test_a_housing_that_can_still_slide_is_told(gearwhine) -> None:
+    foot = '{name="slide", surface="foot-1", fixed=["y"]}'
+    outcome = gearwhine("modes", "steel-box", "-q", "--set", f"housing.support=[{foot}]")
+    assert outcome.code == 0
+    assert "the housing can still move: x, z, rotation y" in " ".join(outcome.out.split())
+    assert "look" in outcome.out
+
+
+def test_the_coupled_system_uses_the_attachments(gearwhine) -> None:
+    document = gearwhine("system", "small-gearbox", "--json", "-q").document
+    assert document["static_error"]["with_attachments"] <= 1e-10
+    kinds = [mode["kind"] for mode in document["modes"]]
+    assert set(kinds) <= {"rigid", "rotor", "torsion", "mesh", "housing", "residual"}
+    # What is only static compliance shows above the modes that are known, not among them.
+    residual = [mode["frequency_hz"] for mode in document["modes"] if mode["kind"] == "residual"]
+    assert residual
+    assert min(residual) > document["trusted_below_hz"]
+
+
+def test_few_modes_with_attachments_stand_for_many(gearwhine) -> None:
+    """Coupled modes below half the limit are those of a housing with all its modes up to three times the limit."""
+    few = gearwhine("system", "small-gearbox", "--json", "-q").document
+    many = gearwhine("system", "small-gearbox", "--json", "-q", "--set", "housing.frequency_limit=9 kHz").document
+    below = [mode["frequency_hz"] for mode in few["modes"] if mode["frequency_hz"] < 0.5 * few["trusted_below_hz"]]
+    assert len(below) > 4
+    assert many["static_error"]["without_attachments"] < few["static_error"]["without_attachments"]
+    assert below == pytest.approx([mode["frequency_hz"] for mode in many["modes"][: len(below)]], rel=2e-4)
+
+
+def test_a_bearing_off_its_seat_loads_the_seats_rotation(gearwhine) -> None:
+    """4 mm outward the seat's rotations join in: another port, other compliance, exact as well."""
+    centred = gearwhine("modes", "small-gearbox", "--json", "-q").document["static_error"]
+    moved = gearwhine("modes", "small-gearbox", "--json", "-q", "--set", "bearing.0.at=16 mm").document["static_error"]
+    assert moved["with_attachments"] <= 1e-10
+    where, others = "input-back", ("input-front", "output-back", "output-front")
+    assert moved["without_attachments_at"][where] != pytest.approx(centred["without_attachments_at"][where], rel=1e-6)
+    for name in others:
+        assert moved["without_attachments_at"][name] == pytest.approx(centred["without_attachments_at"][name], rel=1e-6)
+
+
+def test_detail_on_the_screen(gearwhine) -> None:
+    outcome = gearwhine("modes", "small-gearbox", "-q", "--detail")
+    for text in ("rigid-body strain", "Effective modal mass", "higher modes", "foot 1", "carry the receptance"):
+        assert text in outcome.out
+    brief = gearwhine("modes", "small-gearbox", "-q").out
+    assert "rigid-body strain" in brief
+    assert "Effective modal mass" not in brief

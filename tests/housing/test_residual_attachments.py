@@ -1,0 +1,303 @@
+"""Residual attachments against dense solves of the whole stiffness, grounded and free."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import linalg, sparse
+
+from housing import (
+    HousingError,
+    Material,
+    Matrices,
+    ModeSet,
+    ReductionError,
+    Seat,
+    Support,
+    assemble,
+    attach,
+    attach_ports,
+    fixed_freedoms,
+    seat_matrix,
+    solve_modes,
+)
+from housing.reduction import residual_attachments
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+LIMIT = 2 * np.pi * 6000.0
+
+
+@pytest.fixture(scope="module")
+def beam(block: Callable[..., Mesh], steel: Material) -> tuple[Mesh, Matrices]:
+    """A solid of 0.3 x 0.06 x 0.05 m, 405 degrees of freedom: small enough for dense algebra."""
+    mesh = block((0.05, 0.06, 0.3), (1, 1, 3))
+    return mesh, assemble(mesh, steel)
+
+
+@pytest.fixture(scope="module")
+def clamped(beam: tuple[Mesh, Matrices]) -> IntArray:
+    return fixed_freedoms(beam[0], [Support("root", surface="bottom", fixed=(True, True, True))])
+
+
+@pytest.fixture(scope="module")
+def port(beam: tuple[Mesh, Matrices]) -> sparse.csr_array:
+    """Six motions of the far end, and the side motion of one node half way."""
+    mesh = beam[0]
+    row = np.zeros((1, 3 * len(mesh.points)))
+    row[0, 3 * int(np.argmin(np.linalg.norm(mesh.points - [0.05, 0.03, 0.15], axis=1)))] = 1.0
+    end = seat_matrix(mesh, Seat("top", (0.025, 0.03, 0.3)))
+    return sparse.csr_array(sparse.vstack([end, sparse.csr_array(row)], format="csr"))
+
+
+@pytest.fixture(scope="module")
+def grounded(beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array) -> ModeSet:
+    return solve_modes(beam[1], clamped, frequency_limit=LIMIT, ports=port)
+
+
+def static(matrices: Matrices, fixed: IntArray, port: sparse.csr_array) -> FloatArray:
+    """Displacements of all nodes under unit loads on the port by dense algebra, shape (3 n_nodes, r)."""
+    free = np.setdiff1d(np.arange(3 * matrices.n_nodes), fixed)
+    full = np.zeros((3 * matrices.n_nodes, port.shape[0]))
+    stiffness = matrices.stiffness.toarray()[np.ix_(free, free)]
+    full[free] = linalg.solve(stiffness, port.toarray().T[free], assume_a="pos")
+    return full
+
+
+def relief(matrices: Matrices, rigid: FloatArray, port: sparse.csr_array) -> FloatArray:
+    """Elastic displacements of a free body under unit loads balanced by its inertia, by a bordered dense solve."""
+    stiffness, mass = matrices.stiffness.toarray(), matrices.mass.toarray()
+    moved = mass @ rigid.T
+    loads = port.toarray().T
+    loads = loads - moved @ linalg.solve(rigid @ moved, rigid @ loads)
+    scale = np.abs(stiffness).max() / np.abs(moved).max(axis=0)
+    border = moved * scale
+    bordered = np.block([[stiffness, border], [border.T, np.zeros((6, 6))]])
+    return np.asarray(linalg.solve(bordered, np.vstack([loads, np.zeros((6, loads.shape[1]))]))[: len(stiffness)])
+
+
+def recovered(modes: ModeSet, port: sparse.csr_array) -> FloatArray:
+    """Displacements of all nodes under unit loads on the port by elastic modes and attachments."""
+    assert modes.attachments is not None
+    elastic = modes.frequencies > 0.0
+    total = np.zeros((port.shape[1], port.shape[0]))
+    for frequencies, shapes in (
+        (modes.frequencies[elastic], modes.shapes[elastic]),
+        (modes.attachments.frequencies, modes.attachments.shapes),
+    ):
+        flat = shapes.reshape(len(shapes), -1)
+        total += (flat.T / frequencies**2) @ (port @ flat.T).T
+    return total
+
+
+def worst(found: FloatArray, exact: FloatArray) -> float:
+    size = np.sqrt(exact.diagonal())
+    return float(np.abs((found - exact) / np.outer(size, size)).max())
+
+
+def test_grounded_compliance_is_the_dense_solution(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, grounded: ModeSet
+) -> None:
+    exact = static(beam[1], clamped, port)
+    attached = grounded.attachments
+    assert attached is not None
+    assert worst(attached.proof.compliance, port @ exact) < 1e-10
+    assert worst(port @ recovered(grounded, port), port @ exact) < 1e-10
+    assert attached.proof.error < 1e-10
+    # Without attachments the modes lack what the proof says they lack.
+    own = grounded.project(port)
+    modal = (own.T / grounded.frequencies**2) @ own
+    lacking = 1.0 - modal.diagonal() / (port @ exact).diagonal()
+    np.testing.assert_allclose(attached.proof.missing_parts, lacking, atol=1e-10)
+    assert lacking.max() > 0.01
+
+
+def test_the_whole_displacement_field_is_exact(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, grounded: ModeSet
+) -> None:
+    exact = static(beam[1], clamped, port)
+    np.testing.assert_allclose(recovered(grounded, port), exact, atol=1e-8 * np.abs(exact).max(axis=0).max())
+    for column, whole in zip(recovered(grounded, port).T, exact.T, strict=True):
+        assert np.linalg.norm(column - whole) < 1e-8 * np.linalg.norm(whole)
+
+
+def test_free_compliance_is_inertia_relief(
+    beam: tuple[Mesh, Matrices], port: sparse.csr_array, rigid_fields: Callable[[FloatArray], FloatArray]
+) -> None:
+    mesh, matrices = beam
+    modes = solve_modes(matrices, frequency_limit=LIMIT, ports=port)
+    assert (modes.frequencies[:6] == 0.0).all()
+    exact = relief(matrices, rigid_fields(mesh.points), port)
+    assert modes.attachments is not None
+    assert worst(modes.attachments.proof.compliance, port @ exact) < 1e-10
+    assert worst(port @ recovered(modes, port), port @ exact) < 1e-10
+
+
+def test_modes_and_attachments_are_one_orthonormal_basis(
+    beam: tuple[Mesh, Matrices], grounded: ModeSet, clamped: IntArray
+) -> None:
+    attached = grounded.attachments
+    assert attached is not None
+    basis = np.vstack([part.shapes.reshape(len(part.shapes), -1) for part in (grounded, attached)])
+    squared = np.concatenate([grounded.frequencies, attached.frequencies]) ** 2
+    np.testing.assert_allclose(basis @ (beam[1].mass @ basis.T), np.eye(len(basis)), atol=1e-11)
+    stiffness = basis @ (beam[1].stiffness @ basis.T)
+    np.testing.assert_allclose(stiffness / np.sqrt(np.outer(squared, squared)), np.eye(len(basis)), atol=1e-8)
+    assert not basis[:, clamped].any()
+    assert (np.diff(attached.frequencies) >= 0.0).all()
+    # Rayleigh: nothing in the complement of the kept modes vibrates slower than the first discarded one.
+    assert attached.frequencies[0] > grounded.certificate.limit
+
+
+def test_soft_mounts_do_not_hide_the_local_compliance(
+    beam: tuple[Mesh, Matrices], port: sparse.csr_array, rigid_fields: Callable[[FloatArray], FloatArray]
+) -> None:
+    """On mounts of some 10 Hz the ports are as compliant as those of the free body, to the order (ω / ω_elastic)²."""
+    mesh, matrices = beam
+    soft = attach(matrices, mesh, [Support("mount", surface="bottom", stiffness=(3e4, 3e4, 3e4))])
+    modes = solve_modes(soft, frequency_limit=LIMIT, ports=port)
+    assert 0.0 < modes.frequencies_hz[0] < 50.0
+    assert modes.attachments is not None
+    exact = port @ relief(matrices, rigid_fields(mesh.points), port)
+    assert worst(modes.attachments.proof.compliance, exact) < 1e-3
+    assert modes.attachments.proof.error < 1e-10
+
+
+def test_a_port_given_twice_brings_nothing_new(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, grounded: ModeSet
+) -> None:
+    twice = attach_ports(beam[1], clamped, grounded, [port, port[:2]])
+    assert twice.attachments is not None
+    assert grounded.attachments is not None
+    np.testing.assert_allclose(twice.attachments.frequencies, grounded.attachments.frequencies, rtol=1e-6)
+    assert twice.attachments.proof.compliance.shape == (9, 9)
+
+
+def test_a_port_on_the_fixed_patch_does_not_move(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, grounded: ModeSet
+) -> None:
+    held = seat_matrix(beam[0], Seat("bottom", (0.025, 0.03, 0.0)))
+    modes = attach_ports(beam[1], clamped, grounded, held)
+    assert modes.attachments is not None
+    assert modes.attachments.shapes.shape == (0, len(beam[0].points), 3)
+    assert not modes.attachments.proof.compliance.any()
+    assert not modes.attachments.proof.missing_parts.any()
+    assert modes.attachments.project(held).shape == (0, 6)
+
+
+def test_all_the_modes_lack_nothing(beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array) -> None:
+    arrays = dense(beam[1], clamped, port)
+    stiffness, mass, solve, shift, values, vectors, ports, free = arrays
+    attached = residual_attachments(
+        stiffness, mass, solve, values, vectors, ports, shift=shift, floor=-shift, free=free, n_nodes=beam[1].n_nodes
+    )
+    assert len(attached.frequencies) == 0
+    assert attached.proof.missing_parts.max() == 0.0
+    assert attached.proof.error < 1e-10
+
+
+@settings(max_examples=15, deadline=None)
+@given(count=st.integers(0, 60), power=st.floats(-4.0, 1.5))
+def test_any_number_of_modes_and_any_shift_below_give_the_same_compliance(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, count: int, power: float
+) -> None:
+    arrays = dense(beam[1], clamped, port, shift=-(10.0**power))
+    compare_with_modal_sum(*arrays, floor=-arrays[3], cut=max(count, int(np.count_nonzero(arrays[4] <= -arrays[3]))))
+
+
+@settings(max_examples=15, deadline=None)
+@given(count=st.integers(1, 60), part=st.floats(0.05, 0.95))
+def test_a_shift_between_kept_and_discarded_modes_does_as_well(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, count: int, part: float
+) -> None:
+    """As a factor at the limit of the modes has it, however near to the first mode beyond."""
+    values = dense(beam[1], clamped, port)[4]
+    shift = (1.0 - part) * values[count - 1] + part * values[count]
+    arrays = dense(beam[1], clamped, port, shift=float(shift / values[0]))
+    compare_with_modal_sum(*arrays, floor=1e-3 * float(values[0]), cut=count)
+
+
+def compare_with_modal_sum(
+    stiffness: sparse.csr_array,
+    mass: sparse.csr_array,
+    solve: Callable[[FloatArray], FloatArray],
+    shift: float,
+    values: FloatArray,
+    vectors: FloatArray,
+    ports: sparse.csr_array,
+    free: IntArray,
+    *,
+    floor: float,
+    cut: int,
+) -> None:
+    """The first ``cut`` modes with attachments against the sum over every mode, soft ones left out of both."""
+    n_nodes = int(free.max()) // 3 + 1
+    attached = residual_attachments(
+        stiffness,
+        mass,
+        solve,
+        values[:cut],
+        vectors[:, :cut],
+        ports,
+        shift=shift,
+        floor=floor,
+        free=free,
+        n_nodes=n_nodes,
+    )
+    stiff = values > floor
+    found = (ports @ vectors[:, stiff]).T
+    error = worst(attached.proof.compliance, (found.T / values[stiff]) @ found)
+    assert error < 1e-10
+    # The bound is one, but for the rounding of what it is compared with.
+    assert error < attached.proof.error + 2e-12
+
+
+def test_modes_that_are_not_the_housings_fail_the_proof(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, grounded: ModeSet
+) -> None:
+    wrong = replace(grounded, frequencies=grounded.frequencies * (1.0 + 1e-7))
+    with pytest.raises(ReductionError, match="miss the static compliance at the ports by"):
+        attach_ports(beam[1], clamped, wrong, port)
+    bent = grounded.shapes.copy()
+    bent[0] += 1e-3 * bent[1]
+    with pytest.raises(ReductionError, match=r"overlap by|not its own"):
+        attach_ports(beam[1], clamped, replace(grounded, shapes=bent), port)
+
+
+def test_arrays_that_do_not_fit_are_refused(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array
+) -> None:
+    stiffness, mass, solve, shift, values, vectors, ports, free = dense(beam[1], clamped, port)
+    n_nodes = beam[1].n_nodes
+    places = {"floor": 1.0, "free": free, "n_nodes": beam[1].n_nodes}
+    with pytest.raises(HousingError, match="expected"):
+        residual_attachments(stiffness, mass, solve, values, vectors, port, shift=shift, **places)
+    with pytest.raises(HousingError, match="below zero or above every kept mode"):
+        residual_attachments(stiffness, mass, solve, values, vectors, ports, shift=float(values[3]), **places)
+
+
+def dense(
+    matrices: Matrices, fixed: IntArray, port: sparse.csr_array, *, shift: float = -1.0
+) -> tuple[
+    sparse.csr_array,
+    sparse.csr_array,
+    Callable[[FloatArray], FloatArray],
+    float,
+    FloatArray,
+    FloatArray,
+    sparse.csr_array,
+    IntArray,
+]:
+    """What residual_attachments takes, all modes by dense algebra; the shift in parts of the lowest eigenvalue."""
+    free = np.setdiff1d(np.arange(3 * matrices.n_nodes), fixed)
+    stiffness, mass = (sparse.csr_array(part[free][:, free]) for part in (matrices.stiffness, matrices.mass))
+    values, vectors = linalg.eigh(stiffness.toarray(), mass.toarray())
+    sigma = shift * float(values[0])
+    factor = linalg.cho_factor((stiffness - sigma * mass).toarray())
+    return stiffness, mass, lambda b: linalg.cho_solve(factor, b), sigma, values, vectors, port[:, free], free
