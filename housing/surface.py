@@ -105,8 +105,8 @@ class SurfacePoint:
 def surface_point(mesh: Mesh, facets: Facets, place: FloatArray, *, along: FloatArray | None = None) -> SurfacePoint:
     """The point of some boundary facets nearest to a place.
 
-    The nearest facet is told by the plane triangles between its corners; on it, the nearest point of its true,
-    curved or twisted, shape is taken.
+    Told by the true, curved or twisted, shape of the few facets that are nearest by the plane triangles between their
+    corners.
 
     Parameters
     ----------
@@ -124,29 +124,44 @@ def surface_point(mesh: Mesh, facets: Facets, place: FloatArray, *, along: Float
         Where there are no facets.
     """
     across = np.eye(3) if along is None else np.eye(3) - np.outer(along, along)
-    nearest: tuple[float, ElementBlock, int, FloatArray] | None = None
+    target = across @ place
+    nearest: tuple[float, IntArray, FloatArray, FloatArray] | None = None
+    for block, member, start in _candidates(mesh, facets, across, target):
+        nodes = block.nodes[member]
+        coordinates = _closest_on_facet(mesh.points[nodes] @ across, block, start, target)
+        gap = _gap(mesh.points[nodes] @ across, block, coordinates, target)
+        # Where facets are equally near, as at their common edge, the first is taken, whatever the rounding.
+        if nearest is None or gap < nearest[0] - _ROUNDING * float(np.ptp(mesh.points[nodes], axis=0).max()):
+            values, gradients = shape_functions(block.kind, coordinates[:, None])
+            tangents = mesh.points[nodes].T @ gradients[0]
+            nearest = (gap, nodes, values[0], np.cross(tangents[:, 0], tangents[:, 1]))
+    if nearest is None:
+        raise HousingError("there are no facets to find a point on")
+    _, nodes, weights, normal = nearest
+    return SurfacePoint(
+        nodes=nodes,
+        weights=weights,
+        position=weights @ mesh.points[nodes],
+        normal=normal / np.linalg.norm(normal),
+    )
+
+
+def _candidates(
+    mesh: Mesh, facets: Facets, across: FloatArray, target: FloatArray
+) -> list[tuple[ElementBlock, int, FloatArray]]:
+    """The facets nearest to the target by the plane triangles between their corners, nearest first.
+
+    With each goes its member's number and where on it, in reference coordinates, the nearest point of the triangle is.
+    """
+    found: list[tuple[float, int, ElementBlock, int, FloatArray]] = []
     for block in facets:
         for triangle in _CORNER_TRIANGLES[block.of.n_corners] if len(block) else ():
             corners = mesh.points[block.nodes[:, triangle]] @ across
-            shares, distance = _closest_on_triangles(corners, across @ place)
-            best = int(np.argmin(distance))
-            if nearest is None or distance[best] < nearest[0]:
-                start = shares[best] @ np.array(block.of.places)[list(triangle)]
-                nearest = (float(distance[best]), block, best, start)
-    if nearest is None:
-        raise HousingError("there are no facets to find a point on")
-    _, block, member, start = nearest
-    nodes = block.nodes[member]
-    coordinates = _closest_on_facet(mesh.points[nodes] @ across, block, start, across @ place)
-    values, gradients = shape_functions(block.kind, coordinates[:, None])
-    tangents = mesh.points[nodes].T @ gradients[0]
-    normal = np.cross(tangents[:, 0], tangents[:, 1])
-    return SurfacePoint(
-        nodes=nodes,
-        weights=values[0],
-        position=values[0] @ mesh.points[nodes],
-        normal=normal / np.linalg.norm(normal),
-    )
+            shares, distance = _closest_on_triangles(corners, target)
+            places = np.array(block.of.places)[list(triangle)]
+            for member in np.argsort(distance, kind="stable")[:_NEIGHBOURS].tolist():
+                found.append((float(distance[member]), len(found), block, member, shares[member] @ places))
+    return [candidate[2:] for candidate in sorted(found, key=lambda candidate: candidate[:2])[:_NEIGHBOURS]]
 
 
 def facet_normals(mesh: Mesh, facets: Facets) -> FloatArray:
@@ -163,7 +178,9 @@ def facet_normals(mesh: Mesh, facets: Facets) -> FloatArray:
 
 # Plane triangles between the corners of a facet.
 _CORNER_TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
+_NEIGHBOURS = 6  # facets looked at: as many as meet in a node of a usual mesh
 _STEPS = 20
+_ROUNDING = 1e-12
 
 
 def _closest_on_facet(nodes: FloatArray, block: ElementBlock, start: FloatArray, target: FloatArray) -> FloatArray:
