@@ -93,7 +93,8 @@ def _housing_lines(housing: dict[str, Any]) -> list[str]:
     limit, count = housing["frequency_limit_hz"], housing["modes"]
     wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {count or 20} modes"
     lines = [f"{shape}, {housing['material']}; {wanted}"]
-    return lines + [f"{kind}: {', '.join(housing[kind])}" for kind in ("seats", "supports", "sensors") if housing[kind]]
+    kinds = ("seats", "supports", "sensors", "regions")
+    return lines + [f"{kind}: {', '.join(housing[kind])}" for kind in kinds if housing[kind]]
 
 
 def _rotor_line(rotor: dict[str, Any]) -> str:

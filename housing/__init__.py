@@ -2,7 +2,8 @@
 
 What the room offers:
 
-- :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid.
+- :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid;
+  :func:`mass_properties` -- its mass and centre of mass, from the geometry alone.
 - :class:`Support`, :func:`with_springs`, :func:`fixed_freedoms` -- what holds it.
 - :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`.
 - :class:`Seat`, :func:`seat_matrix`, :class:`Sensor`, :func:`sensor_port` -- where the rest of the machine meets it.
@@ -15,6 +16,7 @@ from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.dominance import Dominance, dominance
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Factorization, Factorizer
+from housing.mass import MassProperties, mass_properties
 from housing.material import Material
 from housing.matrices import Matrices
 from housing.modes import Certificate, ModeSet, solve_modes
@@ -32,6 +34,7 @@ __all__ = [
     "Factorizer",
     "HousingError",
     "IncompleteModesError",
+    "MassProperties",
     "Material",
     "Matrices",
     "ModePair",
@@ -45,6 +48,7 @@ __all__ = [
     "compare_by_dominance",
     "dominance",
     "fixed_freedoms",
+    "mass_properties",
     "seat_matrix",
     "sensor_port",
     "solve_modes",

@@ -24,7 +24,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import HousingError
-from housing.material import Material
+from housing.material import Material, element_constants
 from housing.matrices import Matrices
 from meshes import ElementBlock, ElementKind, Mesh
 from meshes.mapping import determinants, inverses, jacobians
@@ -78,7 +78,7 @@ def assemble(
     unused = len(mesh.points) - len(mesh.used_nodes)
     if unused:
         raise HousingError(f"{unused} of the mesh's {len(mesh.points)} nodes belong to no element; leave them out")
-    constants = _elastic_constants(mesh, material, materials or {})
+    constants = element_constants(mesh, material, materials or {})
     pattern = _node_graph(mesh)
     half = np.zeros((9, pattern.nnz))
     half_mass = np.zeros(pattern.nnz)
@@ -140,25 +140,6 @@ def _in_order(
                 yield ahead.popleft().result()
         while ahead:
             yield ahead.popleft().result()
-
-
-def _elastic_constants(mesh: Mesh, material: Material, materials: Mapping[str, Material]) -> FloatArray:
-    """λ, μ [Pa] and ρ [kg/m³] of each element, shape (3, n_elements)."""
-    constants = np.tile(np.array([*material.lame, material.density])[:, None], mesh.n_elements)
-    owner: dict[int, str] = {}
-    taken = np.zeros(mesh.n_elements, dtype=np.int64)
-    for number, (name, own) in enumerate(materials.items(), start=1):
-        if name not in mesh.volumes:
-            known = ", ".join(sorted(mesh.volumes)) or "none"
-            raise HousingError(f"the mesh has no volume {name!r} to be of its own material; it has: {known}")
-        members = np.asarray(mesh.volumes[name])
-        both = members[taken[members] > 0]
-        if len(both):
-            other = owner[int(taken[both[0]])]
-            raise HousingError(f"volumes {other!r} and {name!r} share {len(both)} elements; each has one material only")
-        owner[number], taken[members] = name, number
-        constants[:, members] = np.array([*own.lame, own.density])[:, None]
-    return constants
 
 
 def _node_graph(mesh: Mesh) -> sparse.csr_array:

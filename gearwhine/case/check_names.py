@@ -17,6 +17,7 @@ _NAMED = (
     ("housing", "seat"),
     ("housing", "support"),
     ("housing", "sensor"),
+    ("housing", "region"),
 )
 
 
@@ -50,6 +51,8 @@ def _check_materials(draft: Draft) -> Iterator[Finding]:
     housing = draft.document.get("housing")
     if isinstance(housing, Mapping):
         yield from _check_reference(housing, ("housing", "material"), "material", materials)
+    for index, region in draft.raw_entries("housing", "region"):
+        yield from _check_reference(region, ("housing", "region", index, "material"), "material", materials)
     for kind in ("rotor", "gear"):
         for index, entry in draft.raw_entries(kind):
             yield from _check_reference(entry, (kind, index, "material"), "material", materials)

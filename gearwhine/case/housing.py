@@ -29,6 +29,7 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
+from gearwhine.case.region import Region
 from gearwhine.case.units import QuantityError, parse_quantity
 
 
@@ -204,6 +205,7 @@ class Housing(Table):
     seat: tuple[Seat, ...] = Field(default=(), max_length=1000)
     support: tuple[Support, ...] = Field(default=(), max_length=1000)
     sensor: tuple[Sensor, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    region: tuple[Region, ...] = Field(default=(), max_length=1000)
 
     @field_validator("damping_ratio", mode="after")
     @classmethod

@@ -12,6 +12,7 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import Sensor as GivenSensor
 from gearwhine.case import Support as GivenSupport
 from gearwhine.progress import Progress, silent
+from gearwhine.stages.regions import materials_of
 from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -28,8 +29,8 @@ class SolvedHousing:
     Attributes
     ----------
     mesh : Mesh
-    mass : float
-        [kg].
+    mass : housing.MassProperties
+        From the geometry, regions in their own materials.
     modes : housing.ModeSet
     damping_ratios : ndarray, shape (n_modes,)
     seats : dict of str to ndarray, shape (n_modes, 6)
@@ -43,7 +44,7 @@ class SolvedHousing:
     """
 
     mesh: Mesh
-    mass: float
+    mass: room.MassProperties
     modes: room.ModeSet
     damping_ratios: FloatArray
     seats: dict[str, FloatArray]
@@ -112,9 +113,8 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     mesh = build_mesh(case)
     meshed = time.perf_counter()
     progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
-    steel = case.material[given.material]
-    material = room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
-    free = room.assemble(mesh, material)
+    parted, material, materials = materials_of(case, mesh)
+    free = room.assemble(parted, material, materials)
     supports = [_support(entry) for entry in given.support]
     matrices = room.with_springs(free, mesh, supports)
     assembled = time.perf_counter()
@@ -137,7 +137,7 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
         strengths = room.dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
     return SolvedHousing(
         mesh=mesh,
-        mass=free.total_mass,
+        mass=room.mass_properties(parted, material, materials),
         modes=modes,
         damping_ratios=_damping(case, modes.frequencies_hz),
         seats=seats,
@@ -216,7 +216,8 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
             "elements": solved.mesh.n_elements,
             "dofs": 3 * len(solved.mesh.points),
         },
-        "mass_kg": solved.mass,
+        "mass_kg": solved.mass.mass,
+        "center_of_mass_m": solved.mass.center.tolist(),
         "seconds": solved.seconds,
     }
 

@@ -59,6 +59,7 @@ def _housing(case: Case) -> dict[str, Any]:
         "seats": [seat.name for seat in housing.seat],
         "supports": [support.name for support in housing.support],
         "sensors": [sensor.name for sensor in housing.sensor],
+        "regions": [f"{region.name} of {region.material}" for region in housing.region],
     }
     if housing.box is not None:
         document |= {"size_m": list(housing.box.size), "mesh_size_m": housing.box.mesh_size}
