@@ -144,11 +144,7 @@ def _in_order(
 
 def _node_graph(mesh: Mesh) -> sparse.csr_array:
     """Which nodes share an element, rows in order; each entry is its own place in the pattern."""
-    nodes = np.concatenate([block.nodes.ravel() for block in mesh.blocks])
-    lengths = np.concatenate([np.full(len(block), block.of.n_nodes) for block in mesh.blocks])
-    pointer = np.concatenate([[0], np.cumsum(lengths)])
-    shape = (len(lengths), len(mesh.points))
-    incidence = sparse.csr_array((np.ones(len(nodes), dtype=np.int8), nodes, pointer), shape=shape)
+    incidence = mesh.incidence
     graph = sparse.csr_array(incidence.T @ incidence)
     graph.sort_indices()
     # Counting from one, since a stored zero would be none.

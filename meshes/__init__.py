@@ -7,12 +7,15 @@ What the room offers:
   housing described by its dimensions; :func:`mesh_box` meshes it with gmsh.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
 - :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
+- :func:`diagnose` -- what is wrong with a mesh, or doubtful in it, by name (:class:`Ailment`).
 
 In names, *mesh* is always the finite-element mesh; the gears' is the *gear mesh*.
 gmsh itself is imported only when a mesh is made.
 """
 
+from meshes.ailments import Ailment
 from meshes.box import Bore, Boss, BoxGeometry, Feet, WallThickness, mesh_box
+from meshes.diagnosis import diagnose
 from meshes.elements import (
     KINDS,
     ElementBlock,
@@ -31,6 +34,7 @@ from meshes.quality import MeshQuality, mesh_quality
 
 __all__ = [
     "KINDS",
+    "Ailment",
     "Bore",
     "Boss",
     "BoxGeometry",
@@ -43,6 +47,7 @@ __all__ = [
     "MeshQuality",
     "MesherUnavailableError",
     "WallThickness",
+    "diagnose",
     "facet_centers",
     "facet_corners",
     "facet_nodes",

@@ -13,6 +13,7 @@ from meshes import (
     ElementBlock,
     GeometryError,
     Mesh,
+    diagnose,
     facet_centers,
     facet_nodes,
     facets_of,
@@ -78,18 +79,16 @@ def test_every_kind_comes_back_with_its_regions(
 def test_mixed_kinds_come_back_with_their_regions(
     block_of: Callable[..., Mesh], tmp_path: Path, ending: str, order: int
 ) -> None:
-    """Bricks on wedges, with triangles and quadrilaterals in one surface."""
+    """Bricks beside wedges, with triangles and quadrilaterals in one surface."""
     kinds = ("wedge", "hexahedron") if order == 1 else ("wedge15", "hexahedron20")
-    lower, upper = (block_of(kind, cells=(2, 2, 1)) for kind in kinds)
-    points, inverse = np.unique(
-        np.round(8 * np.vstack([lower.points * [1, 1, 0.5], upper.points * [1, 1, 0.5] + [0, 0, 0.5]])),
-        axis=0,
-        return_inverse=True,
-    )
-    upper_nodes = inverse[upper.blocks[0].nodes + len(lower.points)]
-    blocks = (ElementBlock(kinds[0], inverse[lower.blocks[0].nodes]), ElementBlock(kinds[1], upper_nodes))
+    left, right = (block_of(kind, (0.5, 1.0, 1.0), (1, 2, 2)) for kind in kinds)
+    both = np.vstack([left.points, right.points + [0.5, 0.0, 0.0]])
+    points, inverse = np.unique(np.round(8 * both), axis=0, return_inverse=True)
+    right_nodes = inverse[right.blocks[0].nodes + len(left.points)]
+    blocks = (ElementBlock(kinds[0], inverse[left.blocks[0].nodes]), ElementBlock(kinds[1], right_nodes))
     mesh = _with_regions(Mesh(points / 8, blocks))
-    facets = pick_facets(mesh.boundary, facet_centers(mesh.points, mesh.boundary)[:, 2] != 0.25)
+    assert diagnose(mesh) == ()
+    facets = mesh.boundary
     mesh = replace(mesh, surfaces={**mesh.surfaces, "both": facets})
     assert len(facets) == 2
     path = tmp_path / f"block{ending}"
