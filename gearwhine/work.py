@@ -11,6 +11,7 @@ from gearwhine.progress import Progress
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
+from gearwhine.stages import mesh_health
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import transient as transient_stage
 
@@ -92,6 +93,8 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
 
     progress("meshing the housing")
     mesh = housing_stage.build_mesh(case)
+    warnings = mesh_health.examine(case, mesh)
+    warnings += mesh_health.doubt_resolution(case, mesh, case.housing.frequency_limit if case.housing else None)
     quality = mesh_quality(mesh)
     name = f"mesh.{suffix}"
     with staging(folder) as place:
@@ -99,10 +102,13 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
     return {
         "mesh": {"nodes": len(mesh.points), "elements": mesh.n_elements, "dofs": 3 * len(mesh.points)},
         "order": mesh.order,
+        "kinds": mesh.kinds,
         "surfaces": {surface: sum(map(len, facets)) for surface, facets in sorted(mesh.surfaces.items())},
+        "volumes": {volume: len(members) for volume, members in sorted(mesh.volumes.items())},
         "volume_m3": quality.volume,
         "edge_length_m": dict(zip(("min", "median", "max"), quality.edge_length, strict=True)),
         "shape_number": dict(zip(("min", "median"), quality.shape, strict=True)),
+        "warnings": mesh_health.warnings_document(warnings),
         "folder": str(folder),
         "files": [name],
     }
@@ -150,7 +156,10 @@ def system_case(case: Case, folder: Path | None, progress: Progress) -> dict[str
     """The coupled modes."""
     housing, _, machine = machine_stage.solve_machine(case, progress)
     modes = machine_stage.coupled_modes(machine)
-    return _kept(machine_stage.system_document(case, machine, modes, housing), case, folder)
+    document = machine_stage.system_document(case, machine, modes, housing)
+    if housing is not None:
+        document["warnings"] = mesh_health.warnings_document(housing.warnings)
+    return _kept(document, case, folder)
 
 
 def compare_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
@@ -158,7 +167,9 @@ def compare_case(case: Case, folder: Path | None, progress: Progress) -> dict[st
     require(case, "housing", "measured", command="compare")
     housing = housing_stage.solve_housing(case, progress)
     comparison = housing_stage.compare_housing(case, housing)
-    return _kept(housing_stage.comparison_document(comparison, housing), case, folder)
+    document = housing_stage.comparison_document(comparison, housing)
+    document["warnings"] = mesh_health.warnings_document(housing.warnings)
+    return _kept(document, case, folder)
 
 
 def render_case(case: Case, folder: Path, which: str, view: str, progress: Progress) -> dict[str, Any]:

@@ -128,10 +128,9 @@ def _with_families(
                 f"the name {name!r} cannot be that of a group in MED: at most {_NAME_LENGTH} ASCII letters"
             )
     families: dict[tuple[str, ...], int] = {}
-    flags = np.array(list(inside.values())).reshape(len(inside), -1).T
-    patterns = [tuple(name for name, flag in zip(inside, row, strict=True) if flag) for row in flags]
-    if not inside:
-        patterns = [()] * sum(len(block.data) for block in content.cells[: len(ends) + 1])
+    n_elements = sum(len(block.data) for block in content.cells[: len(ends) + 1])
+    memberships = zip(*inside.values(), strict=True) if inside else [()] * n_elements
+    patterns = [tuple(name for name, flag in zip(inside, row, strict=True) if flag) for row in memberships]
     solid = [families.setdefault(groups, -1 - len(families)) if groups else 0 for groups in patterns]
     surface = {number: -1 - len(families) - place for place, number in enumerate(range(1, len(names) + 1))}
     tags = [*np.split(np.array(solid, dtype=np.int64), ends)]

@@ -12,13 +12,13 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import Sensor as GivenSensor
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_supports, check_reach
+from gearwhine.stages.mesh_health import UNITS, doubt_resolution, examine, warnings_document
 from gearwhine.stages.regions import materials_of
-from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
+from meshes import Ailment, Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
-_UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,8 @@ class SolvedHousing:
     survey : housing.Survey
     strengths : housing.Dominance or None
         None where there are no seats.
+    warnings : tuple of meshes.Ailment
+        What is doubtful in the mesh.
     seconds : dict of str to float
         Time taken by mesh, assembly, factorisation, eigensolver and in total.
     """
@@ -60,6 +62,7 @@ class SolvedHousing:
     sensors: dict[str, room.SensorPort]
     survey: room.Survey
     strengths: room.Dominance | None
+    warnings: tuple[Ailment, ...]
     seconds: dict[str, float]
 
     @property
@@ -85,7 +88,7 @@ def build_mesh(case: Case) -> Mesh:
     if case.housing.box is not None:
         return mesh_box(box_geometry(case), case.housing.box.mesh_size)
     if case.housing.mesh is not None:
-        return read_mesh(case.housing.mesh.file, unit=_UNITS[case.housing.mesh.unit])
+        return read_mesh(case.housing.mesh.file, unit=UNITS[case.housing.mesh.unit])
     raise CaseError([Problem("housing.cad", str(case.housing.cad and case.housing.cad.file), _NO_CAD)])
 
 
@@ -127,6 +130,7 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     begin = time.perf_counter()
     progress("meshing the housing")
     mesh = build_mesh(case)
+    warnings = examine(case, mesh)
     meshed = time.perf_counter()
     progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
     parted, material, materials = materials_of(case, mesh)
@@ -162,6 +166,7 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
         sensors=sensors,
         survey=survey,
         strengths=strengths,
+        warnings=warnings + doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ),
         seconds={
             "mesh": meshed - begin,
             "assembly": assembled - meshed,
@@ -238,6 +243,7 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
         "center_of_mass_m": solved.rigid.center.tolist(),
         "attached_mass_kg": solved.attached_mass,
         "solid": {"mass_kg": solved.solid.mass, "center_of_mass_m": solved.solid.center.tolist()},
+        "warnings": warnings_document(solved.warnings),
         "seconds": solved.seconds,
     }
 

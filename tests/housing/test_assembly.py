@@ -1,5 +1,6 @@
 """Stiffness and mass against scikit-fem's own forms, uniform strain and rigid motion."""
 
+import tracemalloc
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -277,6 +278,21 @@ def test_threads_and_chunks_make_no_difference(box: Mesh, steel: Material, box_m
     for wrong in ({"threads": 0}, {"chunk": 0}):
         with pytest.raises(HousingError, match="give at least 1 of both"):
             assemble(box, steel, **wrong)
+
+
+def test_working_memory_is_bounded_by_the_chunks(block_of: Callable[..., Mesh], steel: Material) -> None:
+    """Beside the result and the sums that become it, small chunks need little, however many elements there are."""
+    mesh = block_of("hexahedron20", cells=(10, 10, 6))
+    assemble(mesh, steel)  # what is read once, such as shape functions
+    peaks = {}
+    for chunk in (20, 600):
+        tracemalloc.start()
+        result = assemble(mesh, steel, threads=1, chunk=chunk)
+        peaks[chunk] = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+    kept = result.blocks.nbytes + result.node_mass.nbytes + result.neighbors.nbytes
+    assert peaks[20] < 3.5 * kept
+    assert peaks[600] > peaks[20] + 580 * 8 * (3 * 20) ** 2  # the gradient products of all elements at once
 
 
 def test_folded_elements_are_refused(block: Callable[..., Mesh], steel: Material) -> None:
