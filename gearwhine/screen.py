@@ -90,12 +90,15 @@ def _named(part: str, lines: Sequence[str]) -> Iterator[tuple[str, str]]:
 def _housing_lines(housing: dict[str, Any]) -> list[str]:
     shape = housing["geometry"]
     if "size_m" in housing:
-        size = " x ".join(f"{1e3 * length:g}" for length in housing["size_m"])
-        shape += f" of {size} mm, elements of {1e3 * housing['mesh_size_m']:g} mm"
+        shape += f" of {' x '.join(f'{1e3 * length:.6g}' for length in housing['size_m'])} mm"
+    if "mesh_size_m" in housing:
+        shape += f", elements of {1e3 * housing['mesh_size_m']:g} mm"
+    if "mesh" in housing:
+        shape += f", {housing['mesh']['nodes']} nodes, {_kinds(housing['kinds'])}"
     limit, count = housing["frequency_limit_hz"], housing["modes"]
     wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {count or 20} modes"
     lines = [f"{shape}, {housing['material']}; {wanted}"]
-    lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("seats", "supports") if housing[kind]]
+    lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("regions", "seats", "supports") if housing[kind]]
     for kind in ("mounts", "joints"):
         lines += [_bushing_line(kind[:-1], one) for one in housing[kind]]
     if housing["masses"]:
@@ -139,11 +142,26 @@ def show_mesh(document: dict[str, Any]) -> None:
     """The mesh's size and quality."""
     console = _console()
     mesh, edge, shape = document["mesh"], document["edge_length_m"], document["shape_number"]
-    console.print(f"{mesh['nodes']} nodes, {mesh['elements']} tetrahedra of order {document['order']}")
+    console.print(f"{mesh['nodes']} nodes, {_kinds(document['kinds'])}")
     console.print(f"Volume {document['volume_m3']:.6g} m³; median edge {1e3 * edge['median']:.3g} mm")
-    console.print(f"Shape number (1 is regular): median {shape['median']:.2f}, smallest {shape['min']:.2f}")
+    console.print(f"Shape number (1 is ideal): median {shape['median']:.2f}, smallest {shape['min']:.2f}")
     console.print(f"Surfaces: {', '.join(document['surfaces']) or 'none named'}")
+    console.print(f"Volumes: {', '.join(document['volumes']) or 'none named'}")
     _files(console, document)
+
+
+def _kinds(kinds: dict[str, int]) -> str:
+    """How many elements of which kind, in words."""
+    words = {
+        "tetra": "tetrahedra of 4 nodes",
+        "tetra10": "tetrahedra of 10 nodes",
+        "hexahedron": "bricks of 8 nodes",
+        "hexahedron20": "bricks of 20 nodes",
+        "hexahedron27": "bricks of 27 nodes",
+        "wedge": "wedges of 6 nodes",
+        "wedge15": "wedges of 15 nodes",
+    }
+    return " and ".join(f"{count} {words[kind]}" for kind, count in kinds.items())
 
 
 def show_modes(document: dict[str, Any]) -> None:

@@ -12,6 +12,7 @@ from gearwhine.progress import Progress
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
+from gearwhine.stages import mesh_health
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
@@ -98,6 +99,8 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
 
     progress("meshing the housing")
     mesh = housing_stage.build_mesh(case)
+    warnings = mesh_health.examine(case, mesh)
+    warnings += mesh_health.doubt_resolution(case, mesh, case.housing.frequency_limit if case.housing else None)
     quality = mesh_quality(mesh)
     name = f"mesh.{suffix}"
     with staging(folder) as place:
@@ -105,10 +108,13 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
     return {
         "mesh": {"nodes": len(mesh.points), "elements": mesh.n_elements, "dofs": 3 * len(mesh.points)},
         "order": mesh.order,
+        "kinds": mesh.kinds,
         "surfaces": {surface: sum(map(len, facets)) for surface, facets in sorted(mesh.surfaces.items())},
+        "volumes": {volume: len(members) for volume, members in sorted(mesh.volumes.items())},
         "volume_m3": quality.volume,
         "edge_length_m": dict(zip(("min", "median", "max"), quality.edge_length, strict=True)),
         "shape_number": dict(zip(("min", "median"), quality.shape, strict=True)),
+        "warnings": mesh_health.warnings_document(warnings),
         "folder": str(folder),
         "files": [name],
     }

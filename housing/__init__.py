@@ -2,7 +2,8 @@
 
 What the room offers:
 
-- :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid.
+- :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid;
+  :func:`mass_properties` -- its mass and centre of mass, from the geometry alone.
 - :class:`Support`, :func:`fixed_freedoms` -- what holds it; :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, each
   on a :class:`Patch` -- what else is fastened to it; :func:`attach` -- the matrices with all of these.
 - :func:`rigid_body` -- mass, centre of gravity and inertia of the whole (:class:`RigidBody`).
@@ -39,6 +40,7 @@ from housing.grounding import Grounding, SupportHold
 from housing.health import HealthLine, HealthReport, health_report
 from housing.labelled import LabelledArray, content_key
 from housing.lumped_mass import NO_INERTIA, LumpedMass
+from housing.mass import MassProperties, mass_properties
 from housing.material import Material
 from housing.matrices import Matrices
 from housing.mesh_arrays import mesh_digest
@@ -80,6 +82,7 @@ __all__ = [
     "Joint",
     "LabelledArray",
     "LumpedMass",
+    "MassProperties",
     "Material",
     "Matrices",
     "ModeFileError",
@@ -112,6 +115,7 @@ __all__ = [
     "fixed_freedoms",
     "health_report",
     "mesh_digest",
+    "mass_properties",
     "modal_damping",
     "patch_center",
     "patch_matrix",

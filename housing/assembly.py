@@ -24,7 +24,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import HousingError
-from housing.material import Material
+from housing.material import Material, element_constants
 from housing.matrices import Matrices
 from meshes import ElementBlock, ElementKind, Mesh
 from meshes.mapping import determinants, inverses, jacobians
@@ -34,6 +34,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _WORKING_SET = 2**20  # numbers in the gradient products of one chunk: 8 MB
+_STRETCH = 2**14  # blocks transposed at a time, so that they stay in the processor's cache
 
 
 def assemble(
@@ -77,7 +78,7 @@ def assemble(
     unused = len(mesh.points) - len(mesh.used_nodes)
     if unused:
         raise HousingError(f"{unused} of the mesh's {len(mesh.points)} nodes belong to no element; leave them out")
-    constants = _elastic_constants(mesh, material, materials or {})
+    constants = element_constants(mesh, material, materials or {})
     pattern = _node_graph(mesh)
     half = np.zeros((9, pattern.nnz))
     half_mass = np.zeros(pattern.nnz)
@@ -141,32 +142,9 @@ def _in_order(
             yield ahead.popleft().result()
 
 
-def _elastic_constants(mesh: Mesh, material: Material, materials: Mapping[str, Material]) -> FloatArray:
-    """λ, μ [Pa] and ρ [kg/m³] of each element, shape (3, n_elements)."""
-    constants = np.tile(np.array([*material.lame, material.density])[:, None], mesh.n_elements)
-    owner: dict[int, str] = {}
-    taken = np.zeros(mesh.n_elements, dtype=np.int64)
-    for number, (name, own) in enumerate(materials.items(), start=1):
-        if name not in mesh.volumes:
-            known = ", ".join(sorted(mesh.volumes)) or "none"
-            raise HousingError(f"the mesh has no volume {name!r} to be of its own material; it has: {known}")
-        members = np.asarray(mesh.volumes[name])
-        both = members[taken[members] > 0]
-        if len(both):
-            other = owner[int(taken[both[0]])]
-            raise HousingError(f"volumes {other!r} and {name!r} share {len(both)} elements; each has one material only")
-        owner[number], taken[members] = name, number
-        constants[:, members] = np.array([*own.lame, own.density])[:, None]
-    return constants
-
-
 def _node_graph(mesh: Mesh) -> sparse.csr_array:
     """Which nodes share an element, rows in order; each entry is its own place in the pattern."""
-    nodes = np.concatenate([block.nodes.ravel() for block in mesh.blocks])
-    lengths = np.concatenate([np.full(len(block), block.of.n_nodes) for block in mesh.blocks])
-    pointer = np.concatenate([[0], np.cumsum(lengths)])
-    shape = (len(lengths), len(mesh.points))
-    incidence = sparse.csr_array((np.ones(len(nodes), dtype=np.int8), nodes, pointer), shape=shape)
+    incidence = mesh.incidence
     graph = sparse.csr_array(incidence.T @ incidence)
     graph.sort_indices()
     # Counting from one, since a stored zero would be none.
@@ -249,18 +227,19 @@ def _folds(mesh: Mesh, block: ElementBlock) -> npt.NDArray[np.bool_]:
 def _mirrored(pattern: sparse.csr_array, half: FloatArray, half_mass: FloatArray) -> Matrices:
     """The whole matrices from the sums over the pairs a <= b of each element, H + Hᵀ."""
     opposite = sparse.csr_array(pattern.T).data - 1
-    diagonal = np.flatnonzero(opposite == np.arange(pattern.nnz))
-    blocks = np.empty((pattern.nnz, 3, 3))
-    for i in range(3):
-        for k in range(3):
-            blocks[:, i, k] = half[3 * i + k] + half[3 * k + i][opposite]
+    blocks = np.empty((pattern.nnz, 9))
+    transposed = [0, 3, 6, 1, 4, 7, 2, 5, 8]
+    for start in range(0, pattern.nnz, _STRETCH):  # the sums lie by components, the blocks by places
+        stretch = slice(start, start + _STRETCH)
+        blocks[stretch] = (half[:, stretch] + half[:, opposite[stretch]][transposed]).T
     node_mass = half_mass + half_mass[opposite]
     # A node's own block stands in the sums once and in their transpose again.
+    diagonal = np.flatnonzero(opposite == np.arange(pattern.nnz))
     blocks[diagonal] *= 0.5
     node_mass[diagonal] *= 0.5
     return Matrices(
         pointer=pattern.indptr.astype(np.int32),
         neighbors=pattern.indices.astype(np.int32),
-        blocks=blocks,
+        blocks=blocks.reshape(-1, 3, 3),
         node_mass=node_mass,
     )

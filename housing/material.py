@@ -1,11 +1,13 @@
 """The housing's material."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from housing.errors import HousingError
+from meshes import Mesh
 
 
 @dataclass(frozen=True)
@@ -47,3 +49,30 @@ class Material:
             lam * np.einsum("ij,kl->ijkl", d, d)
             + mu * (np.einsum("ik,jl->ijkl", d, d) + np.einsum("il,jk->ijkl", d, d))
         )
+
+
+def element_constants(mesh: Mesh, material: Material, materials: Mapping[str, Material]) -> npt.NDArray[np.float64]:
+    """λ, μ [Pa] and ρ [kg/m³] of each element, shape (3, n_elements).
+
+    ``materials`` has those of named volumes of the mesh, ``material`` is that of all other elements.
+
+    Raises
+    ------
+    HousingError
+        Where the mesh has no volume of a name, or two volumes share elements.
+    """
+    constants = np.tile(np.array([*material.lame, material.density])[:, None], mesh.n_elements)
+    owner: dict[int, str] = {}
+    taken = np.zeros(mesh.n_elements, dtype=np.int64)
+    for number, (name, own) in enumerate(materials.items(), start=1):
+        if name not in mesh.volumes:
+            known = ", ".join(sorted(mesh.volumes)) or "none"
+            raise HousingError(f"the mesh has no volume {name!r} to be of its own material; it has: {known}")
+        members = np.asarray(mesh.volumes[name])
+        both = members[taken[members] > 0]
+        if len(both):
+            other = owner[int(taken[both[0]])]
+            raise HousingError(f"volumes {other!r} and {name!r} share {len(both)} elements; each has one material only")
+        owner[number], taken[members] = name, number
+        constants[:, members] = np.array([*own.lame, own.density])[:, None]
+    return constants

@@ -105,8 +105,8 @@ class SurfacePoint:
 def surface_point(mesh: Mesh, facets: Facets, place: FloatArray, *, along: FloatArray | None = None) -> SurfacePoint:
     """The point of some boundary facets nearest to a place.
 
-    The nearest facet is told by the plane triangles between its corners; on it, the nearest point of its true,
-    curved or twisted, shape is taken.
+    Told by the true, curved or twisted, shape of the few facets that are nearest by the plane triangles between their
+    corners.
 
     Parameters
     ----------
@@ -124,29 +124,58 @@ def surface_point(mesh: Mesh, facets: Facets, place: FloatArray, *, along: Float
         Where there are no facets.
     """
     across = np.eye(3) if along is None else np.eye(3) - np.outer(along, along)
-    nearest: tuple[float, ElementBlock, int, FloatArray] | None = None
+    target = across @ place
+    nearest: tuple[float, IntArray, FloatArray, FloatArray] | None = None
+    for distance, block, member, start in _candidates(mesh, facets, across, target):
+        nodes = block.nodes[member]
+        corners = mesh.points[nodes] @ across
+        bulge, slack = _bulge(corners, block), _ROUNDING * float(np.ptp(mesh.points[nodes], axis=0).max())
+        # Where facets are equally near, as at their common edge, the first is taken, whatever the rounding.
+        if nearest is not None and distance - bulge > nearest[0] - slack:
+            continue
+        coordinates = _closest_on_facet(corners, block, start, target) if bulge > slack else start
+        values, gradients = shape_functions(block.kind, coordinates[:, None])
+        gap = float(np.linalg.norm(values[0] @ corners - target))
+        if nearest is None or gap < nearest[0] - slack:
+            tangents = mesh.points[nodes].T @ gradients[0]
+            nearest = (gap, nodes, values[0], np.cross(tangents[:, 0], tangents[:, 1]))
+    if nearest is None:
+        raise HousingError("there are no facets to find a point on")
+    _, nodes, weights, normal = nearest
+    return SurfacePoint(
+        nodes=nodes,
+        weights=weights,
+        position=weights @ mesh.points[nodes],
+        normal=normal / np.linalg.norm(normal),
+    )
+
+
+def _candidates(
+    mesh: Mesh, facets: Facets, across: FloatArray, target: FloatArray
+) -> list[tuple[float, ElementBlock, int, FloatArray]]:
+    """The facets nearest to the target by the plane triangles between their corners, nearest first.
+
+    Each with its distance, block, number in the block, and the reference coordinates of the triangle's nearest point.
+    """
+    found: list[tuple[float, int, ElementBlock, int, FloatArray]] = []
     for block in facets:
         for triangle in _CORNER_TRIANGLES[block.of.n_corners] if len(block) else ():
             corners = mesh.points[block.nodes[:, triangle]] @ across
-            shares, distance = _closest_on_triangles(corners, across @ place)
-            best = int(np.argmin(distance))
-            if nearest is None or distance[best] < nearest[0]:
-                start = shares[best] @ np.array(block.of.places)[list(triangle)]
-                nearest = (float(distance[best]), block, best, start)
-    if nearest is None:
-        raise HousingError("there are no facets to find a point on")
-    _, block, member, start = nearest
-    nodes = block.nodes[member]
-    coordinates = _closest_on_facet(mesh.points[nodes] @ across, block, start, across @ place)
-    values, gradients = shape_functions(block.kind, coordinates[:, None])
-    tangents = mesh.points[nodes].T @ gradients[0]
-    normal = np.cross(tangents[:, 0], tangents[:, 1])
-    return SurfacePoint(
-        nodes=nodes,
-        weights=values[0],
-        position=values[0] @ mesh.points[nodes],
-        normal=normal / np.linalg.norm(normal),
-    )
+            shares, distance = _closest_on_triangles(corners, target)
+            places = np.array(block.of.places)[list(triangle)]
+            for member in np.argsort(distance, kind="stable")[:_NEIGHBOURS].tolist():
+                found.append((float(distance[member]), len(found), block, member, shares[member] @ places))
+    return [(one[0], *one[2:]) for one in sorted(found, key=lambda one: one[:2])[:_NEIGHBOURS]]
+
+
+def _bulge(nodes: FloatArray, block: ElementBlock) -> float:
+    """How far a facet may lie from the plane triangles between its corners [m], from above; 0 where it is flat."""
+    first = block.of.n_corners
+    weights, _ = shape_functions(block.of.corners, np.array(block.of.places, dtype=np.float64).T)
+    offset = np.linalg.norm(nodes - weights @ nodes[:first], axis=1).max()
+    twist = np.linalg.norm(nodes[0] - nodes[1] + nodes[2] - nodes[3]) if first == 4 else 0.0
+    # The shape functions of middle nodes add up to at most 3 in size, and a twisted facet bends by a quarter.
+    return float(3.0 * offset + twist)
 
 
 def facet_normals(mesh: Mesh, facets: Facets) -> FloatArray:
@@ -163,7 +192,10 @@ def facet_normals(mesh: Mesh, facets: Facets) -> FloatArray:
 
 # Plane triangles between the corners of a facet.
 _CORNER_TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
+_NEIGHBOURS = 6  # facets looked at: as many as meet in a node of a usual mesh
 _STEPS = 20
+_SHORTENINGS = (1.0, 0.5, 0.25, 0.125)
+_ROUNDING = 1e-12
 
 
 def _closest_on_facet(nodes: FloatArray, block: ElementBlock, start: FloatArray, target: FloatArray) -> FloatArray:
@@ -173,25 +205,18 @@ def _closest_on_facet(nodes: FloatArray, block: ElementBlock, start: FloatArray,
     facet the first guess is already the answer, and on a curved one no step makes it worse.
     """
     here = start
-    gap = _gap(nodes, block, here, target)
+    gap = np.inf
     for _ in range(_STEPS):
         values, gradients = shape_functions(block.kind, here[:, None])
+        gap = min(gap, float(np.linalg.norm(values[0] @ nodes - target)))
         tangents = nodes.T @ gradients[0]
         step = np.linalg.lstsq(tangents, target - values[0] @ nodes, rcond=1e-10)[0]
-        for shortening in (1.0, 0.5, 0.25, 0.125):
-            trial = _clipped(here + shortening * step, block)
-            trial_gap = _gap(nodes, block, trial, target)
-            if trial_gap < gap * (1.0 - 1e-12):
-                here, gap = trial, trial_gap
-                break
-        else:
+        trials = np.array([_clipped(here + shortening * step, block) for shortening in _SHORTENINGS])
+        gaps = np.linalg.norm(shape_functions(block.kind, trials.T)[0] @ nodes - target, axis=1)
+        if gaps.min() >= gap * (1.0 - 1e-12):
             break
+        here, gap = trials[np.argmin(gaps)], float(gaps.min())
     return here
-
-
-def _gap(nodes: FloatArray, block: ElementBlock, coordinates: FloatArray, target: FloatArray) -> float:
-    values, _ = shape_functions(block.kind, coordinates[:, None])
-    return float(np.linalg.norm(values[0] @ nodes - target))
 
 
 def _clipped(coordinates: FloatArray, block: ElementBlock) -> FloatArray:

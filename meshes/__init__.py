@@ -7,12 +7,16 @@ What the room offers:
   housing described by its dimensions; :func:`mesh_box` meshes it with gmsh.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
 - :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
+- :func:`diagnose` -- what is wrong with a mesh, or doubtful in it, by name (:class:`Ailment`);
+  :func:`resolution_ailments` -- whether its elements are small enough for the waves in it.
 
 In names, *mesh* is always the finite-element mesh; the gears' is the *gear mesh*.
 gmsh itself is imported only when a mesh is made.
 """
 
+from meshes.ailments import Ailment
 from meshes.box import Bore, Boss, BoxGeometry, Feet, WallThickness, mesh_box
+from meshes.diagnosis import diagnose
 from meshes.elements import (
     KINDS,
     ElementBlock,
@@ -28,9 +32,11 @@ from meshes.errors import GeometryError, MesherUnavailableError
 from meshes.files import read_mesh, write_mesh
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
+from meshes.resolution import WaveCarrier, resolution_ailments, wall_thickness
 
 __all__ = [
     "KINDS",
+    "Ailment",
     "Bore",
     "Boss",
     "BoxGeometry",
@@ -43,6 +49,8 @@ __all__ = [
     "MeshQuality",
     "MesherUnavailableError",
     "WallThickness",
+    "WaveCarrier",
+    "diagnose",
     "facet_centers",
     "facet_corners",
     "facet_nodes",
@@ -51,5 +59,7 @@ __all__ = [
     "mesh_quality",
     "pick_facets",
     "read_mesh",
+    "resolution_ailments",
+    "wall_thickness",
     "write_mesh",
 ]

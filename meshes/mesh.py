@@ -5,7 +5,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from scipy import sparse
 
+from meshes.ailments import place_text
 from meshes.elements import ElementBlock, Facets, FloatArray, IntArray, count, facets_of
 from meshes.errors import GeometryError
 from meshes.mapping import volumes
@@ -55,10 +57,10 @@ class Mesh:
                 raise GeometryError(f"volume {name!r} names elements outside 0..{self.n_elements - 1}")
         wrong = np.flatnonzero(self.corner_volumes <= 0.0)
         if len(wrong):
-            x, y, z = self.centers[wrong[0]]
+            inverted = np.count_nonzero(self.corner_volumes < 0.0)
             raise GeometryError(
-                f"{len(wrong)} of {self.n_elements} elements have no positive volume: they are inverted or flat, "
-                f"the first at ({x:.6g}, {y:.6g}, {z:.6g}) m"
+                f"{len(wrong)} of {self.n_elements} elements have no positive volume: {inverted} are inverted, "
+                f"{len(wrong) - inverted} flat, the first at {place_text(self.centers[wrong[0]])}"
             )
 
     @classmethod
@@ -113,6 +115,20 @@ class Mesh:
         for block in self.blocks:
             kinds[block.kind] = kinds.get(block.kind, 0) + len(block)
         return kinds
+
+    @property
+    def block_ends(self) -> IntArray:
+        """Where arrays over all elements split into the blocks, as numpy.split takes it."""
+        return np.asarray(np.cumsum([len(block) for block in self.blocks])[:-1])
+
+    @property
+    def incidence(self) -> sparse.csr_array:
+        """Which element has which node, shape (n_elements, n_points): 1 in its columns."""
+        nodes = np.concatenate([block.nodes.ravel() for block in self.blocks])
+        lengths = np.concatenate([np.full(len(block), block.of.n_nodes) for block in self.blocks])
+        pointer = np.concatenate([[0], np.cumsum(lengths)])
+        ones = np.ones(len(nodes), dtype=np.int32)
+        return sparse.csr_array((ones, nodes, pointer), shape=(len(lengths), len(self.points)))
 
     @cached_property
     def corner_volumes(self) -> FloatArray:

@@ -6,7 +6,8 @@ import numpy as np
 
 from meshes.elements import KINDS, ElementBlock, Facets, IntArray
 
-_NO_NODE = -1
+NO_NODE = -1
+"""In the place of a fourth corner that a triangle does not have."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ def face_table(blocks: tuple[ElementBlock, ...]) -> FaceTable:
     first = 0
     for number, block in enumerate(blocks):
         faces = block.of.corner_faces
-        table = np.full((len(block), len(faces), 4), _NO_NODE, dtype=np.int64)
+        table = np.full((len(block), len(faces), 4), NO_NODE, dtype=np.int64)
         for which, face in enumerate(faces):
             table[:, which, : len(face)] = block.nodes[:, face]
         corners.append(table.reshape(-1, 4))

@@ -20,6 +20,7 @@ _NAMED = (
     ("housing", "joint"),
     ("housing", "mass"),
     ("housing", "sensor"),
+    ("housing", "region"),
 )
 
 
@@ -53,6 +54,8 @@ def _check_materials(draft: Draft) -> Iterator[Finding]:
     housing = draft.document.get("housing")
     if isinstance(housing, Mapping):
         yield from _check_reference(housing, ("housing", "material"), "material", materials)
+    for index, region in draft.raw_entries("housing", "region"):
+        yield from _check_reference(region, ("housing", "region", index, "material"), "material", materials)
     for kind in ("rotor", "gear"):
         for index, entry in draft.raw_entries(kind):
             yield from _check_reference(entry, (kind, index, "material"), "material", materials)

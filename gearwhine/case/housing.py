@@ -31,6 +31,7 @@ from gearwhine.case.fields import (
     wrong,
 )
 from gearwhine.case.patches import Patch
+from gearwhine.case.region import Region
 from gearwhine.case.units import QuantityError, parse_quantity
 
 
@@ -190,6 +191,7 @@ class Housing(Table):
     joint: tuple[Joint, ...] = Field(default=(), max_length=1000)
     mass: tuple[LumpedMass, ...] = Field(default=(), max_length=1000)
     sensor: tuple[Sensor, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    region: tuple[Region, ...] = Field(default=(), max_length=1000)
 
     @field_validator("damping_ratio", mode="after")
     @classmethod

@@ -39,10 +39,12 @@ class SolvedHousing:
     Attributes
     ----------
     mesh : Mesh
-    mass : float
-        With the masses attached [kg].
+    rigid : housing.RigidBody
+        Mass, centre of mass and inertia, with the masses attached.
     attached_mass : float
         Of these alone [kg].
+    solid : housing.MassProperties
+        Of the solid alone, from its geometry.
     modes : housing.ModeSet
     damping_ratios : ndarray, shape (n_modes,)
         As the case gives them; see :attr:`total_damping_ratios`.
@@ -73,8 +75,9 @@ class SolvedHousing:
     """
 
     mesh: Mesh
-    mass: float
+    rigid: room.RigidBody
     attached_mass: float
+    solid: room.MassProperties
     modes: room.ModeSet
     damping_ratios: FloatArray
     damping_matrix: FloatArray | None
@@ -114,7 +117,7 @@ def build_mesh(case: Case) -> Mesh:
     if case.housing.box is not None:
         return mesh_box(box_geometry(case), case.housing.box.mesh_size)
     if case.housing.mesh is not None:
-        return read_mesh(case.housing.mesh.file, unit=_UNITS[case.housing.mesh.unit])
+        return read_mesh(case.housing.mesh.file, unit=UNITS[case.housing.mesh.unit])
     raise CaseError([Problem("housing.cad", str(case.housing.cad and case.housing.cad.file), _NO_CAD)])
 
 
@@ -248,9 +251,8 @@ def _solve_modes(
     assert given is not None
     begin = time.perf_counter()
     progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
-    steel = case.material[given.material]
-    material = room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
-    free = room.assemble(mesh, material)
+    parted, material, materials = materials_of(case, mesh)
+    free = room.assemble(parted, material, materials)
     matrices = attach_all(case, mesh, free)
     assembled = time.perf_counter() - begin
     # Without a limit or a number, what a first look wants.
@@ -336,7 +338,8 @@ def modes_document(solved: SolvedHousing, *, detail: bool = False) -> dict[str, 
             "elements": solved.mesh.n_elements,
             "dofs": 3 * len(solved.mesh.points),
         },
-        "mass_kg": solved.mass,
+        "mass_kg": solved.rigid.mass,
+        "center_of_mass_m": solved.rigid.center.tolist(),
         "attached_mass_kg": solved.attached_mass,
         "effective_mass": {key: value for key, value in masses.items() if key != "fractions"},
         "static_error": static_error_document(solved.modes, solved.loaded),

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from gearwhine.case import Case, Joint, Mount, amounts, applied_torques, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.stages import mesh_health
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gears import pair_geometry
 
@@ -62,9 +63,11 @@ def _housing(case: Case) -> dict[str, Any]:
         "joints": [_bushing(joint) | {"surfaces": list(joint.surfaces)} for joint in housing.joint],
         "masses": [{"name": mass.name, "mass_kg": mass.mass} for mass in housing.mass],
         "sensors": [sensor.name for sensor in housing.sensor],
+        "regions": [f"{region.name} of {region.material}" for region in housing.region],
     }
     if housing.box is not None:
         document |= {"size_m": list(housing.box.size), "mesh_size_m": housing.box.mesh_size}
+    document |= mesh_health.foresee(case)
     return document
 
 

@@ -1,5 +1,6 @@
 """Stiffness and mass against scikit-fem's own forms, uniform strain and rigid motion."""
 
+import tracemalloc
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -127,16 +128,16 @@ def test_every_kind_has_six_rigid_motions_and_no_others(
 
 
 def _mixed(block_of: Callable[..., Mesh]) -> Mesh:
-    """A brick of hexahedra on wedges: blocks of two kinds that share the nodes of one face."""
-    lower, upper = block_of("wedge15", cells=(2, 2, 1)), block_of("hexahedron20", cells=(2, 2, 1))
-    points = np.vstack([lower.points, upper.points + [0.0, 0.0, 1.0]])
+    """Wedges and hexahedra side by side: blocks of two kinds that share the quadrilaterals between them."""
+    left, right = block_of("wedge15", cells=(1, 2, 2)), block_of("hexahedron20", cells=(1, 2, 2))
+    points = np.vstack([left.points, right.points + [1.0, 0.0, 0.0]])
     unique, inverse = np.unique(np.round(4 * points), axis=0, return_inverse=True)
-    first, second = lower.blocks[0], upper.blocks[0]
+    first, second = left.blocks[0], right.blocks[0]
     blocks = (
         ElementBlock("wedge15", inverse[first.nodes]),
-        ElementBlock("hexahedron20", inverse[second.nodes + len(lower.points)]),
+        ElementBlock("hexahedron20", inverse[second.nodes + len(left.points)]),
     )
-    volumes = {"below": np.arange(8), "above": np.arange(8, 12)}
+    volumes = {"left": np.arange(8), "right": np.arange(8, 12)}
     return Mesh(unique / 4, blocks, volumes=volumes)
 
 
@@ -160,7 +161,7 @@ def test_each_volume_has_its_own_material(block_of: Callable[..., Mesh], steel: 
     """The matrices are the sums of those of the parts, each by itself in its material."""
     mesh = _mixed(block_of)
     soft = Material(70e9, 0.33, 2700.0)
-    both = assemble(mesh, steel, {"above": soft})
+    both = assemble(mesh, steel, {"right": soft})
     assert both.total_mass == pytest.approx(steel.density + soft.density)
     parts = []
     for block, material in zip(mesh.blocks, (steel, soft), strict=True):
@@ -172,7 +173,7 @@ def test_each_volume_has_its_own_material(block_of: Callable[..., Mesh], steel: 
         parts.append([spread @ matrix @ spread.T for matrix in _pair(assemble(alone, material))])
     for ours, (first, second) in zip(_pair(both), zip(*parts, strict=True), strict=True):
         assert abs(ours - first - second).max() < 1e-14 * abs(ours).max()
-    only = assemble(mesh, soft, {"below": steel})
+    only = assemble(mesh, soft, {"left": steel})
     assert np.array_equal(only.blocks, both.blocks)
 
 
@@ -184,11 +185,11 @@ def test_materials_of_unknown_or_overlapping_volumes_are_refused(
     block_of: Callable[..., Mesh], steel: Material
 ) -> None:
     mesh = _mixed(block_of)
-    with pytest.raises(HousingError, match=r"no volume 'lid' to be of its own material; it has: above, below"):
+    with pytest.raises(HousingError, match=r"no volume 'lid' to be of its own material; it has: left, right"):
         assemble(mesh, steel, {"lid": steel})
     overlapping = replace(mesh, volumes={**mesh.volumes, "some": np.array([7, 8])})
-    with pytest.raises(HousingError, match=r"volumes 'above' and 'some' share 1 elements"):
-        assemble(overlapping, steel, {"above": steel, "some": steel})
+    with pytest.raises(HousingError, match=r"volumes 'right' and 'some' share 1 elements"):
+        assemble(overlapping, steel, {"right": steel, "some": steel})
 
 
 def test_matrices_are_symmetric_and_the_mass_is_positive(cube: tuple[Mesh, Matrices], box_matrices: Matrices) -> None:
@@ -277,6 +278,21 @@ def test_threads_and_chunks_make_no_difference(box: Mesh, steel: Material, box_m
     for wrong in ({"threads": 0}, {"chunk": 0}):
         with pytest.raises(HousingError, match="give at least 1 of both"):
             assemble(box, steel, **wrong)
+
+
+def test_working_memory_is_bounded_by_the_chunks(block_of: Callable[..., Mesh], steel: Material) -> None:
+    """Beside the result and the sums that become it, small chunks need little, however many elements there are."""
+    mesh = block_of("hexahedron20", cells=(10, 10, 6))
+    assemble(mesh, steel)  # what is read once, such as shape functions
+    peaks = {}
+    for chunk in (20, 600):
+        tracemalloc.start()
+        result = assemble(mesh, steel, threads=1, chunk=chunk)
+        peaks[chunk] = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+    kept = result.blocks.nbytes + result.node_mass.nbytes + result.neighbors.nbytes
+    assert peaks[20] < 3.5 * kept
+    assert peaks[600] > peaks[20] + 580 * 8 * (3 * 20) ** 2  # the gradient products of all elements at once
 
 
 def test_folded_elements_are_refused(block: Callable[..., Mesh], steel: Material) -> None:

@@ -1,0 +1,106 @@
+"""What is wrong with a mesh, or doubtful in it, by name: where it is and what to do."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from meshes.ailments import Ailment, Severity, ailment
+from meshes.connections import connection_ailments
+from meshes.elements import FloatArray, IntArray
+from meshes.mapping import determinants, jacobians
+from meshes.mesh import Mesh
+from meshes.quality import edge_lengths, shape_numbers
+from meshes.shapes import quadrature, shape_functions
+
+LEAST_SHAPE = 0.05
+"""Shape number below which an element spoils the stresses around it."""
+
+_SMALLEST, _LARGEST = 0.010, 20.0  # longest sides of a housing that are believed [m]
+_LIKELY = 0.5  # of several units that would do, the one that makes the housing nearest to this is proposed [m]
+_UNITS = {"mm": 1e-3, "m": 1.0, "in": 0.0254, "cm": 1e-2}
+_NO_VOLUME = 1e-9  # of the cube of an element's longest edge
+
+
+def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[Ailment, ...]:
+    """Everything wrong with a mesh or doubtful in it, errors first.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    unit : float, optional
+        The unit of length of the file that it came from [m]; with it, sizes that no housing has are doubted.
+
+    Notes
+    -----
+    An inverted or flat element is no part of a diagnosis, because :class:`Mesh` takes none.
+    """
+    ailments = [*_elements(mesh), *connection_ailments(mesh), *_nodes(mesh), *_unit(mesh, unit)]
+    return tuple(sorted(ailments, key=lambda one: one.severity != "error"))
+
+
+def _elements(mesh: Mesh) -> Iterator[Ailment]:
+    """Elements that are degenerate, folded, or of a bad shape."""
+    repeats, edges, least, least_at_nodes = [], [], [], []
+    for block in mesh.blocks:
+        ordered = np.sort(block.nodes, axis=1)
+        repeats.append((ordered[:, 1:] == ordered[:, :-1]).any(axis=1))
+        edges.append(edge_lengths(mesh.points, block).max(axis=1))
+        least.append(_least_determinant(mesh, block.nodes, block.kind, quadrature(block.kind, 2 * block.of.order)[0]))
+        at_nodes = np.array(block.of.places, dtype=np.float64).T
+        least_at_nodes.append(_least_determinant(mesh, block.nodes, block.kind, at_nodes))
+    repeated, shape = np.concatenate(repeats), shape_numbers(mesh)
+    flat = (mesh.corner_volumes < _NO_VOLUME * np.concatenate(edges) ** 3) & ~repeated
+    folded = (np.concatenate(least) <= 0.0) & ~repeated & ~flat
+    creased = (np.concatenate(least_at_nodes) <= 0.0) & ~repeated & ~flat & ~folded
+    bad = (shape < LEAST_SHAPE) & ~repeated & ~flat
+    cases: tuple[tuple[npt.NDArray[np.bool_], str, Severity, str, str], ...] = (
+        (repeated, "degenerate", "error", "name a node twice", "write collapsed bricks as wedges or tetrahedra"),
+        (flat, "degenerate", "error", "have next to no volume", "remove them or mesh anew"),
+        (folded, "folded", "error", "are folded by their middle nodes", "refine where it is curved, or use order 1"),
+        (creased, "folded", "warning", "are folded at a node by their middle nodes", "refine where it is curved"),
+    )
+    for which, name, severity, what, advice in cases:
+        if which.any():
+            number = int(which.sum())
+            yield ailment(name, severity, f"{number} elements {what}", advice, number, mesh.centers[np.argmax(which)])
+    if bad.any():
+        worst, number = int(np.argmin(np.where(bad, shape, np.inf))), int(bad.sum())
+        what = f"{number} elements have a shape number below {LEAST_SHAPE} (1 is ideal, 0 is flat)"
+        advice = "mesh anew with a smaller or more even size there"
+        which_one = f"the worst with {shape[worst]:.2g} at"
+        yield ailment("shape", "warning", what, advice, number, mesh.centers[worst], which=which_one)
+
+
+def _least_determinant(mesh: Mesh, nodes: IntArray, kind: str, places: FloatArray) -> FloatArray:
+    """The least determinant of each element's map at some reference places, shape (n_elements,)."""
+    gradients = shape_functions(kind, places)[1]
+    return np.asarray(determinants(jacobians(mesh.points, nodes, gradients)).min(axis=1))
+
+
+def _nodes(mesh: Mesh) -> Iterator[Ailment]:
+    unused = np.setdiff1d(np.arange(len(mesh.points)), mesh.used_nodes)
+    if len(unused):
+        what = f"{len(unused)} nodes belong to no element"
+        yield ailment("unused nodes", "error", what, "leave them out", len(unused), mesh.points[unused[0]])
+
+
+def _unit(mesh: Mesh, unit: float | None) -> Iterator[Ailment]:
+    """Sizes that no housing has, with the unit that would make it one."""
+    length = float(np.ptp(mesh.bounds, axis=0).max())
+    if unit is None or _SMALLEST <= length <= _LARGEST:
+        return
+    name = next((name for name, value in _UNITS.items() if np.isclose(value, unit)), f"{unit:g} m")
+    other = {other: length / unit * value for other, value in _UNITS.items() if other != name}
+    believed = sorted(
+        (other for other, size in other.items() if _SMALLEST <= size <= _LARGEST),
+        key=lambda name: abs(np.log(other[name] / _LIKELY)),
+    )
+    message = f"the part is {_size(length)} long; is the unit {name!r}?"
+    if believed:
+        message += f" With {believed[0]!r} it would be {_size(other[believed[0]])}"
+    yield Ailment("unit", "warning", message, 1, mesh.bounds.mean(axis=0))
+
+
+def _size(length: float) -> str:
+    return f"{length:.3g} m" if length >= 1.0 else f"{1e3 * length:.3g} mm"

@@ -1,0 +1,142 @@
+"""Our mesh in meshio's form, with its regions as the files of an ending can carry them."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+from urllib.parse import quote
+
+import numpy as np
+
+from meshes.content import corner_rows, find_faces
+from meshes.elements import ElementBlock, IntArray, merged
+from meshes.errors import GeometryError
+from meshes.from_meshio import load_meshio
+from meshes.mesh import Mesh
+
+_NAME_LENGTH = 80  # of a group in MED
+_LOST = {".med": ("hexahedron27",)}
+
+
+def meshio_from_mesh(mesh: Mesh, ending: str) -> Any:
+    """meshio's form of a mesh for files of an ending, with the regions as they can carry them.
+
+    Raises
+    ------
+    GeometryError
+        Where volumes overlap and the format knows one for each element only, or a name is too long for it.
+    """
+    meshio = load_meshio()
+    lost = sorted(set(mesh.kinds) & set(_LOST.get(ending, ())))
+    if lost:
+        raise GeometryError(f"{ending} files hold no {', '.join(lost)} elements; write .vtu, .msh or .inp")
+    solids = merged(mesh.blocks) if ending == ".med" else mesh.blocks
+    ends = np.cumsum([len(block) for block in solids])[:-1]
+    inside = {name: np.isin(_positions(mesh, solids), members) for name, members in mesh.volumes.items()}
+    if ending == ".xdmf":
+        _check_xdmf(mesh)
+        arrays = {f"volume:{quote(name, safe='')}": np.split(flag, ends) for name, flag in inside.items()}
+        arrays |= {f"faces:{quote(name, safe='')}": np.split(_face_flags(mesh, name), ends) for name in mesh.surfaces}
+        cells = [(block.kind, block.nodes) for block in solids]
+        return meshio.Mesh(mesh.points, cells, cell_data=_whole_numbers(arrays))
+    names = sorted(mesh.surfaces)
+    owned = [(number, block) for number, name in enumerate(names, start=1) for block in mesh.surfaces[name]]
+    facets = [block for _, block in owned]
+    owner = [np.full(len(block), number) for number, block in owned]
+    if ending == ".med":
+        facets, owner = _merged_facets(facets, owner)
+    cells = [(block.kind, block.nodes) for block in (*solids, *facets)]
+    if ending == ".med":
+        return _with_families(meshio.Mesh(mesh.points, cells), names, inside, ends, owner)
+    if ending == ".msh":
+        tags = [*np.split(_one_volume_each(inside, mesh.n_elements), ends), *owner]
+        groups = {name: np.array([tag, 3]) for tag, name in enumerate(inside, start=1)}
+        if set(inside) & set(names):
+            raise GeometryError(f"a volume and a surface are both named {min(set(inside) & set(names))!r}")
+        groups |= {name: np.array([tag, 2]) for tag, name in enumerate(names, start=1)}
+        data = {"gmsh:physical": tags, "gmsh:geometrical": [np.maximum(tag, 1) for tag in tags]}
+        return meshio.Mesh(mesh.points, cells, cell_data=_whole_numbers(data), field_data=groups)
+    within: list[Any] = [np.zeros(len(block)) for block in solids]
+    outside: list[Any] = [np.zeros(len(block)) for block in facets]
+    flags: dict[str, Sequence[Any]] = {"region": [*within, *owner]}
+    flags |= {f"volume:{quote(name, safe='')}": [*np.split(flag, ends), *outside] for name, flag in inside.items()}
+    for number, name in enumerate(names, start=1):
+        flags[f"surface:{quote(name, safe='')}"] = [*within, *(part == number for part in owner)]
+    return meshio.Mesh(mesh.points, cells, cell_data=_whole_numbers(flags))
+
+
+def _whole_numbers(data: Mapping[str, Sequence[Any]]) -> dict[str, list[Any]]:
+    return {key: [np.asarray(part, dtype=np.int32) for part in parts] for key, parts in data.items()}
+
+
+def _check_xdmf(mesh: Mesh) -> None:
+    if len(mesh.kinds) > 1 and mesh.order == 2:
+        raise GeometryError(f".xdmf files of {' and '.join(mesh.kinds)} elements cannot be read back; write .vtu")
+
+
+def _face_flags(mesh: Mesh, name: str) -> IntArray:
+    """A bit for each face of an element that is in a surface: meshio reads no facets beside solids of order 2."""
+    flags = np.zeros(mesh.n_elements, dtype=np.int64)
+    for block in mesh.surfaces[name]:
+        found = find_faces(mesh, corner_rows(block))
+        if (found < 0).any():
+            raise GeometryError(f"surface {name!r} has facets that are no faces of elements")
+        np.bitwise_or.at(flags, mesh.faces.element[found], 1 << mesh.faces.source[found, 2])
+    return flags
+
+
+def _positions(mesh: Mesh, solids: tuple[ElementBlock, ...]) -> IntArray:
+    """For each element of the blocks to write, its number in the mesh: merging puts those of one kind together."""
+    if solids is mesh.blocks:
+        return np.arange(mesh.n_elements)
+    first = np.cumsum([0, *(len(block) for block in mesh.blocks)])
+    parts = [
+        np.arange(first[number], first[number + 1])
+        for kind in solids
+        for number, block in enumerate(mesh.blocks)
+        if block.kind == kind.kind
+    ]
+    return np.concatenate(parts)
+
+
+def _merged_facets(facets: list[ElementBlock], owner: list[IntArray]) -> tuple[list[ElementBlock], list[IntArray]]:
+    kinds = list(merged(facets))
+    owners = [
+        np.concatenate([part for block, part in zip(facets, owner, strict=True) if block.kind == kind.kind])
+        for kind in kinds
+    ]
+    return kinds, owners
+
+
+def _one_volume_each(inside: dict[str, Any], n_elements: int) -> IntArray:
+    tags = np.zeros(n_elements, dtype=np.int64)
+    for tag, (name, members) in enumerate(inside.items(), start=1):
+        if (tags[members] > 0).any():
+            other = list(inside)[int(tags[members].max()) - 1]
+            raise GeometryError(
+                f"volumes {other!r} and {name!r} overlap, and .msh files know one for each element; write .vtu or .inp"
+            )
+        tags[members] = tag
+    return tags
+
+
+def _with_families(
+    content: Any, names: list[str], inside: dict[str, Any], ends: IntArray, owner: list[IntArray]
+) -> Any:
+    """The mesh with its regions as MED's families: negative numbers, each for elements of the same groups."""
+    for name in (*names, *inside):
+        if len(name) > _NAME_LENGTH or not name.isascii():
+            raise GeometryError(
+                f"the name {name!r} cannot be that of a group in MED: at most {_NAME_LENGTH} ASCII letters"
+            )
+    families: dict[tuple[str, ...], int] = {}
+    n_elements = sum(len(block.data) for block in content.cells[: len(ends) + 1])
+    memberships = zip(*inside.values(), strict=True) if inside else [()] * n_elements
+    patterns = [tuple(name for name, flag in zip(inside, row, strict=True) if flag) for row in memberships]
+    solid = [families.setdefault(groups, -1 - len(families)) if groups else 0 for groups in patterns]
+    surface = {number: -1 - len(families) - place for place, number in enumerate(range(1, len(names) + 1))}
+    tags = [*np.split(np.array(solid, dtype=np.int64), ends)]
+    tags += [np.array([surface[number] for number in part.tolist()], dtype=np.int64) for part in owner]
+    content.cell_data["cell_tags"] = tags
+    content.cell_tags = {tag: list(groups) for groups, tag in families.items()}
+    content.cell_tags |= {surface[number]: [name] for number, name in enumerate(names, start=1)}
+    content.point_tags = {}
+    return content

@@ -1,0 +1,53 @@
+"""Mass and its centre: closed forms, and the mass matrix as an independent witness."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from housing import Material, Matrices, assemble, mass_properties
+from meshes import Mesh
+from meshes.elements import SOLIDS
+
+
+@pytest.mark.parametrize("kind", SOLIDS)
+def test_a_block_of_two_materials(block_of: Callable[..., Mesh], steel: Material, kind: str) -> None:
+    size = np.array([1.0, 0.6, 0.4])
+    mesh = block_of(kind, tuple(size), (2, 1, 1))
+    light = Material(70e9, 0.33, 2700.0)
+    right = np.flatnonzero(mesh.centers[:, 0] > 0.5)
+    parts = mass_properties(replace(mesh, volumes={"right": right}), steel, {"right": light})
+    assert parts.mass == pytest.approx(size.prod() * (steel.density + light.density) / 2)
+    middle = (0.25 * steel.density + 0.75 * light.density) / (steel.density + light.density)
+    np.testing.assert_allclose(parts.center, [middle, 0.3, 0.2], rtol=1e-12)
+
+
+def _bent(points: np.ndarray) -> np.ndarray:
+    x, y, z = points.T
+    return points + 0.1 * np.stack([y * z, x**2, x], axis=1)
+
+
+@pytest.mark.parametrize("kind", SOLIDS)
+def test_curved_elements_weigh_what_their_mass_matrix_weighs(
+    block_of: Callable[..., Mesh], steel: Material, kind: str
+) -> None:
+    """Rᵀ M x for a translation R and the field x = place: both are integrals of polynomials, exact up to quadrature."""
+    mesh = block_of(
+        kind, cells=(2, 1, 1), bend=lambda p: p + 0.1 * np.stack([p[:, 1] * p[:, 2], p[:, 0] ** 2, p[:, 0]], 1)
+    )
+    found = mass_properties(mesh, steel)
+    mass = assemble(mesh, steel).mass
+    push = np.zeros((len(mesh.points), 3))
+    push[:, 0] = 1.0
+    assert push.ravel() @ mass @ push.ravel() == pytest.approx(found.mass, rel=1e-3)
+    for axis in range(3):
+        place = np.zeros((len(mesh.points), 3))
+        place[:, 0] = mesh.points[:, axis]
+        assert push.ravel() @ mass @ place.ravel() == pytest.approx(found.mass * found.center[axis], rel=2e-3)
+
+
+def test_the_housing_with_everything(box: Mesh, steel: Material, box_matrices: Matrices) -> None:
+    found = mass_properties(box, steel)
+    assert found.mass == pytest.approx(box_matrices.total_mass, rel=1e-6)
+    assert found.mass == pytest.approx(steel.density * box.element_volumes.sum(), rel=1e-12)

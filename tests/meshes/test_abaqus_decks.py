@@ -1,0 +1,175 @@
+"""Input decks of Abaqus and CalculiX, written here by hand as the manuals have them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from meshes import GeometryError, facet_nodes, mesh_quality, read_mesh
+from meshes.elements import KINDS
+
+# Two unit cubes side by side along x, node numbers with gaps.
+CUBES = """\
+*HEADING
+two cubes
+** a comment, *NODE, that is none
+*NODE, NSET=all nodes
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 1., 1., 0.
+4, 0., 1., 0.
+15, 0., 0., 1.
+16, 1., 0., 1.
+17, 1., 1., 1.
+18, 0., 1., 1.
+102, 2., 0.
+103, 2., 1., 0.
+106, 2.D0, 0., 1.
+107, 2., 1., 1.
+*Element, type=C3D8R
+5, 1, 2, 3, 4, 15, 16, 17,
+18
+*ELEMENT, TYPE=C3D8I, ELSET="right part"
+9, 2, 102, 103, 3, 16, 106, 107, 17
+*ELEMENT, TYPE=MASS, ELSET=weights
+77, 1
+*ELEMENT, TYPE=S4, ELSET=skin
+80, 1, 2, 3, 4
+"""
+
+
+def _deck(folder: Path, text: str) -> Path:
+    path = folder / "deck.inp"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_elements_sets_and_shells(tmp_path: Path) -> None:
+    mesh = read_mesh(_deck(tmp_path, CUBES))
+    assert mesh.kinds == {"hexahedron": 2}
+    assert mesh_quality(mesh).volume == pytest.approx(2.0)
+    assert {name: members.tolist() for name, members in mesh.volumes.items()} == {"right part": [1]}
+    assert set(mesh.surfaces) == {"all nodes", "skin"}
+    assert np.ptp(mesh.points[facet_nodes(mesh.surface("skin"))], axis=0).tolist() == [1.0, 1.0, 0.0]
+    assert len(mesh.surface("all nodes")[0]) == 10  # the whole outside of both
+
+
+def test_sets_by_range_by_name_and_in_several_pieces(tmp_path: Path) -> None:
+    """A set may name another in any case, go on under the same name, and count by a step."""
+    more = """\
+*ELSET, ELSET=odd, GENERATE
+5, 9, 4
+*ELSET, ELSET=again
+ODD,
+*ELSET, ELSET=pieces
+5,
+*ELSET, ELSET=pieces
+9,
+*NSET, NSET=base
+1, 2, 3, 4, 102
+*NSET, NSET=base
+103
+*NSET, NSET=same base, UNSORTED
+base
+*NSET, NSET=lid, GENERATE
+15, 18
+*NSET, NSET=lid, GENERATE
+106, 107, 1
+"""
+    mesh = read_mesh(_deck(tmp_path, CUBES + more))
+    for name in ("odd", "again", "pieces"):
+        assert mesh.volumes[name].tolist() == [0, 1]
+    for name, height in (("base", 0.0), ("same base", 0.0), ("lid", 1.0)):
+        nodes = facet_nodes(mesh.surface(name))
+        assert len(nodes) == 6
+        assert (mesh.points[nodes, 2] == height).all()
+
+
+@pytest.mark.parametrize(
+    ("label", "place"),
+    [("S1", (2, 0)), ("S2", (2, 1)), ("S3", (1, 0)), ("S4", (0, 2)), ("S5", (1, 1)), ("S6", (0, 1))],
+)
+def test_surfaces_of_brick_faces(tmp_path: Path, label: str, place: tuple[int, int]) -> None:
+    """S1 is the base 1-2-3-4, S2 the lid, S3 to S6 go round the sides (Abaqus, three-dimensional solid elements)."""
+    axis, value = place
+    more = f"*ELSET, ELSET=_s, INTERNAL\n9\n*SURFACE, TYPE=ELEMENT, NAME=seat\n_s, {label}\n"
+    mesh = read_mesh(_deck(tmp_path, CUBES + more))
+    nodes = facet_nodes(mesh.surface("seat"))
+    assert len(nodes) == 4
+    assert (mesh.points[nodes, axis] == value).all()
+    assert "_s" not in mesh.volumes
+
+
+@pytest.mark.parametrize(
+    ("kind", "labels"),
+    [
+        ("tetra", {"S1": {0, 1, 2}, "S2": {0, 1, 3}, "S3": {1, 2, 3}, "S4": {0, 2, 3}}),
+        ("wedge", {"S1": {0, 1, 2}, "S2": {3, 4, 5}, "S3": {0, 1, 3, 4}, "S4": {1, 2, 4, 5}, "S5": {0, 2, 3, 5}}),
+    ],
+)
+def test_surfaces_of_tetrahedra_and_wedges(tmp_path: Path, kind: str, labels: dict[str, set[int]]) -> None:
+    places = KINDS[kind].places
+    deck = "*NODE\n" + "".join(f"{n}, {x}, {y}, {z}\n" for n, (x, y, z) in enumerate(places, start=1))
+    deck += f"*ELEMENT, TYPE=C3D{len(places)}\n1, " + ", ".join(str(n + 1) for n in range(len(places))) + "\n"
+    deck += "".join(f"*SURFACE, NAME={label}\n1, {label}\n" for label in labels)
+    mesh = read_mesh(_deck(tmp_path, deck))
+    assert {name: set(facet_nodes(facets).tolist()) for name, facets in mesh.surfaces.items()} == labels
+
+
+def test_quadratic_bricks_go_on_over_lines(tmp_path: Path) -> None:
+    """Base, lid, then uprights; of the 27-node brick the centre, then the faces S1 to S6."""
+    corners = np.array(KINDS["hexahedron"].places)
+    groups = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+    faces = [range(8), (0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7)]
+    for number, more in ((20, []), (27, faces)):
+        places = [*corners, *(corners[list(group)].mean(axis=0) for group in (*groups, *more))]
+        deck = "*NODE\n" + "".join(f"{n}, {x}, {y}, {z}\n" for n, (x, y, z) in enumerate(places, start=1))
+        nodes = [str(n + 1) for n in range(number)]
+        deck += f"*ELEMENT, TYPE=C3D{number}\n1, {', '.join(nodes[:9])},\n{', '.join(nodes[9:])}\n"
+        mesh = read_mesh(_deck(tmp_path, deck))
+        (block,) = mesh.blocks
+        np.testing.assert_allclose(mesh.points[block.nodes[0]], np.array(KINDS[f"hexahedron{number}"].places))
+
+
+def test_included_files_are_read_and_a_circle_is_told(tmp_path: Path) -> None:
+    (tmp_path / "nodes of it.inp").write_text(CUBES)
+    mesh = read_mesh(_deck(tmp_path, '*INCLUDE, INPUT="nodes of it.inp"\n*ELSET, ELSET=one\n5\n'))
+    assert mesh.volumes["one"].tolist() == [0]
+    with pytest.raises(GeometryError, match="does it include itself"):
+        read_mesh(_deck(tmp_path, "*INCLUDE, INPUT=deck.inp\n"))
+    with pytest.raises(GeometryError, match=r"includes 'absent\.inp': no such file"):
+        read_mesh(_deck(tmp_path, "*INCLUDE, INPUT=absent.inp\n"))
+
+
+def test_one_part_and_one_instance_are_read(tmp_path: Path) -> None:
+    deck = f"*PART, NAME=box\n{CUBES}*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=box-1, PART=box\n*END INSTANCE\n"
+    deck += "*ELSET, ELSET=left, INSTANCE=box-1\n5\n*SURFACE, TYPE=ELEMENT, NAME=side\nbox-1.left, S6\n*END ASSEMBLY\n"
+    mesh = read_mesh(_deck(tmp_path, deck))
+    assert mesh.volumes["left"].tolist() == [0]
+    assert (mesh.points[facet_nodes(mesh.surface("side")), 0] == 0.0).all()
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ("*ELEMENT, TYPE=C3D5\n6, 1, 2, 3, 4, 15\n", "elements of type C3D5, which are not known here"),
+        ("*ELEMENT, TYPE=C3D4\n6, 1, 2, 3\n", "elements of type C3D4 have 4 nodes each"),
+        ("*ELEMENT, TYPE=C3D4\n6, 1, 2, 3, 999\n", "names node 999, which is not in it"),
+        ("*NSET, NSET=a\n999\n", "names node 999"),
+        ("*ELSET, ELSET=a\nabsent\n", "names a set 'absent' that is not in it"),
+        ("*SURFACE, NAME=s\n5, S7\n", "names face 'S7' of a hexahedron; expected S1 to S6"),
+        ("*SURFACE, NAME=s\n5, SNEG\n", "names face 'SNEG'"),
+        ("*SURFACE, NAME=s\n77, S1\n", "names element 77, which is no solid"),
+        ("*INSTANCE, NAME=a, PART=p\n*INSTANCE, NAME=b, PART=p\n", "assembles 2 instances; write one flat deck"),
+        ("*INSTANCE, NAME=a, PART=p\n1., 0., 0.\n", "an instance is moved"),
+        ("*ELEMENT, TYPE=C3D4\n6, 1, two, 3, 4\n", r"cannot be read: ValueError.*'two'"),
+    ],
+)
+def test_decks_that_cannot_be_taken_are_refused(tmp_path: Path, more: str, message: str) -> None:
+    with pytest.raises(GeometryError, match=message):
+        read_mesh(_deck(tmp_path, CUBES + more))
+
+
+def test_a_deck_without_solids_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(GeometryError, match="holds no solid elements"):
+        read_mesh(_deck(tmp_path, "*NODE\n1, 0., 0., 0.\n"))
