@@ -3,8 +3,9 @@
 What the room offers:
 
 - :class:`Mesh` -- nodes, tetrahedra and named regions, in metres.
-- :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet` -- a gearbox
-  housing described by its dimensions; :func:`mesh_box` meshes it with gmsh.
+- :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet`, :class:`Rib`,
+  :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
+  dimensions; :func:`mesh_box` meshes it with gmsh.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
 - :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
 
@@ -12,21 +13,44 @@ In names, *mesh* is always the finite-element mesh; the gears' is the *gear mesh
 gmsh itself is imported only when a mesh is made.
 """
 
-from meshes.box import Bore, Boss, BoxGeometry, Feet, WallThickness, mesh_box
+from meshes.box import (
+    Bolt,
+    Bore,
+    Boss,
+    BoxGeometry,
+    BoxMisfitError,
+    Cover,
+    CoverBolts,
+    Feet,
+    Fillets,
+    Flange,
+    Misfit,
+    Rib,
+    WallThickness,
+    mesh_box,
+)
 from meshes.errors import GeometryError, MesherUnavailableError
 from meshes.files import read_mesh, write_mesh
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
 
 __all__ = [
+    "Bolt",
     "Bore",
     "Boss",
     "BoxGeometry",
+    "BoxMisfitError",
+    "Cover",
+    "CoverBolts",
     "Feet",
+    "Fillets",
+    "Flange",
     "GeometryError",
     "Mesh",
     "MeshQuality",
     "MesherUnavailableError",
+    "Misfit",
+    "Rib",
     "WallThickness",
     "mesh_box",
     "mesh_quality",
