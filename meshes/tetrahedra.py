@@ -10,7 +10,12 @@ from meshes.mesh import IntArray, Mesh
 
 # gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
 _GMSH_TO_VTK = {4: [0, 1, 2, 3], 10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
-_WORST_JACOBIAN = 0.05
+# ... and these are its edges in gmsh's order of the middle nodes.
+_GMSH_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]])
+_TET10 = 11
+_WORST_JACOBIAN = 0.05  # of an element's least to its mean, below which it counts as folded
+_HALVINGS = 3
+_STRAIGHT = 1e-6  # an edge bent by less, as a part of its length, is straight
 
 
 def check_mesh_request(mesh_size: float, order: int) -> None:
@@ -47,10 +52,37 @@ def mesh_solids(gmsh: Any, mesh_size: float, order: int, *, smallest: float | No
 
 
 def _unfold(gmsh: Any) -> None:
-    """Bend elements back whose curved side folds them: it happens where they are large beside a bore's radius."""
-    tags, _ = gmsh.model.mesh.getElementsByType(11)
-    if len(tags) and gmsh.model.mesh.getElementQualities(tags, "minSJ").min() < _WORST_JACOBIAN:
-        gmsh.model.mesh.optimize("HighOrder")
+    """Straighten the edges of elements that their curved sides fold, as little as it takes.
+
+    A bore or a fillet that is small beside its elements bends their edges so far that an element may turn inside
+    out. The middle nodes of such an element are drawn back towards the middles of their edges, by halves and in the
+    end all the way; its neighbours follow by sharing them. (gmsh's own remedy, an optimisation, takes minutes on
+    fillets and ends the process where it does not converge.)
+    """
+    tags, connectivity = gmsh.model.mesh.getElementsByType(_TET10)
+    elements = np.asarray(connectivity, dtype=np.int64).reshape(-1, 10)
+    node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    number = np.zeros(int(node_tags.max()) + 1, dtype=np.int64)
+    number[node_tags] = np.arange(len(node_tags))
+    points = np.asarray(coordinates, dtype=np.float64).reshape(-1, 3)
+    curved = points.copy()
+    bend = np.ones(len(points))
+    for _ in range(_HALVINGS + 1):
+        folded = gmsh.model.mesh.getElementQualities(tags, "minSJ") < _WORST_JACOBIAN
+        nodes = number[elements[folded]]
+        middle, ends = nodes[:, 4:].ravel(), nodes[:, _GMSH_EDGES].reshape(-1, 2)
+        middle, first = np.unique(middle, return_index=True)
+        straight = points[ends[first]].mean(axis=1)
+        bent = np.linalg.norm(points[middle] - straight, axis=1) > _STRAIGHT * np.ptp(points[ends[first]], axis=1).max(
+            axis=1, initial=0.0
+        )
+        if not bent.any():
+            return
+        middle, straight = middle[bent], straight[bent]
+        bend[middle] = np.where(bend[middle] > 0.5**_HALVINGS, bend[middle] / 2, 0.0)
+        points[middle] = straight + bend[middle, None] * (curved[middle] - straight)
+        for node in middle:
+            gmsh.model.mesh.setNode(node_tags[node], points[node], [])
 
 
 def collect_mesh(
