@@ -6,6 +6,7 @@ What the room offers:
 - :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet`, :class:`Rib`,
   :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
   dimensions; :func:`mesh_box` meshes it with gmsh.
+- :func:`mesh_cad` -- the solids of a STEP, IGES or BREP file, as a :class:`CadMesh`.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
 - :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
 
@@ -29,6 +30,7 @@ from meshes.box import (
     WallThickness,
     mesh_box,
 )
+from meshes.cad import CadMesh, mesh_cad
 from meshes.errors import GeometryError, MesherUnavailableError
 from meshes.files import read_mesh, write_mesh
 from meshes.mesh import Mesh
@@ -40,6 +42,7 @@ __all__ = [
     "Boss",
     "BoxGeometry",
     "BoxMisfitError",
+    "CadMesh",
     "Cover",
     "CoverBolts",
     "Feet",
@@ -53,6 +56,7 @@ __all__ = [
     "Rib",
     "WallThickness",
     "mesh_box",
+    "mesh_cad",
     "mesh_quality",
     "read_mesh",
     "write_mesh",

@@ -1,12 +1,13 @@
 """From a gmsh model of solids to a mesh of tetrahedra: element size, order, middle nodes, numbering."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from meshes.errors import GeometryError
-from meshes.mesh import IntArray, Mesh
+from meshes.mesh import FloatArray, IntArray, Mesh
 
 # gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
 _GMSH_TO_VTK = {4: [0, 1, 2, 3], 10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
@@ -85,14 +86,34 @@ def _unfold(gmsh: Any) -> None:
             gmsh.model.mesh.setNode(node_tags[node], points[node], [])
 
 
-def collect_mesh(
+@dataclass(frozen=True)
+class Tetrahedra:
+    """What gmsh made, as plain arrays in the mesh's own order of nodes; see :class:`~meshes.Mesh` for their shapes."""
+
+    points: FloatArray
+    cells: IntArray
+    surfaces: Mapping[str, IntArray]
+    volumes: Mapping[str, IntArray]
+
+    def mesh(self) -> Mesh:
+        """The mesh of these arrays.
+
+        Raises
+        ------
+        GeometryError
+            Where an element is inverted.
+        """
+        return Mesh(points=self.points, cells=self.cells, surfaces=self.surfaces, volumes=self.volumes)
+
+
+def collect(
     gmsh: Any,
     order: int,
     surfaces: Mapping[str, Sequence[int]],
     volumes: Mapping[str, Sequence[int]],
     *,
     unit: float = 1.0,
-) -> Mesh:
+) -> Tetrahedra:
     """Nodes, elements and named regions of the current gmsh model, numbered from zero.
 
     Parameters
@@ -126,4 +147,4 @@ def collect_mesh(
     for name, solids in volumes.items():
         parts = [gmsh.model.mesh.getElementsByType(tetrahedron, solid)[0] for solid in solids]
         members[name] = np.sort(place[np.concatenate(parts)])
-    return Mesh(points=points * unit if unit != 1.0 else points, cells=cells, surfaces=facets, volumes=members)
+    return Tetrahedra(points * unit, cells, facets, members)

@@ -5,7 +5,7 @@ from meshes.box.geometry import BoxGeometry
 from meshes.box.solid import build_solid
 from meshes.gmsh_session import gmsh_session
 from meshes.mesh import Mesh
-from meshes.tetrahedra import check_mesh_request, collect_mesh, mesh_solids
+from meshes.tetrahedra import check_mesh_request, collect, mesh_solids
 
 
 def mesh_box(geometry: BoxGeometry, mesh_size: float, *, order: int = 2) -> Mesh:
@@ -40,4 +40,4 @@ def mesh_box(geometry: BoxGeometry, mesh_size: float, *, order: int = 2) -> Mesh
         if solid.cover:
             volumes |= {"body": [*solid.body], "cover": [*solid.cover]}
         mesh_solids(gmsh, mesh_size, order)
-        return collect_mesh(gmsh, order, surfaces, volumes)
+        return collect(gmsh, order, surfaces, volumes).mesh()
