@@ -63,14 +63,14 @@ def write_shapes(path: Path, housing: SolvedHousing) -> None:
     """Write the mesh with every mode shape as a point array, for ParaView and its like."""
     import meshio
 
-    kind = "tetra" if housing.mesh.order == 1 else "tetra10"
     shapes = {
         f"mode {number:02d}, {frequency:.1f} Hz": shape
         for number, (frequency, shape) in enumerate(
             zip(housing.modes.frequencies_hz, housing.modes.shapes, strict=True), start=1
         )
     }
-    meshio.write(path, meshio.Mesh(housing.mesh.points, [(kind, housing.mesh.cells)], point_data=shapes))
+    cells = [(block.kind, block.nodes) for block in housing.mesh.blocks]
+    meshio.write(path, meshio.Mesh(housing.mesh.points, cells, point_data=shapes))
 
 
 def _unit(unit: str, what: str) -> dict[str, str]:

@@ -97,9 +97,9 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
     with staging(folder) as place:
         write_mesh(mesh, place / name)
     return {
-        "mesh": {"nodes": len(mesh.points), "elements": len(mesh.cells), "dofs": 3 * len(mesh.points)},
+        "mesh": {"nodes": len(mesh.points), "elements": mesh.n_elements, "dofs": 3 * len(mesh.points)},
         "order": mesh.order,
-        "surfaces": {surface: len(facets) for surface, facets in sorted(mesh.surfaces.items())},
+        "surfaces": {surface: sum(map(len, facets)) for surface, facets in sorted(mesh.surfaces.items())},
         "volume_m3": quality.volume,
         "edge_length_m": dict(zip(("min", "median", "max"), quality.edge_length, strict=True)),
         "shape_number": dict(zip(("min", "median"), quality.shape, strict=True)),

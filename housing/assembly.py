@@ -9,118 +9,258 @@ from which Hooke's law for an isotropic solid with Lamé's constants λ, μ make
 
     K[a i, b k] = λ G[a i, b k] + μ G[a k, b i] + μ δ_ik Σ_j G[a j, b j],        M[a i, b k] = δ_ik m[a, b].
 
-scikit-fem gives the element and its quadrature. K is summed into one 3 x 3 block for each pair of nodes that
-share an element (the pairs are found once, by sorting), and M is the scalar mass on the same pairs, M = m ⊗ I₃.
-Degree of freedom 3 n + i is component i of node n.
+scikit-fem gives the elements and their quadrature (:mod:`meshes.shapes`). Of each element only the pairs a <= b are
+computed and summed; the other half is their transpose, so that K and M are symmetric to the last bit. The pattern is
+that of the product Eᵀ E of the elements' incidence E. Degree of freedom 3 n + i is component i of node n.
 """
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 
 from housing.errors import HousingError
 from housing.material import Material
 from housing.matrices import Matrices
-from meshes import Mesh
+from meshes import ElementBlock, ElementKind, Mesh
+from meshes.mapping import determinants, inverses, jacobians
+from meshes.shapes import quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
-_CHUNK = 4096  # elements at a time: bounds the working memory to some 100 MB
+_WORKING_SET = 2**20  # numbers in the gradient products of one chunk: 8 MB
 
 
-def assemble(mesh: Mesh, material: Material) -> Matrices:
+def assemble(
+    mesh: Mesh,
+    material: Material,
+    materials: Mapping[str, Material] | None = None,
+    *,
+    threads: int = 2,
+    chunk: int | None = None,
+) -> Matrices:
     """Assemble the stiffness and the consistent mass of the free solid.
 
-    Straight elements are integrated exactly: to degree 2 (p - 1) for the stiffness and 2 p for the mass, with p
-    the order of the elements. Elements with a curved side take the same points on their isoparametric mapping.
+    Parameters
+    ----------
+    mesh : Mesh
+    material : Material
+        Of every element that no entry of ``materials`` covers.
+    materials : mapping of str to Material, optional
+        The material of each named volume of the mesh.
+    threads : int
+        How many threads compute elements; the result is the same to the last bit for any number.
+    chunk : int, optional
+        Elements computed at a time, by each thread; by default as many as keep its arrays to a few tens of MB.
 
     Raises
     ------
     HousingError
-        Where a node belongs to no element, or an element's curved sides fold it.
+        Where a node belongs to no element, an element's curved sides fold it, or volumes with a material of their own
+        are unknown or overlap.
+
+    Notes
+    -----
+    The quadrature is exact for affine elements: in a tetrahedron of order p to degree 2 (p - 1) for the stiffness and
+    2 p for the mass; in a brick to degree 2 p in each coordinate, which the product of two gradients has (the shape
+    functions have p in each); in a wedge to degree 2 p in the triangle and along the axis. Where sides are curved, or
+    opposite faces of a brick not parallel, 1 / det J makes the stiffness's integrand rational, which no rule holds
+    exactly; the same points keep its error below that of the element's own interpolation (Ciarlet and Raviart 1972).
     """
-    unused = int(np.count_nonzero(np.bincount(mesh.cells.ravel(), minlength=len(mesh.points)) == 0))
+    if threads < 1 or (chunk is not None and chunk < 1):
+        raise HousingError(f"{threads} threads and chunks of {chunk} elements: give at least 1 of both")
+    unused = len(mesh.points) - len(mesh.used_nodes)
     if unused:
         raise HousingError(f"{unused} of the mesh's {len(mesh.points)} nodes belong to no element; leave them out")
-    n_nodes, per_element = len(mesh.points), mesh.cells.shape[1]
-    rows = np.repeat(mesh.cells, per_element, axis=1).ravel()
-    columns = np.tile(mesh.cells, per_element).ravel()
-    keys, slots = np.unique(rows * n_nodes + columns, return_inverse=True)
-    slots = slots.reshape(len(mesh.cells), -1)
-
-    lam, mu = material.lame
-    blocks = np.zeros((3, 3, len(keys)))
-    scalar_mass = np.zeros(len(keys))
-    for start in range(0, len(mesh.cells), _CHUNK):
-        cells = mesh.cells[start : start + _CHUNK]
-        slot = slots[start : start + _CHUNK].ravel()
-        products = _gradient_products(mesh, cells)
-        trace = mu * (products[:, :, 0, :, 0] + products[:, :, 1, :, 1] + products[:, :, 2, :, 2])
-        for i in range(3):
-            for k in range(3):
-                element = lam * products[:, :, i, :, k] + mu * products[:, :, k, :, i]
-                if i == k:
-                    element = element + trace
-                blocks[i, k] += np.bincount(slot, element.ravel(), minlength=len(keys))
-        scalar_mass += np.bincount(slot, material.density * _shape_products(mesh, cells).ravel(), minlength=len(keys))
-
-    row, column = np.divmod(keys, n_nodes)
-    pointer = np.searchsorted(row, np.arange(n_nodes + 1)).astype(np.int32)
-    return Matrices(
-        pointer=pointer,
-        neighbors=column.astype(np.int32),
-        blocks=np.ascontiguousarray(np.moveaxis(blocks, 2, 0)),
-        node_mass=scalar_mass,
-    )
+    constants = _elastic_constants(mesh, material, materials or {})
+    pattern = _node_graph(mesh)
+    half = np.zeros((9, pattern.nnz))
+    half_mass = np.zeros(pattern.nnz)
+    try:
+        for share in _in_order(
+            _chunks(mesh, chunk), lambda part: _contribution(mesh, part, constants, pattern), threads
+        ):
+            for component, values in enumerate(share.stiffness):
+                np.add.at(half[component], share.slots, values)
+            np.add.at(half_mass, share.slots, share.mass)
+    except _FoldedError:
+        raise _folded(mesh) from None
+    return _mirrored(pattern, half, half_mass)
 
 
-def _gradient_products(mesh: Mesh, cells: npt.NDArray[np.int64]) -> FloatArray:
-    """G of some elements [m], shape (n_cells, n_shape, 3, n_shape, 3)."""
-    _, reference, weights = _shape_functions(mesh.order, degree=2 * (mesh.order - 1))
-    jacobian = np.einsum("eai,qaj->eqij", mesh.points[cells], reference, optimize=True)
-    scale = np.sqrt(_point_volumes(jacobian, weights))
-    gradients = np.einsum("qaj,eqji->eqai", reference, np.linalg.inv(jacobian), optimize=True)
-    rooted = (gradients * scale[:, :, None, None]).reshape(*scale.shape, -1)
-    products = rooted.transpose(0, 2, 1) @ rooted
-    n_shape = cells.shape[1]
-    return np.asarray(products.reshape(-1, n_shape, 3, n_shape, 3))
+class _FoldedError(Exception):
+    """An element of a chunk has no positive volume at a quadrature point."""
 
 
-def _shape_products(mesh: Mesh, cells: npt.NDArray[np.int64]) -> FloatArray:
-    """∫ N_a N_b dV of some elements [m³], shape (n_cells, n_shape, n_shape)."""
-    values, reference, weights = _shape_functions(mesh.order, degree=2 * mesh.order)
-    jacobian = np.einsum("eai,qaj->eqij", mesh.points[cells], reference, optimize=True)
-    volumes = _point_volumes(jacobian, weights)
-    outer = np.einsum("qa,qb->qab", values, values).reshape(len(weights), -1)
-    return np.asarray((volumes @ outer).reshape(len(cells), values.shape[1], -1))
+@dataclass(frozen=True)
+class _Chunk:
+    """Some elements of one kind: their block, the first one's number over all blocks, their nodes."""
+
+    kind: ElementKind
+    first: int
+    nodes: IntArray
 
 
-def _point_volumes(jacobian: FloatArray, weights: FloatArray) -> FloatArray:
-    """Volume that each quadrature point stands for [m³], shape (n_cells, n_points)."""
-    determinant = np.linalg.det(jacobian)
-    folded = int(np.count_nonzero((determinant <= 0.0).any(axis=1)))
-    if folded:
-        raise HousingError(
-            f"{folded} elements are folded by their curved sides: refine the mesh where it is curved, or use order 1"
-        )
+@dataclass(frozen=True)
+class _Contribution:
+    """What a chunk adds: slots in the pattern, shape (n,), K by components, shape (9, n), and m, shape (n,)."""
+
+    slots: IntArray
+    stiffness: FloatArray
+    mass: FloatArray
+
+
+def _chunks(mesh: Mesh, size: int | None) -> Iterator[_Chunk]:
+    first = 0
+    for block in mesh.blocks:
+        step = size or max(1, _WORKING_SET // (3 * block.of.n_nodes) ** 2)
+        for start in range(0, len(block), step):
+            yield _Chunk(block.of, first + start, block.nodes[start : start + step])
+        first += len(block)
+
+
+def _in_order(
+    chunks: Iterator[_Chunk], compute: Callable[[_Chunk], _Contribution], threads: int
+) -> Iterator[_Contribution]:
+    """Contributions in the order of the chunks, computed ahead by threads, no further than one for each."""
+    if threads == 1:
+        yield from map(compute, chunks)
+        return
+    with ThreadPoolExecutor(threads) as pool:
+        ahead: deque[Future[_Contribution]] = deque()
+        for chunk in chunks:
+            ahead.append(pool.submit(compute, chunk))
+            if len(ahead) > threads:
+                yield ahead.popleft().result()
+        while ahead:
+            yield ahead.popleft().result()
+
+
+def _elastic_constants(mesh: Mesh, material: Material, materials: Mapping[str, Material]) -> FloatArray:
+    """λ, μ [Pa] and ρ [kg/m³] of each element, shape (3, n_elements)."""
+    constants = np.tile(np.array([*material.lame, material.density])[:, None], mesh.n_elements)
+    owner: dict[int, str] = {}
+    taken = np.zeros(mesh.n_elements, dtype=np.int64)
+    for number, (name, own) in enumerate(materials.items(), start=1):
+        if name not in mesh.volumes:
+            known = ", ".join(sorted(mesh.volumes)) or "none"
+            raise HousingError(f"the mesh has no volume {name!r} to be of its own material; it has: {known}")
+        members = np.asarray(mesh.volumes[name])
+        both = members[taken[members] > 0]
+        if len(both):
+            other = owner[int(taken[both[0]])]
+            raise HousingError(f"volumes {other!r} and {name!r} share {len(both)} elements; each has one material only")
+        owner[number], taken[members] = name, number
+        constants[:, members] = np.array([*own.lame, own.density])[:, None]
+    return constants
+
+
+def _node_graph(mesh: Mesh) -> sparse.csr_array:
+    """Which nodes share an element, rows in order; each entry is its own place in the pattern."""
+    nodes = np.concatenate([block.nodes.ravel() for block in mesh.blocks])
+    lengths = np.concatenate([np.full(len(block), block.of.n_nodes) for block in mesh.blocks])
+    pointer = np.concatenate([[0], np.cumsum(lengths)])
+    shape = (len(lengths), len(mesh.points))
+    incidence = sparse.csr_array((np.ones(len(nodes), dtype=np.int8), nodes, pointer), shape=shape)
+    graph = sparse.csr_array(incidence.T @ incidence)
+    graph.sort_indices()
+    # Counting from one, since a stored zero would be none.
+    places = np.arange(1, graph.nnz + 1, dtype=np.int64)
+    return sparse.csr_array((places, graph.indices, graph.indptr), shape=graph.shape)
+
+
+def _contribution(mesh: Mesh, chunk: _Chunk, constants: FloatArray, pattern: sparse.csr_array) -> _Contribution:
+    kind, nodes = chunk.kind, chunk.nodes
+    first, second = np.triu_indices(kind.n_nodes)
+    products = _gradient_products(mesh, kind, nodes, first, second)
+    lam, mu, density = constants[:, chunk.first : chunk.first + len(nodes), None]
+    trace = mu * (products[:, 0] + products[:, 4] + products[:, 8])
+    stiffness = np.empty((9, *trace.shape))
+    for i in range(3):
+        for k in range(3):
+            entry = stiffness[3 * i + k]
+            np.multiply(products[:, 3 * i + k], lam, out=entry)
+            entry += mu * products[:, 3 * k + i]
+            if i == k:
+                entry += trace
+    mass = density * _shape_products(mesh, kind, nodes, first, second)
+    slots = pattern[nodes[:, first].ravel(), nodes[:, second].ravel()] - 1
+    return _Contribution(np.asarray(slots), stiffness.reshape(9, -1), mass.ravel())
+
+
+def _gradient_products(mesh: Mesh, kind: ElementKind, nodes: IntArray, first: IntArray, second: IntArray) -> FloatArray:
+    """G[a j, b l] of pairs a, b of some elements [m], shape (n_elements, 9, n_pairs), the second axis j l."""
+    degree = 2 * (kind.order - 1) if kind.corners == "tetra" else 2 * kind.order
+    places, weights = quadrature(kind.name, degree)
+    reference = shape_functions(kind.name, places)[1]
+    jacobian = jacobians(mesh.points, nodes, reference)
+    determinant = determinants(jacobian)
+    inverse = inverses(jacobian, determinant)
+    scale = np.sqrt(_point_volumes(determinant, weights))
+    # By components first, then as matrices (points, shape functions x components) for one product for each element.
+    rooted = np.empty((*scale.shape, kind.n_nodes, 3))
+    for i in range(3):
+        slope = sum(inverse[j, i][:, :, None] * reference[:, :, j] for j in range(3))
+        rooted[..., i] = slope * scale[:, :, None]
+    flat = rooted.reshape(*scale.shape, -1)
+    products = (flat.transpose(0, 2, 1) @ flat).reshape(len(nodes), -1)
+    components = np.arange(3)
+    rows = 3 * first + components[:, None, None]
+    columns = 3 * second + components[:, None]
+    chosen = (rows * (3 * kind.n_nodes) + columns).ravel()
+    return np.asarray(products.take(chosen, axis=1).reshape(len(nodes), 9, len(first)))
+
+
+def _shape_products(mesh: Mesh, kind: ElementKind, nodes: IntArray, first: IntArray, second: IntArray) -> FloatArray:
+    """∫ N_a N_b dV of pairs a, b of some elements [m³], shape (n_elements, n_pairs)."""
+    places, weights = quadrature(kind.name, 2 * kind.order)
+    values, reference = shape_functions(kind.name, places)
+    volumes = _point_volumes(determinants(jacobians(mesh.points, nodes, reference)), weights)
+    return np.asarray(volumes @ (values[:, first] * values[:, second]))
+
+
+def _point_volumes(determinant: FloatArray, weights: FloatArray) -> FloatArray:
+    """Volume that each quadrature point stands for [m³], shape (n_elements, n_points)."""
+    if (determinant <= 0.0).any():
+        raise _FoldedError
     return np.asarray(weights * determinant)
 
 
-def _shape_functions(order: int, degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """scikit-fem's tetrahedron at its quadrature points.
+def _folded(mesh: Mesh) -> HousingError:
+    """What to say of a mesh with folded elements."""
+    folded = np.concatenate([_folds(mesh, block) for block in mesh.blocks])
+    x, y, z = mesh.centers[np.argmax(folded)]
+    return HousingError(
+        f"{np.count_nonzero(folded)} elements are folded by their curved sides, the first at ({x:.6g}, {y:.6g}, "
+        f"{z:.6g}) m: refine the mesh where it is curved, or use order 1"
+    )
 
-    Returns
-    -------
-    values : ndarray, shape (n_points, n_shape)
-    gradients : ndarray, shape (n_points, n_shape, 3)
-        By the reference coordinates.
-    weights : ndarray, shape (n_points,)
-    """
-    from skfem import ElementTetP1, ElementTetP2
-    from skfem.quadrature import get_quadrature
 
-    element = ElementTetP1() if order == 1 else ElementTetP2()
-    points, weights = get_quadrature(element.refdom, max(degree, 1))
-    pairs = [element.lbasis(points, number) for number in range(len(element.doflocs))]
-    values = np.array([np.broadcast_to(value, weights.shape) for value, _ in pairs]).T
-    gradients = np.array([np.broadcast_to(gradient, points.shape) for _, gradient in pairs]).transpose(2, 0, 1)
-    return values, gradients, np.asarray(weights)
+def _folds(mesh: Mesh, block: ElementBlock) -> npt.NDArray[np.bool_]:
+    reference = shape_functions(block.kind, quadrature(block.kind, 2 * block.of.order)[0])[1]
+    return np.asarray((determinants(jacobians(mesh.points, block.nodes, reference)) <= 0.0).any(axis=1))
+
+
+def _mirrored(pattern: sparse.csr_array, half: FloatArray, half_mass: FloatArray) -> Matrices:
+    """The whole matrices from the sums over the pairs a <= b of each element, H + Hᵀ."""
+    opposite = sparse.csr_array(pattern.T).data - 1
+    diagonal = np.flatnonzero(opposite == np.arange(pattern.nnz))
+    blocks = np.empty((pattern.nnz, 3, 3))
+    for i in range(3):
+        for k in range(3):
+            blocks[:, i, k] = half[3 * i + k] + half[3 * k + i][opposite]
+    node_mass = half_mass + half_mass[opposite]
+    # A node's own block stands in the sums once and in their transpose again.
+    blocks[diagonal] *= 0.5
+    node_mass[diagonal] *= 0.5
+    return Matrices(
+        pointer=pattern.indptr.astype(np.int32),
+        neighbors=pattern.indices.astype(np.int32),
+        blocks=blocks,
+        node_mass=node_mass,
+    )

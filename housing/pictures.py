@@ -28,6 +28,14 @@ _COLOURS = "viridis"
 _SCALE = 0.07  # largest displacement drawn, as a part of the housing's diagonal
 _STRIP = 34  # height of the colour bar's strip under a sheet of modes [pixels]
 _INK = "#202428"
+# Triangles between neighbouring nodes of each kind of facet, so that its middle nodes bend too.
+_PIECES = {
+    "triangle": [[0, 1, 2]],
+    "triangle6": [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]],
+    "quad": [[0, 1, 2], [0, 2, 3]],
+    "quad8": [[0, 4, 7], [1, 5, 4], [2, 6, 5], [3, 7, 6], [4, 5, 6], [4, 6, 7]],
+    "quad9": [[0, 4, 8], [0, 8, 7], [4, 1, 5], [4, 5, 8], [8, 5, 2], [8, 2, 6], [7, 8, 6], [7, 6, 3]],
+}
 
 
 class RendererUnavailableError(RuntimeError):
@@ -172,11 +180,8 @@ def _check(modes: ModeSet, numbers: Sequence[int], view: str) -> None:
 
 def _outer_surface(pyvista: Any, mesh: Mesh) -> tuple[Any, npt.NDArray[np.int64]]:
     """The boundary as triangles between neighbouring nodes, and the nodes that it uses."""
-    boundary = mesh.boundary
-    if boundary.shape[1] == 6:
-        # Four triangles for each quadratic facet, so that its middle nodes bend too.
-        boundary = boundary[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
-    nodes, triangles = np.unique(boundary, return_inverse=True)
+    pieces = [block.nodes[:, _PIECES[block.kind]].reshape(-1, 3) for block in mesh.boundary]
+    nodes, triangles = np.unique(np.concatenate(pieces), return_inverse=True)
     triangles = triangles.reshape(-1, 3)
     faces = np.hstack([np.full((len(triangles), 1), 3), triangles])
     return pyvista.PolyData(mesh.points[nodes], faces), nodes

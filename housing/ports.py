@@ -89,23 +89,33 @@ def seat_matrix(mesh: Mesh, seat: Seat) -> sparse.csr_array:
     HousingError
         Where the seat's surface does not span a rigid motion.
     """
-    patch = surface_quadrature(mesh, mesh.surface(seat.name))
-    arm = patch.points - np.array(seat.center)
+    patches = surface_quadrature(mesh, mesh.surface(seat.name))
+    fields = [_rigid_fields(patch.points - np.array(seat.center)) for patch in patches]
+    gram = np.zeros((6, 6))
+    for patch, rigid in zip(patches, fields, strict=True):
+        gram += np.einsum("fqir,fqis,fq->rs", rigid, rigid, patch.areas)
+    scale = np.sqrt(np.outer(gram.diagonal(), gram.diagonal()))
+    if not (scale > 0.0).all() or np.linalg.cond(gram / scale) > 1e8:
+        raise HousingError(f"the surface of seat {seat.name!r} is too small to tell its rotations")
+    parts = []
+    for patch, rigid in zip(patches, fields, strict=True):
+        loads = np.einsum("fqir,qa,fq->rfai", rigid, patch.shape_values, patch.areas, optimize=True)
+        weights = np.linalg.solve(gram, loads.reshape(6, -1))
+        columns = (3 * patch.facets[:, :, None] + np.arange(3)).ravel()
+        entries = (weights.ravel(), (np.repeat(np.arange(6), len(columns)), np.tile(columns, 6)))
+        parts.append(sparse.csr_array(sparse.coo_array(entries, shape=(6, 3 * len(mesh.points)))))
+    return sparse.csr_array(sum(parts[1:], parts[0]))
+
+
+def _rigid_fields(arm: FloatArray) -> FloatArray:
+    """Displacements of six rigid motions at places relative to the centre, shape (..., 3) to (..., 3, 6)."""
     rigid = np.zeros((*arm.shape, 6))
     rigid[..., :3] = np.eye(3)
     x, y, z = np.moveaxis(arm, -1, 0)
     rigid[..., 0, 4], rigid[..., 0, 5] = z, -y
     rigid[..., 1, 3], rigid[..., 1, 5] = -z, x
     rigid[..., 2, 3], rigid[..., 2, 4] = y, -x
-    gram = np.einsum("fqir,fqis,fq->rs", rigid, rigid, patch.areas)
-    if np.linalg.cond(gram / np.sqrt(np.outer(gram.diagonal(), gram.diagonal()))) > 1e8:
-        raise HousingError(f"the surface of seat {seat.name!r} is too small to tell its rotations")
-    loads = np.einsum("fqir,qa,fq->rfai", rigid, patch.shape_values, patch.areas, optimize=True)
-    weights = np.linalg.solve(gram, loads.reshape(6, -1))
-    columns = (3 * patch.facets[:, :, None] + np.arange(3)).ravel()
-    rows = np.repeat(np.arange(6), len(columns))
-    entries = (weights.ravel(), (rows, np.tile(columns, 6)))
-    return sparse.csr_array(sparse.coo_array(entries, shape=(6, 3 * len(mesh.points))))
+    return rigid
 
 
 def sensor_port(mesh: Mesh, sensor: Sensor) -> SensorPort:

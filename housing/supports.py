@@ -9,7 +9,7 @@ import numpy.typing as npt
 from housing.errors import HousingError
 from housing.matrices import Matrices
 from housing.surface import IntArray, facets_in_box, surface_quadrature
-from meshes import Mesh
+from meshes import Facets, Mesh, facet_nodes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class Support:
         if min(self.stiffness) < 0.0:
             raise HousingError(f"support {self.name!r}: stiffness {self.stiffness} N/m must not be negative")
 
-    def facets(self, mesh: Mesh) -> IntArray:
+    def facets(self, mesh: Mesh) -> Facets:
         """The facets of the patch."""
         if self.surface is not None:
             return mesh.surface(self.surface)
@@ -56,7 +56,7 @@ class Support:
 def fixed_freedoms(mesh: Mesh, supports: Sequence[Support]) -> IntArray:
     """Degrees of freedom held at zero, ascending."""
     held = [
-        3 * np.unique(support.facets(mesh)) + component
+        3 * facet_nodes(support.facets(mesh)) + component
         for support in supports
         for component in range(3)
         if support.fixed[component]
@@ -77,11 +77,13 @@ def with_springs(matrices: Matrices, mesh: Mesh, supports: Sequence[Support]) ->
     for support in supports:
         if not any(support.stiffness):
             continue
-        patch = surface_quadrature(mesh, support.facets(mesh))
-        products = np.einsum("fq,qa,qb->fab", patch.areas, patch.shape_values, patch.shape_values) / patch.area
-        n_shape = patch.facets.shape[1]
-        pairs = np.repeat(patch.facets, n_shape, axis=1).ravel() * n_nodes + np.tile(patch.facets, n_shape).ravel()
-        slots = np.searchsorted(keys, pairs)
-        for component, stiffness in enumerate(support.stiffness):
-            np.add.at(blocks[:, component, component], slots, stiffness * products.ravel())
+        patches = surface_quadrature(mesh, support.facets(mesh))
+        area = sum(patch.area for patch in patches)
+        for patch in patches:
+            products = np.einsum("fq,qa,qb->fab", patch.areas, patch.shape_values, patch.shape_values) / area
+            n_shape = patch.facets.shape[1]
+            pairs = np.repeat(patch.facets, n_shape, axis=1).ravel() * n_nodes + np.tile(patch.facets, n_shape).ravel()
+            slots = np.searchsorted(keys, pairs)
+            for component, stiffness in enumerate(support.stiffness):
+                np.add.at(blocks[:, component, component], slots, stiffness * products.ravel())
     return replace(matrices, blocks=blocks)

@@ -6,7 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from housing.errors import HousingError
-from meshes import Mesh
+from meshes import ElementBlock, Facets, Mesh, pick_facets
+from meshes.shapes import quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -14,7 +15,7 @@ IntArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class SurfaceQuadrature:
-    """Quadrature points on a set of facets.
+    """Quadrature points on facets of one kind.
 
     Attributes
     ----------
@@ -39,21 +40,29 @@ class SurfaceQuadrature:
         return float(self.areas.sum())
 
 
-def surface_quadrature(mesh: Mesh, facets: IntArray) -> SurfaceQuadrature:
-    """Points and areas on facets, exact to degree 4 on flat ones (the product of two quadratic fields)."""
-    values, gradients, weights = _triangle_functions(facets.shape[1])
-    nodes = mesh.points[facets]
-    tangents = np.einsum("fai,qaj->fqij", nodes, gradients)
+def surface_quadrature(mesh: Mesh, facets: Facets) -> tuple[SurfaceQuadrature, ...]:
+    """Points and areas on facets, one set for each block of a kind.
+
+    Exact for the product of two fields of the elements' order on flat facets whose opposite sides are parallel.
+    """
+    return tuple(_block_quadrature(mesh, block) for block in facets)
+
+
+def _block_quadrature(mesh: Mesh, block: ElementBlock) -> SurfaceQuadrature:
+    places, weights = quadrature(block.kind, 4)
+    values, gradients = shape_functions(block.kind, places)
+    nodes = mesh.points[block.nodes]
+    tangents = np.einsum("fai,qaj->fqij", nodes, gradients, optimize=True)
     normal = np.cross(tangents[..., 0], tangents[..., 1])
     return SurfaceQuadrature(
-        facets=facets,
+        facets=block.nodes,
         shape_values=values,
-        points=np.einsum("fai,qa->fqi", nodes, values),
+        points=np.einsum("fai,qa->fqi", nodes, values, optimize=True),
         areas=np.linalg.norm(normal, axis=2) * weights,
     )
 
 
-def facets_in_box(mesh: Mesh, low: FloatArray, high: FloatArray) -> IntArray:
+def facets_in_box(mesh: Mesh, low: FloatArray, high: FloatArray) -> Facets:
     """Boundary facets whose corners all lie in the box from ``low`` to ``high`` [m].
 
     Raises
@@ -63,13 +72,13 @@ def facets_in_box(mesh: Mesh, low: FloatArray, high: FloatArray) -> IntArray:
     """
     boundary = mesh.boundary
     inside = np.all((mesh.points >= low) & (mesh.points <= high), axis=1)
-    facets = boundary[inside[boundary[:, :3]].all(axis=1)]
-    if len(facets) == 0:
+    facets = pick_facets(boundary, np.concatenate([inside[block.corners].all(axis=1) for block in boundary]))
+    if not facets:
         raise HousingError(
             f"no facet of the surface lies in the box from {_triple(low)} to {_triple(high)} m; "
             f"the housing spans {_triple(mesh.bounds[0])} to {_triple(mesh.bounds[1])} m"
         )
-    return np.asarray(facets)
+    return facets
 
 
 @dataclass(frozen=True)
@@ -93,43 +102,107 @@ class SurfacePoint:
     normal: FloatArray
 
 
-def surface_point(mesh: Mesh, facets: IntArray, place: FloatArray, *, along: FloatArray | None = None) -> SurfacePoint:
+def surface_point(mesh: Mesh, facets: Facets, place: FloatArray, *, along: FloatArray | None = None) -> SurfacePoint:
     """The point of some boundary facets nearest to a place.
+
+    The nearest facet is told by the plane triangles between its corners; on it, the nearest point of its true,
+    curved or twisted, shape is taken.
 
     Parameters
     ----------
     mesh : Mesh
-    facets : ndarray of int, shape (n_facets, n_shape)
+    facets : tuple of ElementBlock
         Outward facets to search.
     place : ndarray, shape (3,)
         [m].
     along : ndarray, shape (3,), optional
         A unit vector; distances are then taken across it only, so that the place is projected along it.
+
+    Raises
+    ------
+    HousingError
+        Where there are no facets.
     """
-    corners = mesh.points[facets[:, :3]]
-    target = place
-    if along is not None:
-        corners = corners - (corners @ along)[..., None] * along
-        target = place - (place @ along) * along
-    coordinates, distance = _closest_on_triangles(corners, target)
-    best = int(np.argmin(distance))
-    nodes = facets[best]
-    weights = _triangle_shape(len(nodes), coordinates[best])
-    a, b, c = mesh.points[nodes[:3]]
-    normal = np.cross(b - a, c - a)
+    across = np.eye(3) if along is None else np.eye(3) - np.outer(along, along)
+    nearest: tuple[float, ElementBlock, int, FloatArray] | None = None
+    for block in facets:
+        for triangle in _CORNER_TRIANGLES[block.of.n_corners] if len(block) else ():
+            corners = mesh.points[block.nodes[:, triangle]] @ across
+            shares, distance = _closest_on_triangles(corners, across @ place)
+            best = int(np.argmin(distance))
+            if nearest is None or distance[best] < nearest[0]:
+                start = shares[best] @ np.array(block.of.places)[list(triangle)]
+                nearest = (float(distance[best]), block, best, start)
+    if nearest is None:
+        raise HousingError("there are no facets to find a point on")
+    _, block, member, start = nearest
+    nodes = block.nodes[member]
+    coordinates = _closest_on_facet(mesh.points[nodes] @ across, block, start, across @ place)
+    values, gradients = shape_functions(block.kind, coordinates[:, None])
+    tangents = mesh.points[nodes].T @ gradients[0]
+    normal = np.cross(tangents[:, 0], tangents[:, 1])
     return SurfacePoint(
         nodes=nodes,
-        weights=weights,
-        position=weights @ mesh.points[nodes],
+        weights=values[0],
+        position=values[0] @ mesh.points[nodes],
         normal=normal / np.linalg.norm(normal),
     )
 
 
-def facet_normals(mesh: Mesh, facets: IntArray) -> FloatArray:
-    """Outward unit normals of boundary facets by their corners, shape (n_facets, 3)."""
-    a, b, c = np.moveaxis(mesh.points[facets[:, :3]], 1, 0)
-    normals = np.cross(b - a, c - a)
-    return np.asarray(normals / np.linalg.norm(normals, axis=1)[:, None])
+def facet_normals(mesh: Mesh, facets: Facets) -> FloatArray:
+    """Outward unit normals of boundary facets by their corners, shape (n_facets, 3), block after block."""
+    normals = [np.empty((0, 3))]
+    for block in facets:
+        corners = mesh.points[block.corners]
+        # Of a quadrilateral by its diagonals, of a triangle by two sides.
+        last = corners[:, -1] - corners[:, 1] if block.of.n_corners == 4 else corners[:, 2] - corners[:, 1]
+        normals.append(np.cross(corners[:, 2] - corners[:, 0], last))
+    together = np.concatenate(normals)
+    return np.asarray(together / np.linalg.norm(together, axis=1)[:, None])
+
+
+# Plane triangles between the corners of a facet.
+_CORNER_TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
+_STEPS = 20
+
+
+def _closest_on_facet(nodes: FloatArray, block: ElementBlock, start: FloatArray, target: FloatArray) -> FloatArray:
+    """Reference coordinates of the facet's point nearest to the target, by Gauss-Newton steps from a first guess.
+
+    Only steps that come nearer are taken, shortened where they must be, and none that leaves the facet: on a flat
+    facet the first guess is already the answer, and on a curved one no step makes it worse.
+    """
+    here = start
+    gap = _gap(nodes, block, here, target)
+    for _ in range(_STEPS):
+        values, gradients = shape_functions(block.kind, here[:, None])
+        tangents = nodes.T @ gradients[0]
+        step = np.linalg.lstsq(tangents, target - values[0] @ nodes, rcond=1e-10)[0]
+        for shortening in (1.0, 0.5, 0.25, 0.125):
+            trial = _clipped(here + shortening * step, block)
+            trial_gap = _gap(nodes, block, trial, target)
+            if trial_gap < gap * (1.0 - 1e-12):
+                here, gap = trial, trial_gap
+                break
+        else:
+            break
+    return here
+
+
+def _gap(nodes: FloatArray, block: ElementBlock, coordinates: FloatArray, target: FloatArray) -> float:
+    values, _ = shape_functions(block.kind, coordinates[:, None])
+    return float(np.linalg.norm(values[0] @ nodes - target))
+
+
+def _clipped(coordinates: FloatArray, block: ElementBlock) -> FloatArray:
+    """The nearest reference coordinates within the facet."""
+    if block.of.n_corners == 4:
+        return np.clip(coordinates, 0.0, 1.0)
+    excess = coordinates.sum() - 1.0
+    if excess > 0.0:
+        coordinates = coordinates - excess / 2.0
+    u = float(np.clip(coordinates[0], 0.0, 1.0))
+    return np.array([u, np.clip(coordinates[1], 0.0, 1.0 - u)])
 
 
 def _closest_on_triangles(corners: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -158,27 +231,6 @@ def _closest_on_triangles(corners: FloatArray, place: FloatArray) -> tuple[Float
         candidate[:, i], candidate[:, j] = 1.0 - t, t
         best = np.where(closer[:, None], candidate, best)
     return best, distance
-
-
-def _triangle_functions(n_shape: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    from skfem import ElementTriP1, ElementTriP2
-    from skfem.quadrature import get_quadrature
-
-    element = ElementTriP1() if n_shape == 3 else ElementTriP2()
-    points, weights = get_quadrature(element.refdom, 4)
-    pairs = [element.lbasis(points, number) for number in range(n_shape)]
-    values = np.array([np.broadcast_to(value, weights.shape) for value, _ in pairs]).T
-    gradients = np.array([np.broadcast_to(gradient, points.shape) for _, gradient in pairs]).transpose(2, 0, 1)
-    return values, gradients, np.asarray(weights)
-
-
-def _triangle_shape(n_shape: int, barycentric: FloatArray) -> FloatArray:
-    """Shape functions of the triangle at barycentric coordinates, in our node order."""
-    from skfem import ElementTriP1, ElementTriP2
-
-    element = ElementTriP1() if n_shape == 3 else ElementTriP2()
-    point = barycentric[1:, None]
-    return np.array([float(np.asarray(element.lbasis(point, number)[0]).item()) for number in range(n_shape)])
 
 
 def _triple(values: FloatArray) -> str:

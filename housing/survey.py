@@ -8,7 +8,7 @@ from scipy import sparse
 
 from housing.errors import HousingError
 from housing.surface import facet_normals, surface_point
-from meshes import Mesh
+from meshes import Mesh, facet_centers, pick_facets
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -80,14 +80,14 @@ def survey_grid(
     box = mesh.bounds if bounds is None else bounds
     boundary = mesh.boundary
     facing = facet_normals(mesh, boundary)
-    centers = mesh.points[boundary[:, :3]].mean(axis=1)
+    centers = facet_centers(mesh.points, boundary)
     middle = box.mean(axis=0)
     points = []
     for face, (columns, rows) in counts.items():
         normal_axes, column_axis, row_axis = _FACES[face]
         normal = np.array(normal_axes, dtype=np.float64)
-        outer = boundary[(facing @ normal > 0.9) & ((centers - middle) @ normal > 0.0)]
-        if len(outer) == 0:
+        outer = pick_facets(boundary, (facing @ normal > 0.9) & ((centers - middle) @ normal > 0.0))
+        if not outer:
             raise HousingError(f"no facet of the housing makes up the {face} of the box {box.tolist()} m")
         for column in (np.arange(columns) + 0.5) / columns:
             for row in (np.arange(rows) + 0.5) / rows:

@@ -2,11 +2,13 @@
 
 What the room offers:
 
-- :class:`Mesh` -- nodes, tetrahedra and named regions, in metres.
+- :class:`Mesh` -- nodes, blocks of solid elements (:class:`ElementBlock`) and named regions, in metres.
 - :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet`, :class:`Rib`,
   :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
   dimensions; :func:`mesh_box` meshes it with gmsh.
 - :func:`mesh_cad` -- the solids of a STEP, IGES or BREP file, as a :class:`CadMesh`.
+- :func:`box_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`, :func:`with_bores` -- parts of
+  the surface of any mesh by where they lie; bores by centre and diameter.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
 - :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
 
@@ -14,6 +16,7 @@ In names, *mesh* is always the finite-element mesh; the gears' is the *gear mesh
 gmsh itself is imported only when a mesh is made.
 """
 
+from meshes.bores import CylindricalBore, find_bores
 from meshes.box import (
     Bolt,
     Bore,
@@ -31,12 +34,26 @@ from meshes.box import (
     mesh_box,
 )
 from meshes.cad import CadMesh, mesh_cad
+from meshes.elements import (
+    KINDS,
+    ElementBlock,
+    ElementKind,
+    Facets,
+    facet_centers,
+    facet_corners,
+    facet_nodes,
+    facet_normals,
+    facets_of,
+    pick_facets,
+)
 from meshes.errors import GeometryError, MesherUnavailableError
 from meshes.files import read_mesh, write_mesh
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
+from meshes.regions import box_facets, cylinder_facets, plane_facets, with_bores
 
 __all__ = [
+    "KINDS",
     "Bolt",
     "Bore",
     "Boss",
@@ -45,6 +62,10 @@ __all__ = [
     "CadMesh",
     "Cover",
     "CoverBolts",
+    "CylindricalBore",
+    "ElementBlock",
+    "ElementKind",
+    "Facets",
     "Feet",
     "Fillets",
     "Flange",
@@ -55,9 +76,20 @@ __all__ = [
     "Misfit",
     "Rib",
     "WallThickness",
+    "box_facets",
+    "cylinder_facets",
+    "facet_centers",
+    "facet_corners",
+    "facet_nodes",
+    "facet_normals",
+    "facets_of",
+    "find_bores",
     "mesh_box",
     "mesh_cad",
     "mesh_quality",
+    "pick_facets",
+    "plane_facets",
     "read_mesh",
+    "with_bores",
     "write_mesh",
 ]

@@ -9,18 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from meshes.elements import KINDS, SOLIDS, ElementBlock, FloatArray, IntArray, count, merged
 from meshes.errors import GeometryError
-from meshes.mesh import FloatArray, IntArray, Mesh
-
-_TETRAHEDRA = {"tetra": 4, "tetra10": 10}
-_TRIANGLES = {3: "triangle", 6: "triangle6"}
+from meshes.mapping import volumes as volumes_of
+from meshes.mesh import Mesh
 
 # The endings under which meshio keeps both orders of tetrahedra whole; under others it drops elements in silence.
 WRITABLE = (".inp", ".med", ".msh", ".vtk", ".vtu", ".xdmf")
 
 
 def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
-    """Read a mesh of tetrahedra, with its physical groups or cell sets as named regions.
+    """Read a mesh of solid elements, with its physical groups or cell sets as named regions.
 
     Parameters
     ----------
@@ -32,7 +31,8 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     Raises
     ------
     GeometryError
-        Where the file is missing, cannot be read, holds no tetrahedra, or holds other solid elements beside them.
+        Where the file is missing, cannot be read, holds no solid elements, or such as are not
+        known here beside them.
     """
     import meshio
 
@@ -50,53 +50,50 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     except Exception as error:  # a broken file fails in whatever way its reader happens to stumble
         raise GeometryError(f"mesh file {path} cannot be read: {type(error).__name__}: {error}") from error
 
-    kinds = {block.type for block in content.cells}
-    solid = next((kind for kind in ("tetra10", "tetra") if kind in kinds), None)
-    if solid is None:
-        found = ", ".join(sorted(kinds)) or "nothing"
-        raise GeometryError(f"mesh file {path} holds no tetrahedra (tet4 or tet10); it holds: {found}")
-    others = sorted({block.type for block in content.cells if block.dim == 3} - {solid})
+    solids = [block for block in content.cells if block.type in SOLIDS]
+    if not solids:
+        found = ", ".join(sorted({block.type for block in content.cells})) or "nothing"
+        raise GeometryError(f"mesh file {path} holds no solid elements of {', '.join(SOLIDS)}; it holds: {found}")
+    others = sorted({block.type for block in content.cells if block.dim == 3} - set(SOLIDS))
     if others:
         raise GeometryError(
-            f"mesh file {path} holds {', '.join(others)} beside {solid}; every solid element must be of one kind"
+            f"mesh file {path} holds {', '.join(others)} elements, which are not known here; mesh it with "
+            f"{', '.join(SOLIDS)}"
         )
-    facet = _TRIANGLES[3 if solid == "tetra" else 6]
     names = _region_names(content)
-
-    cells: list[IntArray] = []
-    volumes: dict[str, list[IntArray]] = {}
-    surfaces: dict[str, list[IntArray]] = {}
-    for number, block in enumerate(content.cells):
-        data = np.asarray(block.data, dtype=np.int64)
-        if block.type == solid:
-            start = sum(len(part) for part in cells)
-            for name, members in names[number]:
-                volumes.setdefault(name, []).append(start + members)
-            cells.append(data)
-        elif block.type == facet:
-            for name, members in names[number]:
-                surfaces.setdefault(name, []).append(data[members])
-
-    connectivity = np.concatenate(cells)
-    used = np.unique(connectivity)
+    used = np.unique(np.concatenate([np.asarray(block.data, dtype=np.int64).ravel() for block in solids]))
     renumbered = np.full(len(content.points), -1, dtype=np.int64)  # -1 in a surface is refused by Mesh
     renumbered[used] = np.arange(len(used))
     points = np.asarray(content.points, dtype=np.float64)[used] * unit
+
+    blocks: list[ElementBlock] = []
+    volumes: dict[str, list[IntArray]] = {}
+    surfaces: dict[str, list[ElementBlock]] = {}
+    for number, cells in enumerate(content.cells):
+        if cells.type not in KINDS:
+            continue
+        block = ElementBlock(cells.type, renumbered[np.asarray(cells.data, dtype=np.int64)])
+        if block.of.dimension == 3:
+            for name, members in names[number]:
+                volumes.setdefault(name, []).append(count(blocks) + members)
+            blocks.append(_right_handed(points, block))
+        else:
+            for name, members in names[number]:
+                surfaces.setdefault(name, []).append(ElementBlock(block.kind, block.nodes[members]))
     return Mesh(
         points=points,
-        cells=_right_handed(points, renumbered[connectivity]),
-        surfaces={name: renumbered[np.concatenate(parts)] for name, parts in surfaces.items()},
+        blocks=tuple(blocks),
+        surfaces={name: merged(parts) for name, parts in surfaces.items()},
         volumes={name: np.concatenate(parts) for name, parts in volumes.items()},
     )
 
 
-def _right_handed(points: FloatArray, cells: IntArray) -> IntArray:
-    """The same tetrahedra with positive volume: some writers number them the other way round."""
-    corners = points[cells[:, :4]]
-    negative = np.linalg.det(corners[:, 1:] - corners[:, :1]) < 0.0
-    # Exchanging the first two corners also exchanges the middle nodes of the edges that lead to them.
-    swapped = [1, 0, 2, 3] if cells.shape[1] == 4 else [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]
-    return np.where(negative[:, None], cells[:, swapped], cells)
+def _right_handed(points: FloatArray, block: ElementBlock) -> ElementBlock:
+    """The same elements with positive volume: some writers number them the other way round."""
+    negative = volumes_of(points, block.corners, block.of.corners) < 0.0
+    if not negative.any():
+        return block
+    return ElementBlock(block.kind, np.where(negative[:, None], block.nodes[:, block.of.mirrored], block.nodes))
 
 
 def write_mesh(mesh: Mesh, path: str | Path) -> None:
@@ -134,23 +131,26 @@ def _for_meshio(mesh: Mesh, suffix: str) -> Any:
     import meshio
 
     names = sorted(mesh.surfaces)
-    blocks = [("tetra" if mesh.order == 1 else "tetra10", mesh.cells)]
-    blocks += [(_TRIANGLES[mesh.surfaces[name].shape[1]], mesh.surfaces[name]) for name in names]
-    tags = [np.full(len(cells), tag, dtype=np.int32) for tag, (_, cells) in enumerate(blocks, start=1)]
+    blocks = [(block.kind, block.nodes) for block in mesh.blocks]
+    owners = [0] * len(blocks)
+    for number, name in enumerate(names, start=1):
+        blocks += [(block.kind, block.nodes) for block in mesh.surfaces[name]]
+        owners += [number] * len(mesh.surfaces[name])
+    tags = [np.full(len(cells), 1 + owner, dtype=np.int32) for owner, (_, cells) in zip(owners, blocks, strict=True)]
     if suffix == ".msh":
         groups = {"housing": np.array([1, 3])} | {name: np.array([tag, 2]) for tag, name in enumerate(names, start=2)}
         data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
         return meshio.Mesh(mesh.points, blocks, cell_data=data, field_data=groups)
     if suffix == ".inp":
-        nothing = np.empty(0, dtype=np.int64)
+        nothing, owned = np.empty(0, dtype=np.int64), list(zip(owners, blocks, strict=True))
         sets = {
-            name: [np.arange(len(cells)) if number == place else nothing for number, (_, cells) in enumerate(blocks)]
+            name: [np.arange(len(cells)) if owner == place else nothing for owner, (_, cells) in owned]
             for place, name in enumerate(names, start=1)
         }
         return meshio.Mesh(mesh.points, blocks, cell_sets=sets)
     if suffix in (".vtu", ".vtk"):
         return meshio.Mesh(mesh.points, blocks, cell_data={"region": [tag - 1 for tag in tags]})
-    return meshio.Mesh(mesh.points, blocks[:1])
+    return meshio.Mesh(mesh.points, blocks[: len(mesh.blocks)])
 
 
 def _region_names(content: Any) -> list[list[tuple[str, IntArray]]]:

@@ -5,100 +5,155 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from meshes.elements import ElementBlock, Facets, FloatArray, IntArray, count, facets_of
 from meshes.errors import GeometryError
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-
-# Faces of a tetrahedron: corners first, then the middle nodes of the edges between them, in VTK's node order.
-_TETRAHEDRON_FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
+from meshes.mapping import volumes
+from meshes.topology import FaceTable, face_table, faces_as_facets
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """A mesh of tetrahedra with named surfaces.
+    """A mesh of solid elements with named surfaces and volumes.
 
     Attributes
     ----------
     points : ndarray, shape (n_nodes, 3)
         Node coordinates [m].
-    cells : ndarray of int, shape (n_elements, 4) or (n_elements, 10)
-        Node numbers of each tetrahedron in VTK's order: four corners, then (order 2) the middle nodes of the
-        edges 01, 12, 02, 03, 13, 23.
-    surfaces : mapping of str to ndarray of int, shape (n_facets, 3) or (n_facets, 6)
-        Named parts of the surface as triangles: three corners, then the middle nodes of the edges 01, 12, 02.
+    blocks : tuple of ElementBlock
+        Solid elements, a block for each kind or part; elements are counted over all blocks in order.
+    surfaces : mapping of str to tuple of ElementBlock
+        Named parts of the surface, as facets.
     volumes : mapping of str to ndarray of int, shape (n,)
         Named groups of elements, as element numbers.
 
     Raises
     ------
     GeometryError
-        Where the arrays do not fit each other, a coordinate is not finite, or an element is inverted.
+        Where the arrays do not fit each other, a coordinate is not finite, or an element is inverted or flat.
     """
 
     points: FloatArray
-    cells: IntArray
-    surfaces: Mapping[str, IntArray] = field(default_factory=dict)
+    blocks: tuple[ElementBlock, ...]
+    surfaces: Mapping[str, Facets] = field(default_factory=dict)
     volumes: Mapping[str, IntArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.points.ndim != 2 or self.points.shape[1] != 3:
             raise GeometryError(f"mesh points have shape {self.points.shape}; expected (n_nodes, 3)")
-        if self.cells.ndim != 2 or self.cells.shape[1] not in (4, 10) or len(self.cells) == 0:
-            raise GeometryError(
-                f"mesh elements have shape {self.cells.shape}; expected (n_elements, 4) or (n_elements, 10)"
-            )
         if not np.isfinite(self.points).all():
             raise GeometryError("mesh points hold values that are not finite")
-        if self.cells.min() < 0 or self.cells.max() >= len(self.points):
-            raise GeometryError(f"mesh elements name nodes outside 0..{len(self.points) - 1}")
+        if self.n_elements == 0:
+            raise GeometryError("the mesh has no elements")
+        for block in self.blocks:
+            self._check_nodes(block, "the mesh", dimension=3)
         for name, facets in self.surfaces.items():
-            if facets.ndim != 2 or facets.shape[1] != 3 * self.order:
-                raise GeometryError(
-                    f"surface {name!r} has shape {facets.shape}; expected (n_facets, {3 * self.order}) on elements of "
-                    f"order {self.order}"
-                )
-            if facets.size and (facets.min() < 0 or facets.max() >= len(self.points)):
-                raise GeometryError(f"surface {name!r} names nodes outside 0..{len(self.points) - 1}")
+            for block in facets:
+                self._check_nodes(block, f"surface {name!r}", dimension=2)
         for name, members in self.volumes.items():
-            if members.size and (members.min() < 0 or members.max() >= len(self.cells)):
-                raise GeometryError(f"volume {name!r} names elements outside 0..{len(self.cells) - 1}")
-        inverted = int(np.count_nonzero(self.corner_volumes <= 0.0))
-        if inverted:
+            if members.size and (members.min() < 0 or members.max() >= self.n_elements):
+                raise GeometryError(f"volume {name!r} names elements outside 0..{self.n_elements - 1}")
+        wrong = np.flatnonzero(self.corner_volumes <= 0.0)
+        if len(wrong):
+            x, y, z = self.centers[wrong[0]]
             raise GeometryError(
-                f"{inverted} of {len(self.cells)} elements have no positive volume: they are inverted or flat"
+                f"{len(wrong)} of {self.n_elements} elements have no positive volume: they are inverted or flat, "
+                f"the first at ({x:.6g}, {y:.6g}, {z:.6g}) m"
             )
+
+    @classmethod
+    def of_tetrahedra(
+        cls,
+        points: FloatArray,
+        cells: IntArray,
+        surfaces: Mapping[str, IntArray] | None = None,
+        volumes: Mapping[str, IntArray] | None = None,
+    ) -> "Mesh":
+        """A mesh of tetrahedra of one order from plain arrays.
+
+        Parameters
+        ----------
+        points : ndarray, shape (n_nodes, 3)
+            [m].
+        cells : ndarray of int, shape (n_elements, 4) or (n_elements, 10)
+        surfaces : mapping of str to ndarray of int, shape (n_facets, 3) or (n_facets, 6)
+        volumes : mapping of str to ndarray of int, shape (n,)
+
+        Raises
+        ------
+        GeometryError
+            As :class:`Mesh`, and where the surfaces are of another order than the elements.
+        """
+        kind = {4: "tetra", 10: "tetra10"}.get(cells.shape[1] if cells.ndim == 2 else 0)
+        if kind is None:
+            raise GeometryError(f"mesh elements have shape {cells.shape}; expected (n_elements, 4) or (n_elements, 10)")
+        expected = 3 if kind == "tetra" else 6
+        for name, facets in (surfaces or {}).items():
+            if facets.ndim != 2 or facets.shape[1] != expected:
+                raise GeometryError(
+                    f"surface {name!r} has shape {facets.shape}; expected (n_facets, {expected}) on {kind} elements"
+                )
+        named = {name: facets_of(facets) for name, facets in (surfaces or {}).items()}
+        return cls(points, (ElementBlock(kind, cells),), named, volumes or {})
+
+    @property
+    def n_elements(self) -> int:
+        """Number of elements in all blocks."""
+        return count(self.blocks)
 
     @property
     def order(self) -> int:
-        """Polynomial order of the elements: 1 or 2."""
-        return 1 if self.cells.shape[1] == 4 else 2
+        """Highest polynomial order of the elements: 1 or 2."""
+        return max(block.of.order for block in self.blocks)
+
+    @property
+    def kinds(self) -> dict[str, int]:
+        """Number of elements of each kind."""
+        kinds: dict[str, int] = {}
+        for block in self.blocks:
+            kinds[block.kind] = kinds.get(block.kind, 0) + len(block)
+        return kinds
 
     @cached_property
     def corner_volumes(self) -> FloatArray:
         """Volume of each element between its corners [m³], shape (n_elements,); negative where inverted."""
-        corners = self.points[self.cells[:, :4]]
-        edges = corners[:, 1:] - corners[:, :1]
-        return np.asarray(np.linalg.det(edges) / 6.0)
+        return np.concatenate([volumes(self.points, block.corners, block.of.corners) for block in self.blocks])
 
     @cached_property
-    def boundary(self) -> IntArray:
-        """The facets that belong to one element only, outward, shape (n_facets, 3) or (n_facets, 6)."""
-        n_nodes = 3 if self.order == 1 else 6
-        facets = self.cells[:, _TETRAHEDRON_FACES[:, :n_nodes]].reshape(-1, n_nodes)
-        corners = np.sort(facets[:, :3], axis=1)
-        _, first, counts = np.unique(corners, axis=0, return_index=True, return_counts=True)
-        return np.asarray(facets[np.sort(first[counts == 1])])
+    def element_volumes(self) -> FloatArray:
+        """Volume of each element with its curved sides [m³], shape (n_elements,)."""
+        return np.concatenate([volumes(self.points, block.nodes, block.kind) for block in self.blocks])
+
+    @cached_property
+    def centers(self) -> FloatArray:
+        """Mean of each element's corners [m], shape (n_elements, 3)."""
+        return np.concatenate([self.points[block.corners].mean(axis=1) for block in self.blocks])
+
+    @cached_property
+    def faces(self) -> FaceTable:
+        """Every face of every element, and which of them are shared."""
+        return face_table(self.blocks)
+
+    @cached_property
+    def boundary(self) -> Facets:
+        """The facets that belong to one element only, outward: a block for each kind."""
+        return faces_as_facets(self.blocks, self.faces, np.flatnonzero(self.faces.sharing == 1))
 
     @property
     def bounds(self) -> FloatArray:
         """Smallest and largest coordinates [m], shape (2, 3)."""
-        used = self.points[np.unique(self.cells)]
+        used = self.points[self.used_nodes]
         return np.array([used.min(axis=0), used.max(axis=0)])
 
-    def surface(self, name: str) -> IntArray:
+    @property
+    def used_nodes(self) -> IntArray:
+        """The numbers of the nodes that belong to an element, ascending."""
+        used = np.zeros(len(self.points), dtype=bool)
+        for block in self.blocks:
+            used[block.nodes] = True
+        return np.flatnonzero(used)
+
+    def surface(self, name: str) -> Facets:
         """The facets of a named surface.
 
         Raises
@@ -110,3 +165,10 @@ class Mesh:
             known = ", ".join(sorted(self.surfaces)) or "none"
             raise GeometryError(f"the mesh has no surface {name!r}; it has: {known}")
         return self.surfaces[name]
+
+    def _check_nodes(self, block: ElementBlock, owner: str, dimension: int) -> None:
+        if block.of.dimension != dimension:
+            wanted = "solid elements" if dimension == 3 else "facets"
+            raise GeometryError(f"{owner} holds {block.kind} elements; expected {wanted}")
+        if len(block) and (block.nodes.min() < 0 or block.nodes.max() >= len(self.points)):
+            raise GeometryError(f"{owner} names nodes outside 0..{len(self.points) - 1}")

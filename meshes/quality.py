@@ -4,9 +4,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshes.elements import KINDS, ElementBlock, FloatArray
+from meshes.mapping import determinants, jacobians
 from meshes.mesh import Mesh
+from meshes.shapes import shape_functions
 
-_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
+# Edges of a corner tetrahedron of the ideal element, as columns: of a regular tetrahedron, of a cube and of a
+# right prism on an equilateral triangle, all of unit edge. A mean ratio does not depend on their size.
+_HALF, _ROOT = 0.5, np.sqrt(3.0) / 2.0
+_IDEAL = {
+    "tetra": np.array([[1.0, _HALF, _HALF], [0.0, _ROOT, _ROOT / 3.0], [0.0, 0.0, np.sqrt(2.0 / 3.0)]]),
+    "hexahedron": np.eye(3),
+    "wedge": np.array([[1.0, _HALF, 0.0], [0.0, _ROOT, 0.0], [0.0, 0.0, 1.0]]),
+}
 
 
 @dataclass(frozen=True)
@@ -20,8 +30,7 @@ class MeshQuality:
     edge_length : tuple of float
         Smallest, median and largest edge [m].
     shape : tuple of float
-        Smallest and median shape number, 1 for the regular tetrahedron and 0 for a flat one:
-        ``12 (3 V)^(2/3) / sum(edge²)``, the mean-ratio measure of Liu and Joe (1994).
+        Smallest and median shape number; see :func:`shape_numbers`.
     """
 
     volume: float
@@ -31,12 +40,38 @@ class MeshQuality:
 
 def mesh_quality(mesh: Mesh) -> MeshQuality:
     """Measure the elements of a mesh by their corners."""
-    corners = mesh.points[mesh.cells[:, :4]]
-    edges = np.linalg.norm(corners[:, _EDGES[:, 0]] - corners[:, _EDGES[:, 1]], axis=2)
-    volumes = mesh.corner_volumes
-    shape = 12.0 * (3.0 * volumes) ** (2.0 / 3.0) / (edges**2).sum(axis=1)
+    edges = np.concatenate([edge_lengths(mesh.points, block).ravel() for block in mesh.blocks])
+    shape = shape_numbers(mesh)
     return MeshQuality(
-        volume=float(volumes.sum()),
+        volume=float(mesh.corner_volumes.sum()),
         edge_length=(float(edges.min()), float(np.median(edges)), float(edges.max())),
         shape=(float(shape.min()), float(np.median(shape))),
     )
+
+
+def edge_lengths(points: FloatArray, block: ElementBlock) -> FloatArray:
+    """Distance between the ends of each edge [m], shape (n_elements, n_edges)."""
+    ends = points[block.nodes[:, block.of.edges]]
+    return np.asarray(np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2))
+
+
+def shape_numbers(mesh: Mesh) -> FloatArray:
+    """A number for each element's shape, 1 for the ideal and 0 for a flat one, shape (n_elements,).
+
+    The mean ratio 3 det(S)^(2/3) / |S|² (Liu and Joe 1994; Knupp 2001 for bricks and wedges), S the map from the
+    ideal element -- regular tetrahedron, cube, prism on an equilateral triangle -- and |S| its Frobenius norm; the
+    least over the element's corners, and 0 where the element is inverted at a corner.
+    """
+    return np.concatenate([_block_shape(mesh.points, block) for block in mesh.blocks])
+
+
+def _block_shape(points: FloatArray, block: ElementBlock) -> FloatArray:
+    corners = block.of.corners
+    places = np.array(KINDS[corners].places).T
+    if corners == "tetra":
+        places = places[:, :1]  # the map is the same all over
+    _, gradients = shape_functions(corners, places)
+    jacobian = jacobians(points, block.corners, gradients)
+    mapped = np.einsum("ijeq,jk->ikeq", jacobian, np.linalg.inv(_IDEAL[corners]))
+    volume = np.maximum(determinants(mapped), 0.0)
+    return np.asarray((3.0 * np.cbrt(volume) ** 2 / (mapped**2).sum(axis=(0, 1))).min(axis=1))

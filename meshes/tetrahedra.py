@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from meshes.elements import FloatArray, IntArray
 from meshes.errors import GeometryError
-from meshes.mesh import FloatArray, IntArray, Mesh
+from meshes.mesh import Mesh
 
 # gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
 _GMSH_TO_VTK = {4: [0, 1, 2, 3], 10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
@@ -103,7 +104,7 @@ class Tetrahedra:
         GeometryError
             Where an element is inverted.
         """
-        return Mesh(points=self.points, cells=self.cells, surfaces=self.surfaces, volumes=self.volumes)
+        return Mesh.of_tetrahedra(self.points, self.cells, self.surfaces, self.volumes)
 
 
 def collect(

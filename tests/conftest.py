@@ -1,14 +1,20 @@
-"""Shared by all tests: the record of published values beside ours, and the validation page made of it."""
+"""Shared by all tests: blocks of every kind of element, and published values beside ours with their page."""
 
 from collections import defaultdict
 from collections.abc import Callable
+from itertools import combinations_with_replacement
 from math import floor, log10
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
 import pytest
 
+from meshes import KINDS, ElementBlock, Mesh
+
 Published = Callable[..., None]
+BlockOf = Callable[..., Mesh]
 
 _VALUE = "published value"
 _REMARK = "remark on a source"
@@ -130,3 +136,45 @@ def _line(row: Row) -> str:
     scale, sign = (100.0, " %") if row.relative else (1.0, "")
     difference, tolerance = f"{scale * row.difference:+.2g}{sign}", f"±{scale * row.tolerance:.2g}{sign}"
     return f"| {row.quantity} | {value} | {ours} | {row.unit} | {difference} | {tolerance} |"
+
+
+@pytest.fixture(scope="session")
+def block_of() -> BlockOf:
+    """``block_of(kind, size, cells, bend)``: a block from the origin, of one kind of solid element.
+
+    Bricks in a grid, each cut into two wedges or six tetrahedra where the kind asks for it, the cut the same in all, so
+    that faces match. ``bend`` maps the nodes, middle ones too, so that edges become curved. Nothing here uses the
+    package's own shape functions: middle nodes are means of corners.
+    """
+    return _block_of
+
+
+# Of a brick's corners in VTK's order: both wedges along z, and three tetrahedra in each wedge.
+_WEDGES = [[0, 1, 2, 4, 5, 6], [0, 2, 3, 4, 6, 7]]
+_TETRAHEDRA = [[0, 1, 2, 6], [0, 5, 1, 6], [0, 4, 5, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6]]
+_CUTS = {"hexahedron": [list(range(8))], "wedge": _WEDGES, "tetra": _TETRAHEDRA}
+
+
+def _block_of(
+    kind: str,
+    size: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    cells: tuple[int, int, int] = (1, 1, 1),
+    bend: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]] = lambda points: points,
+) -> Mesh:
+    of = KINDS[kind]
+    brick = np.array(KINDS["hexahedron"].places)
+    grid = np.stack(np.meshgrid(*map(np.arange, cells), indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    corners = (grid + brick)[:, _CUTS[of.corners]].reshape(-1, of.n_corners, 3)
+    # In a brick of a regular grid every node is a corner or half way between two.
+    places = np.array(KINDS[of.corners].places)
+    ends = [_ends(np.array(place), places) for place in of.places]
+    nodes = np.stack([corners[:, pair].mean(axis=1) for pair in ends], axis=1)
+    lattice, inverse = np.unique(np.round(4 * nodes).astype(int).reshape(-1, 3), axis=0, return_inverse=True)
+    points = bend(lattice / 4 * np.array(size) / np.array(cells))
+    return Mesh(points, (ElementBlock(kind, inverse.reshape(len(corners), -1)),))
+
+
+def _ends(place: npt.NDArray[np.float64], corners: npt.NDArray[np.float64]) -> list[int]:
+    """Two corners whose mean a place is; the same corner twice where it is one."""
+    pairs = combinations_with_replacement(range(len(corners)), 2)
+    return next(list(pair) for pair in pairs if np.allclose(corners[list(pair)].mean(axis=0), place))

@@ -213,7 +213,7 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
         },
         "mesh": {
             "nodes": len(solved.mesh.points),
-            "elements": len(solved.mesh.cells),
+            "elements": solved.mesh.n_elements,
             "dofs": 3 * len(solved.mesh.points),
         },
         "mass_kg": solved.mass,

@@ -10,8 +10,8 @@ from meshes.box.geometry import BoxGeometry
 from meshes.box.layout import Block
 from meshes.box.parts import FACES
 from meshes.box.solid import BoxSolid
+from meshes.elements import FloatArray
 from meshes.errors import GeometryError
-from meshes.mesh import FloatArray
 
 Test = Callable[[str, FloatArray], bool]
 

@@ -4,7 +4,7 @@ The box stands in the global frame with its shafts along z. The origin is the mi
 the underside of its base in y; feet reach below y = 0.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -59,7 +59,7 @@ class BoxGeometry:
     feet: Feet | None = None
     ribs: tuple[Rib, ...] = ()
     cover: Cover | None = None
-    fillets: Fillets = Fillets()
+    fillets: Fillets = field(default_factory=Fillets)
 
     def __post_init__(self) -> None:
         wall = self.wall

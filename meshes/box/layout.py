@@ -107,10 +107,9 @@ def flange_block(box: BoxGeometry, cover: Cover) -> Block | None:
         return None
     normal, way = FACES[cover.face]
     plane = parting_plane(box, cover.face)
-    layer = plate_block(box, cover).replaced(
+    return plate_block(box, cover).replaced(
         normal, min(plane, plane - way * cover.flange.thickness), max(plane, plane - way * cover.flange.thickness)
     )
-    return layer
 
 
 def flange_sides(box: BoxGeometry, cover: Cover) -> tuple[Block, ...]:

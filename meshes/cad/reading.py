@@ -104,7 +104,7 @@ def mesh_cad(
             raise MesherUnavailableError(answer["unavailable"])
         if "error" in answer:
             raise GeometryError(f"CAD file {path}: {answer['error']}")
-        mesh = _load(folder / "mesh.npz").mesh()
+        mesh = _load(folder, answer["arrays"]).mesh()
     return CadMesh(mesh, tuple(answer["solids"]), answer["unit"], tuple(answer["remarks"]))
 
 
@@ -143,9 +143,9 @@ def _stage(folder: Path) -> str:
     return stage.read_text(encoding="utf-8") if stage.is_file() else "starting"
 
 
-def _load(path: Path) -> Tetrahedra:
-    with np.load(path, allow_pickle=False) as archive:
-        arrays = {str(name): archive[f"array{i}"] for i, name in enumerate(archive["names"])}
+def _load(folder: Path, names: list[str]) -> Tetrahedra:
+    """The mesh from the arrays that the worker wrote, in the order of their names."""
+    arrays = {name: np.load(folder / f"{number}.npy", allow_pickle=False) for number, name in enumerate(names)}
     return Tetrahedra(
         points=arrays["points"],
         cells=arrays["cells"],

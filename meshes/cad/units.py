@@ -58,7 +58,8 @@ def _step_unit(text: str) -> float | None:
 def _iges_unit(text: str) -> float | None:
     """Parameter 14 of the global section: a flag."""
     section = "".join(line[:72] for line in text.splitlines() if line[72:73] == "G")
-    fields, place, delimiter = [], 0, ","
+    fields: list[str] = []
+    place, delimiter = 0, ","
     while place < len(section) and len(fields) < 14:
         string = re.match(r"\s*(\d+)H", section[place:])
         if string is not None:  # a string is preceded by its length

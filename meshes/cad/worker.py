@@ -2,7 +2,7 @@
 
 OpenCASCADE writes to standard output and, given a damaged file, may end its process with a segmentation fault: so
 it gets a process of its own. What it found goes through a folder: ``request.json`` in; ``stage`` (what it is at),
-``answer.json`` and ``mesh.npz`` out.
+``answer.json`` and the mesh's arrays out.
 """
 
 import json
@@ -10,6 +10,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from meshes.cad.shape import Shape, conforming, extent, read_solids
 from meshes.cad.units import choose_unit
@@ -83,8 +85,8 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
         at("collecting its mesh")
         everything = {tag for tags in shape.solids.values() for tag in tags}
         volumes = {"housing": sorted(everything)} | shape.solids
-        _save(folder / "mesh.npz", collect(gmsh, request.order, shape.faces, volumes, unit=unit))
-        return {"solids": list(shape.solids), "unit": chosen.length, "remarks": list(chosen.remarks)}
+        arrays = _save(folder, collect(gmsh, request.order, shape.faces, volumes, unit=unit))
+        return {"solids": list(shape.solids), "unit": chosen.length, "remarks": chosen.remarks, "arrays": arrays}
 
 
 def _check_size(gmsh: Any, shape: Shape, mesh_size: float) -> None:
@@ -137,15 +139,14 @@ def _mesh(gmsh: Any, shape: Shape, request: Request, unit: float) -> None:
         )
 
 
-def _save(path: Path, mesh: Tetrahedra) -> None:
-    import numpy as np
-
+def _save(folder: Path, mesh: Tetrahedra) -> list[str]:
+    """Write the arrays of a mesh as ``0.npy`` and on, and return their names in that order."""
     arrays = {"points": mesh.points, "cells": mesh.cells}
     arrays |= {f"surface:{name}": facets for name, facets in mesh.surfaces.items()}
     arrays |= {f"volume:{name}": members for name, members in mesh.volumes.items()}
-    # Names may hold any character, the archive's entries may not: they go by number.
-    names = np.array(list(arrays))
-    np.savez(path, names=names, **{f"array{i}": array for i, array in enumerate(arrays.values())})
+    for number, array in enumerate(arrays.values()):
+        np.save(folder / f"{number}.npy", array, allow_pickle=False)
+    return list(arrays)
 
 
 if __name__ == "__main__":

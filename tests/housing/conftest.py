@@ -93,19 +93,20 @@ def _block(size: tuple[float, float, float], cells: tuple[int, int, int] = (1, 1
     edges = points[corners]
     negative = np.linalg.det(edges[:, 1:] - edges[:, :1]) < 0
     corners[negative] = corners[negative][:, [0, 1, 3, 2]]
-    linear = Mesh(points, corners)
+    linear = Mesh.of_tetrahedra(points, corners)
     mesh = linear if order == 1 else _quadratic(points, corners)
-    facets = mesh.boundary
-    height = mesh.points[facets[:, :3], 2]
+    (boundary,), (cells,) = mesh.boundary, mesh.blocks
+    facets = boundary.nodes
+    height = mesh.points[boundary.corners, 2]
     surfaces = {"bottom": facets[(height == 0).all(axis=1)], "top": facets[np.isclose(height, size[2]).all(axis=1)]}
-    return Mesh(mesh.points, mesh.cells, surfaces=surfaces)
+    return Mesh.of_tetrahedra(mesh.points, cells.nodes, surfaces)
 
 
 def _quadratic(points: npt.NDArray[np.float64], corners: npt.NDArray[np.int64]) -> Mesh:
     pairs = np.sort(corners[:, _EDGES], axis=2).reshape(-1, 2)
     unique, inverse = np.unique(pairs, axis=0, return_inverse=True)
     cells = np.hstack([corners, len(points) + inverse.reshape(-1, 6)])
-    return Mesh(np.vstack([points, points[unique].mean(axis=1)]), cells)
+    return Mesh.of_tetrahedra(np.vstack([points, points[unique].mean(axis=1)]), cells)
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from meshes import BoxGeometry, Mesh, WallThickness, mesh_box, mesh_quality
+from meshes import BoxGeometry, Mesh, WallThickness, facet_nodes, mesh_box, mesh_quality
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -43,7 +43,7 @@ def _lost(radius: float, segments: int, order: int) -> float:
 
 def _segments(mesh: Mesh, center: tuple[float, float, float], radius: float) -> int:
     """Corner nodes on the sparsest plane ring of a cylinder along z."""
-    corners = mesh.points[np.unique(mesh.cells[:, :4])]
+    corners = mesh.points[np.unique(mesh.blocks[0].nodes[:, :4])]
     on = np.abs(np.hypot(corners[:, 0] - center[0], corners[:, 1] - center[1]) - radius) < 1e-9
     near = np.sign(corners[:, 2]) == np.sign(center[2])
     heights = corners[on & near, 2]
@@ -82,7 +82,7 @@ def _isoparametric_volume(mesh: Mesh) -> float:
     rule = [(1 / 3, 1 / 3, 9 / 40)]
     rule += [(u, v, (155 - r) / 1200) for u, v in ((a, a), (1 - 2 * a, a), (a, 1 - 2 * a))]
     rule += [(u, v, (155 + r) / 1200) for u, v in ((b, b), (1 - 2 * b, b), (b, 1 - 2 * b))]
-    nodes = mesh.points[mesh.boundary]
+    nodes = mesh.points[mesh.boundary[0].nodes]
     total = 0.0
     for u, v, weight in rule:
         w = 1 - u - v
@@ -100,7 +100,9 @@ def test_plain_box_has_the_closed_volume_and_areas_exactly() -> None:
     assert mesh_quality(mesh).volume == pytest.approx(_volume(geometry), rel=1e-9)
     expected = {"left": 0.16 * 0.24, "right": 0.16 * 0.24, "bottom": 0.2 * 0.24, "top": 0.2 * 0.24}
     expected |= {"back": 0.2 * 0.16, "front": 0.2 * 0.16}
-    assert {name: _area(mesh.points, facets) for name, facets in mesh.surfaces.items()} == pytest.approx(expected)
+    assert {name: _area(mesh.points, facets[0].nodes) for name, facets in mesh.surfaces.items()} == pytest.approx(
+        expected
+    )
 
 
 def test_volume_within_the_chord_error_of_straight_facets(geometry: BoxGeometry, straight: Mesh) -> None:
@@ -147,13 +149,13 @@ def test_named_surfaces_have_their_closed_areas(
         expected[bore.name] = (2 * np.pi * radius * (end - start), 2 * shortening * 2 * np.pi * radius * (end - start))
     assert set(mesh.surfaces) == set(expected)
     for name, (area, allowed) in expected.items():
-        assert abs(_area(mesh.points, mesh.surfaces[name]) - area) <= allowed + 1e-9 * area, name
+        assert abs(_area(mesh.points, mesh.surfaces[name][0].nodes) - area) <= allowed + 1e-9 * area, name
 
 
 def test_feet_are_numbered_round_the_base(geometry: BoxGeometry, straight: Mesh) -> None:
     signs = {"foot-1": (-1, -1), "foot-2": (1, -1), "foot-3": (1, 1), "foot-4": (-1, 1)}
     for name, (x, z) in signs.items():
-        nodes = straight.points[np.unique(straight.surface(name))]
+        nodes = straight.points[facet_nodes(straight.surface(name))]
         np.testing.assert_allclose(nodes[:, 1], -0.02, atol=1e-12)
         assert (np.sign(nodes[:, 0]) == x).all()
         assert (np.sign(nodes[:, 2]) == z).all()
@@ -162,7 +164,7 @@ def test_feet_are_numbered_round_the_base(geometry: BoxGeometry, straight: Mesh)
 @pytest.mark.parametrize("order", [1, 2])
 def test_boundary_is_closed_and_looks_outward(straight: Mesh, curved: Mesh, order: int) -> None:
     mesh = straight if order == 1 else curved
-    a, b, c = np.moveaxis(mesh.points[mesh.boundary[:, :3]], 1, 0)
+    a, b, c = np.moveaxis(mesh.points[mesh.boundary[0].corners], 1, 0)
     normals = np.cross(b - a, c - a) / 2
     total = np.linalg.norm(normals, axis=1).sum()
     assert np.linalg.norm(normals.sum(axis=0)) < 1e-12 * total
@@ -172,38 +174,38 @@ def test_boundary_is_closed_and_looks_outward(straight: Mesh, curved: Mesh, orde
 
 
 def test_every_named_facet_belongs_to_the_boundary(curved: Mesh) -> None:
-    boundary = {tuple(sorted(facet)) for facet in curved.boundary.tolist()}
+    boundary = {tuple(sorted(facet)) for facet in curved.boundary[0].nodes.tolist()}
     for name, facets in curved.surfaces.items():
-        assert {tuple(sorted(facet)) for facet in facets.tolist()} <= boundary, name
+        assert {tuple(sorted(facet)) for facet in facets[0].nodes.tolist()} <= boundary, name
 
 
 def test_middle_nodes_follow_the_order_of_vtk(geometry: BoxGeometry, curved: Mesh) -> None:
-    middle = curved.points[curved.cells[:, _EDGES]].mean(axis=2)
-    placed = curved.points[curved.cells[:, 4:]]
+    middle = curved.points[curved.blocks[0].nodes[:, _EDGES]].mean(axis=2)
+    placed = curved.points[curved.blocks[0].nodes[:, 4:]]
     offset = np.linalg.norm(placed - middle, axis=2)
     round_ = np.zeros(len(curved.points), dtype=bool)
     for bore in geometry.bores:
         for diameter in (bore.diameter, *((bore.boss.diameter,) if bore.boss else ())):
             radius = np.hypot(curved.points[:, 0] - bore.center[0], curved.points[:, 1] - bore.center[1])
             round_ |= np.abs(radius - diameter / 2) < 1e-8
-    bent = round_[curved.cells[:, 4:]]
+    bent = round_[curved.blocks[0].nodes[:, 4:]]
     assert offset[~bent].max() < 1e-6  # gmsh itself is off by up to a few millionths of an edge
     assert bent.any()
     # A middle node on a circle is off its chord by the sagitta, less than half an edge.
-    edges = np.linalg.norm(np.diff(curved.points[curved.cells[:, _EDGES]], axis=2)[:, :, 0], axis=2)
+    edges = np.linalg.norm(np.diff(curved.points[curved.blocks[0].nodes[:, _EDGES]], axis=2)[:, :, 0], axis=2)
     assert (offset < 0.5 * edges).all()
 
 
 def test_middle_nodes_of_named_facets_lie_between_their_corners(curved: Mesh) -> None:
     for name in ("top", "foot-3", "left"):
-        facets = curved.points[curved.surface(name)]
+        facets = curved.points[curved.surface(name)[0].nodes]
         for middle, (i, j) in zip((3, 4, 5), ((0, 1), (1, 2), (0, 2)), strict=True):
             np.testing.assert_allclose(facets[:, middle], (facets[:, i] + facets[:, j]) / 2, atol=1e-6)
 
 
 def test_bore_nodes_lie_on_their_cylinder(geometry: BoxGeometry, curved: Mesh) -> None:
     for bore in geometry.bores:
-        nodes = curved.points[np.unique(curved.surface(bore.name))]
+        nodes = curved.points[facet_nodes(curved.surface(bore.name))]
         radius = np.hypot(nodes[:, 0] - bore.center[0], nodes[:, 1] - bore.center[1])
         np.testing.assert_allclose(radius, bore.diameter / 2, atol=1e-8)
         assert nodes[:, 2].min() == pytest.approx(geometry.bore_span(bore)[0], abs=1e-9)
@@ -213,12 +215,12 @@ def test_bore_nodes_lie_on_their_cylinder(geometry: BoxGeometry, curved: Mesh) -
 def test_the_same_geometry_gives_the_same_mesh(geometry: BoxGeometry, curved: Mesh) -> None:
     again = mesh_box(geometry, 0.02, order=2)
     assert np.array_equal(again.points, curved.points)
-    assert np.array_equal(again.cells, curved.cells)
-    assert all(np.array_equal(again.surfaces[name], curved.surfaces[name]) for name in curved.surfaces)
+    assert np.array_equal(again.blocks[0].nodes, curved.blocks[0].nodes)
+    assert all(np.array_equal(again.surface(name)[0].nodes, curved.surface(name)[0].nodes) for name in curved.surfaces)
 
 
 def test_every_node_is_used_and_edges_have_the_size_asked_for(curved: Mesh) -> None:
-    assert np.array_equal(np.unique(curved.cells), np.arange(len(curved.points)))
+    assert np.array_equal(np.unique(curved.blocks[0].nodes), np.arange(len(curved.points)))
     _, median, largest = mesh_quality(curved).edge_length
     assert 0.5 * 0.02 < median < 1.5 * 0.02
     assert largest < 3 * 0.02

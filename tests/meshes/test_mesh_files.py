@@ -20,7 +20,7 @@ def test_nodes_and_elements_come_back(straight: Mesh, curved: Mesh, tmp_path: Pa
     write_mesh(mesh, tmp_path / f"housing{ending}")
     back = read_mesh(tmp_path / f"housing{ending}")
     np.testing.assert_allclose(back.points, mesh.points, rtol=1e-14, atol=1e-16)
-    assert np.array_equal(back.cells, mesh.cells)
+    assert np.array_equal(back.blocks[0].nodes, mesh.blocks[0].nodes)
 
 
 @pytest.mark.parametrize("ending", [".msh", ".inp"])
@@ -29,16 +29,16 @@ def test_named_surfaces_come_back(curved: Mesh, tmp_path: Path, ending: str) -> 
     back = read_mesh(tmp_path / f"housing{ending}")
     assert set(back.surfaces) == set(curved.surfaces)
     for name, facets in curved.surfaces.items():
-        assert np.array_equal(back.surfaces[name], facets), name
+        assert np.array_equal(back.surface(name)[0].nodes, facets[0].nodes), name
 
 
 def test_region_numbers_are_written_for_paraview(curved: Mesh, tmp_path: Path) -> None:
     write_mesh(curved, tmp_path / "housing.vtu")
     content = meshio.read(tmp_path / "housing.vtu")
     regions = np.concatenate(content.cell_data["region"])
-    assert np.count_nonzero(regions == 0) == len(curved.cells)
+    assert np.count_nonzero(regions == 0) == len(curved.blocks[0].nodes)
     for number, name in enumerate(sorted(curved.surfaces), start=1):
-        assert np.count_nonzero(regions == number) == len(curved.surfaces[name])
+        assert np.count_nonzero(regions == number) == len(curved.surface(name)[0])
 
 
 def test_unit_scales_the_nodes(straight: Mesh, tmp_path: Path) -> None:
@@ -86,27 +86,27 @@ def test_missing_broken_and_unknown_files_are_named(tmp_path: Path) -> None:
         read_mesh(tmp_path / "empty.vtu")
 
 
-def test_a_file_without_tetrahedra_is_refused_with_what_it_holds(tmp_path: Path) -> None:
+def test_a_file_without_solids_is_refused_with_what_it_holds(tmp_path: Path) -> None:
     meshio.write(tmp_path / "skin.vtu", meshio.Mesh(POINTS, [("triangle", np.array([[0, 1, 2]]))]))
-    with pytest.raises(GeometryError, match=r"holds no tetrahedra.*it holds: triangle"):
+    with pytest.raises(GeometryError, match=r"holds no solid elements of tetra, .*; it holds: triangle"):
         read_mesh(tmp_path / "skin.vtu")
 
 
-def test_other_solids_beside_the_tetrahedra_are_not_dropped_in_silence(tmp_path: Path) -> None:
+def test_pyramids_are_not_dropped_in_silence(tmp_path: Path) -> None:
     points = np.vstack([POINTS, POINTS + [0.0, 0.0, 2.0]])
-    blocks = [("tetra", np.array([[0, 1, 2, 3]])), ("wedge", np.array([[0, 1, 2, 4, 5, 6]]))]
+    blocks = [("tetra", np.array([[0, 1, 2, 3]])), ("pyramid", np.array([[0, 1, 2, 4, 5]]))]
     meshio.write(tmp_path / "mixed.vtu", meshio.Mesh(points, blocks))
-    with pytest.raises(GeometryError, match="holds wedge beside tetra"):
+    with pytest.raises(GeometryError, match="holds pyramid elements, which are not known here"):
         read_mesh(tmp_path / "mixed.vtu")
 
 
 def test_left_handed_elements_are_turned(curved: Mesh, tmp_path: Path) -> None:
     # Seen in a mirror every element is left-handed, and so are its middle nodes' edges.
-    mirrored = meshio.Mesh(curved.points * [-1.0, 1.0, 1.0], [("tetra10", curved.cells)])
+    mirrored = meshio.Mesh(curved.points * [-1.0, 1.0, 1.0], [("tetra10", curved.blocks[0].nodes)])
     meshio.write(tmp_path / "mirrored.vtu", mirrored)
     back = read_mesh(tmp_path / "mirrored.vtu")
     assert mesh_quality(back).volume == pytest.approx(mesh_quality(curved).volume, rel=1e-12)
-    corners, middles = back.points[back.cells[:, :4]], back.points[back.cells[:, 4:]]
+    corners, middles = back.points[back.blocks[0].nodes[:, :4]], back.points[back.blocks[0].nodes[:, 4:]]
     edges = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]]
     offset = np.linalg.norm(corners[:, edges].mean(axis=2) - middles, axis=2)
     # A node moved to another edge would be off by about half an edge; a node on a bore is off by its sagitta.
@@ -139,5 +139,5 @@ def test_physical_groups_of_gmsh_are_read_once(tmp_path: Path, version: float) -
         counts = [len(gmsh.model.mesh.getElementsByType(2, face)[0]) for face in faces[:3]]
         elements = len(gmsh.model.mesh.getElementsByType(4)[0])
     mesh = read_mesh(path)
-    assert {name: len(facets) for name, facets in mesh.surfaces.items()} == {"one": counts[0], "three": sum(counts)}
+    assert {name: len(facets[0]) for name, facets in mesh.surfaces.items()} == {"one": counts[0], "three": sum(counts)}
     np.testing.assert_array_equal(np.sort(mesh.volumes["solid"]), np.arange(elements))

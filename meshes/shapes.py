@@ -1,0 +1,149 @@
+"""Shape functions and quadrature of every kind of element, from scikit-fem, with the nodes in VTK's order.
+
+scikit-fem numbers nodes in its own way; the two orders are matched by the places of the nodes in the reference
+element. What it does not have is made here: the fifteen-node wedge, and a quadrature for wedges, the product of those
+of a triangle and a line.
+"""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from meshes.elements import KINDS, FloatArray
+
+
+def shape_functions(kind: str, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Shape functions at points of the reference element.
+
+    Parameters
+    ----------
+    kind : str
+    points : ndarray, shape (dimension, n_points)
+        Reference coordinates.
+
+    Returns
+    -------
+    values : ndarray, shape (n_points, n_nodes)
+    gradients : ndarray, shape (n_points, n_nodes, dimension)
+        By the reference coordinates.
+    """
+    element, order = _element(kind)
+    pairs = [element.lbasis(points, number) for number in order]
+    shape = (points.shape[1],)
+    values = np.array([np.broadcast_to(value, shape) for value, _ in pairs]).T
+    gradients = np.array([np.broadcast_to(np.asarray(gradient), points.shape) for _, gradient in pairs])
+    return np.ascontiguousarray(values), np.ascontiguousarray(gradients.transpose(2, 0, 1))
+
+
+@cache
+def quadrature(kind: str, degree: int) -> tuple[FloatArray, FloatArray]:
+    """Points and weights on the reference element.
+
+    Triangles and tetrahedra are integrated exactly to a total degree, quadrilaterals and hexahedra to that degree in
+    each coordinate, wedges to that degree in the triangle and along the axis.
+
+    Returns
+    -------
+    points : ndarray, shape (dimension, n_points)
+    weights : ndarray, shape (n_points,)
+        Their sum is the volume of the reference element.
+    """
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefHex, RefLine, RefQuad, RefTet, RefTri
+
+    corners = KINDS[kind].corners
+    if corners == "wedge":
+        across, across_weights = get_quadrature(RefTri, max(degree, 1))
+        along, along_weights = get_quadrature(RefLine, max(degree, 1))
+        n_across, n_along = len(across_weights), len(along_weights)
+        points = np.vstack([np.repeat(across, n_along, axis=1), np.tile(along, n_across)])
+        return points, np.outer(across_weights, along_weights).ravel()
+    domain = {"triangle": RefTri, "quad": RefQuad, "tetra": RefTet, "hexahedron": RefHex}[corners]
+    points, weights = get_quadrature(domain, max(degree, 1))
+    return np.asarray(points), np.asarray(weights)
+
+
+def reference_element(kind: str) -> Any:
+    """scikit-fem's element of a kind; see :func:`node_order` for its numbering.
+
+    Returns
+    -------
+    skfem.Element
+    """
+    import skfem
+
+    if kind == "wedge15":
+        return _wedge15()
+    return {
+        "triangle": skfem.ElementTriP1,
+        "triangle6": skfem.ElementTriP2,
+        "quad": skfem.ElementQuad1,
+        "quad8": skfem.ElementQuadS2,
+        "quad9": skfem.ElementQuad2,
+        "tetra": skfem.ElementTetP1,
+        "tetra10": skfem.ElementTetP2,
+        "hexahedron": skfem.ElementHex1,
+        "hexahedron20": skfem.ElementHexS2,
+        "hexahedron27": skfem.ElementHex2,
+        "wedge": skfem.ElementWedge1,
+    }[kind]()
+
+
+def node_order(kind: str) -> list[int]:
+    """For each node in VTK's order, its number in scikit-fem's element."""
+    return _element(kind)[1]
+
+
+@cache
+def _element(kind: str) -> tuple[Any, list[int]]:
+    element, places = reference_element(kind), np.array(KINDS[kind].places)
+    apart = np.abs(places[:, None] - np.asarray(element.doflocs)[None]).max(axis=2)
+    order = np.argmin(apart, axis=1).tolist()
+    assert apart.min(axis=1).max() < 1e-12, kind
+    assert sorted(order) == list(range(len(places))), kind
+    return element, order
+
+
+def _wedge15() -> Any:
+    """The quadratic serendipity wedge as an element in scikit-fem's form, nodes in VTK's order.
+
+    With the triangle's coordinates L = (1 - x - y, x, y), the bottom 1 - z and the top z, its functions are
+
+        corner of the bottom:  L_i (1 - z) (2 L_i - 2 z - 1)        and of the top with z for 1 - z,
+        middle on the bottom:  4 L_i L_j (1 - z)                    and of the top with z for 1 - z,
+        middle upright:        4 L_i z (1 - z).
+    """
+    from skfem.element import ElementH1
+    from skfem.refdom import RefWedge
+
+    class ElementWedge15(ElementH1):  # type: ignore[misc]
+        nodal_dofs = 1
+        edge_dofs = 1
+        maxdeg = 4
+        dofnames = ("u", "u")
+        doflocs = np.array(KINDS["wedge15"].places)
+        refdom = RefWedge
+
+        def lbasis(self, points: FloatArray, number: int) -> tuple[FloatArray, FloatArray]:
+            """Value and gradient of one shape function."""
+            x, y, z = points
+            flat = (1.0 - x - y, x, y)
+            slopes = ((-1.0, -1.0), (1.0, 0.0), (0.0, 1.0))
+            top = number in (3, 4, 5, 9, 10, 11)
+            height, rise = (z, 1.0) if top else (1.0 - z, -1.0)
+            if number < 6:
+                share, (by_x, by_y) = flat[number % 3], slopes[number % 3]
+                bracket = 2.0 * share + 2.0 * height - 3.0
+                by_share = height * (bracket + 2.0 * share)
+                by_height = share * (bracket + 2.0 * height)
+                return share * height * bracket, np.array([by_share * by_x, by_share * by_y, by_height * rise])
+            if number < 12:
+                i, j = ((0, 1), (1, 2), (2, 0))[number % 3]
+                across = [4.0 * height * (flat[i] * slopes[j][k] + flat[j] * slopes[i][k]) for k in range(2)]
+                return 4.0 * flat[i] * flat[j] * height, np.array([*across, 4.0 * flat[i] * flat[j] * rise])
+            share, (by_x, by_y) = flat[number % 3], slopes[number % 3]
+            bubble = 4.0 * z * (1.0 - z)
+            return share * bubble, np.array([bubble * by_x, bubble * by_y, 4.0 * share * (1.0 - 2.0 * z)])
+
+    return ElementWedge15()
