@@ -20,6 +20,8 @@ from rotors import LateralModes, TorsionalModes
 
 FloatArray = npt.NDArray[np.float64]
 
+_ROUNDING = 1e-10  # part of the largest entry that a damping matrix may miss of being symmetric and without gain
+
 
 @dataclass(frozen=True)
 class Component:
@@ -118,9 +120,10 @@ def housing_component(
     seats: Mapping[str, FloatArray],
     seat_z: Mapping[str, float],
     sensors: Mapping[str, FloatArray],
+    damping_matrix: FloatArray | None = None,
     name: str = "housing",
 ) -> HousingComponent:
-    """The housing from its modes: K = diag(ω²), C = diag(2 ζ ω).
+    """The housing from its modes: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
 
     Parameters
     ----------
@@ -130,21 +133,43 @@ def housing_component(
         Parts of critical.
     seats, seat_z, sensors
         See :class:`HousingComponent`.
+    damping_matrix : ndarray, shape (n, n), optional
+        Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the modes.
+
+    Raises
+    ------
+    CouplingError
+        Where the damping does not fit the modes, or the matrix would drive them.
     """
     omega = modes.frequencies
     if damping_ratios.shape != omega.shape:
         raise CouplingError(f"{len(damping_ratios)} damping ratios for {len(omega)} housing modes; expected as many")
     n = len(omega)
+    damping = np.diag(2.0 * damping_ratios * omega)
+    if damping_matrix is not None:
+        _check_damping(damping_matrix, n)
+        damping = damping + damping_matrix
     return HousingComponent(
         name=name,
         kinds=("housing",) * n,
         stiffness=np.diag(omega**2),
-        damping=np.diag(2.0 * damping_ratios * omega),
+        damping=damping,
         gyroscopic=np.zeros((n, n)),
         seats=seats,
         seat_z=seat_z,
         sensors=sensors,
     )
+
+
+def _check_damping(matrix: FloatArray, n: int) -> None:
+    """Refuse a damping matrix of another order, or one that is not symmetric and free of gain."""
+    if matrix.shape != (n, n):
+        raise CouplingError(f"damping matrix of shape {matrix.shape} for {n} housing modes; expected ({n}, {n})")
+    scale = float(np.abs(matrix).max(initial=0.0))
+    if not np.isfinite(scale) or np.abs(matrix - matrix.T).max(initial=0.0) > _ROUNDING * scale:
+        raise CouplingError("the damping matrix of the housing modes is not symmetric, or not finite")
+    if n and np.linalg.eigvalsh(matrix)[0] < -_ROUNDING * n * scale:
+        raise CouplingError("the damping matrix of the housing modes has a negative eigenvalue: it feeds energy in")
 
 
 def rotor_component(

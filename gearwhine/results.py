@@ -84,7 +84,7 @@ def _housing(solved: SolvedHousing, variables: Variables, coordinates: Variables
     coordinates["component"] = ("component", ["x", "y", "z"], {})
     mode = "housing_mode"
     variables["housing_frequency"] = (mode, solved.modes.frequencies_hz, _unit("Hz", "housing natural frequency"))
-    variables["housing_damping_ratio"] = (mode, solved.damping_ratios, _unit("1", "housing modal damping ratio"))
+    variables["housing_damping_ratio"] = (mode, solved.total_damping_ratios, _unit("1", "housing modal damping ratio"))
     if solved.strengths is not None:
         strength = solved.strengths.acceleration
         variables["housing_strength"] = (mode, strength, _unit("kg-1", "lateral acceleration strength"))

@@ -93,7 +93,27 @@ def _housing_lines(housing: dict[str, Any]) -> list[str]:
     limit, count = housing["frequency_limit_hz"], housing["modes"]
     wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {count or 20} modes"
     lines = [f"{shape}, {housing['material']}; {wanted}"]
-    return lines + [f"{kind}: {', '.join(housing[kind])}" for kind in ("seats", "supports", "sensors") if housing[kind]]
+    lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("seats", "supports") if housing[kind]]
+    for kind in ("mounts", "joints"):
+        lines += [_bushing_line(kind[:-1], one) for one in housing[kind]]
+    if housing["masses"]:
+        lines.append("masses: " + ", ".join(f"{one['name']} {one['mass_kg']:g} kg" for one in housing["masses"]))
+    return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
+
+
+def _bushing_line(kind: str, bushing: dict[str, Any]) -> str:
+    between = f" ({' to '.join(bushing['surfaces'])})" if "surfaces" in bushing else ""
+    parts = [
+        f"{motion} {amount:.4g} {unit}"
+        for key, unit in (
+            ("stiffness_n_per_m", "N/m"),
+            ("stiffness_n_m_per_rad", "N·m/rad"),
+            ("damping_n_s_per_m", "N·s/m"),
+            ("damping_n_m_s_per_rad", "N·m·s/rad"),
+        )
+        for motion, amount in bushing.get(key, {}).items()
+    ]
+    return f"{kind} {bushing['name']}{between}: {', '.join(parts)}"
 
 
 def _rotor_line(rotor: dict[str, Any]) -> str:

@@ -1,11 +1,13 @@
-"""Stiffness and mass of a housing as sparse matrices of 3 x 3 blocks between pairs of nodes."""
+"""Stiffness, mass and damping of a housing as sparse matrices of 3 x 3 blocks between pairs of nodes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
+
+from housing.node_blocks import NOTHING, Additions, NodeBlocks
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int32]
@@ -15,22 +17,31 @@ IntArray = npt.NDArray[np.int32]
 class Matrices:
     """Stiffness and mass on one sparsity pattern of 3 x 3 blocks, rows in order (block compressed sparse rows).
 
+    The solid's own mass is scalar, m ⊗ I₃, and it has no damping; what is attached to it (a rigid body, a dashpot)
+    has neither of these forms and stands beside.
+
     Attributes
     ----------
     pointer : ndarray of int, shape (n_nodes + 1,)
         Where each node's row of blocks begins.
     neighbors : ndarray of int, shape (n_blocks,)
-        The column node of each block.
+        The column node of each block, ascending within a row.
     blocks : ndarray, shape (n_blocks, 3, 3)
-        Stiffness K [N/m].
+        Stiffness K [N/m], attachments included.
     node_mass : ndarray, shape (n_blocks,)
-        Scalar mass m [kg]; M = m ⊗ I₃.
+        Scalar mass m of the solid [kg].
+    attached_mass : NodeBlocks
+        Mass beyond m ⊗ I₃ [kg], on pairs of the pattern.
+    attached_damping : NodeBlocks
+        C [N s/m].
     """
 
     pointer: IntArray
     neighbors: IntArray
     blocks: FloatArray
     node_mass: FloatArray
+    attached_mass: NodeBlocks = NOTHING
+    attached_damping: NodeBlocks = NOTHING
 
     @property
     def n_nodes(self) -> int:
@@ -39,23 +50,78 @@ class Matrices:
 
     @property
     def total_mass(self) -> float:
-        """∫ ρ dV [kg]."""
-        return float(self.node_mass.sum())
+        """∫ ρ dV and the masses attached [kg]."""
+        return float(self.node_mass.sum() + np.trace(self.attached_mass.resultant) / 3.0)
 
     @cached_property
     def stiffness(self) -> sparse.csr_array:
-        """K [N/m], shape (3 n_nodes, 3 n_nodes), symmetric."""
+        """K [N/m], shape (3 n_nodes, 3 n_nodes), symmetric, on the whole pattern."""
         return self._matrix(self.blocks)
 
     @cached_property
     def mass(self) -> sparse.csr_array:
-        """M [kg], shape (3 n_nodes, 3 n_nodes), symmetric positive definite."""
+        """M [kg], shape (3 n_nodes, 3 n_nodes), symmetric positive definite; entries that m ⊗ I₃ leaves out are out."""
         scalar = sparse.csr_array((self.node_mass, self.neighbors, self.pointer))
-        return sparse.csr_array(sparse.kron(scalar, sparse.eye_array(3), format="csr"))
+        solid = sparse.csr_array(sparse.kron(scalar, sparse.eye_array(3), format="csr"))
+        if not len(self.attached_mass):
+            return solid
+        return sparse.csr_array(solid + self.attached_mass.matrix(self.n_nodes))
+
+    @cached_property
+    def damping(self) -> sparse.csr_array:
+        """C [N s/m] of what is attached, shape (3 n_nodes, 3 n_nodes), symmetric; empty where nothing damps."""
+        return self.attached_damping.matrix(self.n_nodes)
 
     def shifted(self, shift: float) -> sparse.csr_array:
         """K - shift M, always on the same pattern, whatever the shift [rad²/s²]."""
-        return self._matrix(self.blocks - shift * self.node_mass[:, None, None] * np.eye(3))
+        blocks = self.blocks - shift * self.node_mass[:, None, None] * np.eye(3)
+        if len(self.attached_mass):
+            blocks[self._attached_slots] -= shift * self.attached_mass.blocks
+        return self._matrix(blocks)
+
+    def plus(self, additions: Additions) -> "Matrices":
+        """The matrices with something attached.
+
+        Pairs of nodes that share no element and are now tied, by stiffness or by mass, join the pattern.
+        """
+        stiffness, mass = additions.stiffness, additions.mass
+        own = self._keys
+        keys = np.union1d(own, np.concatenate([self._keys_of(stiffness), self._keys_of(mass)]))
+        pointer, neighbors, blocks, node_mass = self.pointer, self.neighbors, self.blocks, self.node_mass
+        if len(keys) > len(own):
+            row, column = np.divmod(keys, self.n_nodes)
+            pointer = np.searchsorted(row, np.arange(self.n_nodes + 1)).astype(np.int32)
+            neighbors = column.astype(np.int32)
+            kept = np.searchsorted(keys, own)
+            blocks, node_mass = np.zeros((len(keys), 3, 3)), np.zeros(len(keys))
+            blocks[kept], node_mass[kept] = self.blocks, self.node_mass
+        elif len(stiffness):
+            blocks = blocks.copy()
+        if len(stiffness):
+            blocks[np.searchsorted(keys, self._keys_of(stiffness))] += stiffness.blocks
+        return replace(
+            self,
+            pointer=pointer,
+            neighbors=neighbors,
+            blocks=blocks,
+            node_mass=node_mass,
+            attached_mass=self.attached_mass + mass,
+            attached_damping=self.attached_damping + additions.damping,
+        )
+
+    @cached_property
+    def _keys(self) -> npt.NDArray[np.int64]:
+        """A number for each pair of nodes of the pattern, ascending, shape (n_blocks,)."""
+        row = np.repeat(np.arange(self.n_nodes, dtype=np.int64), np.diff(self.pointer))
+        return row * self.n_nodes + self.neighbors
+
+    def _keys_of(self, blocks: NodeBlocks) -> npt.NDArray[np.int64]:
+        return blocks.rows * self.n_nodes + blocks.columns
+
+    @cached_property
+    def _attached_slots(self) -> npt.NDArray[np.int64]:
+        """Where the attached mass stands in the pattern."""
+        return np.searchsorted(self._keys, self._keys_of(self.attached_mass))
 
     def _matrix(self, blocks: FloatArray) -> sparse.csr_array:
         order = 3 * self.n_nodes

@@ -1,8 +1,10 @@
 """Natural modes of the housing, with the proof that none is missing.
 
-Shift-invert Lanczos (ARPACK's, through scipy) on K φ = λ M φ, about a shift just below zero, which keeps the
-shifted matrix positive definite for a free body too. The proof is Sylvester's law of inertia: the number of
-negative pivots in K - σM = L D Lᵀ is the number of eigenvalues below σ, however many of them coincide.
+Block Lanczos on the shifted inverse of K φ = λ M φ (:mod:`housing.lanczos`). The proof is Sylvester's law of inertia:
+the number of negative pivots in K - σM = L D Lᵀ is the number of eigenvalues below σ, however many of them coincide.
+A limit is itself the shift, so that one factor both counts the modes below it and finds them; for a number of modes
+the shift lies just below zero, which keeps the shifted matrix positive definite for a free body too, and a second
+factor counts up to the gap behind the last.
 """
 
 import time
@@ -12,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
-from housing.factorization import Backend, Factorization, Factorizer
+from housing.factorization import Backend, Factorizer
+from housing.lanczos import shift_invert
 from housing.matrices import Matrices
 
 FloatArray = npt.NDArray[np.float64]
@@ -25,8 +27,8 @@ RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
 _ATTEMPTS = 3
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
-_SHIFT = 0.06  # part of the limit: its square is small beside the wanted eigenvalues
-_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: the shift stays above it, well clear of the rounding of K
+_FLOOR = 0.06  # part of the limit: its square is small beside the wanted eigenvalues
+_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
 
 
 @dataclass(frozen=True)
@@ -42,8 +44,8 @@ class Certificate:
     found : int
         Modes in the set.
     max_residual : float
-        Largest of |K φ - λ M φ| / ((λ + limit² + |shift|) |M φ|): the limit gives rigid modes a scale too, and the
-        shift is never so small that the rounding of K alone would exceed the bound.
+        Largest of |K φ - λ M φ| / ((λ + limit² + floor) |M φ|): the limit gives rigid modes a scale too, and the
+        floor is never so small that the rounding of K alone would exceed the bound.
     max_overlap : float
         Largest |φᵢᵀ M φⱼ| of two modes: without it one mode found twice would hide another that is missing.
     """
@@ -142,37 +144,39 @@ def solve_modes(
     start = time.perf_counter()
     factorizer = Factorizer(reduced.shifted(0.0), backend=backend, threads=threads)
     expected = 0
-    shift = -_ROUNDING * float(np.max(reduced.stiffness.diagonal() / reduced.mass.diagonal()))
+    # Far above the rounding of K, and its root small beside the wanted frequencies.
+    floor = _ROUNDING * float(np.max(reduced.stiffness.diagonal() / reduced.mass.diagonal()))
     if frequency_limit is not None:
-        progress("counting the modes below the limit")
-        expected = factorizer.factor(reduced.shifted(frequency_limit**2)).negative
+        floor = max(floor, (_FLOOR * frequency_limit) ** 2)
+    above = frequency_limit is not None
+    shift = -floor if frequency_limit is None else frequency_limit**2
+    progress("counting the modes below the limit" if above else "factoring")
+    factor = factorizer.factor(reduced.shifted(shift))
+    if frequency_limit is not None:
+        expected = factor.negative
         if expected == 0:
             raise HousingError(f"the housing has no mode below {frequency_limit / (2 * np.pi):g} Hz; raise the limit")
         if expected == len(free):
             raise HousingError(
                 f"every mode of the mesh lies below {frequency_limit / (2 * np.pi):g} Hz; lower the limit or refine"
             )
-        shift = min(shift, -((_SHIFT * frequency_limit) ** 2))
-    progress("factoring")
-    factor = factorizer.factor(reduced.shifted(shift))
-    if factor.negative:
-        raise FactorizationError(
-            f"K - {shift:g} M has {factor.negative} negative pivots; the stiffness is not positive semidefinite"
-        )
+    elif factor.negative:
+        raise _not_a_stiffness(f"K - {shift:g} M has {factor.negative} negative pivots")
     factored = time.perf_counter() - start
     start = time.perf_counter()
     progress(f"searching {expected or count} modes")
     for attempt in range(_ATTEMPTS):
-        wanted = (count or expected) + (2 if count is not None else 0) + 2 * attempt
-        values, vectors = _lanczos(reduced, factor, shift, min(wanted, len(free) - 1), attempt)
+        # Two more than asked for, to see the gap behind the last; of all below a limit there are no more.
+        wanted = expected if count is None else min(count + 2 + 2 * attempt, len(free) - 1)
+        values, vectors = shift_invert(factor.solve, reduced.mass, shift, wanted, above=above, seed=attempt)
         if frequency_limit is not None:
             limit = frequency_limit
         else:
             assert count is not None
-            limit = _gap_after(values, count, -shift)
+            limit = _gap_after(values, count, floor)
             expected = factorizer.factor(reduced.shifted(limit**2)).negative if limit > 0.0 else -1
         keep = values < limit**2
-        residual, overlap = _proofs(reduced, values[keep], vectors[:, keep], limit**2 - shift)
+        residual, overlap = _proofs(reduced, values[keep], vectors[:, keep], limit**2 + floor)
         certificate = Certificate(limit, expected, int(keep.sum()), residual, overlap)
         if certificate.complete:
             break
@@ -182,10 +186,12 @@ def solve_modes(
             f"{certificate.expected}, largest residual {certificate.max_residual:.1e}, largest overlap "
             f"{certificate.max_overlap:.1e}; move the limit a little or refine the mesh"
         )
+    values = values[keep]
+    values[np.abs(values) < 1e-6 * floor] = 0.0
+    if values[0] < -floor:
+        raise _not_a_stiffness(f"the lowest eigenvalue of K is {values[0]:g} rad²/s²")
     shapes = np.zeros((certificate.found, 3 * matrices.n_nodes))
     shapes[:, free] = _oriented(vectors[:, keep]).T
-    values = values[keep]
-    values[np.abs(values) < 1e-6 * -shift] = 0.0
     return ModeSet(
         frequencies=np.sqrt(np.maximum(values, 0.0)),
         shapes=shapes.reshape(len(shapes), -1, 3),
@@ -193,6 +199,10 @@ def solve_modes(
         seconds={"factorisation": factored, "eigensolver": time.perf_counter() - start},
         backend=factor.backend,
     )
+
+
+def _not_a_stiffness(what: str) -> FactorizationError:
+    return FactorizationError(f"{what}; the stiffness is not positive semidefinite")
 
 
 class _Reduced:
@@ -219,31 +229,6 @@ def _free_freedoms(size: int, fixed: IntArray | None) -> IntArray:
     if held.all():
         raise HousingError("every degree of freedom is fixed")
     return np.flatnonzero(~held)
-
-
-def _lanczos(
-    reduced: _Reduced, factor: Factorization, shift: float, count: int, attempt: int
-) -> tuple[FloatArray, FloatArray]:
-    size = factor.size
-    try:
-        values, vectors = eigsh(
-            reduced.stiffness,
-            k=count,
-            M=reduced.mass,
-            sigma=shift,
-            OPinv=LinearOperator((size, size), matvec=factor.solve, dtype=np.float64),
-            v0=np.random.default_rng(attempt).standard_normal(size),
-            ncv=min(size, max(2 * count + 10, 24)),
-            tol=0.0,
-        )
-    except ArpackNoConvergence as error:
-        raise IncompleteModesError(
-            f"Lanczos found {len(error.eigenvalues)} of {count} modes and stopped; ask for fewer, or refine the mesh"
-        ) from error
-    order = np.argsort(values)
-    vectors = vectors[:, order]
-    vectors /= np.sqrt(np.einsum("ij,ij->j", vectors, reduced.mass @ vectors))
-    return values[order], vectors
 
 
 def _proofs(reduced: _Reduced, values: FloatArray, vectors: FloatArray, scale: float) -> tuple[float, float]:

@@ -1,8 +1,8 @@
 """Ports: the few motions of the housing that the rest of the machine sees.
 
 A bearing seat moves as the rigid motion nearest to its surface's own, in the mean over the area; a sensor moves
-as the point it is glued to. Both are linear in the nodes' displacements u, ``motion = P u``, and a load on the
-port acts on the nodes by the transpose, so the work done is the same on both sides.
+as the point it is glued to (:mod:`housing.patches`). Both are linear in the nodes' displacements u,
+``motion = P u``, and a load on the port acts on the nodes by the transpose, so the work done is the same on both sides.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,8 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import HousingError
-from housing.surface import surface_point, surface_quadrature
+from housing.patches import patch_matrix, point_matrix
+from housing.surface import surface_point
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -75,10 +76,7 @@ class SensorPort:
 
 
 def seat_matrix(mesh: Mesh, seat: Seat) -> sparse.csr_array:
-    """The rigid motion of a seat from the nodes' displacements.
-
-    The six motions r = (translation, rotation) minimise ∫ |u - R r|² dA over the seat's surface, with R the
-    rigid field R r = translation + rotation x (x - centre): P = (∫ Rᵀ R dA)⁻¹ ∫ Rᵀ N dA.
+    """The rigid motion of a seat at its centre from the nodes' displacements; see :func:`housing.patches.patch_matrix`.
 
     Returns
     -------
@@ -89,33 +87,7 @@ def seat_matrix(mesh: Mesh, seat: Seat) -> sparse.csr_array:
     HousingError
         Where the seat's surface does not span a rigid motion.
     """
-    patches = surface_quadrature(mesh, mesh.surface(seat.name))
-    fields = [_rigid_fields(patch.points - np.array(seat.center)) for patch in patches]
-    gram = np.zeros((6, 6))
-    for patch, rigid in zip(patches, fields, strict=True):
-        gram += np.einsum("fqir,fqis,fq->rs", rigid, rigid, patch.areas)
-    scale = np.sqrt(np.outer(gram.diagonal(), gram.diagonal()))
-    if not (scale > 0.0).all() or np.linalg.cond(gram / scale) > 1e8:
-        raise HousingError(f"the surface of seat {seat.name!r} is too small to tell its rotations")
-    parts = []
-    for patch, rigid in zip(patches, fields, strict=True):
-        loads = np.einsum("fqir,qa,fq->rfai", rigid, patch.shape_values, patch.areas, optimize=True)
-        weights = np.linalg.solve(gram, loads.reshape(6, -1))
-        columns = (3 * patch.facets[:, :, None] + np.arange(3)).ravel()
-        entries = (weights.ravel(), (np.repeat(np.arange(6), len(columns)), np.tile(columns, 6)))
-        parts.append(sparse.csr_array(sparse.coo_array(entries, shape=(6, 3 * len(mesh.points)))))
-    return sparse.csr_array(sum(parts[1:], parts[0]))
-
-
-def _rigid_fields(arm: FloatArray) -> FloatArray:
-    """Displacements of six rigid motions at places relative to the centre, shape (..., 3) to (..., 3, 6)."""
-    rigid = np.zeros((*arm.shape, 6))
-    rigid[..., :3] = np.eye(3)
-    x, y, z = np.moveaxis(arm, -1, 0)
-    rigid[..., 0, 4], rigid[..., 0, 5] = z, -y
-    rigid[..., 1, 3], rigid[..., 1, 5] = -z, x
-    rigid[..., 2, 3], rigid[..., 2, 4] = y, -x
-    return rigid
+    return patch_matrix(mesh, mesh.surface(seat.name), np.array(seat.center), name=f"seat {seat.name!r}")
 
 
 def sensor_port(mesh: Mesh, sensor: Sensor) -> SensorPort:
@@ -133,12 +105,9 @@ def sensor_port(mesh: Mesh, sensor: Sensor) -> SensorPort:
     if length == 0.0:
         raise HousingError(f"sensor {sensor.name!r}: its direction has no length")
     direction = direction / length
-    columns = (3 * point.nodes[:, None] + np.arange(3)).ravel()
-    values = np.outer(point.weights, direction).ravel()
-    entries = (values, (np.zeros(len(columns), dtype=np.int64), columns))
     return SensorPort(
         name=sensor.name,
-        matrix=sparse.csr_array(sparse.coo_array(entries, shape=(1, 3 * len(mesh.points)))),
+        matrix=sparse.csr_array(sparse.csr_array(direction[None, :]) @ point_matrix(mesh, point)),
         position=point.position,
         direction=direction,
         distance=float(np.linalg.norm(point.position - place)),

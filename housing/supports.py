@@ -1,22 +1,20 @@
-"""What holds the housing: patches that are fixed, or on springs to the ground."""
+"""What holds the housing: patches that are fixed, or on springs and dashpots to the ground."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from housing.errors import HousingError
-from housing.matrices import Matrices
-from housing.surface import IntArray, facets_in_box, surface_quadrature
+from housing.node_blocks import NOTHING, Additions
+from housing.patches import Patch, spread
+from housing.surface import IntArray
 from meshes import Facets, Mesh, facet_nodes
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Support:
-    """A held patch of the surface: a named surface or the facets in a box; fixed or on springs.
+    """A held patch of the surface: a named surface or the facets in a box; fixed or on springs and dashpots.
 
     Attributes
     ----------
@@ -29,6 +27,8 @@ class Support:
         Which of x, y, z are held at zero.
     stiffness : tuple of float
         Springs to the ground along x, y, z [N/m], in all, spread evenly over the patch.
+    damping : tuple of float
+        Dashpots to the ground along x, y, z [N s/m], spread likewise.
     """
 
     name: str
@@ -36,21 +36,30 @@ class Support:
     box: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
     fixed: tuple[bool, bool, bool] = (False, False, False)
     stiffness: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    damping: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         if (self.surface is None) == (self.box is None):
             raise HousingError(f"support {self.name!r} needs a surface or a box, one of the two")
-        if not any(self.fixed) and not any(self.stiffness):
-            raise HousingError(f"support {self.name!r} holds nothing: fix a component or give it a stiffness")
-        if min(self.stiffness) < 0.0:
-            raise HousingError(f"support {self.name!r}: stiffness {self.stiffness} N/m must not be negative")
+        if not (any(self.fixed) or any(self.stiffness) or any(self.damping)):
+            raise HousingError(f"support {self.name!r} holds nothing: fix a component or give it stiffness or damping")
+        for what, unit, amounts in (("stiffness", "N/m", self.stiffness), ("damping", "N s/m", self.damping)):
+            if not all(0.0 <= amount < np.inf for amount in amounts):
+                raise HousingError(f"support {self.name!r}: {what} {amounts} {unit} must be finite and not negative")
 
     def facets(self, mesh: Mesh) -> Facets:
         """The facets of the patch."""
-        if self.surface is not None:
-            return mesh.surface(self.surface)
-        assert self.box is not None
-        return facets_in_box(mesh, np.array(self.box[0]), np.array(self.box[1]))
+        return Patch(self.surface, self.box).facets(mesh)
+
+    def additions(self, mesh: Mesh) -> Additions:
+        """Springs and dashpots spread over the patch; see :class:`housing.attachments.Attachment`."""
+        if not any(self.stiffness) and not any(self.damping):
+            return Additions()
+        facets = self.facets(mesh)
+        return Additions(
+            stiffness=spread(mesh, facets, self.stiffness) if any(self.stiffness) else NOTHING,
+            damping=spread(mesh, facets, self.damping) if any(self.damping) else NOTHING,
+        )
 
 
 def fixed_freedoms(mesh: Mesh, supports: Sequence[Support]) -> IntArray:
@@ -62,28 +71,3 @@ def fixed_freedoms(mesh: Mesh, supports: Sequence[Support]) -> IntArray:
         if support.fixed[component]
     ]
     return np.unique(np.concatenate(held)) if held else np.empty(0, dtype=np.int64)
-
-
-def with_springs(matrices: Matrices, mesh: Mesh, supports: Sequence[Support]) -> Matrices:
-    """The matrices with the supports' springs added.
-
-    A patch of area A with stiffness k along a component adds (k / A) ∫ N_a N_b dA to it: a translation of the
-    whole patch meets k, and the springs' energy is that of the field, not of single nodes.
-    """
-    blocks = matrices.blocks.copy()
-    n_nodes = matrices.n_nodes
-    row = np.repeat(np.arange(n_nodes), np.diff(matrices.pointer))
-    keys = row * n_nodes + matrices.neighbors
-    for support in supports:
-        if not any(support.stiffness):
-            continue
-        patches = surface_quadrature(mesh, support.facets(mesh))
-        area = sum(patch.area for patch in patches)
-        for patch in patches:
-            products = np.einsum("fq,qa,qb->fab", patch.areas, patch.shape_values, patch.shape_values) / area
-            n_shape = patch.facets.shape[1]
-            pairs = np.repeat(patch.facets, n_shape, axis=1).ravel() * n_nodes + np.tile(patch.facets, n_shape).ravel()
-            slots = np.searchsorted(keys, pairs)
-            for component, stiffness in enumerate(support.stiffness):
-                np.add.at(blocks[:, component, component], slots, stiffness * products.ravel())
-    return replace(matrices, blocks=blocks)

@@ -6,8 +6,8 @@ What the room offers:
   dictionary. Everything wrong comes in one :class:`CaseError`, a :class:`Problem` each.
 - :class:`Case` -- the tables of the file as frozen models, attributes named as the keys: :class:`Material`,
   :class:`Housing` (:class:`Box`, :class:`CadFile`, :class:`MeshFile`, :class:`Seat`, :class:`Support`,
-  :class:`Sensor`), :class:`Rotor`, :class:`Bearing`, :class:`Gear`, :class:`GearPair`, :class:`Operation`,
-  :class:`Transient`, :class:`Sweep`, :class:`Measured`.
+  :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, :class:`Sensor`), :class:`Rotor`, :class:`Bearing`,
+  :class:`Gear`, :class:`GearPair`, :class:`Operation`, :class:`Transient`, :class:`Sweep`, :class:`Measured`.
 - :func:`dump_case` -- the resolved case as TOML that loads back equal.
 - :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques` -- what follows
   without solving anything.
@@ -17,6 +17,18 @@ What the room offers:
 Inside, lengths are in m, masses in kg, forces in N, angles in rad, speeds in rad/s; frequencies are in Hz.
 """
 
+from gearwhine.case.attachments import (
+    AxialDashpots,
+    AxialSprings,
+    Bushing,
+    InertiaTensor,
+    Joint,
+    LumpedMass,
+    Mount,
+    SixDashpots,
+    SixSprings,
+    amounts,
+)
 from gearwhine.case.box import Box, Feet, Walls
 from gearwhine.case.bundled import bundled_case, bundled_cases
 from gearwhine.case.dump import case_document, dump_case
@@ -24,6 +36,7 @@ from gearwhine.case.gears import Gear, GearErrors, GearPair, TipRelief, ToothSti
 from gearwhine.case.housing import (
     Boss,
     CadFile,
+    Dashpots,
     Housing,
     Material,
     MeshFile,
@@ -43,7 +56,8 @@ from gearwhine.case.motion import (
     rotor_speeds,
     speed_ratios,
 )
-from gearwhine.case.problems import CaseError, Problem
+from gearwhine.case.patches import Patch
+from gearwhine.case.problems import CaseError, Problem, did_you_mean
 from gearwhine.case.require import require
 from gearwhine.case.running import Measured, Operation, Output, SpeedRange, Sweep, Transient
 from gearwhine.case.shafts import (
@@ -64,27 +78,36 @@ from gearwhine.case.train import shaft_of
 
 __all__ = [
     "AppliedTorque",
+    "AxialDashpots",
+    "AxialSprings",
     "Bearing",
     "Boss",
     "Bow",
     "Box",
+    "Bushing",
     "CadFile",
     "Case",
     "CaseError",
+    "Dashpots",
     "Disc",
     "Feet",
     "Gear",
     "GearErrors",
     "GearPair",
     "Housing",
+    "InertiaTensor",
+    "Joint",
     "LoadedCase",
+    "LumpedMass",
     "Material",
     "MatrixDamping",
     "MatrixStiffness",
     "Measured",
     "MeshFile",
+    "Mount",
     "Operation",
     "Output",
+    "Patch",
     "Problem",
     "RadialDamping",
     "RadialStiffness",
@@ -94,6 +117,8 @@ __all__ = [
     "Seat",
     "Segment",
     "Sensor",
+    "SixDashpots",
+    "SixSprings",
     "SpeedRange",
     "Springs",
     "Support",
@@ -103,10 +128,12 @@ __all__ = [
     "Transient",
     "Unbalance",
     "Walls",
+    "amounts",
     "applied_torques",
     "bundled_case",
     "bundled_cases",
     "case_document",
+    "did_you_mean",
     "dump_case",
     "gears_on",
     "load_case",

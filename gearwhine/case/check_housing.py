@@ -8,8 +8,9 @@ from collections.abc import Iterator, Mapping
 from gearwhine.case.box import FACES, FOOT_SURFACES, Box
 from gearwhine.case.check_shafts import millimetres
 from gearwhine.case.draft import Draft
-from gearwhine.case.housing import Seat, Sensor, Support
-from gearwhine.case.problems import NOTHING, Finding, did_you_mean
+from gearwhine.case.housing import Seat
+from gearwhine.case.patches import Patch
+from gearwhine.case.problems import NOTHING, Finding, Location, did_you_mean
 
 _SLACK = 1e-9
 """Room for rounding where two lengths may just touch [m]."""
@@ -44,10 +45,21 @@ def check_box(draft: Draft) -> Iterator[Finding]:
         yield from _check_seat(box, index, seat)
     yield from _check_seats_apart(draft, box)
     yield from _check_surfaces(draft, box)
-    for index, support in draft.supports:
-        yield from _check_support(box, index, support, _boss_length(draft))
+    boss = max((seat.boss.length for _, seat in draft.seats if seat.boss is not None), default=0.0)
+    for location, patch in _patches(draft):
+        yield from _check_patch(box, location, patch, boss)
     for index, sensor in draft.sensors:
-        yield from _check_sensor(box, index, sensor, _boss_length(draft))
+        yield from _check_on_surface(box, ("housing", "sensor", index, "position"), sensor.position, boss)
+    for index, mass in draft.masses:
+        if mass.position is not None:
+            yield from _check_on_surface(box, ("housing", "mass", index, "position"), mass.position, boss)
+
+
+def _patches(draft: Draft) -> Iterator[tuple[Location, Patch]]:
+    """Yield all that is fastened to one patch, with its place in the case."""
+    for kind, entries in (("support", draft.supports), ("mount", draft.mounts), ("mass", draft.masses)):
+        for index, entry in entries:
+            yield ("housing", kind, index), entry
 
 
 def _check_walls(box: Box) -> Iterator[Finding]:
@@ -116,33 +128,35 @@ def _check_seats_apart(draft: Draft, box: Box) -> Iterator[Finding]:
 
 
 def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
-    """Yield supports on surfaces that the box does not have."""
+    """Yield surfaces that the box does not have, under supports and whatever else is fastened to it."""
     seats = draft.names("housing", "seat")
     known = (*FACES, *(FOOT_SURFACES if box.feet is not None else ()), *seats)
-    for index, support in draft.supports:
-        if support.surface is not None and support.surface not in known:
+    named: list[tuple[Location, str | None]] = [
+        ((*place, "surface"), patch.surface) for place, patch in _patches(draft)
+    ]
+    for index, joint in draft.joints:
+        named += [(("housing", "joint", index, "surfaces", end), joint.surfaces[end]) for end in (0, 1)]
+    for location, name in named:
+        if name is not None and name not in known:
             feet = "" if box.feet is not None else "; it has no feet"
-            expected = f"a surface of the box ({', '.join(known)}{feet})" + did_you_mean(support.surface, known)
-            yield Finding(("housing", "support", index, "surface"), expected)
+            yield Finding(location, f"a surface of the box ({', '.join(known)}{feet})" + did_you_mean(name, known))
 
 
-def _boss_length(draft: Draft) -> float:
-    """Return how far the longest boss stands out of the end walls [m]."""
-    return max((seat.boss.length for _, seat in draft.seats if seat.boss is not None), default=0.0)
+def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterator[Finding]:
+    """Yield a patch whose box holds no material: outside the housing, or all in its cavity.
 
-
-def _check_support(box: Box, index: int, support: Support, boss: float) -> Iterator[Finding]:
-    """Yield a support whose box holds no material: outside the housing, or all in its cavity."""
-    if support.corners is None:
+    ``boss`` is how far the longest boss stands out of the end walls [m].
+    """
+    if patch.corners is None:
         return
-    low, high = support.corners
+    low, high = patch.corners
     foot = box.feet.size[1] if box.feet is not None else 0.0
     bottom = (box.lower[0], box.lower[1] - foot, box.lower[2] - boss)
     top = (box.upper[0], box.upper[1], box.upper[2] + boss)
     walls = box.walls
     inside_low = (box.lower[0] + walls.left, box.lower[1] + walls.bottom, box.lower[2] + walls.back)
     inside_high = (box.upper[0] - walls.right, box.upper[1] - walls.top, box.upper[2] - walls.front)
-    location = ("housing", "support", index, "box")
+    location = (*place, "box")
     for axis, least, most, begin, end in zip("xyz", low, high, bottom, top, strict=True):
         if least > end + _SLACK or most < begin - _SLACK:
             expected = f"a box that meets the housing, which spans {axis} = {millimetres(begin)} to {millimetres(end)}"
@@ -154,18 +168,19 @@ def _check_support(box: Box, index: int, support: Support, boss: float) -> Itera
         yield Finding(location, "a box that meets the housing's walls; this one is all in its cavity")
 
 
-def _check_sensor(box: Box, index: int, sensor: Sensor, boss: float) -> Iterator[Finding]:
-    """Yield a sensor that is further from the box's surface than its walls are thick."""
+def _check_on_surface(
+    box: Box, location: Location, position: tuple[float, float, float], boss: float
+) -> Iterator[Finding]:
+    """Yield a point that is further from the box's surface than its walls are thick."""
     walls = box.walls
     names = ("left", "bottom", "back", "right", "top", "front")  # the order of the depths below
     depths = [
-        *(p - low for p, low in zip(sensor.position, box.lower, strict=True)),
-        *(high - p for p, high in zip(sensor.position, box.upper, strict=True)),
+        *(p - low for p, low in zip(position, box.lower, strict=True)),
+        *(high - p for p, high in zip(position, box.upper, strict=True)),
     ]
     outside = math.hypot(*(min(a, b, 0.0) for a, b in zip(depths[:3], depths[3:], strict=True)))
     thickness = [getattr(walls, name) for name in names]
     foot = box.feet.size[1] if box.feet is not None else 0.0
-    location = ("housing", "sensor", index, "position")
     if outside > max(*thickness, boss, foot) + _SLACK:
         expected = f"a point on the surface of the box; this one is {millimetres(outside)} outside"
         yield Finding(location, expected)

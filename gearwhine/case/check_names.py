@@ -16,6 +16,9 @@ _NAMED = (
     ("gear",),
     ("housing", "seat"),
     ("housing", "support"),
+    ("housing", "mount"),
+    ("housing", "joint"),
+    ("housing", "mass"),
     ("housing", "sensor"),
 )
 

@@ -36,8 +36,10 @@ def warnings_of(case: Case) -> tuple[str, ...]:
         found.append("[housing] has no [[housing.sensor]]: the transient will show no acceleration of the housing")
     if housing is not None and case.rotor and all(bearing.grounded for bearing in case.bearing):
         found.append("no bearing stands in a seat of [housing]: rotors and housing do not feel each other")
-    if housing is not None and not housing.support:
-        found.append("[housing] has no [[housing.support]]: it floats freely")
+    if housing is not None and not housing.support and not housing.mount:
+        found.append("[housing] has no [[housing.support]] and no [[housing.mount]]: it floats freely")
+    elif housing is not None and not (any(s.holds for s in housing.support) or any(m.holds for m in housing.mount)):
+        found.append("[housing] stands on dashpots alone: it is not held and creeps away under load")
     if case.operation is not None and case.operation.torque > 0.0 and not case.gear_pair and not case.operation.output:
         found.append("operation.torque has nothing to work against: there are no gear pairs and no outputs")
     for rotor in case.rotor:

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from gearwhine.case.attachments import Joint, LumpedMass, Mount
 from gearwhine.case.box import Box
 from gearwhine.case.fields import Table
 from gearwhine.case.gears import Gear, GearPair
@@ -41,6 +42,9 @@ class Draft:
     box: Box | None
     seats: Entries[Seat]
     supports: Entries[Support]
+    mounts: Entries[Mount]
+    joints: Entries[Joint]
+    masses: Entries[LumpedMass]
     sensors: Entries[Sensor]
     rotors: Entries[Rotor]
     bearings: Entries[Bearing]
@@ -78,6 +82,9 @@ def draft_of_case(case: Case, document: Mapping[str, Any]) -> Draft:
         box=housing.box if housing else None,
         seats=tuple(enumerate(housing.seat if housing else ())),
         supports=tuple(enumerate(housing.support if housing else ())),
+        mounts=tuple(enumerate(housing.mount if housing else ())),
+        joints=tuple(enumerate(housing.joint if housing else ())),
+        masses=tuple(enumerate(housing.mass if housing else ())),
         sensors=tuple(enumerate(housing.sensor if housing else ())),
         rotors=tuple(enumerate(case.rotor)),
         bearings=tuple(enumerate(case.bearing)),
@@ -105,6 +112,9 @@ def draft_of_document(document: Mapping[str, Any], broken: frozenset[str], conte
         box=table(Box, "housing", "box"),
         seats=entries(Seat, "housing", "seat"),
         supports=entries(Support, "housing", "support"),
+        mounts=entries(Mount, "housing", "mount"),
+        joints=entries(Joint, "housing", "joint"),
+        masses=entries(LumpedMass, "housing", "mass"),
         sensors=entries(Sensor, "housing", "sensor"),
         rotors=entries(Rotor, "rotor"),
         bearings=entries(Bearing, "bearing"),

@@ -1,25 +1,26 @@
-"""The `[housing]` of a case: its geometry, seats, supports and sensors; and the materials.
+"""The `[housing]` of a case: its geometry, seats, supports, sensors and what is fastened to it; and the materials.
 
 Attributes are named as the keys of the case file and are in SI; frequencies are in Hz.
 """
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from gearwhine.case import units
+from gearwhine.case.attachments import Joint, LumpedMass, Mount
 from gearwhine.case.box import FACES, FOOT_SURFACES, Box
+from gearwhine.case.directions import Direction, UnitVector, unit_vector
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     CaseFile,
+    DampingFromZero,
     DampingRatio,
     Density,
     ElasticModulus,
     Name,
-    PlainNumber,
     Point,
     PositiveFrequency,
     PositiveLength,
@@ -29,6 +30,7 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
+from gearwhine.case.patches import Patch
 from gearwhine.case.units import QuantityError, parse_quantity
 
 
@@ -106,38 +108,38 @@ class Springs(Table):
     z: StiffnessFromZero = 0.0
 
 
-class Support(Table):
-    """`[[housing.support]]`: a patch of the surface, held fast or on springs."""
+class Dashpots(Table):
+    """Damping to ground along x, y, z [N s/m], in all, spread over the patch."""
+
+    x: DampingFromZero = 0.0
+    y: DampingFromZero = 0.0
+    z: DampingFromZero = 0.0
+
+
+class Support(Patch):
+    """`[[housing.support]]`: a patch of the surface, held fast, or on springs and dashpots."""
 
     name: Name
-    box: tuple[Point, Point] | None = None
-    surface: Name | None = None
     fixed: tuple[Literal["x", "y", "z"], ...] | None = Field(default=None, min_length=1, max_length=3)
     stiffness: Springs | None = None
+    damping: Dashpots | None = None
 
     @model_validator(mode="after")
     def _one_of_each(self) -> Support:
-        if (self.box is None) == (self.surface is None):
-            raise wrong("exactly one of 'box' and 'surface'")
-        if (self.fixed is None) == (self.stiffness is None):
-            raise wrong("exactly one of 'fixed' and 'stiffness'")
+        if (self.fixed is None) == (self.stiffness is None and self.damping is None):
+            raise wrong("either 'fixed', or 'stiffness' or 'damping' or both")
         if self.fixed is not None and len(set(self.fixed)) < len(self.fixed):
             raise wrong("each of 'x', 'y', 'z' at most once", "fixed")
         if self.stiffness is not None and self.stiffness == Springs():
             raise wrong("a stiffness above 0 N/m in x, y or z", "stiffness")
+        if self.damping is not None and self.damping == Dashpots():
+            raise wrong("a damping above 0 N*s/m in x, y or z", "damping")
         return self
 
     @property
-    def corners(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
-        """The box's corners of least and of greatest x, y, z [m], whichever two opposite ones were given."""
-        if self.box is None:
-            return None
-        (x1, y1, z1), (x2, y2, z2) = self.box
-        return (min(x1, x2), min(y1, y2), min(z1, z2)), (max(x1, x2), max(y1, y2), max(z1, z2))
-
-
-def _direction_form(value: Any) -> str:
-    return "~list" if isinstance(value, (list, tuple)) else "~axis"
+    def holds(self) -> bool:
+        """Whether it keeps the housing in its place; a dashpot alone lets it creep away."""
+        return self.fixed is not None or self.stiffness is not None
 
 
 class Sensor(Table):
@@ -145,31 +147,12 @@ class Sensor(Table):
 
     name: Name
     position: Point
-    direction: (
-        Annotated[
-            Annotated[Literal["x", "y", "z"], Tag("~axis")]
-            | Annotated[tuple[PlainNumber, PlainNumber, PlainNumber], Tag("~list")],
-            Discriminator(_direction_form),
-        ]
-        | None
-    ) = None
-
-    @model_validator(mode="after")
-    def _has_direction(self) -> Sensor:
-        if isinstance(self.direction, tuple) and not 1e-100 < math.hypot(*self.direction) < 1e100:
-            raise wrong("a vector with a direction", "direction")
-        return self
+    direction: Direction | None = None
 
     @property
-    def unit_vector(self) -> tuple[float, float, float] | None:
+    def unit_vector(self) -> UnitVector | None:
         """The direction as a unit vector; None where it is the surface normal."""
-        if self.direction is None:
-            return None
-        if isinstance(self.direction, str):
-            return (float(self.direction == "x"), float(self.direction == "y"), float(self.direction == "z"))
-        x, y, z = self.direction
-        length = math.hypot(x, y, z)
-        return (x / length, y / length, z / length)
+        return None if self.direction is None else unit_vector(self.direction)
 
 
 def _check_frequency_key(key: object) -> str:
@@ -203,6 +186,9 @@ class Housing(Table):
     mesh: MeshFile | None = None
     seat: tuple[Seat, ...] = Field(default=(), max_length=1000)
     support: tuple[Support, ...] = Field(default=(), max_length=1000)
+    mount: tuple[Mount, ...] = Field(default=(), max_length=1000)
+    joint: tuple[Joint, ...] = Field(default=(), max_length=1000)
+    mass: tuple[LumpedMass, ...] = Field(default=(), max_length=1000)
     sensor: tuple[Sensor, ...] = Field(default=(), max_length=MOST_ENTRIES)
 
     @field_validator("damping_ratio", mode="after")

@@ -10,14 +10,13 @@ import numpy.typing as npt
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import Sensor as GivenSensor
-from gearwhine.case import Support as GivenSupport
 from gearwhine.progress import Progress, silent
+from gearwhine.stages.attachments import attach_all, build_supports, check_reach
 from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
-_SENSOR_REACH = 0.05  # farthest a sensor may sit from the surface, as a part of the housing's diagonal
 _UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 
 
@@ -29,9 +28,14 @@ class SolvedHousing:
     ----------
     mesh : Mesh
     mass : float
-        [kg].
+        With the masses attached [kg].
+    attached_mass : float
+        Of these alone [kg].
     modes : housing.ModeSet
     damping_ratios : ndarray, shape (n_modes,)
+        As the case gives them; see :attr:`total_damping_ratios`.
+    damping_matrix : ndarray, shape (n_modes, n_modes), or None
+        What dashpots, mounts and joints add in modal coordinates [1/s]; None where nothing damps.
     seats : dict of str to ndarray, shape (n_modes, 6)
         Modes' motions at each bearing seat.
     sensors : dict of str to housing.SensorPort
@@ -44,13 +48,22 @@ class SolvedHousing:
 
     mesh: Mesh
     mass: float
+    attached_mass: float
     modes: room.ModeSet
     damping_ratios: FloatArray
+    damping_matrix: FloatArray | None
     seats: dict[str, FloatArray]
     sensors: dict[str, room.SensorPort]
     survey: room.Survey
     strengths: room.Dominance | None
     seconds: dict[str, float]
+
+    @property
+    def total_damping_ratios(self) -> FloatArray:
+        """Each mode's ratio with its own share of what is attached; the coupling of modes by it left aside."""
+        if self.damping_matrix is None:
+            return self.damping_ratios
+        return room.damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
 
 
 def build_mesh(case: Case) -> Mesh:
@@ -115,14 +128,13 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     steel = case.material[given.material]
     material = room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
     free = room.assemble(mesh, material)
-    supports = [_support(entry) for entry in given.support]
-    matrices = room.with_springs(free, mesh, supports)
+    matrices = attach_all(case, mesh, free)
     assembled = time.perf_counter()
     # Without a limit or a number, what a first look wants.
     count = given.modes if given.modes is not None else (None if given.frequency_limit is not None else 20)
     modes = room.solve_modes(
         matrices,
-        room.fixed_freedoms(mesh, supports),
+        room.fixed_freedoms(mesh, build_supports(case)),
         frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
         count=count,
         progress=progress,
@@ -137,9 +149,11 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
         strengths = room.dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
     return SolvedHousing(
         mesh=mesh,
-        mass=free.total_mass,
+        mass=matrices.total_mass,
+        attached_mass=sum(entry.mass for entry in given.mass),
         modes=modes,
         damping_ratios=_damping(case, modes.frequencies_hz),
+        damping_matrix=room.modal_damping(modes, matrices) if matrices.damping.nnz else None,
         seats=seats,
         sensors=sensors,
         survey=survey,
@@ -200,7 +214,7 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
                 "strength": None if strengths is None else float(strengths.acceleration[number - 1]),
             }
             for number, (frequency, damping) in enumerate(
-                zip(solved.modes.frequencies_hz, solved.damping_ratios, strict=True), start=1
+                zip(solved.modes.frequencies_hz, solved.total_damping_ratios, strict=True), start=1
             )
         ],
         "certificate": {
@@ -217,6 +231,7 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
             "dofs": 3 * len(solved.mesh.points),
         },
         "mass_kg": solved.mass,
+        "attached_mass_kg": solved.attached_mass,
         "seconds": solved.seconds,
     }
 
@@ -254,24 +269,10 @@ def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> d
 def _sensor(mesh: Mesh, index: int, entry: GivenSensor) -> room.SensorPort:
     """A sensor on the surface; one that is not meant to sit there is refused rather than moved far."""
     port = room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
-    reach = _SENSOR_REACH * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
-    if port.distance > reach:
-        place = ", ".join(f"{1e3 * value:.4g}" for value in port.position)
-        expected = f"a place within {1e3 * reach:.3g} mm of the surface; the nearest point of it is ({place}) mm"
-        key, label = f"housing.sensor[{index}].position", f'sensor "{entry.name}"'
-        raise CaseError([Problem(key, list(entry.position), expected, label=label)])
+    key, label = f"housing.sensor[{index}].position", f'sensor "{entry.name}"'
+    if problems := list(check_reach(mesh, key, label, entry.position, port.position)):
+        raise CaseError(problems)
     return port
-
-
-def _support(entry: GivenSupport) -> room.Support:
-    springs = entry.stiffness
-    return room.Support(
-        name=entry.name,
-        surface=entry.surface,
-        box=entry.corners,
-        fixed=("x" in (entry.fixed or ()), "y" in (entry.fixed or ()), "z" in (entry.fixed or ())),
-        stiffness=(springs.x, springs.y, springs.z) if springs else (0.0, 0.0, 0.0),
-    )
 
 
 def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:

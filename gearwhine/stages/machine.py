@@ -139,6 +139,7 @@ def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingCompone
         solved.damping_ratios,
         seats=solved.seats,
         seat_z={seat.name: seat.center[2] for seat in case.housing.seat},
+        damping_matrix=solved.damping_matrix,
         sensors={name: solved.modes.project(port.matrix)[:, 0] for name, port in solved.sensors.items()},
     )
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from gearwhine.case import Case, applied_torques, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.case import Case, Joint, Mount, amounts, applied_torques, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gears import pair_geometry
 
@@ -58,10 +58,27 @@ def _housing(case: Case) -> dict[str, Any]:
         "modes": housing.modes,
         "seats": [seat.name for seat in housing.seat],
         "supports": [support.name for support in housing.support],
+        "mounts": [_bushing(mount) for mount in housing.mount],
+        "joints": [_bushing(joint) | {"surfaces": list(joint.surfaces)} for joint in housing.joint],
+        "masses": [{"name": mass.name, "mass_kg": mass.mass} for mass in housing.mass],
         "sensors": [sensor.name for sensor in housing.sensor],
     }
     if housing.box is not None:
         document |= {"size_m": list(housing.box.size), "mesh_size_m": housing.box.mesh_size}
+    return document
+
+
+def _bushing(given: Mount | Joint) -> dict[str, Any]:
+    """Springs and dashpots by motion, those that are not zero; each key with its unit."""
+    document: dict[str, Any] = {"name": given.name}
+    for key, turning_unit, unit in (("stiffness", "n_m_per_rad", "n_per_m"), ("damping", "n_m_s_per_rad", "n_s_per_m")):
+        table = getattr(given, key)
+        if table is None:
+            continue
+        for motion, amount in zip(type(table).model_fields, amounts(table), strict=True):
+            if amount:
+                turning = motion in ("rx", "ry", "rz", "tilting", "torsional")
+                document.setdefault(f"{key}_{turning_unit if turning else unit}", {})[motion] = amount
     return document
 
 

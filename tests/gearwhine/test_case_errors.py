@@ -133,7 +133,7 @@ ONE_WRONG = {
     "direction": ("housing.sensor.0.direction", "up", "housing.sensor[0].direction", "'x', 'y' or 'z'"),
     "null direction": ("housing.sensor.0.direction", [0, 0, 0], "housing.sensor[0].direction", "a vector with a"),
     "two patches": ("housing.support.0.box", CAVITY_BOX, "housing.support[0]", "exactly one of 'box' and 'surface'"),
-    "held and sprung": ("housing.support.0.fixed", ["x"], "housing.support[0]", "'fixed' and 'stiffness'"),
+    "held and sprung": ("housing.support.0.fixed", ["x"], "housing.support[0]", "either 'fixed', or"),
     "mesh file": ("housing.mesh", {"file": "none.msh"}, "housing.mesh.file", "an existing file"),
     "sweep step": (
         "sweep",

@@ -1,0 +1,34 @@
+"""Patches of the housing's surface in a case: a named surface, or all of the surface within a box."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pydantic import model_validator
+
+from gearwhine.case.fields import Name, Point, Table, wrong
+
+
+class Patch(Table):
+    """Where something is fastened to the housing: exactly one of the keys in `places`."""
+
+    places: ClassVar[tuple[str, ...]] = ("box", "surface")
+    """The keys that can say where; exactly one of them must."""
+
+    box: tuple[Point, Point] | None = None
+    surface: Name | None = None
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Patch:
+        if sum(getattr(self, key) is not None for key in self.places) != 1:
+            *first, last = (f"'{key}'" for key in self.places)
+            raise wrong(f"exactly one of {', '.join(first)} and {last}")
+        return self
+
+    @property
+    def corners(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        """The box's corners of least and of greatest x, y, z [m], whichever two opposite ones were given."""
+        if self.box is None:
+            return None
+        (x1, y1, z1), (x2, y2, z2) = self.box
+        return (min(x1, x2), min(y1, y2), min(z1, z2)), (max(x1, x2), max(y1, y2), max(z1, z2))

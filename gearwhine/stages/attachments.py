@@ -1,0 +1,177 @@
+"""What is fastened to a case's housing, as the housing room's; and whether it fits the mesh."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+import housing as room
+from gearwhine.case import (
+    AxialDashpots,
+    AxialSprings,
+    Bushing,
+    Case,
+    CaseError,
+    LumpedMass,
+    Mount,
+    Patch,
+    Problem,
+    Support,
+    amounts,
+    did_you_mean,
+)
+from gearwhine.case.directions import unit_vector
+from gearwhine.case.problems import UNSAID
+from meshes import GeometryError, Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+_REACH = 0.05  # farthest that what sits on the surface may be given from it, as a part of the housing's diagonal
+
+
+def build_supports(case: Case) -> list[room.Support]:
+    """The supports of a case, in the order of the file."""
+    assert case.housing is not None
+    return [_support(entry) for entry in case.housing.support]
+
+
+def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
+    """All that is fastened, each with its key and label."""
+    given = case.housing
+    assert given is not None
+    for index, support in enumerate(given.support):
+        yield f"housing.support[{index}]", f'support "{support.name}"', _support(support)
+    for index, mount in enumerate(given.mount):
+        fastened = room.Mount(mount.name, _patch(mount), _bushing(mount), mount.center)
+        yield f"housing.mount[{index}]", f'mount "{mount.name}"', fastened
+    for index, joint in enumerate(given.joint):
+        first, second = (room.Patch(surface) for surface in joint.surfaces)
+        tied = room.Joint(joint.name, first, second, _bushing(joint), joint.center)
+        yield f"housing.joint[{index}]", f'joint "{joint.name}"', tied
+    for index, mass in enumerate(given.mass):
+        yield f"housing.mass[{index}]", f'mass "{mass.name}"', _mass(mass)
+
+
+def attach_all(case: Case, mesh: Mesh, free: room.Matrices) -> room.Matrices:
+    """The free housing's matrices with supports, mounts, joints and masses of a case on it.
+
+    Raises
+    ------
+    CaseError
+        With every one of them that does not fit the mesh.
+    """
+    problems = list(_misplaced(case, mesh))
+    if problems:
+        raise CaseError(problems)
+    additions = room.Additions()
+    for key, label, attachment in build_attachments(case):
+        try:
+            additions += attachment.additions(mesh)
+        except (room.HousingError, GeometryError) as error:
+            problems.append(Problem(key, UNSAID, f"what fits the mesh; {error}", label=label))
+    if problems:
+        raise CaseError(problems)
+    return free.plus(additions)
+
+
+def check_reach(
+    mesh: Mesh, key: str, label: str, asked: tuple[float, float, float], found: FloatArray
+) -> Iterator[Problem]:
+    """Yield a place that is not meant to be on the surface, rather than move it far.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    key, label : str
+        Where it stands in the case, and whose it is.
+    asked : tuple of float
+        The place given [m].
+    found : ndarray, shape (3,)
+        The nearest point of the surface [m].
+    """
+    reach = _REACH * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+    if np.linalg.norm(found - asked) > reach:
+        place = ", ".join(f"{1e3 * value:.4g}" for value in found)
+        expected = f"a place within {1e3 * reach:.3g} mm of the surface; the nearest point of it is ({place}) mm"
+        yield Problem(key, list(asked), expected, label=label)
+
+
+def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
+    """Surfaces that the mesh does not have, boxes without surface, points off the surface."""
+    given = case.housing
+    assert given is not None
+    named: list[tuple[str, str, str]] = []
+    fastened: list[tuple[str, int, Support | Mount | LumpedMass]] = []
+    fastened += [("support", index, entry) for index, entry in enumerate(given.support)]
+    fastened += [("mount", index, entry) for index, entry in enumerate(given.mount)]
+    fastened += [("mass", index, entry) for index, entry in enumerate(given.mass)]
+    for kind, index, entry in fastened:
+        key, label = f"housing.{kind}[{index}]", f'{kind} "{entry.name}"'
+        if entry.surface is not None:
+            named.append((f"{key}.surface", label, entry.surface))
+        elif entry.box is not None:
+            try:
+                _patch(entry).facets(mesh)
+            except room.HousingError as error:
+                yield Problem(f"{key}.box", UNSAID, f"a box that holds some of the surface; {error}", label=label)
+    for index, joint in enumerate(given.joint):
+        for end, surface in enumerate(joint.surfaces):
+            named.append((f"housing.joint[{index}].surfaces[{end}]", f'joint "{joint.name}"', surface))
+    known = sorted(mesh.surfaces)
+    for key, label, surface in named:
+        if surface not in mesh.surfaces:
+            listed = ", ".join(known[:20]) + (", …" if len(known) > 20 else "")
+            expected = f"a surface of the mesh ({listed or 'it names none'})" + did_you_mean(surface, known)
+            yield Problem(key, surface, expected, label=label)
+    for index, mass in enumerate(given.mass):
+        if mass.position is not None:
+            found = _mass(mass).place(mesh).position
+            label = f'mass "{mass.name}"'
+            yield from check_reach(mesh, f"housing.mass[{index}].position", label, mass.position, found)
+
+
+def _patch(entry: Patch) -> room.Patch:
+    return room.Patch(entry.surface, entry.corners)
+
+
+def _support(entry: Support) -> room.Support:
+    springs, dashpots, fixed = entry.stiffness, entry.damping, entry.fixed or ()
+    return room.Support(
+        name=entry.name,
+        surface=entry.surface,
+        box=entry.corners,
+        fixed=("x" in fixed, "y" in fixed, "z" in fixed),
+        stiffness=(springs.x, springs.y, springs.z) if springs else (0.0, 0.0, 0.0),
+        damping=(dashpots.x, dashpots.y, dashpots.z) if dashpots else (0.0, 0.0, 0.0),
+    )
+
+
+def _bushing(entry: Bushing) -> room.Bushing:
+    springs, dashpots = entry.stiffness, entry.damping
+    if entry.axis is not None:
+        along = [
+            room.Axial(*amounts(table)) if isinstance(table, AxialSprings | AxialDashpots) else room.Axial()
+            for table in (springs, dashpots)
+        ]
+        return room.Bushing.along(unit_vector(entry.axis), *along)
+    own = entry.own_axes
+    axes = room.GLOBAL_AXES if own is None else room.axes_along(*own)
+    nothing = (0.0,) * 6
+    stiffness, damping = (nothing if table is None else amounts(table) for table in (springs, dashpots))
+    return room.Bushing(_six(stiffness), _six(damping), axes)
+
+
+def _six(values: tuple[float, ...]) -> tuple[float, float, float, float, float, float]:
+    x, y, z, rx, ry, rz = values
+    return x, y, z, rx, ry, rz
+
+
+def _mass(entry: LumpedMass) -> room.LumpedMass:
+    return room.LumpedMass(
+        name=entry.name,
+        mass=entry.mass,
+        patch=None if entry.position is not None else _patch(entry),
+        position=entry.position,
+        inertia=entry.inertia.rows if entry.inertia else room.NO_INERTIA,
+        offset=entry.offset or (0.0, 0.0, 0.0),
+    )

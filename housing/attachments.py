@@ -1,0 +1,84 @@
+"""What is fastened to the housing's field: anything that adds to its matrices through the motion of a patch.
+
+The motion of a patch is a few numbers r = P u of the nodes' displacements u. Springs, dashpots or a mass that act on
+r, with small matrices K₆, C₆ or M₆, are Pᵀ K₆ P, Pᵀ C₆ P and Pᵀ M₆ P on the nodes, by the equality of work.
+"""
+
+from collections.abc import Iterable
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from housing.errors import HousingError
+from housing.matrices import Matrices
+from housing.node_blocks import Additions, NodeBlocks
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+MOST_PATCH_NODES = 2000
+"""Nodes that one attachment may tie. Each pair of them joins the matrices: 2000 are 36 million entries."""
+
+
+class Attachment(Protocol):
+    """A support, a mount, a joint, a lumped mass: it knows what it adds to the matrices of a mesh."""
+
+    @property
+    def name(self) -> str:
+        """Its name, for messages."""
+
+    def additions(self, mesh: Mesh) -> Additions:
+        """What it adds.
+
+        Raises
+        ------
+        HousingError, meshes.GeometryError
+            Where it does not fit the mesh.
+        """
+
+
+def attach(matrices: Matrices, mesh: Mesh, attachments: Iterable[Attachment]) -> Matrices:
+    """The matrices of a housing with supports, mounts, joints and masses on it.
+
+    Raises
+    ------
+    HousingError, meshes.GeometryError
+        Where one of them does not fit the mesh.
+    """
+    additions = sum((attachment.additions(mesh) for attachment in attachments), Additions())
+    return matrices.plus(additions)
+
+
+def port_additions(
+    port: sparse.csr_array,
+    *,
+    name: str,
+    stiffness: FloatArray | None = None,
+    mass: FloatArray | None = None,
+    damping: FloatArray | None = None,
+) -> Additions:
+    """Small symmetric matrices on the motions of a port, as what they add to the nodes.
+
+    Parameters
+    ----------
+    port : scipy.sparse.csr_array, shape (n_motions, 3 n_nodes)
+        P.
+    name : str
+        What the port belongs to, for the message.
+    stiffness, mass, damping : ndarray, shape (n_motions, n_motions), optional
+
+    Raises
+    ------
+    HousingError
+        Where the port has more than :data:`MOST_PATCH_NODES` nodes.
+    """
+    nodes = len(np.unique(port.indices // 3))
+    if nodes > MOST_PATCH_NODES:
+        raise HousingError(
+            f"{name} ties {nodes} nodes to each other, and at most {MOST_PATCH_NODES} are bearable: take a smaller "
+            "patch or larger elements on it, or a support, whose springs are spread and tie nothing"
+        )
+    given = {"stiffness": stiffness, "mass": mass, "damping": damping}
+    return Additions(**{key: NodeBlocks.congruent(port, small) for key, small in given.items() if small is not None})

@@ -1,0 +1,149 @@
+"""Block Lanczos on the shifted inverse: the lowest modes of K φ = λ M φ from few sweeps over a factor.
+
+With A = (K - σM)⁻¹ M, self-adjoint in the product of M, A φ = ν φ and λ = σ + 1/ν. From an M-orthonormal block V₁ the
+recurrence
+
+    A V_j = V_1 T_1j + … + V_j T_jj + V_{j+1} R_j
+
+builds a basis V and T = Vᵀ M A V. A Ritz pair T s = ν s has the residual |R_j s_j| with s_j the last block's part of
+s, so convergence costs nothing to see, and one step of inverse iteration on a Ritz vector is at hand:
+
+    A V s / ν = V s + V_{j+1} R_j s_j / ν.
+
+The modes wanted have the largest ν where σ lies below them all, and the most negative where σ lies above them, with
+the gap from -1/σ to 0 behind them. Every block is orthogonalised twice against the whole basis, so that no mode is
+found twice. Several columns at a time because the factor is read once for all of them (Golub and Underwood 1977;
+Grimes, Lewis and Simon 1994); a multiple mode needs a block at least as wide as it is manifold.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from housing.errors import IncompleteModesError
+
+FloatArray = npt.NDArray[np.float64]
+
+_TOLERANCE = 1e-10  # of a Ritz pair's residual, as a part of ν
+_BLOCK = 8
+_DEPENDENT = 1e-11  # what is left of a column, as a part of it, where it lay in the basis
+_ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
+
+
+def shift_invert(
+    solve: Callable[[FloatArray], FloatArray],
+    mass: sparse.csr_array,
+    shift: float,
+    count: int,
+    *,
+    above: bool = False,
+    seed: int = 0,
+) -> tuple[FloatArray, FloatArray]:
+    """The modes nearest to a shift on one side of it.
+
+    Parameters
+    ----------
+    solve : callable
+        X from (K - σM) X = Y, shape (n, m) both.
+    mass : scipy.sparse.csr_array, shape (n, n)
+        M [kg].
+    shift : float
+        σ [rad²/s²].
+    count : int
+        How many.
+    above : bool
+        Whether the shift lies above the modes wanted, which are then all there are below it, rather than below them.
+    seed : int
+        Of the random starting block; each also doubles its width.
+
+    Returns
+    -------
+    values : ndarray, shape (count,)
+        λ, ascending [rad²/s²].
+    vectors : ndarray, shape (n, count)
+        φ, with φᵀ M φ = 1.
+
+    Raises
+    ------
+    IncompleteModesError
+        Where the modes do not converge.
+    """
+    n = mass.shape[0]
+    width = min(_BLOCK * 2**seed, n)
+    most = min(n, 8 * count + 40 * width)
+    basis = np.empty((n, most + width), order="F")  # the system gives memory to what is used of it
+    small = np.zeros((most + width, most + width))
+    sign = -1.0 if above else 1.0
+
+    start = np.random.default_rng(seed).standard_normal((n, width))
+    block, inertia, _ = _orthonormal(basis[:, :0], solve(np.ascontiguousarray(mass @ start)), mass)
+    size, checked = 0, 0
+    while block.shape[1] and size + block.shape[1] <= most + width:
+        begin, size = size, size + block.shape[1]
+        basis[:, begin:size] = block
+        image = solve(np.ascontiguousarray(inertia))
+        block, inertia, projections = _orthonormal(basis[:, :size], image, mass)
+        small[:size, begin:size] = projections[:size]
+        remainder = projections[size:]
+        whole = block.shape[1] == 0
+        # Once in a tenth of the basis: the small eigenproblem must not outgrow the large one.
+        if size >= count and (whole or size - checked >= max(width, size // 10) or size + width > most):
+            checked = size
+            nu, mixtures = np.linalg.eigh(0.5 * (small[:size, :size] + small[:size, :size].T))
+            chosen = np.argsort(-sign * nu)[:count]
+            wanted, mixture = nu[chosen], mixtures[:, chosen]
+            outside = remainder @ mixture[begin:]
+            errors = np.linalg.norm(outside, axis=0)
+            if whole or (np.all(sign * wanted > 0.0) and np.all(errors < _TOLERANCE * np.abs(wanted))):
+                vectors = basis[:, :size] @ mixture + block @ (outside / wanted)
+                vectors /= np.sqrt(np.einsum("ij,ij->j", vectors, mass @ vectors))
+                values = shift + 1.0 / wanted
+                order = np.argsort(values)
+                return values[order], vectors[:, order]
+        small[size : size + block.shape[1], begin:size] = remainder
+        small[begin:size, size : size + block.shape[1]] = remainder.T
+    raise IncompleteModesError(
+        f"Lanczos did not converge to {count} modes with a basis of {size}; ask for fewer, or refine the mesh"
+    )
+
+
+def _orthonormal(
+    basis: FloatArray, block: FloatArray, mass: sparse.csr_array
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What a block adds to a basis.
+
+    Returns
+    -------
+    new : ndarray, shape (n, r)
+        M-orthonormal columns, orthogonal to the basis; r = 0 where the block lies in it.
+    inertia : ndarray, shape (n, r)
+        M times these.
+    projections : ndarray, shape (m + r, width)
+        The block in terms of the basis and the new columns.
+    """
+    given = np.sqrt(np.einsum("ij,ij->j", block, mass @ block))
+    within = np.zeros((basis.shape[1], block.shape[1]))
+    for _ in range(2):
+        part = basis.T @ (mass @ block)
+        block = block - basis @ part
+        within += part
+    inertia = mass @ block
+    left = np.sqrt(np.maximum(np.einsum("ij,ij->j", block, inertia), 0.0))
+    kept = left > _DEPENDENT * given
+    scaled, scaled_inertia = block[:, kept] / left[kept], inertia[:, kept] / left[kept]
+    values, turn = np.linalg.eigh(scaled.T @ scaled_inertia)
+    turn = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE])
+    new = scaled @ turn
+    if new.shape[1]:
+        # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
+        if basis.shape[1] and (float(np.min(left[kept] / given[kept])) < 1e-4 or values[0] < 1e-4):
+            new = new - basis @ (basis.T @ (mass @ new))
+        new_inertia = mass @ new
+        triangle = np.linalg.cholesky(new.T @ new_inertia).T
+        new = np.linalg.solve(triangle.T, new.T).T
+        new_inertia = np.linalg.solve(triangle.T, new_inertia.T).T
+    else:
+        new_inertia = new
+    return new, new_inertia, np.vstack([within, new.T @ inertia])

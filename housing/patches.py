@@ -1,0 +1,150 @@
+"""Patches: parts of the surface that something is fastened to, and the rigid motion they stand for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from housing.errors import HousingError
+from housing.node_blocks import NOTHING, NodeBlocks
+from housing.rigid import rigid_motions
+from housing.surface import IntArray, SurfacePoint, SurfaceQuadrature, facets_in_box, surface_quadrature
+from meshes import Facets, Mesh
+
+FloatArray = npt.NDArray[np.float64]
+Point = tuple[float, float, float]
+
+_FLATTEST = 1e-8  # least of the patch's second moments as a part of the largest: a strip 10⁴ times as long as wide
+_FARTHEST = 1e4  # of a patch's radii may lie between it and its centre: beyond, a translation is all rotation
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A part of the surface: a named surface of the mesh, or the facets in a box.
+
+    Attributes
+    ----------
+    surface : str, optional
+        Name of a surface of the mesh.
+    box : tuple of two points, optional
+        Its low and high corners [m]; the facets inside belong to the patch.
+    """
+
+    surface: str | None = None
+    box: tuple[Point, Point] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.surface is None) == (self.box is None):
+            raise HousingError("a patch needs a surface or a box, one of the two")
+
+    def facets(self, mesh: Mesh) -> Facets:
+        """The facets of the patch.
+
+        Raises
+        ------
+        HousingError, meshes.GeometryError
+            Where the mesh has no such surface, or no facet lies in the box.
+        """
+        if self.surface is not None:
+            return mesh.surface(self.surface)
+        assert self.box is not None
+        return facets_in_box(mesh, np.array(self.box[0]), np.array(self.box[1]))
+
+    def center(self, mesh: Mesh) -> FloatArray:
+        """The centre of its area [m], shape (3,)."""
+        return patch_center(mesh, self.facets(mesh))
+
+
+def patch_center(mesh: Mesh, facets: Facets) -> FloatArray:
+    """The centre of the area of some facets [m], shape (3,)."""
+    parts, area = _quadrature(mesh, facets)
+    return np.asarray(sum(np.einsum("fqi,fq->i", part.points, part.areas) for part in parts) / area)
+
+
+def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *, name: str = "") -> sparse.csr_array:
+    """The rigid motion of a patch from the nodes' displacements.
+
+    The six motions r = (translation, rotation) minimise ∫ |u - R r|² dA over the patch, with R the rigid field
+    R r = translation + rotation x (x - centre): P = (∫ Rᵀ R dA)⁻¹ ∫ Rᵀ N dA. So the patch may deform; a load on it
+    is spread by Pᵀ, and the work is the same on both sides. The problem is solved about the middle of the patch, where
+    it is best posed, and the motion is then taken at the centre as a rigid body's.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    facets : tuple of ElementBlock
+    center : ndarray, shape (3,), optional
+        The point whose translations come first [m]; the middle of the patch where not given.
+    name : str
+        What the patch belongs to, for the message.
+
+    Returns
+    -------
+    scipy.sparse.csr_array, shape (6, 3 n_nodes)
+
+    Raises
+    ------
+    HousingError
+        Where the patch does not span a rigid motion, or is far too small to tell that of a centre so far away.
+    """
+    middle = patch_center(mesh, facets)
+    parts, area = _quadrature(mesh, facets)
+    fields = [rigid_motions(part.points, middle) for part in parts]
+    gram = np.zeros((6, 6))
+    for part, rigid in zip(parts, fields, strict=True):
+        gram += np.einsum("fqir,fqis,fq->rs", rigid, rigid, part.areas, optimize=True)
+    moments = np.linalg.eigvalsh(gram[3:, 3:])
+    radius = np.sqrt(moments[-1] / area)
+    arm = 0.0 if center is None else float(np.linalg.norm(center - middle))
+    if moments[0] < _FLATTEST * moments[-1] or arm > _FARTHEST * radius:
+        raise HousingError(f"the surface of {name or 'a patch'} is too small to tell its rotations")
+    loads, columns = [], []
+    for part, rigid in zip(parts, fields, strict=True):
+        load = np.einsum("fqir,qa,fq->rfai", rigid, part.shape_values, part.areas, optimize=True)
+        loads.append(load.reshape(6, -1))
+        columns.append((3 * part.facets[:, :, None] + np.arange(3)).ravel())
+    weights = np.asarray(np.linalg.solve(gram, np.concatenate(loads, axis=1)), dtype=np.float64)
+    if center is not None:
+        weights[:3] = rigid_motions(center, middle) @ weights
+    return _port(weights, np.concatenate(columns), mesh)
+
+
+def point_matrix(mesh: Mesh, point: SurfacePoint) -> sparse.csr_array:
+    """The translations of a point of the surface, shape (3, 3 n_nodes); a point has no rotation that a solid knows."""
+    columns = (3 * point.nodes[:, None] + np.arange(3)).ravel()
+    return _port(np.asarray(np.kron(point.weights, np.eye(3)), dtype=np.float64), columns, mesh)
+
+
+def spread(mesh: Mesh, facets: Facets, amounts: Point) -> NodeBlocks:
+    """Amounts along x, y, z spread evenly over a patch of area A: blocks (1 / A) ∫ N_a N_b dA diag(amounts).
+
+    A translation of the whole patch meets the amounts, and the energy is that of the field, not of single nodes.
+    """
+    parts, area = _quadrature(mesh, facets)
+    blocks = NOTHING
+    for part in parts:
+        products = np.einsum("fq,qa,qb->fab", part.areas, part.shape_values, part.shape_values) / area
+        n_shape = part.facets.shape[1]
+        blocks = blocks + NodeBlocks.summed(
+            np.repeat(part.facets, n_shape, axis=1).ravel(),
+            np.tile(part.facets, n_shape).ravel(),
+            products.ravel()[:, None, None] * np.diag(amounts),
+        )
+    return blocks
+
+
+def _quadrature(mesh: Mesh, facets: Facets) -> tuple[tuple[SurfaceQuadrature, ...], float]:
+    """Quadrature on each kind of facet of a patch, and its whole area [m²]."""
+    parts = surface_quadrature(mesh, facets)
+    area = sum(part.area for part in parts)
+    if not area > 0.0:
+        raise HousingError("a patch of no facets has no area; name a surface that has some")
+    return parts, area
+
+
+def _port(weights: FloatArray, columns: IntArray, mesh: Mesh) -> sparse.csr_array:
+    """A port from its weights, shape (n_motions, n), on some degrees of freedom, which may come several times."""
+    motions = len(weights)
+    entries = (weights.ravel(), (np.repeat(np.arange(motions), len(columns)), np.tile(columns, motions)))
+    return sparse.csr_array(sparse.coo_array(entries, shape=(motions, 3 * len(mesh.points))))
