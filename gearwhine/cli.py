@@ -246,6 +246,8 @@ def _on_case(
         sys.stderr.write(f"warning: {warning}\n")
     with shown(quiet=common.quiet) as progress:
         document = work(loaded.case, progress)
+    for warning in document.get("warnings", ()):
+        sys.stderr.write(f"warning: {warning}\n")
     _hand_over(document, common, show)
 
 

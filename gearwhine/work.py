@@ -9,6 +9,7 @@ from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases
 from gearwhine.output import finite, json_text, staging
 from gearwhine.progress import Progress
 from gearwhine.stages import gears as gear_stage
+from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
@@ -48,6 +49,7 @@ def run_case(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
     comparison = None
     if housing is not None:
         document["housing"] = housing_stage.modes_document(housing)
+        document["warnings"] = list(housing.warnings)
         if case.measured is not None:
             comparison = housing_stage.compare_housing(case, housing)
             document["compare"] = housing_stage.comparison_document(comparison, housing)
@@ -91,7 +93,8 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
     from meshes import mesh_quality, write_mesh
 
     progress("meshing the housing")
-    mesh = housing_stage.build_mesh(case)
+    warnings: list[str] = []
+    mesh = geometry_stage.build_mesh(case, warnings.append)
     quality = mesh_quality(mesh)
     name = f"mesh.{suffix}"
     with staging(folder) as place:
@@ -103,6 +106,8 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
         "volume_m3": quality.volume,
         "edge_length_m": dict(zip(("min", "median", "max"), quality.edge_length, strict=True)),
         "shape_number": dict(zip(("min", "median"), quality.shape, strict=True)),
+        "bores": geometry_stage.bores_document(mesh),
+        "warnings": warnings,
         "folder": str(folder),
         "files": [name],
     }

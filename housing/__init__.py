@@ -4,7 +4,7 @@ What the room offers:
 
 - :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid.
 - :class:`Support`, :func:`fixed_freedoms` -- what holds it; :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, each
-  on a :class:`Patch` -- what else is fastened to it; :func:`attach` -- the matrices with all of these.
+  on a :class:`Patch` -- what else is fastened to it, :func:`bolted_joint` for a bolt's stiffness; :func:`attach` -- the matrices with all of these.
 - :func:`rigid_body` -- mass, centre of gravity and inertia of the whole (:class:`RigidBody`).
 - :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` -- what
   dashpots do to them.
@@ -15,6 +15,7 @@ What the room offers:
 
 from housing.assembly import assemble
 from housing.attachments import Attachment, attach
+from housing.bolts import BoltedJoint, bolted_joint
 from housing.bushings import GLOBAL_AXES, Axial, Bushing, Joint, Mount, axes_along
 from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.damping import damping_ratios, modal_damping
@@ -39,6 +40,7 @@ __all__ = [
     "Additions",
     "Attachment",
     "Axial",
+    "BoltedJoint",
     "Bushing",
     "Certificate",
     "Comparison",
@@ -66,6 +68,7 @@ __all__ = [
     "assemble",
     "attach",
     "axes_along",
+    "bolted_joint",
     "compare_by_dominance",
     "damping_ratios",
     "dominance",

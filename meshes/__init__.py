@@ -7,7 +7,7 @@ What the room offers:
   :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
   dimensions; :func:`mesh_box` meshes it with gmsh.
 - :func:`mesh_cad` -- the solids of a STEP, IGES or BREP file, as a :class:`CadMesh`.
-- :func:`box_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`, :func:`with_bores` -- parts of
+- :func:`box_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`, :func:`with_bore` -- parts of
   the surface of any mesh by where they lie; bores by centre and diameter.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
 - :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
@@ -50,7 +50,7 @@ from meshes.errors import GeometryError, MesherUnavailableError
 from meshes.files import read_mesh, write_mesh
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
-from meshes.regions import box_facets, cylinder_facets, plane_facets, with_bores
+from meshes.regions import box_facets, cylinder_facets, plane_facets, with_bore
 
 __all__ = [
     "KINDS",
@@ -90,6 +90,6 @@ __all__ = [
     "pick_facets",
     "plane_facets",
     "read_mesh",
-    "with_bores",
+    "with_bore",
     "write_mesh",
 ]

@@ -135,33 +135,21 @@ def cylinder_facets(
     raise GeometryError(_no_bore(mesh, place, diameter, direction))
 
 
-def with_bores(
-    mesh: Mesh, wanted: Sequence[tuple[str, Sequence[float], float]], *, axis: Sequence[float] = (0.0, 0.0, 1.0)
+def with_bore(
+    mesh: Mesh,
+    name: str,
+    center: Sequence[float],
+    diameter: float,
+    *,
+    axis: Sequence[float] = (0.0, 0.0, 1.0),
 ) -> Mesh:
-    """The mesh with a surface for each bore that is wanted.
+    """The mesh with a bore as a surface of that name; unchanged where it has one of that name already.
 
-    Parameters
-    ----------
-    mesh : Mesh
-    wanted : sequence of (name, center, diameter)
-        A surface that the mesh already has under a name is left as it is.
-    axis : sequence of float
-        Direction of the bores.
-
-    Raises
-    ------
-    GeometryError
-        As :func:`cylinder_facets`, with the name of the bore.
+    Parameters and errors are those of :func:`cylinder_facets`.
     """
-    found: dict[str, Facets] = {}
-    for name, center, diameter in wanted:
-        if name in mesh.surfaces:
-            continue
-        try:
-            found[name] = cylinder_facets(mesh, center, diameter, axis=axis)
-        except GeometryError as error:
-            raise GeometryError(f"seat {name!r}: {error}") from error
-    return replace(mesh, surfaces={**mesh.surfaces, **found}) if found else mesh
+    if name in mesh.surfaces:
+        return mesh
+    return replace(mesh, surfaces={**mesh.surfaces, name: cylinder_facets(mesh, center, diameter, axis=axis)})
 
 
 def _no_bore(mesh: Mesh, center: FloatArray, diameter: float, axis: FloatArray) -> str:

@@ -53,6 +53,8 @@ def _check_materials(draft: Draft) -> Iterator[Finding]:
     housing = draft.document.get("housing")
     if isinstance(housing, Mapping):
         yield from _check_reference(housing, ("housing", "material"), "material", materials)
+        bolts = ("box", "cover", "bolts")
+        yield from _check_reference(look_up(housing, bolts), ("housing", *bolts, "material"), "material", materials)
     for kind in ("rotor", "gear"):
         for index, entry in draft.raw_entries(kind):
             yield from _check_reference(entry, (kind, index, "material"), "material", materials)

@@ -12,12 +12,12 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import Sensor as GivenSensor
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_supports, check_reach
-from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
+from gearwhine.stages.geometry import build_mesh
+from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
-_UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,8 @@ class SolvedHousing:
         None where there are no seats.
     seconds : dict of str to float
         Time taken by mesh, assembly, factorisation, eigensolver and in total.
+    warnings : tuple of str
+        What the user should know of the geometry.
     """
 
     mesh: Mesh
@@ -57,6 +59,7 @@ class SolvedHousing:
     survey: room.Survey
     strengths: room.Dominance | None
     seconds: dict[str, float]
+    warnings: tuple[str, ...] = ()
 
     @property
     def total_damping_ratios(self) -> FloatArray:
@@ -64,47 +67,6 @@ class SolvedHousing:
         if self.damping_matrix is None:
             return self.damping_ratios
         return room.damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
-
-
-def build_mesh(case: Case) -> Mesh:
-    """The housing's finite-element mesh.
-
-    Raises
-    ------
-    CaseError
-        Where the case has no housing, or one from a CAD file.
-    meshes.GeometryError
-        Where the shape cannot be meshed or the file not read.
-    """
-    require(case, "housing", command="mesh")
-    assert case.housing is not None
-    if case.housing.box is not None:
-        return mesh_box(box_geometry(case), case.housing.box.mesh_size)
-    if case.housing.mesh is not None:
-        return read_mesh(case.housing.mesh.file, unit=_UNITS[case.housing.mesh.unit])
-    raise CaseError([Problem("housing.cad", str(case.housing.cad and case.housing.cad.file), _NO_CAD)])
-
-
-_NO_CAD = "[housing.box] or [housing.mesh]: geometry from CAD comes in a later version"
-
-
-def box_geometry(case: Case) -> BoxGeometry:
-    """The box of a case as the mesher's geometry."""
-    assert case.housing is not None
-    box = case.housing.box
-    assert box is not None
-    walls = box.walls
-    return BoxGeometry(
-        size=box.size,
-        wall=WallThickness(walls.left, walls.right, walls.bottom, walls.top, walls.back, walls.front),
-        bores=tuple(
-            Bore(
-                seat.name, seat.center, seat.diameter, Boss(seat.boss.diameter, seat.boss.length) if seat.boss else None
-            )
-            for seat in case.housing.seat
-        ),
-        feet=Feet(box.feet.size) if box.feet else None,
-    )
 
 
 def solve_housing(case: Case, progress: Progress = silent, *, command: str = "modes") -> SolvedHousing:
@@ -122,7 +84,8 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
     assert given is not None
     begin = time.perf_counter()
     progress("meshing the housing")
-    mesh = build_mesh(case)
+    warnings: list[str] = []
+    mesh = build_mesh(case, warnings.append)
     meshed = time.perf_counter()
     progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
     steel = case.material[given.material]
@@ -164,6 +127,7 @@ def solve_housing(case: Case, progress: Progress = silent, *, command: str = "mo
             **modes.seconds,
             "total": time.perf_counter() - begin,
         },
+        warnings=tuple(warnings),
     )
 
 
@@ -232,6 +196,7 @@ def modes_document(solved: SolvedHousing) -> dict[str, Any]:
         },
         "mass_kg": solved.mass,
         "attached_mass_kg": solved.attached_mass,
+        "warnings": list(solved.warnings),
         "seconds": solved.seconds,
     }
 

@@ -92,6 +92,11 @@ class BoxGeometry:
         """The bolts that tie the cover to the body, with their places and the names of their patches."""
         return layout.cover_bolts(self)
 
+    @property
+    def rim_width(self) -> float:
+        """Width of the rim under the cover where it is narrowest [m]; 0 without a cover."""
+        return 0.0 if self.cover is None else layout.rim_width(self, self.cover)
+
     def end_wall(self, bore: Bore) -> Literal["back", "front"]:
         """The wall that a bore goes through.
 
