@@ -88,14 +88,20 @@ def _named(part: str, lines: Sequence[str]) -> Iterator[tuple[str, str]]:
 def _housing_lines(housing: dict[str, Any]) -> list[str]:
     shape = housing["geometry"]
     if "size_m" in housing:
-        size = " x ".join(f"{1e3 * length:g}" for length in housing["size_m"])
-        shape += f" of {size} mm, elements of {1e3 * housing['mesh_size_m']:g} mm"
+        size = " x ".join(f"{1e3 * length:.6g}" for length in housing["size_m"])
+        shape += f" of {size} mm"
+    if "mesh_size_m" in housing:
+        shape += f", elements of {1e3 * housing['mesh_size_m']:g} mm"
     limit, count = housing["frequency_limit_hz"], housing["modes"]
     wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {count or 20} modes"
     lines = [f"{shape}, {housing['material']}; {wanted}"]
     lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("seats", "supports") if housing[kind]]
     for kind in ("mounts", "joints"):
         lines += [_bushing_line(kind[:-1], one) for one in housing[kind]]
+    if housing.get("cover_bolts"):
+        first, *others = housing["cover_bolts"]
+        lines.append(_bushing_line("cover", first) + (f"; so {_count(len(others), 'more bolt')}" if others else ""))
+    lines += [_bore_line(bore) for bore in housing.get("bores", ())]
     if housing["masses"]:
         lines.append("masses: " + ", ".join(f"{one['name']} {one['mass_kg']:g} kg" for one in housing["masses"]))
     return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
@@ -114,6 +120,11 @@ def _bushing_line(kind: str, bushing: dict[str, Any]) -> str:
         for motion, amount in bushing.get(key, {}).items()
     ]
     return f"{kind} {bushing['name']}{between}: {', '.join(parts)}"
+
+
+def _bore_line(bore: dict[str, Any]) -> str:
+    place = ", ".join(f"{1e3 * value + 0.0:.5g}" for value in bore["center_m"])
+    return f"bore of {1e3 * bore['diameter_m']:.5g} mm at ({place}) mm, {1e3 * bore['length_m']:.4g} mm long"
 
 
 def _rotor_line(rotor: dict[str, Any]) -> str:
@@ -141,6 +152,8 @@ def show_mesh(document: dict[str, Any]) -> None:
     console.print(f"Volume {document['volume_m3']:.6g} m³; median edge {1e3 * edge['median']:.3g} mm")
     console.print(f"Shape number (1 is regular): median {shape['median']:.2f}, smallest {shape['min']:.2f}")
     console.print(f"Surfaces: {', '.join(document['surfaces']) or 'none named'}")
+    for bore in document["bores"]:
+        console.print(_bore_line(bore).capitalize())
     _files(console, document)
 
 

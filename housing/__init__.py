@@ -4,7 +4,8 @@ What the room offers:
 
 - :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid.
 - :class:`Support`, :func:`fixed_freedoms` -- what holds it; :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, each
-  on a :class:`Patch` -- what else is fastened to it, :func:`bolted_joint` for a bolt's stiffness; :func:`attach` -- the matrices with all of these.
+  on a :class:`Patch` -- what else is fastened to it; :func:`attach` -- the matrices with all of these.
+- :func:`bolted_joint` -- the springs that a preloaded bolt and the parts under its head stand for.
 - :func:`rigid_body` -- mass, centre of gravity and inertia of the whole (:class:`RigidBody`).
 - :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` -- what
   dashpots do to them.

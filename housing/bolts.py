@@ -3,8 +3,9 @@
 While the preload holds, bolt and clamped parts deflect together: their stiffnesses add. Sources: Budynas and Nisbett,
 "Shigley's Mechanical Engineering Design", 10th ed., sections 8-4 and 8-5 (bolt, Eq. 8-17; cone of pressure of half
 angle 30° after Rötscher, Eq. 8-20); ISO 261 and ISO 898-1 (coarse threads and their stress area). Across the axis no
-formula is as settled. Here the cone gives way to the hollow cylinder of the same length and axial stiffness ("substitute
-cylinder", as of VDI 2230), whose shear, bending and twist are elementary; friction is taken to hold without slip.
+formula is as settled. Here the cone gives way to the hollow cylinder of the same length and axial stiffness (the
+"substitute cylinder" of VDI 2230), whose shear, bending and twist are elementary; friction is taken to hold without
+slip.
 """
 
 import math

@@ -100,6 +100,22 @@ def _joint(bolt: Bolt, parts: room.Material, own: room.Material, rim: float) -> 
     return room.Joint(bolt.name, first, second, room.Bushing.along(bolt.axis, springs), bolt.position)
 
 
+def bolts_document(case: Case) -> list[dict[str, Any]]:
+    """The bolts of a box's cover with their springs."""
+    rows = []
+    for joint in cover_joints(case):
+        shear, _, axial, tilting, _, torsional = joint.bushing.stiffness
+        rows.append(
+            {
+                "name": joint.name,
+                "position_m": None if joint.center is None else list(joint.center),
+                "stiffness_n_per_m": {"axial": axial, "shear": shear},
+                "stiffness_n_m_per_rad": {"tilting": tilting, "torsional": torsional},
+            }
+        )
+    return rows
+
+
 def bores_document(mesh: Mesh) -> list[dict[str, Any]]:
     """The bores along z that a mesh has, the widest first."""
     return [

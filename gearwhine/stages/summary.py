@@ -1,5 +1,6 @@
 """What a case means before anything is solved: ratios, frequencies, loads, sizes."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -7,15 +8,18 @@ import numpy as np
 from gearwhine.case import Case, Joint, Mount, amounts, applied_torques, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gears import pair_geometry
+from gearwhine.stages.geometry import bolts_document, bores_document, build_mesh
 
 _RPM = 60.0 / (2.0 * np.pi)
 
 
 def check_document(case: Case) -> dict[str, Any]:
-    """Everything that follows from the case by arithmetic alone."""
+    """Everything that follows from the case by arithmetic alone, and what the file of its geometry holds."""
     document: dict[str, Any] = {"title": case.title}
     if case.housing is not None:
-        document["housing"] = _housing(case)
+        warnings: list[str] = []
+        document["housing"] = _housing(case, warnings.append)
+        document["warnings"] = warnings
     if case.rotor:
         document["rotors"] = _rotors(case)
     if case.bearing:
@@ -48,7 +52,7 @@ def check_document(case: Case) -> dict[str, Any]:
     return document
 
 
-def _housing(case: Case) -> dict[str, Any]:
+def _housing(case: Case, warn: Callable[[str], None]) -> dict[str, Any]:
     housing = case.housing
     assert housing is not None
     document: dict[str, Any] = {
@@ -65,6 +69,16 @@ def _housing(case: Case) -> dict[str, Any]:
     }
     if housing.box is not None:
         document |= {"size_m": list(housing.box.size), "mesh_size_m": housing.box.mesh_size}
+        document["cover_bolts"] = bolts_document(case)
+        return document
+    # What a file holds is known when it has been read; straight elements show its size and bores as well.
+    mesh = build_mesh(case, warn, order=1)
+    document["size_m"] = [float(length) for length in mesh.bounds[1] - mesh.bounds[0]]
+    if housing.cad is not None:
+        document["mesh_size_m"] = housing.cad.mesh_size
+    document["bores"] = bores_document(mesh)
+    document["surfaces"] = sorted(mesh.surfaces)
+    document["volumes"] = sorted(mesh.volumes)
     return document
 
 
