@@ -1,7 +1,7 @@
 """A preloaded bolt and the parts that it clamps, as springs between two patches.
 
 While the preload holds, bolt and clamped parts deflect together: their stiffnesses add. Sources: Budynas and Nisbett,
-"Shigley's Mechanical Engineering Design", 10th ed., sections 8-4 and 8-5 (bolt, Eq. 8-17; cone of pressure of half
+"Shigley's Mechanical Engineering Design", 9th ed., sections 8-4 and 8-5 (bolt, Eq. 8-17; cone of pressure of half
 angle 30° after Rötscher, Eq. 8-20); ISO 261 and ISO 898-1 (coarse threads and their stress area). Across the axis no
 formula is as settled. Here the cone gives way to the hollow cylinder of the same length and axial stiffness (the
 "substitute cylinder" of VDI 2230), whose shear, bending and twist are elementary; friction is taken to hold without
@@ -48,7 +48,9 @@ def stress_area(diameter: float) -> float:
     return math.pi / 4 * (diameter - 0.9382 * pitch) ** 2
 
 
-def bolt_stiffness(diameter: float, grip: float, youngs_modulus: float, *, shank: float = 0.0) -> float:
+def bolt_stiffness(
+    diameter: float, grip: float, youngs_modulus: float, *, shank: float = 0.0, thread_area: float | None = None
+) -> float:
     """Axial stiffness of a bolt [N/m]: E A_d A_t / (A_d l_t + A_t l_d) (Shigley Eq. 8-17).
 
     Parameters
@@ -61,9 +63,11 @@ def bolt_stiffness(diameter: float, grip: float, youngs_modulus: float, *, shank
         [Pa].
     shank : float
         Unthreaded part of the grip, l_d [m].
+    thread_area : float, optional
+        Stress area of the thread, A_t [m²]; by default that of a metric coarse one.
     """
     threaded = grip - shank
-    flexibility = shank / (math.pi / 4 * diameter**2) + threaded / stress_area(diameter)
+    flexibility = shank / (math.pi / 4 * diameter**2) + threaded / (thread_area or stress_area(diameter))
     return youngs_modulus / flexibility
 
 

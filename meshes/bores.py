@@ -79,7 +79,7 @@ def find_bores(
             if bore.roundness >= least_round and not any(_same(bore, other, direction) for other in found):
                 found.append(bore)
         taken |= on
-    return tuple(sorted(found, key=lambda bore: (-round(bore.diameter, 7), bore.center)))
+    return tuple(sorted(found, key=lambda bore: (-round(bore.diameter, 7), [round(x, 7) for x in bore.center])))
 
 
 def fits_circle(
@@ -192,8 +192,9 @@ def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, first: FloatArray
     for block in facets:
         own = angles[block.corners]
         turned = np.mod(own - own[:, :1] + np.pi, 2 * np.pi) - np.pi  # from the first corner, the short way
-        begin = np.floor((own[:, 0] + turned.min(axis=1)) / (2 * np.pi) * _ARC_STEPS).astype(np.int64)
-        width = np.ceil(np.ptp(turned, axis=1) / (2 * np.pi) * _ARC_STEPS).astype(np.int64)
+        ends = (own[:, :1] + np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1)) * _ARC_STEPS / (2 * np.pi)
+        begin = np.floor(ends[:, 0] + 1e-6).astype(np.int64)
+        width = np.ceil(ends[:, 1] - 1e-6).astype(np.int64) - begin
         for start, length in set(zip(begin.tolist(), width.tolist(), strict=True)):
             covered[(start + steps[:length]) % _ARC_STEPS] = True
     return float(covered.mean())
