@@ -277,7 +277,7 @@ def _on_case(
     with shown(quiet=common.quiet) as progress:
         document = work(loaded.case, progress)
     for warning in document.get("warnings", ()):
-        sys.stderr.write(f"warning: {warning}\n")
+        sys.stderr.write(f"warning: {warning['message']}\n")
     _hand_over(document, common, show)
 
 

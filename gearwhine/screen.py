@@ -101,6 +101,10 @@ def _housing_lines(housing: dict[str, Any]) -> list[str]:
     lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("regions", "seats", "supports") if housing[kind]]
     for kind in ("mounts", "joints"):
         lines += [_bushing_line(kind[:-1], one) for one in housing[kind]]
+    if housing.get("cover_bolts"):
+        first, *others = housing["cover_bolts"]
+        lines.append(_bushing_line("cover", first) + (f"; so {_count(len(others), 'more bolt')}" if others else ""))
+    lines += [_bore_line(bore) for bore in housing.get("bores", ())]
     if housing["masses"]:
         lines.append("masses: " + ", ".join(f"{one['name']} {one['mass_kg']:g} kg" for one in housing["masses"]))
     return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
@@ -119,6 +123,11 @@ def _bushing_line(kind: str, bushing: dict[str, Any]) -> str:
         for motion, amount in bushing.get(key, {}).items()
     ]
     return f"{kind} {bushing['name']}{between}: {', '.join(parts)}"
+
+
+def _bore_line(bore: dict[str, Any]) -> str:
+    place = ", ".join(f"{1e3 * value + 0.0:.5g}" for value in bore["center_m"])
+    return f"bore of {1e3 * bore['diameter_m']:.5g} mm at ({place}) mm, {1e3 * bore['length_m']:.4g} mm long"
 
 
 def _rotor_line(rotor: dict[str, Any]) -> str:
@@ -147,6 +156,8 @@ def show_mesh(document: dict[str, Any]) -> None:
     console.print(f"Shape number (1 is ideal): median {shape['median']:.2f}, smallest {shape['min']:.2f}")
     console.print(f"Surfaces: {', '.join(document['surfaces']) or 'none named'}")
     console.print(f"Volumes: {', '.join(document['volumes']) or 'none named'}")
+    for bore in document["bores"]:
+        console.print(_bore_line(bore).capitalize())
     _files(console, document)
 
 

@@ -10,9 +10,10 @@ from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
 from gearwhine.stages import gears as gear_stage
+from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
+from gearwhine.stages import housing_documents, mesh_health
 from gearwhine.stages import machine as machine_stage
-from gearwhine.stages import mesh_health
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
@@ -51,11 +52,11 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         document |= gear_stage.gears_document(pairs)
     comparison = None
     if housing is not None:
-        document["housing"] = housing_stage.modes_document(housing)
-        document |= housing_stage.origin_document(housing)
+        document["housing"] = housing_documents.modes_document(housing)
+        document |= housing_documents.origin_document(housing)
         if case.measured is not None:
             comparison = housing_stage.compare_housing(case, housing)
-            document["compare"] = housing_stage.comparison_document(comparison, housing)
+            document["compare"] = housing_documents.comparison_document(comparison, housing)
 
     transient, system_modes = None, None
     if case.rotor and case.operation:
@@ -98,9 +99,10 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
     from meshes import mesh_quality, write_mesh
 
     progress("meshing the housing")
-    mesh = housing_stage.build_mesh(case)
-    warnings = mesh_health.examine(case, mesh)
-    warnings += mesh_health.doubt_resolution(case, mesh, case.housing.frequency_limit if case.housing else None)
+    remarks: list[str] = []
+    mesh = geometry_stage.build_mesh(case, remarks.append)
+    doubts = mesh_health.examine(case, mesh)
+    doubts += mesh_health.doubt_resolution(case, mesh, case.housing.frequency_limit if case.housing else None)
     quality = mesh_quality(mesh)
     name = f"mesh.{suffix}"
     with staging(folder) as place:
@@ -114,7 +116,9 @@ def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict
         "volume_m3": quality.volume,
         "edge_length_m": dict(zip(("min", "median", "max"), quality.edge_length, strict=True)),
         "shape_number": dict(zip(("min", "median"), quality.shape, strict=True)),
-        "warnings": mesh_health.warnings_document(warnings),
+        "bores": geometry_stage.bores_document(mesh),
+        "warnings": [mesh_health.doubt("geometry", remark) for remark in remarks]
+        + mesh_health.warnings_document(doubts),
         "folder": str(folder),
         "files": [name],
     }
@@ -132,7 +136,7 @@ def modes_case(
         results.write(place / "results.nc", case, housing, (), (), None, None)
         results.write_shapes(place / "modes.vtu", housing)
 
-    return _kept(housing_stage.modes_document(housing, detail=detail), case, folder, write, housing)
+    return _kept(housing_documents.modes_document(housing, detail=detail), case, folder, write, housing)
 
 
 def rotors_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
@@ -165,7 +169,7 @@ def system_case(case: Case, folder: Path | None, progress: Progress, *, fresh: b
     housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
     modes = machine_stage.coupled_modes(machine)
     document = machine_stage.system_document(case, machine, modes, housing)
-    return _kept(document | housing_stage.origin_document(housing), case, folder, housing=housing)
+    return _kept(document | housing_documents.origin_document(housing), case, folder, housing=housing)
 
 
 def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
@@ -173,8 +177,8 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
     require(case, "housing", "measured", command="compare")
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
     comparison = housing_stage.compare_housing(case, housing)
-    document = housing_stage.comparison_document(comparison, housing)
-    return _kept(document | housing_stage.origin_document(housing), case, folder, housing=housing)
+    document = housing_documents.comparison_document(comparison, housing)
+    return _kept(document | housing_documents.origin_document(housing), case, folder, housing=housing)
 
 
 def render_case(
@@ -202,7 +206,7 @@ def render_case(
         draw_modes(housing, comparison, which, view, mode_format, place, progress)
         keep_modes(place, housing)
         files = _files(place, housing, summary=False)
-    return {"folder": str(folder), "files": files, **housing_stage.origin_document(housing)}
+    return {"folder": str(folder), "files": files, **housing_documents.origin_document(housing)}
 
 
 def list_examples() -> dict[str, Any]:

@@ -6,6 +6,7 @@ What the room offers:
   :func:`mass_properties` -- its mass and centre of mass, from the geometry alone.
 - :class:`Support`, :func:`fixed_freedoms` -- what holds it; :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, each
   on a :class:`Patch` -- what else is fastened to it; :func:`attach` -- the matrices with all of these.
+- :func:`bolted_joint` -- the springs that a preloaded bolt and the parts under its head stand for.
 - :func:`rigid_body` -- mass, centre of gravity and inertia of the whole (:class:`RigidBody`).
 - :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` -- what
   dashpots do to them.
@@ -21,6 +22,7 @@ What the room offers:
 
 from housing.assembly import assemble
 from housing.attachments import Attachment, attach
+from housing.bolts import BoltedJoint, bolted_joint
 from housing.bushings import GLOBAL_AXES, Axial, Bushing, Joint, Mount, axes_along
 from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.damping import damping_ratios, modal_damping
@@ -65,6 +67,7 @@ __all__ = [
     "Attachment",
     "Attachments",
     "Axial",
+    "BoltedJoint",
     "Bushing",
     "Certificate",
     "Comparison",
@@ -106,6 +109,7 @@ __all__ = [
     "attach",
     "attach_ports",
     "axes_along",
+    "bolted_joint",
     "compare_by_dominance",
     "content_key",
     "damping_ratios",
@@ -114,8 +118,8 @@ __all__ = [
     "enclosed",
     "fixed_freedoms",
     "health_report",
-    "mesh_digest",
     "mass_properties",
+    "mesh_digest",
     "modal_damping",
     "patch_center",
     "patch_matrix",

@@ -9,8 +9,8 @@ from scipy import sparse
 from housing.errors import HousingError
 from housing.node_blocks import NOTHING, NodeBlocks
 from housing.rigid import rigid_motions
-from housing.surface import IntArray, SurfacePoint, SurfaceQuadrature, facets_in_box, surface_quadrature
-from meshes import Facets, Mesh
+from housing.surface import IntArray, SurfacePoint, SurfaceQuadrature, surface_quadrature
+from meshes import Facets, Mesh, box_facets, plane_facets
 
 FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -21,7 +21,7 @@ _FARTHEST = 1e4  # of a patch's radii may lie between it and its centre: beyond,
 
 @dataclass(frozen=True)
 class Patch:
-    """A part of the surface: a named surface of the mesh, or the facets in a box.
+    """A part of the surface: a named surface of the mesh, the facets in a box, or those on a plane.
 
     Attributes
     ----------
@@ -29,27 +29,32 @@ class Patch:
         Name of a surface of the mesh.
     box : tuple of two points, optional
         Its low and high corners [m]; the facets inside belong to the patch.
+    plane : tuple of two points, optional
+        A point of it [m] and its normal; the facets on it belong to the patch.
     """
 
     surface: str | None = None
     box: tuple[Point, Point] | None = None
+    plane: tuple[Point, Point] | None = None
 
     def __post_init__(self) -> None:
-        if (self.surface is None) == (self.box is None):
-            raise HousingError("a patch needs a surface or a box, one of the two")
+        if sum(place is not None for place in (self.surface, self.box, self.plane)) != 1:
+            raise HousingError("a patch needs a surface, a box or a plane, one of the three")
 
     def facets(self, mesh: Mesh) -> Facets:
         """The facets of the patch.
 
         Raises
         ------
-        HousingError, meshes.GeometryError
-            Where the mesh has no such surface, or no facet lies in the box.
+        meshes.GeometryError
+            Where the mesh has no such surface, or no facet lies in the box or on the plane.
         """
         if self.surface is not None:
             return mesh.surface(self.surface)
-        assert self.box is not None
-        return facets_in_box(mesh, np.array(self.box[0]), np.array(self.box[1]))
+        if self.box is not None:
+            return box_facets(mesh, *self.box)
+        assert self.plane is not None
+        return plane_facets(mesh, *self.plane)
 
     def center(self, mesh: Mesh) -> FloatArray:
         """The centre of its area [m], shape (3,)."""

@@ -14,7 +14,7 @@ from meshes import Facets, Mesh, facet_nodes
 
 @dataclass(frozen=True)
 class Support:
-    """A held patch of the surface: a named surface or the facets in a box; fixed or on springs and dashpots.
+    """A held patch of the surface, as of :class:`housing.Patch`; fixed or on springs and dashpots.
 
     Attributes
     ----------
@@ -29,6 +29,8 @@ class Support:
         Springs to the ground along x, y, z [N/m], in all, spread evenly over the patch.
     damping : tuple of float
         Dashpots to the ground along x, y, z [N s/m], spread likewise.
+    plane : tuple of two points, optional
+        A point of a plane [m] and its normal; the facets on it belong to the patch.
     """
 
     name: str
@@ -37,10 +39,11 @@ class Support:
     fixed: tuple[bool, bool, bool] = (False, False, False)
     stiffness: tuple[float, float, float] = (0.0, 0.0, 0.0)
     damping: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    plane: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
 
     def __post_init__(self) -> None:
-        if (self.surface is None) == (self.box is None):
-            raise HousingError(f"support {self.name!r} needs a surface or a box, one of the two")
+        if sum(place is not None for place in (self.surface, self.box, self.plane)) != 1:
+            raise HousingError(f"support {self.name!r} needs a surface, a box or a plane, one of the three")
         if not (any(self.fixed) or any(self.stiffness) or any(self.damping)):
             raise HousingError(f"support {self.name!r} holds nothing: fix a component or give it stiffness or damping")
         for what, unit, amounts in (("stiffness", "N/m", self.stiffness), ("damping", "N s/m", self.damping)):
@@ -49,7 +52,7 @@ class Support:
 
     def facets(self, mesh: Mesh) -> Facets:
         """The facets of the patch."""
-        return Patch(self.surface, self.box).facets(mesh)
+        return Patch(self.surface, self.box, self.plane).facets(mesh)
 
     def additions(self, mesh: Mesh) -> Additions:
         """Springs and dashpots spread over the patch; see :class:`housing.attachments.Attachment`."""

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from housing.errors import HousingError
-from meshes import ElementBlock, Facets, Mesh, pick_facets
+from meshes import ElementBlock, Facets, Mesh
 from meshes.shapes import quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
@@ -60,25 +60,6 @@ def _block_quadrature(mesh: Mesh, block: ElementBlock) -> SurfaceQuadrature:
         points=np.einsum("fai,qa->fqi", nodes, values, optimize=True),
         areas=np.linalg.norm(normal, axis=2) * weights,
     )
-
-
-def facets_in_box(mesh: Mesh, low: FloatArray, high: FloatArray) -> Facets:
-    """Boundary facets whose corners all lie in the box from ``low`` to ``high`` [m].
-
-    Raises
-    ------
-    HousingError
-        Where there is none.
-    """
-    boundary = mesh.boundary
-    inside = np.all((mesh.points >= low) & (mesh.points <= high), axis=1)
-    facets = pick_facets(boundary, np.concatenate([inside[block.corners].all(axis=1) for block in boundary]))
-    if not facets:
-        raise HousingError(
-            f"no facet of the surface lies in the box from {_triple(low)} to {_triple(high)} m; "
-            f"the housing spans {_triple(mesh.bounds[0])} to {_triple(mesh.bounds[1])} m"
-        )
-    return facets
 
 
 @dataclass(frozen=True)
@@ -178,18 +159,6 @@ def _bulge(nodes: FloatArray, block: ElementBlock) -> float:
     return float(3.0 * offset + twist)
 
 
-def facet_normals(mesh: Mesh, facets: Facets) -> FloatArray:
-    """Outward unit normals of boundary facets by their corners, shape (n_facets, 3), block after block."""
-    normals = [np.empty((0, 3))]
-    for block in facets:
-        corners = mesh.points[block.corners]
-        # Of a quadrilateral by its diagonals, of a triangle by two sides.
-        last = corners[:, -1] - corners[:, 1] if block.of.n_corners == 4 else corners[:, 2] - corners[:, 1]
-        normals.append(np.cross(corners[:, 2] - corners[:, 0], last))
-    together = np.concatenate(normals)
-    return np.asarray(together / np.linalg.norm(together, axis=1)[:, None])
-
-
 # Plane triangles between the corners of a facet.
 _CORNER_TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
 _NEIGHBOURS = 6  # facets looked at: as many as meet in a node of a usual mesh
@@ -256,7 +225,3 @@ def _closest_on_triangles(corners: FloatArray, place: FloatArray) -> tuple[Float
         candidate[:, i], candidate[:, j] = 1.0 - t, t
         best = np.where(closer[:, None], candidate, best)
     return best, distance
-
-
-def _triple(values: FloatArray) -> str:
-    return "(" + ", ".join(f"{value:g}" for value in values) + ")"

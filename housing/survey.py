@@ -7,8 +7,8 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import HousingError
-from housing.surface import facet_normals, surface_point
-from meshes import Mesh, facet_centers, pick_facets
+from housing.surface import surface_point
+from meshes import Mesh, facet_centers, facet_normals, pick_facets
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def survey_grid(
     """
     box = mesh.bounds if bounds is None else bounds
     boundary = mesh.boundary
-    facing = facet_normals(mesh, boundary)
+    facing = facet_normals(mesh.points, boundary)
     centers = facet_centers(mesh.points, boundary)
     middle = box.mean(axis=0)
     points = []

@@ -3,8 +3,12 @@
 What the room offers:
 
 - :class:`Mesh` -- nodes, blocks of solid elements (:class:`ElementBlock`) and named regions, in metres.
-- :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet` -- a gearbox
-  housing described by its dimensions; :func:`mesh_box` meshes it with gmsh.
+- :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet`, :class:`Rib`,
+  :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
+  dimensions; :func:`mesh_box` meshes it with gmsh.
+- :func:`mesh_cad` -- the solids of a STEP, IGES or BREP file, as a :class:`CadMesh`.
+- :func:`box_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`, :func:`with_bore` -- parts of
+  the surface of any mesh by where they lie; bores by centre and diameter.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
 - :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
 - :func:`diagnose` -- what is wrong with a mesh, or doubtful in it, by name (:class:`Ailment`);
@@ -15,7 +19,24 @@ gmsh itself is imported only when a mesh is made.
 """
 
 from meshes.ailments import Ailment
-from meshes.box import Bore, Boss, BoxGeometry, Feet, WallThickness, mesh_box
+from meshes.bores import CylindricalBore, find_bores
+from meshes.box import (
+    Bolt,
+    Bore,
+    Boss,
+    BoxGeometry,
+    BoxMisfitError,
+    Cover,
+    CoverBolts,
+    Feet,
+    Fillets,
+    Flange,
+    Misfit,
+    Rib,
+    WallThickness,
+    mesh_box,
+)
+from meshes.cad import CadMesh, mesh_cad
 from meshes.diagnosis import diagnose
 from meshes.elements import (
     KINDS,
@@ -25,6 +46,7 @@ from meshes.elements import (
     facet_centers,
     facet_corners,
     facet_nodes,
+    facet_normals,
     facets_of,
     pick_facets,
 )
@@ -32,34 +54,52 @@ from meshes.errors import GeometryError, MesherUnavailableError
 from meshes.files import read_mesh, write_mesh
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
+from meshes.regions import box_facets, cylinder_facets, plane_facets, with_bore
 from meshes.resolution import WaveCarrier, resolution_ailments, wall_thickness
 
 __all__ = [
     "KINDS",
     "Ailment",
+    "Bolt",
     "Bore",
     "Boss",
     "BoxGeometry",
+    "BoxMisfitError",
+    "CadMesh",
+    "Cover",
+    "CoverBolts",
+    "CylindricalBore",
     "ElementBlock",
     "ElementKind",
     "Facets",
     "Feet",
+    "Fillets",
+    "Flange",
     "GeometryError",
     "Mesh",
     "MeshQuality",
     "MesherUnavailableError",
+    "Misfit",
+    "Rib",
     "WallThickness",
     "WaveCarrier",
+    "box_facets",
+    "cylinder_facets",
     "diagnose",
     "facet_centers",
     "facet_corners",
     "facet_nodes",
+    "facet_normals",
     "facets_of",
+    "find_bores",
     "mesh_box",
+    "mesh_cad",
     "mesh_quality",
     "pick_facets",
+    "plane_facets",
     "read_mesh",
     "resolution_ailments",
     "wall_thickness",
+    "with_bore",
     "write_mesh",
 ]

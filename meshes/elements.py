@@ -226,6 +226,18 @@ def facet_centers(points: FloatArray, facets: Facets) -> FloatArray:
     return np.concatenate([np.empty((0, 3)), *(points[block.corners].mean(axis=1) for block in facets)])
 
 
+def facet_normals(points: FloatArray, facets: Facets) -> FloatArray:
+    """Outward unit normals of boundary facets by their corners, shape (n_facets, 3), block after block."""
+    normals = [np.empty((0, 3))]
+    for block in facets:
+        corners = points[block.corners]
+        # Of a quadrilateral by its diagonals, of a triangle by two sides.
+        last = corners[:, -1] - corners[:, 1] if block.of.n_corners == 4 else corners[:, 2] - corners[:, 1]
+        normals.append(np.cross(corners[:, 2] - corners[:, 0], last))
+    together = np.concatenate(normals)
+    return np.asarray(together / np.linalg.norm(together, axis=1)[:, None])
+
+
 def pick_facets(facets: Facets, chosen: npt.NDArray[np.bool_]) -> Facets:
     """Those facets for which ``chosen`` is true, shape (n_facets,), block after block; no empty blocks."""
     ends = np.cumsum([len(block) for block in facets])[:-1]

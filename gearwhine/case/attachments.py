@@ -199,7 +199,7 @@ class LumpedMass(Patch):
     `offset` leads from the middle of the patch to the body's centre of gravity.
     """
 
-    places: ClassVar[tuple[str, ...]] = ("position", "box", "surface")
+    places: ClassVar[tuple[str, ...]] = ("position", "box", "surface", "plane")
 
     name: Name
     mass: PositiveMass
@@ -211,5 +211,5 @@ class LumpedMass(Patch):
     def _turns_with_a_patch(self) -> LumpedMass:
         for key in ("inertia", "offset"):
             if self.position is not None and getattr(self, key) is not None:
-                raise wrong("a 'surface' or 'box' with it: a single point does not turn a body", key)
+                raise wrong("a 'surface', 'box' or 'plane' with it: a single point does not turn a body", key)
         return self

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from gearwhine.case.box import FACES, FOOT_SURFACES, Box
+from gearwhine.case.box import Box
+from gearwhine.case.box_shape import box_misfits
 from gearwhine.case.check_shafts import millimetres
 from gearwhine.case.draft import Draft
 from gearwhine.case.housing import Seat
@@ -36,14 +37,18 @@ def check_housing_form(draft: Draft) -> Iterator[Finding]:
 
 
 def check_box(draft: Draft) -> Iterator[Finding]:
-    """Yield what does not fit a box: its walls and feet, seats, supports and sensors."""
+    """Yield what does not fit a box: its walls and parts, seats, supports and sensors."""
     box = draft.box
     if box is None:
         return
-    yield from _check_walls(box)
+    plain = list(_check_walls(box))
     for index, seat in draft.seats:
-        yield from _check_seat(box, index, seat)
-    yield from _check_seats_apart(draft, box)
+        plain += _check_seat(box, index, seat)
+    plain += _check_seats_apart(draft, box)
+    yield from plain
+    if not plain:
+        # Only where walls and bores are sound does it mean something where ribs, cover and fillets meet them.
+        yield from box_misfits(box, draft.seats)
     yield from _check_surfaces(draft, box)
     boss = max((seat.boss.length for _, seat in draft.seats if seat.boss is not None), default=0.0)
     for location, patch in _patches(draft):
@@ -130,7 +135,8 @@ def _check_seats_apart(draft: Draft, box: Box) -> Iterator[Finding]:
 def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
     """Yield surfaces that the box does not have, under supports and whatever else is fastened to it."""
     seats = draft.names("housing", "seat")
-    known = (*FACES, *(FOOT_SURFACES if box.feet is not None else ()), *seats)
+    known = (*box.surfaces, *seats)
+    listed = [name for name in known if not name.startswith("bolt-")]
     named: list[tuple[Location, str | None]] = [
         ((*place, "surface"), patch.surface) for place, patch in _patches(draft)
     ]
@@ -139,7 +145,9 @@ def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
     for location, name in named:
         if name is not None and name not in known:
             feet = "" if box.feet is not None else "; it has no feet"
-            yield Finding(location, f"a surface of the box ({', '.join(known)}{feet})" + did_you_mean(name, known))
+            bolts = ", bolt-1-cover …" if len(listed) < len(known) else ""
+            expected = f"a surface of the box ({', '.join(listed)}{bolts}{feet})"
+            yield Finding(location, expected + did_you_mean(name, known))
 
 
 def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterator[Finding]:
@@ -147,12 +155,17 @@ def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterat
 
     ``boss`` is how far the longest boss stands out of the end walls [m].
     """
+    foot, out = box.feet.size[1] if box.feet is not None else 0.0, box.stands_out
+    bottom = (box.lower[0] - out, box.lower[1] - max(foot, out), box.lower[2] - max(boss, out))
+    top = (box.upper[0] + out, box.upper[1] + out, box.upper[2] + max(boss, out))
+    if patch.plane is not None:
+        normal, at = "xyz".index(patch.plane.axis), patch.plane.at
+        if not bottom[normal] - _SLACK <= at <= top[normal] + _SLACK:
+            spans = f"{patch.plane.axis} = {millimetres(bottom[normal])} to {millimetres(top[normal])}"
+            yield Finding((*place, "plane", "at"), f"a plane that meets the housing, which spans {spans}")
     if patch.corners is None:
         return
     low, high = patch.corners
-    foot = box.feet.size[1] if box.feet is not None else 0.0
-    bottom = (box.lower[0], box.lower[1] - foot, box.lower[2] - boss)
-    top = (box.upper[0], box.upper[1], box.upper[2] + boss)
     walls = box.walls
     inside_low = (box.lower[0] + walls.left, box.lower[1] + walls.bottom, box.lower[2] + walls.back)
     inside_high = (box.upper[0] - walls.right, box.upper[1] - walls.top, box.upper[2] - walls.front)
@@ -162,8 +175,8 @@ def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterat
             expected = f"a box that meets the housing, which spans {axis} = {millimetres(begin)} to {millimetres(end)}"
             yield Finding(location, expected)
             return
-    if all(a > b for a, b in zip(low, inside_low, strict=True)) and all(
-        a < b for a, b in zip(high, inside_high, strict=True)
+    if not box.furnished and all(
+        a > b and c < d for a, b, c, d in zip(low, inside_low, high, inside_high, strict=True)
     ):
         yield Finding(location, "a box that meets the housing's walls; this one is all in its cavity")
 
@@ -181,10 +194,12 @@ def _check_on_surface(
     outside = math.hypot(*(min(a, b, 0.0) for a, b in zip(depths[:3], depths[3:], strict=True)))
     thickness = [getattr(walls, name) for name in names]
     foot = box.feet.size[1] if box.feet is not None else 0.0
-    if outside > max(*thickness, boss, foot) + _SLACK:
+    if outside > max(*thickness, boss, foot, box.stands_out) + _SLACK:
         expected = f"a point on the surface of the box; this one is {millimetres(outside)} outside"
         yield Finding(location, expected)
-    elif outside == 0.0 and all(depth > wall + _SLACK for depth, wall in zip(depths, thickness, strict=True)):
+    elif box.furnished or outside > 0.0:
+        return
+    elif all(depth > wall + _SLACK for depth, wall in zip(depths, thickness, strict=True)):
         nearest = min(range(6), key=lambda face: depths[face])
         expected = (
             f"a point on the surface of the box; this one is in its cavity, {millimetres(depths[nearest])} from "

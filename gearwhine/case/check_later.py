@@ -11,11 +11,7 @@ _FORMS = {"matrix": "5x5 matrix", "rolling": "rolling geometry"}
 
 
 def check_later(draft: Draft) -> Iterator[Finding]:
-    """Yield bows, bearings by matrix or rolling geometry and housings from CAD, sound or not."""
-    housing = draft.document.get("housing")
-    if isinstance(housing, Mapping) and "cad" in housing:
-        expected = "[housing.box] or [housing.mesh]: geometry from CAD comes in a later version"
-        yield Finding(("housing", "cad"), expected)
+    """Yield bows and bearings by matrix or rolling geometry, sound or not."""
     for index, rotor in draft.raw_entries("rotor"):
         if rotor.get("bow"):
             yield Finding(("rotor", index, "bow"), "no points: residual bow comes in a later version", UNSAID)

@@ -19,6 +19,7 @@ _PLAIN_WORDS = {
     "dict_type": "a table",
     "tuple_type": "a list",
     "list_type": "a list",
+    "bool_type": "true or false",
 }
 
 

@@ -56,11 +56,21 @@ class Material(Table):
 
 
 class CadFile(Table):
-    """`[housing.cad]`: a STEP file, the unit of its numbers and the element size [m]."""
+    """`[housing.cad]`: a STEP, IGES or BREP file and the element size [m], if wanted a smaller one around the seats.
+
+    `unit` is that of the file's numbers where the file states none itself; then it is by default a millimetre.
+    """
 
     file: CaseFile
     mesh_size: PositiveLength
-    unit: Literal["m", "mm", "cm", "in"] = "mm"
+    seat_mesh_size: PositiveLength | None = None
+    unit: Literal["m", "mm", "cm", "in"] | None = None
+
+    @model_validator(mode="after")
+    def _finer_at_seats(self) -> CadFile:
+        if self.seat_mesh_size is not None and self.seat_mesh_size > self.mesh_size:
+            raise wrong(f"at most the mesh_size of {self.mesh_size:g} m", "seat_mesh_size")
+        return self
 
 
 class MeshFile(Table):

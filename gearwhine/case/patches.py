@@ -1,22 +1,30 @@
-"""Patches of the housing's surface in a case: a named surface, or all of the surface within a box."""
+"""Patches of the housing's surface in a case: a named surface, or all of the surface in a box or on a plane."""
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
-from gearwhine.case.fields import Name, Point, Table, wrong
+from gearwhine.case.fields import Length, Name, Point, Table, wrong
+
+
+class Plane(Table):
+    """A plane at right angles to an axis, where it meets it [m]."""
+
+    axis: Literal["x", "y", "z"]
+    at: Length
 
 
 class Patch(Table):
     """Where something is fastened to the housing: exactly one of the keys in `places`."""
 
-    places: ClassVar[tuple[str, ...]] = ("box", "surface")
+    places: ClassVar[tuple[str, ...]] = ("box", "surface", "plane")
     """The keys that can say where; exactly one of them must."""
 
     box: tuple[Point, Point] | None = None
     surface: Name | None = None
+    plane: Plane | None = None
 
     @model_validator(mode="after")
     def _one_place(self) -> Patch:
@@ -32,3 +40,11 @@ class Patch(Table):
             return None
         (x1, y1, z1), (x2, y2, z2) = self.box
         return (min(x1, x2), min(y1, y2), min(z1, z2)), (max(x1, x2), max(y1, y2), max(z1, z2))
+
+    @property
+    def point_and_normal(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        """A point of the plane [m] and its unit normal."""
+        if self.plane is None:
+            return None
+        x, y, z = (float(axis == self.plane.axis) for axis in "xyz")
+        return (x * self.plane.at, y * self.plane.at, z * self.plane.at), (x, y, z)

@@ -22,6 +22,7 @@ from gearwhine.case import (
 )
 from gearwhine.case.directions import unit_vector
 from gearwhine.case.problems import UNSAID
+from gearwhine.stages.geometry import cover_joints
 from meshes import GeometryError, Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -48,6 +49,8 @@ def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
         first, second = (room.Patch(surface) for surface in joint.surfaces)
         tied = room.Joint(joint.name, first, second, _bushing(joint), joint.center)
         yield f"housing.joint[{index}]", f'joint "{joint.name}"', tied
+    for tied in cover_joints(case):
+        yield "housing.box.cover.bolts", tied.name, tied
     for index, mass in enumerate(given.mass):
         yield f"housing.mass[{index}]", f'mass "{mass.name}"', _mass(mass)
 
@@ -109,11 +112,14 @@ def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
         key, label = f"housing.{kind}[{index}]", f'{kind} "{entry.name}"'
         if entry.surface is not None:
             named.append((f"{key}.surface", label, entry.surface))
-        elif entry.box is not None:
+        elif entry.box is not None or entry.plane is not None:
+            form, holds = ("box", "holds") if entry.plane is None else ("plane", "bears")
             try:
                 _patch(entry).facets(mesh)
-            except room.HousingError as error:
-                yield Problem(f"{key}.box", UNSAID, f"a box that holds some of the surface; {error}", label=label)
+            except GeometryError as error:
+                yield Problem(
+                    f"{key}.{form}", UNSAID, f"a {form} that {holds} some of the surface; {error}", label=label
+                )
     for index, joint in enumerate(given.joint):
         for end, surface in enumerate(joint.surfaces):
             named.append((f"housing.joint[{index}].surfaces[{end}]", f'joint "{joint.name}"', surface))
@@ -131,7 +137,7 @@ def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
 
 
 def _patch(entry: Patch) -> room.Patch:
-    return room.Patch(entry.surface, entry.corners)
+    return room.Patch(entry.surface, entry.corners, entry.point_and_normal)
 
 
 def _support(entry: Support) -> room.Support:
@@ -140,6 +146,7 @@ def _support(entry: Support) -> room.Support:
         name=entry.name,
         surface=entry.surface,
         box=entry.corners,
+        plane=entry.point_and_normal,
         fixed=("x" in fixed, "y" in fixed, "z" in fixed),
         stiffness=(springs.x, springs.y, springs.z) if springs else (0.0, 0.0, 0.0),
         damping=(dashpots.x, dashpots.y, dashpots.z) if dashpots else (0.0, 0.0, 0.0),

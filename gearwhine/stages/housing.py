@@ -1,7 +1,7 @@
 """The housing of a case: geometry to mesh, mesh to certified modes, modes to strengths and comparison."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -14,22 +14,18 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import Sensor as GivenSensor
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_supports, check_reach
-from gearwhine.stages.housing_checks import (
-    bearing_places,
-    bearing_port,
-    housing_checks,
-    selection_document,
-    static_error_document,
-)
+from gearwhine.stages.geometry import build_mesh
+from gearwhine.stages.housing_checks import bearing_places, bearing_port, housing_checks
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
-from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box, read_mesh
+from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, warnings_document
+from gearwhine.stages.regions import materials_of
+from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 _COORDINATES = ("coordinate", "other_coordinate")
 _DAMPING = "modal_damping"  # its name in a mode-set file
-_UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 
 
 @dataclass(frozen=True)
@@ -39,12 +35,10 @@ class SolvedHousing:
     Attributes
     ----------
     mesh : Mesh
-    rigid : housing.RigidBody
-        Mass, centre of mass and inertia, with the masses attached.
+    mass : float
+        With the masses attached [kg].
     attached_mass : float
         Of these alone [kg].
-    solid : housing.MassProperties
-        Of the solid alone, from its geometry.
     modes : housing.ModeSet
     damping_ratios : ndarray, shape (n_modes,)
         As the case gives them; see :attr:`total_damping_ratios`.
@@ -61,7 +55,7 @@ class SolvedHousing:
     strengths : housing.Dominance or None
         None where there are no seats.
     checks : dict
-        Health report and effective masses as their documents.
+        Health report, effective masses and the mass of the solid as their documents.
     seconds : dict of str to float
         Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
     record : housing.ModeRecord
@@ -70,14 +64,13 @@ class SolvedHousing:
         The file that the modes were read from; None where they were solved.
     source_holds : bool
         Whether that file also holds these sensors, so that it need not be written again.
-    warnings : tuple of str
-        What the user should know, a sentence each.
+    warnings : list of dict
+        What the user should know, as the documents have it.
     """
 
     mesh: Mesh
-    rigid: room.RigidBody
+    mass: float
     attached_mass: float
-    solid: room.MassProperties
     modes: room.ModeSet
     damping_ratios: FloatArray
     damping_matrix: FloatArray | None
@@ -92,7 +85,7 @@ class SolvedHousing:
     record: room.ModeRecord
     source: Path | None = None
     source_holds: bool = False
-    warnings: tuple[str, ...] = ()
+    warnings: list[dict[str, Any]] = field(default_factory=list)
 
     @property
     def total_damping_ratios(self) -> FloatArray:
@@ -100,47 +93,6 @@ class SolvedHousing:
         if self.damping_matrix is None:
             return self.damping_ratios
         return room.damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
-
-
-def build_mesh(case: Case) -> Mesh:
-    """The housing's finite-element mesh.
-
-    Raises
-    ------
-    CaseError
-        Where the case has no housing, or one from a CAD file.
-    meshes.GeometryError
-        Where the shape cannot be meshed or the file not read.
-    """
-    require(case, "housing", command="mesh")
-    assert case.housing is not None
-    if case.housing.box is not None:
-        return mesh_box(box_geometry(case), case.housing.box.mesh_size)
-    if case.housing.mesh is not None:
-        return read_mesh(case.housing.mesh.file, unit=UNITS[case.housing.mesh.unit])
-    raise CaseError([Problem("housing.cad", str(case.housing.cad and case.housing.cad.file), _NO_CAD)])
-
-
-_NO_CAD = "[housing.box] or [housing.mesh]: geometry from CAD comes in a later version"
-
-
-def box_geometry(case: Case) -> BoxGeometry:
-    """The box of a case as the mesher's geometry."""
-    assert case.housing is not None
-    box = case.housing.box
-    assert box is not None
-    walls = box.walls
-    return BoxGeometry(
-        size=box.size,
-        wall=WallThickness(walls.left, walls.right, walls.bottom, walls.top, walls.back, walls.front),
-        bores=tuple(
-            Bore(
-                seat.name, seat.center, seat.diameter, Boss(seat.boss.diameter, seat.boss.length) if seat.boss else None
-            )
-            for seat in case.housing.seat
-        ),
-        feet=Feet(box.feet.size) if box.feet else None,
-    )
 
 
 def solve_housing(
@@ -176,15 +128,18 @@ def solve_housing(
     given = case.housing
     assert given is not None
     begin = time.perf_counter()
-    mesh = build_mesh(case) if given.mesh is not None else None
+    remarks: list[str] = []
+    mesh = build_mesh(case, remarks.append) if given.mesh is not None else None
     inputs = solution_inputs(case, mesh)
-    kept, warning = find_modes(folder, inputs) if folder is not None and not fresh else (None, None)
+    kept, spoilt = find_modes(folder, inputs) if folder is not None and not fresh else (None, None)
     if kept is not None and folder is not None:
-        mesh = kept.mesh
+        mesh, warnings = kept.mesh, list(kept.notes["warnings"])
         progress(f"modes read from {folder / MODES_FILE} (unchanged housing)")
-    elif mesh is None:
-        progress("meshing the housing")
-        mesh = build_mesh(case)
+    else:
+        if mesh is None:
+            progress("meshing the housing")
+            mesh = build_mesh(case, remarks.append)
+        warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
     meshed = time.perf_counter() - begin
     # Ports before modes: what is wrong with them is found out before the long work.
     seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
@@ -196,6 +151,7 @@ def solve_housing(
     if kept is None:
         modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
         seconds = {"mesh": meshed, **seconds}
+        warnings += warnings_document(doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ))
     else:
         modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
         damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
@@ -213,7 +169,7 @@ def solve_housing(
         seats=seats,
         seat_motions=np.stack(list(seats_in_modes.values()), axis=1) if seats else np.empty((0, 0, 6)),
         inputs=inputs,
-        notes={"seconds": seconds, "checks": checks},
+        notes={"seconds": seconds, "checks": checks, "warnings": warnings},
         extras={} if damping_matrix is None else {_DAMPING: _damping_array(damping_matrix)},
     )
     record = room.with_sensors(record, sensors.values())
@@ -235,7 +191,7 @@ def solve_housing(
         record=record,
         source=None if kept is None or folder is None else folder / MODES_FILE,
         source_holds=kept is not None and kept.sensors == record.sensors,
-        warnings=() if warning is None else (warning,),
+        warnings=warnings + ([] if spoilt is None else [doubt("modes file", spoilt)]),
     )
 
 
@@ -268,7 +224,7 @@ def _solve_modes(
     damping = room.modal_damping(modes, matrices) if matrices.damping.nnz else None
     progress("checking the housing against its geometry")
     begin = time.perf_counter()
-    checks = housing_checks(case, mesh, free, matrices, modes)
+    checks = housing_checks(case, mesh, free, matrices, modes, room.mass_properties(parted, material, materials))
     seconds = {"assembly": assembled, **modes.seconds, "checks": time.perf_counter() - begin}
     return modes, matrices.total_mass, damping, checks, seconds
 
@@ -305,96 +261,6 @@ def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
     if solved.strengths is None:
         return list(range(1, min(count, len(solved.modes.frequencies)) + 1))
     return [int(mode) + 1 for mode in solved.strengths.strongest(count, (0.0, np.inf))]
-
-
-def modes_document(solved: SolvedHousing, *, detail: bool = False) -> dict[str, Any]:
-    """The modes as the command's JSON; in detail also which of them carry the motion from bearings to sensors."""
-    certificate = solved.modes.certificate
-    strengths = solved.strengths
-    masses = solved.checks["effective_mass"]
-    document = {
-        "modes": [
-            {
-                "number": number,
-                "frequency_hz": float(frequency),
-                "damping_ratio": float(damping),
-                "strength": None if strengths is None else float(strengths.acceleration[number - 1]),
-                "effective_mass": masses["fractions"][number - 1],
-            }
-            for number, (frequency, damping) in enumerate(
-                zip(solved.modes.frequencies_hz, solved.total_damping_ratios, strict=True), start=1
-            )
-        ],
-        "certificate": {
-            "limit_hz": certificate.limit / _HERTZ,
-            "expected": certificate.expected,
-            "found": certificate.found,
-            "complete": certificate.complete,
-            "max_residual": certificate.max_residual,
-            "max_overlap": certificate.max_overlap,
-        },
-        "mesh": {
-            "nodes": len(solved.mesh.points),
-            "elements": solved.mesh.n_elements,
-            "dofs": 3 * len(solved.mesh.points),
-        },
-        "mass_kg": solved.rigid.mass,
-        "center_of_mass_m": solved.rigid.center.tolist(),
-        "attached_mass_kg": solved.attached_mass,
-        "effective_mass": {key: value for key, value in masses.items() if key != "fractions"},
-        "static_error": static_error_document(solved.modes, solved.loaded),
-        "health": solved.checks["health"],
-        "seconds": solved.seconds,
-        **origin_document(solved),
-    }
-    if detail:
-        ratios = solved.total_damping_ratios
-        document["selection"] = selection_document(solved.modes, ratios, solved.loaded, solved.sensors)
-    return document
-
-
-def origin_document(solved: SolvedHousing | None) -> dict[str, Any]:
-    """Where a housing's modes come from, as every command's JSON says it; nothing without a housing."""
-    if solved is None:
-        return {}
-    if solved.source is None:
-        return {"reused": False, "warnings": list(solved.warnings)}
-    return {
-        "reused": True,
-        "modes_read_from": str(solved.source),
-        "seconds_when_solved": solved.record.notes["seconds"],
-        "warnings": list(solved.warnings),
-    }
-
-
-def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> dict[str, Any]:
-    """The comparison as the command's JSON."""
-    # Counted below the next full kilohertz over the measured modes, as far as the model's modes are known.
-    highest = float(np.ceil(comparison.pairs[-1].measured / _HERTZ / 1000.0) * 1000.0)
-    highest = min(highest, solved.modes.certificate.limit / _HERTZ)
-    return {
-        "pairs": [
-            {
-                "measured_hz": pair.measured / _HERTZ,
-                "model_hz": pair.model / _HERTZ,
-                "error_percent": pair.error_percent,
-                "mode": pair.mode,
-                "mac": None,
-                "strength": pair.strength,
-            }
-            for pair in comparison.pairs
-        ],
-        "rms_error_percent": comparison.rms_error_percent,
-        "max_error_percent": comparison.max_error_percent,
-        "pairing": comparison.pairing,
-        "band_hz": [edge / _HERTZ for edge in comparison.band],
-        "gap": comparison.gap,
-        "measures_agree": comparison.measures_agree,
-        "model_modes": {
-            "below_hz": highest,
-            "count": int(np.count_nonzero(solved.modes.frequencies_hz < highest)),
-        },
-    }
 
 
 def _sensor(mesh: Mesh, index: int, entry: GivenSensor) -> room.SensorPort:

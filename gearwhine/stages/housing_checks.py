@@ -42,9 +42,14 @@ def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
 
 
 def housing_checks(
-    case: Case, mesh: Mesh, bare: room.Matrices, whole: room.Matrices, modes: room.ModeSet
+    case: Case,
+    mesh: Mesh,
+    bare: room.Matrices,
+    whole: room.Matrices,
+    modes: room.ModeSet,
+    solid: room.MassProperties,
 ) -> dict[str, Any]:
-    """Health report and effective masses, for the documents and for whatever keeps the modes.
+    """Health report, effective masses and the solid's mass, for the documents and for whatever keeps the modes.
 
     Parameters
     ----------
@@ -54,6 +59,8 @@ def housing_checks(
         Of the solid alone, and with all that is fastened to it.
     modes : housing.ModeSet
         Of the latter.
+    solid : housing.MassProperties
+        Of the solid, from its elements.
 
     Raises
     ------
@@ -61,7 +68,11 @@ def housing_checks(
         Where the model fails a check without which its numbers are wrong.
     """
     assert case.housing is not None
-    volume, center = room.enclosed(mesh)
+    mass, center = solid.mass, solid.center
+    if not case.housing.region:
+        # Of one material, what its boundary encloses says the same without any of the elements inside.
+        volume, center = room.enclosed(mesh)
+        mass = case.material[case.housing.material].density * volume
     fastened = sum(entry.mass for entry in case.housing.mass)
     grounds = [one for _, _, one in build_attachments(case) if isinstance(one, room.Support | room.Mount)]
     health = room.health_report(
@@ -70,13 +81,17 @@ def housing_checks(
         whole,
         grounds,
         modes,
-        mass=case.material[case.housing.material].density * volume + fastened,
+        mass=mass + fastened,
         # The centre of what is fastened is not the geometry's to know.
         center=None if fastened else center,
     )
     health.require()
     masses = room.effective_mass(whole, mesh.points, room.fixed_freedoms(mesh, build_supports(case)), modes)
-    return {"health": _health_document(health), "effective_mass": _mass_document(masses)}
+    return {
+        "health": _health_document(health),
+        "effective_mass": _mass_document(masses),
+        "solid": {"mass_kg": solid.mass, "center_of_mass_m": solid.center.tolist()},
+    }
 
 
 def static_error_document(modes: room.ModeSet, loaded: dict[str, sparse.csr_array]) -> dict[str, Any] | None:

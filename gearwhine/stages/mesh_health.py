@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 
 from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case.box import Box
 from gearwhine.case.problems import UNSAID
+from gearwhine.stages.geometry import UNITS, bolts_document, bores_document, build_mesh, cover_joints
 from gearwhine.stages.regions import materials_of
-from meshes import Ailment, Mesh, WaveCarrier, diagnose, read_mesh, resolution_ailments
+from meshes import Ailment, Mesh, WaveCarrier, diagnose, resolution_ailments
 
 _HERTZ = 2.0 * np.pi
-UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
-"""Units of length of geometry files [m]."""
 
 
 def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
@@ -27,8 +27,9 @@ def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
     given = case.housing
     assert given is not None
     source = given.mesh or given.cad
-    found = diagnose(mesh, unit=None if source is None else UNITS[source.unit])
-    meant = {"disconnected"} if given.joint else set()
+    unit = None if source is None or source.unit is None else UNITS[source.unit]
+    found = diagnose(mesh, unit=unit)
+    meant = {"disconnected"} if given.joint or cover_joints(case) else set()
     wrong = [one for one in found if one.severity == "error" and one.name not in meant]
     if wrong:
         key = "housing.mesh.file" if given.mesh else "housing.cad.file" if given.cad else "housing.box"
@@ -49,8 +50,10 @@ def _wave(case: Case, limit_hz: float) -> WaveCarrier:
     return WaveCarrier(given.youngs_modulus, given.poisson_ratio, given.density, _HERTZ * limit_hz)
 
 
-def foresee(case: Case) -> dict[str, Any]:
-    """What can be said of the mesh before anything is solved: of a file all, of a box whether its elements will do.
+def foresee(case: Case) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """What the mesh will be and what is doubtful in it, before anything is solved.
+
+    A file is read and examined whole; of a box it is said whether its elements will be small enough.
 
     Raises
     ------
@@ -59,36 +62,50 @@ def foresee(case: Case) -> dict[str, Any]:
     """
     given = case.housing
     assert given is not None
-    if given.mesh is not None:
-        mesh = read_mesh(given.mesh.file, unit=UNITS[given.mesh.unit])
-        materials_of(case, mesh)
-        warnings = examine(case, mesh) + doubt_resolution(case, mesh, given.frequency_limit)
-        return {
-            "mesh": {"nodes": len(mesh.points), "elements": mesh.n_elements, "dofs": 3 * len(mesh.points)},
-            "kinds": mesh.kinds,
-            "surfaces": sorted(mesh.surfaces),
-            "volumes": sorted(mesh.volumes),
-            "size_m": np.ptp(mesh.bounds, axis=0).tolist(),
-            "warnings": warnings_document(warnings),
-        }
-    if given.box is None or given.frequency_limit is None:
-        return {"warnings": []}
-    walls = given.box.walls
+    if given.box is not None:
+        size = {"size_m": list(given.box.size), "mesh_size_m": given.box.mesh_size}
+        return size | {"cover_bolts": bolts_document(case)}, _foresee_size(case, given.box)
+    remarks: list[str] = []
+    # Straight elements show the size and the bores of a CAD file as well as curved ones, sooner.
+    mesh = build_mesh(case, remarks.append, order=1)
+    materials_of(case, mesh)
+    warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
+    document: dict[str, Any] = {
+        "size_m": np.ptp(mesh.bounds, axis=0).tolist(),
+        "bores": bores_document(mesh),
+        "surfaces": sorted(mesh.surfaces),
+        "volumes": sorted(mesh.volumes),
+    }
+    if given.cad is not None:
+        return document | {"mesh_size_m": given.cad.mesh_size}, warnings
+    document["mesh"] = {"nodes": len(mesh.points), "elements": mesh.n_elements, "dofs": 3 * len(mesh.points)}
+    document["kinds"] = mesh.kinds
+    return document, warnings + warnings_document(doubt_resolution(case, mesh, given.frequency_limit))
+
+
+def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
+    assert case.housing is not None
+    limit = case.housing.frequency_limit
+    if limit is None:
+        return []
+    walls = box.walls
     thinnest = min(walls.left, walls.right, walls.bottom, walls.top, walls.back, walls.front)
-    length = _wave(case, given.frequency_limit).shortest_wave(thinnest)
-    if given.box.mesh_size <= length / 3.0:
-        return {"warnings": []}
+    length = _wave(case, limit).shortest_wave(thinnest)
+    if box.mesh_size <= length / 3.0:
+        return []
     message = (
-        f"elements of {1e3 * given.box.mesh_size:.3g} mm are longer than 1/3 of the shortest wave, "
-        f"{1e3 * length:.3g} mm at {given.frequency_limit:.4g} Hz in the wall of {1e3 * thinnest:.3g} mm; modes near "
+        f"elements of {1e3 * box.mesh_size:.3g} mm are longer than 1/3 of the shortest wave, "
+        f"{1e3 * length:.3g} mm at {limit:.4g} Hz in the wall of {1e3 * thinnest:.3g} mm; modes near "
         f"that frequency come out too high: use a mesh_size of at most {1e3 * length / 3.0:.3g} mm"
     )
-    return {"warnings": [{"name": "size", "message": message}]}
+    return [doubt("size", message)]
+
+
+def doubt(name: str, message: str) -> dict[str, Any]:
+    """A doubt that concerns no place in the mesh, as the command's JSON."""
+    return {"name": name, "message": message}
 
 
 def warnings_document(ailments: tuple[Ailment, ...]) -> list[dict[str, Any]]:
     """Doubts as the command's JSON."""
-    return [
-        {"name": one.name, "message": one.message, "count": one.count, "place_m": one.place.tolist()}
-        for one in ailments
-    ]
+    return [doubt(one.name, one.message) | {"count": one.count, "place_m": one.place.tolist()} for one in ailments]

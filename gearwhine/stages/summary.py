@@ -13,10 +13,12 @@ _RPM = 60.0 / (2.0 * np.pi)
 
 
 def check_document(case: Case) -> dict[str, Any]:
-    """Everything that follows from the case by arithmetic alone."""
+    """Everything that follows from the case by arithmetic alone, and what the file of its geometry holds."""
     document: dict[str, Any] = {"title": case.title}
     if case.housing is not None:
-        document["housing"] = _housing(case)
+        foreseen, warnings = mesh_health.foresee(case)
+        document["housing"] = _housing(case) | foreseen
+        document["warnings"] = warnings
     if case.rotor:
         document["rotors"] = _rotors(case)
     if case.bearing:
@@ -52,7 +54,7 @@ def check_document(case: Case) -> dict[str, Any]:
 def _housing(case: Case) -> dict[str, Any]:
     housing = case.housing
     assert housing is not None
-    document: dict[str, Any] = {
+    return {
         "geometry": "box" if housing.box else "mesh" if housing.mesh else "cad",
         "material": housing.material,
         "frequency_limit_hz": housing.frequency_limit,
@@ -65,10 +67,6 @@ def _housing(case: Case) -> dict[str, Any]:
         "sensors": [sensor.name for sensor in housing.sensor],
         "regions": [f"{region.name} of {region.material}" for region in housing.region],
     }
-    if housing.box is not None:
-        document |= {"size_m": list(housing.box.size), "mesh_size_m": housing.box.mesh_size}
-    document |= mesh_health.foresee(case)
-    return document
 
 
 def _bushing(given: Mount | Joint) -> dict[str, Any]:

@@ -130,9 +130,9 @@ def test_a_damaged_file_is_solved_again_with_a_warning(gearwhine, out: Path, dam
     document = modes(gearwhine)
     assert document["reused"] is False
     (warning,) = document["warnings"]
-    assert "damaged" in warning
-    assert "solved again" in warning
-    assert f"warning: {warning}" in document["stderr"]
+    assert "damaged" in warning["message"]
+    assert "solved again" in warning["message"]
+    assert f"warning: {warning['message']}" in document["stderr"]
     assert "Traceback" not in document["stderr"]
     assert document["certificate"]["complete"] is True
     assert modes(gearwhine)["reused"] is True

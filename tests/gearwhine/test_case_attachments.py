@@ -15,7 +15,8 @@ from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.case.checks import warnings_of
 from gearwhine.screen import show_check
 from gearwhine.stages.attachments import build_attachments
-from gearwhine.stages.housing import modes_document, solve_housing
+from gearwhine.stages.housing import solve_housing
+from gearwhine.stages.housing_documents import modes_document
 from gearwhine.stages.summary import check_document
 from meshes import BoxGeometry, Mesh, WallThickness, mesh_box, write_mesh
 
@@ -84,7 +85,7 @@ ONE_WRONG = {
     "held by nothing": ("support.0.damping", GONE, "housing.support[0]", "either 'fixed', or 'stiffness'"),
     "no damping": ("support.0.damping", {"y": 0}, "housing.support[0].damping", "above 0 N*s/m"),
     "damping as stiffness": ("support.0.damping.y", "2 N/m", "housing.support[0].damping.y", "a damping"),
-    "mount nowhere": ("mount.0.surface", GONE, "housing.mount[0]", "exactly one of 'box' and 'surface'"),
+    "mount nowhere": ("mount.0.surface", GONE, "housing.mount[0]", "exactly one of 'box', 'surface' and 'plane'"),
     "mount of nothing": ("mount.1.stiffness", GONE, "housing.mount[1]", "a stiffness or a damping above 0"),
     "mount of zeros": ("mount.1.stiffness", {"x": 0}, "housing.mount[1]", "a stiffness or a damping above 0"),
     "negative": ("mount.1.stiffness.rz", "-1 N*m/rad", "housing.mount[1].stiffness.rz", "of at least 0 N*m/rad"),
@@ -106,7 +107,7 @@ ONE_WRONG = {
     "joint to nothing": ("joint.0.surfaces.1", "rihgt", "housing.joint[0].surfaces[1]", "did you mean 'right'?"),
     "joint of one": ("joint.0.surfaces", ["left"], "housing.joint[0].surfaces[1]", "a name or text"),
     "mass of nothing": ("mass.0.mass", "0 kg", "housing.mass[0].mass", "above 0 kg"),
-    "mass nowhere": ("mass.1.position", GONE, "housing.mass[1]", "exactly one of 'position', 'box' and 'surface'"),
+    "mass nowhere": ("mass.1.position", GONE, "housing.mass[1]", "exactly one of 'position', 'box', 'surface'"),
     "mass in two places": ("mass.1.surface", "top", "housing.mass[1]", "exactly one of 'position', 'box'"),
     "point that turns": ("mass.1.offset", ["1 mm", "0 mm", "0 mm"], "housing.mass[1].offset", "does not turn a body"),
     "no such body": ("mass.0.inertia.xx", "0.2 kg*m^2", "housing.mass[0].inertia", "sum of the two others"),

@@ -132,7 +132,7 @@ ONE_WRONG = {
     "half an inertia": ("gear.0.mass", "1 kg", "gear[0]", "or none of them"),
     "direction": ("housing.sensor.0.direction", "up", "housing.sensor[0].direction", "'x', 'y' or 'z'"),
     "null direction": ("housing.sensor.0.direction", [0, 0, 0], "housing.sensor[0].direction", "a vector with a"),
-    "two patches": ("housing.support.0.box", CAVITY_BOX, "housing.support[0]", "exactly one of 'box' and 'surface'"),
+    "two patches": ("housing.support.0.box", CAVITY_BOX, "housing.support[0]", "exactly one of 'box', 'surface'"),
     "held and sprung": ("housing.support.0.fixed", ["x"], "housing.support[0]", "either 'fixed', or"),
     "mesh file": ("housing.mesh", {"file": "none.msh"}, "housing.mesh.file", "an existing file"),
     "sweep step": (
@@ -257,10 +257,13 @@ SEVERAL_CHANGES: dict[str, tuple[list[tuple[str, Any]], str, str]] = {
         "housing",
         "['box', 'cad']",
     ),
-    "geometry from CAD": (
-        [("housing.box", GONE), ("housing.cad", {"file": __file__, "mesh_size": "9 mm"})],
-        "housing.cad",
-        "comes in a later version",
+    "coarser at the seats": (
+        [
+            ("housing.box", GONE),
+            ("housing.cad", {"file": __file__, "mesh_size": "9 mm", "seat_mesh_size": "10 mm"}),
+        ],
+        "housing.cad.seat_mesh_size",
+        "at most the mesh_size",
     ),
     "a loop that locks": (
         [

@@ -48,13 +48,13 @@ def test_a_point_moves_with_the_field_there(box: Mesh) -> None:
 
 
 def test_patches_that_make_no_sense_are_refused(box: Mesh) -> None:
-    with pytest.raises(HousingError, match="a surface or a box, one of the two"):
+    with pytest.raises(HousingError, match="a surface, a box or a plane, one of the three"):
         Patch()
-    with pytest.raises(HousingError, match="one of the two"):
+    with pytest.raises(HousingError, match="one of the three"):
         Patch("foot-1", ((0, 0, 0), (1, 1, 1)))
     with pytest.raises(GeometryError, match=r"no surface 'foot-5'"):
         Patch("foot-5").facets(box)
-    with pytest.raises(HousingError, match="no facet of the surface lies in the box"):
+    with pytest.raises(GeometryError, match="no facet of the surface lies in the box"):
         Patch(box=((1, 1, 1), (2, 2, 2))).facets(box)
     with pytest.raises(HousingError, match="surface of mount 'm' is too small to tell its rotations"):
         patch_matrix(box, box.surface("foot-1"), np.array([1e4, 0.0, 0.0]), name="mount 'm'")

@@ -274,7 +274,6 @@ def test_arrays_that_do_not_fit_are_refused(
     beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array
 ) -> None:
     stiffness, mass, solve, shift, values, vectors, ports, free = dense(beam[1], clamped, port)
-    n_nodes = beam[1].n_nodes
     places = {"floor": 1.0, "free": free, "n_nodes": beam[1].n_nodes}
     with pytest.raises(HousingError, match="expected"):
         residual_attachments(stiffness, mass, solve, values, vectors, port, shift=shift, **places)

@@ -82,13 +82,13 @@ def test_a_box_around_a_foot_finds_its_underside(box: Mesh) -> None:
 def test_supports_that_hold_nothing_are_refused(box: Mesh) -> None:
     with pytest.raises(HousingError, match="'a' holds nothing"):
         Support("a", surface="foot-1")
-    with pytest.raises(HousingError, match="'a' needs a surface or a box, one of the two"):
+    with pytest.raises(HousingError, match="'a' needs a surface, a box or a plane, one of the three"):
         Support("a", fixed=(True, True, True))
-    with pytest.raises(HousingError, match="one of the two"):
+    with pytest.raises(HousingError, match="one of the three"):
         Support("a", surface="s", box=((0, 0, 0), (1, 1, 1)), fixed=(True, True, True))
     with pytest.raises(HousingError, match="finite and not negative"):
         Support("a", surface="s", stiffness=(1.0, -1.0, 0.0))
-    with pytest.raises(HousingError, match=r"no facet of the surface lies in the box.*the housing spans"):
+    with pytest.raises(GeometryError, match=r"no facet of the surface lies in the box.*the housing spans"):
         Support("a", box=((1, 1, 1), (2, 2, 2)), fixed=(True, True, True)).facets(box)
     with pytest.raises(GeometryError, match=r"no surface 'foot-5'.*foot-4"):
         fixed_freedoms(box, [Support("a", surface="foot-5", fixed=(True, True, True))])

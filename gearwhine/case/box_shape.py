@@ -1,0 +1,78 @@
+"""The box of a case as the mesher's geometry, and what of it does not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from gearwhine.case.box import FACES, Box
+from gearwhine.case.housing import Seat
+from gearwhine.case.problems import UNSAID, Finding
+
+if TYPE_CHECKING:
+    from meshes import BoxGeometry
+
+_IN_THE_FILE = {"start": "from", "end": "to"}
+
+
+def box_geometry(box: Box, seats: Sequence[Seat]) -> BoxGeometry:
+    """Return the box with the bores of its seats.
+
+    Raises
+    ------
+    meshes.GeometryError
+        Where its parts do not fit each other.
+    """
+    import meshes
+
+    walls, cover = box.walls, box.cover
+    bores = []
+    for seat in seats:
+        boss = meshes.Boss(seat.boss.diameter, seat.boss.length) if seat.boss else None
+        bores.append(meshes.Bore(seat.name, seat.center, seat.diameter, boss))
+    flange = cover.flange if cover is not None else None
+    bolts = cover.bolts if cover is not None else None
+    return meshes.BoxGeometry(
+        size=box.size,
+        wall=meshes.WallThickness(**{face: getattr(walls, face) for face in FACES}),
+        bores=tuple(bores),
+        feet=meshes.Feet(box.feet.size, box.feet.bolt_patch) if box.feet else None,
+        ribs=tuple(meshes.Rib(**rib.model_dump()) for rib in box.ribs),
+        cover=None
+        if cover is None
+        else meshes.Cover(
+            face=cover.face,
+            flange=meshes.Flange(**flange.model_dump()) if flange else None,
+            bolts=meshes.CoverBolts(**bolts.model_dump(exclude={"material"})) if bolts else None,
+            bonded=cover.bonded,
+        ),
+        fillets=meshes.Fillets(box.fillets.inside, box.fillets.outside),
+    )
+
+
+def box_misfits(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Finding]:
+    """Yield what does not fit among the parts of a box whose walls and bores are sound.
+
+    Parameters
+    ----------
+    box
+        The box.
+    seats
+        Its seats, each with its place in the case.
+    """
+    from meshes import BoxMisfitError, GeometryError
+
+    try:
+        box_geometry(box, [seat for _, seat in seats])
+    except BoxMisfitError as error:
+        for misfit in error.misfits:
+            kind, *steps = misfit.location
+            if kind == "bores":
+                number, *rest = steps
+                assert isinstance(number, int)
+                yield Finding(("housing", "seat", seats[number][0], *rest), misfit.expected)
+            else:
+                inner = (_IN_THE_FILE.get(str(step), step) for step in misfit.location)
+                yield Finding(("housing", "box", *inner), misfit.expected)
+    except GeometryError as error:
+        yield Finding(("housing", "box"), f"parts that fit each other; {error}", UNSAID)

@@ -1,0 +1,125 @@
+"""The geometry of a case's housing: box, CAD file or mesh file to a mesh in which every seat has its surface."""
+
+from collections.abc import Callable
+from typing import Any
+
+import housing as room
+from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.box_shape import box_geometry
+from gearwhine.case.problems import UNSAID
+from meshes import Bolt, GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
+
+UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
+"""Units of length of geometry files [m]."""
+
+
+def unheard(warning: str) -> None:
+    """Tell no one."""
+
+
+def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int = 2) -> Mesh:
+    """The housing's finite-element mesh.
+
+    Parameters
+    ----------
+    case : Case
+    warn : callable
+        Told what the user should know, a sentence each.
+    order : {1, 2}
+        Of the elements, where they are made here and not read.
+
+    Raises
+    ------
+    CaseError
+        Where the case has no housing, or a seat is not found in it.
+    meshes.GeometryError
+        Where the shape cannot be meshed or the file not read.
+    """
+    require(case, "housing", command="mesh")
+    given = case.housing
+    assert given is not None
+    if given.box is not None:
+        return mesh_box(box_geometry(given.box, given.seat), given.box.mesh_size, order=order)
+    if given.mesh is not None:
+        return _with_seats(case, read_mesh(given.mesh.file, unit=UNITS[given.mesh.unit]))
+    assert given.cad is not None
+    found = mesh_cad(
+        given.cad.file,
+        given.cad.mesh_size,
+        unit=None if given.cad.unit is None else UNITS[given.cad.unit],
+        order=order,
+        refine=[(seat.center, seat.diameter) for seat in given.seat],
+        refined_size=given.cad.seat_mesh_size,
+    )
+    for remark in found.remarks:
+        warn(f"{given.cad.file.name}: {remark}")
+    return _with_seats(case, found.mesh)
+
+
+def _with_seats(case: Case, mesh: Mesh) -> Mesh:
+    """The mesh with a surface for each seat: its own of that name, or the bore by centre and diameter.
+
+    Raises
+    ------
+    CaseError
+        With every seat that is not found.
+    """
+    assert case.housing is not None
+    problems = []
+    for index, seat in enumerate(case.housing.seat):
+        try:
+            mesh = with_bore(mesh, seat.name, seat.center, seat.diameter)
+        except GeometryError as error:
+            key, label = f"housing.seat[{index}]", f'seat "{seat.name}"'
+            problems.append(
+                Problem(key, UNSAID, f"a bore of the housing, by centre and diameter; {error}", label=label)
+            )
+    if problems:
+        raise CaseError(problems)
+    return mesh
+
+
+def cover_joints(case: Case) -> list[room.Joint]:
+    """The bolts of a box's cover, each tying its two patches."""
+    given = case.housing
+    if given is None or given.box is None or given.box.cover is None or given.box.cover.bolts is None:
+        return []
+    box = box_geometry(given.box, given.seat)
+    parts, own = (_material(case, name) for name in (given.material, given.box.cover.bolts.material or given.material))
+    return [_joint(bolt, parts, own, box.rim_width) for bolt in box.bolts]
+
+
+def _material(case: Case, name: str) -> room.Material:
+    steel = case.material[name]
+    return room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
+
+
+def _joint(bolt: Bolt, parts: room.Material, own: room.Material, rim: float) -> room.Joint:
+    outer = max(rim, bolt.patch_diameter)  # a narrow rim leaves the cone of pressure no more than its width
+    springs = room.bolted_joint(bolt.diameter, bolt.grip, parts, own, outer=outer).stiffness
+    first, second = room.Patch(bolt.body_surface), room.Patch(bolt.cover_surface)
+    return room.Joint(bolt.name, first, second, room.Bushing.along(bolt.axis, springs), bolt.position)
+
+
+def bolts_document(case: Case) -> list[dict[str, Any]]:
+    """The bolts of a box's cover with their springs."""
+    rows = []
+    for joint in cover_joints(case):
+        shear, _, axial, tilting, _, torsional = joint.bushing.stiffness
+        rows.append(
+            {
+                "name": joint.name,
+                "position_m": None if joint.center is None else list(joint.center),
+                "stiffness_n_per_m": {"axial": axial, "shear": shear},
+                "stiffness_n_m_per_rad": {"tilting": tilting, "torsional": torsional},
+            }
+        )
+    return rows
+
+
+def bores_document(mesh: Mesh) -> list[dict[str, Any]]:
+    """The bores along z that a mesh has, the widest first."""
+    return [
+        {"center_m": list(bore.center), "diameter_m": bore.diameter, "length_m": bore.length}
+        for bore in find_bores(mesh)
+    ]

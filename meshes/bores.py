@@ -1,0 +1,317 @@
+"""Cylindrical bores on the surface of a mesh: which there are, and which facets make up one.
+
+The corners of a bore's facets lie on its cylinder, however coarse the mesh, and the facets look towards its axis; the
+outside of a boss looks away from it. A fillet along the axis is no bore, for it goes round a quarter of the circle.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from meshes.elements import Facets, FloatArray, IntArray, facet_centers, facet_corners, facet_normals, pick_facets
+from meshes.errors import GeometryError
+from meshes.mesh import Mesh
+
+BoolArray = npt.NDArray[np.bool_]
+
+_SIDEWAYS = 0.5  # largest cosine between the axis and a facet's normal: chords of coarse meshes are askew
+_FACING = 0.5  # least cosine between a facet's normal and the direction to the axis
+_SHARPEST = np.cos(np.radians(75.0))  # neighbours of a bore of five or more facets turn by less
+_LOCAL_FIT = 0.02  # corners of neighbours may be off their circle by this part of its radius
+_SLACK = 0.01  # corners of a bore may be off its circle by this part of its diameter
+_MOST_CIRCLES = 500
+_FEWEST_FACETS = 3  # that must propose a circle before it is tried
+_ARC_STEPS = 720
+
+
+@dataclass(frozen=True)
+class CylindricalBore:
+    """A bore found on a mesh.
+
+    Attributes
+    ----------
+    center : tuple of float
+        The middle of its axis [m].
+    diameter, length : float
+        Of the circle nearest to its corner nodes, and between its ends [m].
+    roundness : float
+        How much of the full circle its facets go round, 0 to 1.
+    facets : tuple of ElementBlock
+        Its facets.
+    """
+
+    center: tuple[float, float, float]
+    diameter: float
+    length: float
+    roundness: float
+    facets: Facets
+
+
+def find_bores(
+    mesh: Mesh, *, axis: Sequence[float] | FloatArray = (0.0, 0.0, 1.0), least_round: float = 0.45
+) -> tuple[CylindricalBore, ...]:
+    """All cylindrical bores along an axis, the widest first.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    axis : sequence of float
+        Of any length.
+    least_round : float
+        Part of the full circle that a bore must go round; by default about a half, as of a housing split at the
+        axis.
+
+    Notes
+    -----
+    Each facet proposes the circle through its own corners and its neighbours'; the circles that most propose are tried
+    first, and those facets that lie on one all around are a bore.
+    """
+    direction = unit_vector(axis)
+    found: list[CylindricalBore] = []
+    taken = np.zeros(sum(len(block) for block in mesh.boundary), dtype=bool)
+    for center, radius in _proposed_circles(mesh, direction):
+        on = fits_circle(mesh, center, radius, direction, 2 * _SLACK * radius) & ~taken
+        if not on.any():
+            continue
+        for bore in joined_by_span(mesh, pick_facets(mesh.boundary, on), center, direction):
+            if bore.roundness >= least_round and not any(_same(bore, other, direction) for other in found):
+                found.append(bore)
+        taken |= on
+    return tuple(sorted(found, key=lambda bore: (-round(bore.diameter, 7), [round(x, 7) for x in bore.center])))
+
+
+def fits_circle(
+    mesh: Mesh, center: Sequence[float] | FloatArray, radius: float, axis: FloatArray, slack: float
+) -> BoolArray:
+    """Which boundary facets lie on a cylinder with all corners and look towards its axis, shape (n_facets,).
+
+    Parameters
+    ----------
+    mesh : Mesh
+    center : sequence of float
+        A point of the axis [m].
+    radius, slack : float
+        Of the cylinder, and how far a corner may be off it [m].
+    axis : ndarray, shape (3,)
+        Unit vector.
+    """
+    arms = _across(mesh.points - np.asarray(center), axis)
+    near = np.abs(np.linalg.norm(arms, axis=1) - radius) <= slack
+    on = np.concatenate([near[block.corners].all(axis=1) for block in mesh.boundary])
+    normals = facet_normals(mesh.points, mesh.boundary)
+    inward = -_across(facet_centers(mesh.points, mesh.boundary) - np.asarray(center), axis)
+    facing = np.einsum("fi,fi->f", normals, inward) > _FACING * np.linalg.norm(inward, axis=1)
+    return np.asarray(on & facing & (np.abs(normals @ axis) < _SIDEWAYS))
+
+
+def joined_by_span(
+    mesh: Mesh, facets: Facets, center: Sequence[float] | FloatArray, axis: FloatArray
+) -> tuple[CylindricalBore, ...]:
+    """Facets of one cylinder as bores: parts that touch, or that lie side by side at the same height, are one.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    facets : tuple of ElementBlock
+        As chosen by :func:`fits_circle`.
+    center, axis
+        Of the cylinder.
+    """
+    part = _connected(facets)
+    heights = (mesh.points - np.asarray(center)) @ axis
+    low = np.concatenate([heights[block.corners].min(axis=1) for block in facets])
+    high = np.concatenate([heights[block.corners].max(axis=1) for block in facets])
+    spans = sorted((float(low[part == one].min()), float(high[part == one].max()), one) for one in np.unique(part))
+    groups: list[tuple[float, float, list[int]]] = []
+    for begin, end, one in spans:
+        if groups:
+            first, last, members = groups[-1]
+            if min(end, last) - begin > 0.5 * min(end - begin, last - first):
+                groups[-1] = (first, max(last, end), [*members, one])
+                continue
+        groups.append((begin, end, [one]))
+    return tuple(
+        _bore(mesh, pick_facets(facets, np.isin(part, members)), np.asarray(center), axis) for _, _, members in groups
+    )
+
+
+def describe(bore: CylindricalBore) -> str:
+    """A bore in words: diameter, middle and length in mm."""
+    place = ", ".join(f"{1e3 * value + 0.0:.5g}" for value in bore.center)
+    return f"{1e3 * bore.diameter:.5g} mm at ({place}) mm, {1e3 * bore.length:.4g} mm long"
+
+
+def unit_vector(axis: Sequence[float] | FloatArray) -> FloatArray:
+    """An axis of length 1.
+
+    Raises
+    ------
+    GeometryError
+        Where it has no length.
+    """
+    direction = np.asarray(axis, dtype=np.float64)
+    length = float(np.linalg.norm(direction))
+    if not 0.0 < length < np.inf:
+        raise GeometryError(f"axis {tuple(axis)} has no direction")
+    return direction / length
+
+
+def _bore(mesh: Mesh, facets: Facets, center: FloatArray, axis: FloatArray) -> CylindricalBore:
+    """The bore of some facets, its circle fitted to their corners."""
+    arms = mesh.points[facet_corners(facets)] - center
+    first, second = _plane(axis)
+    (u, v), radius = _fit_circle(np.stack([arms @ first, arms @ second], axis=1))
+    heights = arms @ axis
+    middle = center + u * first + v * second + (heights.min() + heights.max()) / 2 * axis
+    x, y, z = (float(value) for value in middle)
+    return CylindricalBore(
+        center=(x, y, z),
+        diameter=2 * radius,
+        length=float(np.ptp(heights)),
+        roundness=_roundness(mesh, facets, middle, first, second),
+        facets=facets,
+    )
+
+
+def _fit_circle(points: FloatArray) -> tuple[FloatArray, float]:
+    """Centre and radius of the circle nearest to points of a plane (Kåsa: least squares of r² - R²)."""
+    matrix = np.column_stack([points, np.ones(len(points))])
+    solution = np.linalg.lstsq(matrix, (points**2).sum(axis=1), rcond=None)[0]
+    center = solution[:2] / 2
+    return center, float(np.sqrt(max(solution[2] + center @ center, 0.0)))
+
+
+def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, first: FloatArray, second: FloatArray) -> float:
+    """How much of the circle the facets cover, each from its first to its last corner."""
+    arms = mesh.points - center
+    angles = np.arctan2(arms @ second, arms @ first)
+    covered = np.zeros(_ARC_STEPS, dtype=bool)
+    steps = np.arange(_ARC_STEPS)
+    for block in facets:
+        own = angles[block.corners]
+        turned = np.mod(own - own[:, :1] + np.pi, 2 * np.pi) - np.pi  # from the first corner, the short way
+        ends = (own[:, :1] + np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1)) * _ARC_STEPS / (2 * np.pi)
+        begin = np.floor(ends[:, 0] + 1e-6).astype(np.int64)
+        width = np.ceil(ends[:, 1] - 1e-6).astype(np.int64) - begin
+        for start, length in set(zip(begin.tolist(), width.tolist(), strict=True)):
+            covered[(start + steps[:length]) % _ARC_STEPS] = True
+    return float(covered.mean())
+
+
+def _proposed_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, float]]:
+    """Circles through facets and their neighbours, those that most facets propose first."""
+    boundary = mesh.boundary
+    centers, normals = facet_centers(mesh.points, boundary), facet_normals(mesh.points, boundary)
+    sideways = np.abs(normals @ axis) < _SIDEWAYS
+    corners = np.concatenate([block.corners[:, [0, 1, 2, -1]] for block in boundary])
+    pairs = _edge_neighbors(boundary)
+    one, two = pairs[:, 0], pairs[:, 1]
+    # Neighbours round a bore lie in front of each other, and turn, but not by a corner.
+    step = centers[two] - centers[one]
+    hollow = np.minimum(np.einsum("pi,pi->p", normals[one], step), -np.einsum("pi,pi->p", normals[two], step))
+    turn = np.einsum("pi,pi->p", normals[one], normals[two])
+    linked = sideways[one] & sideways[two] & (turn > _SHARPEST)
+    linked &= hollow > -1e-6 * np.linalg.norm(step, axis=1)
+    pairs = np.concatenate([pairs[linked], pairs[linked][:, ::-1]])
+    if len(pairs) == 0:
+        return []
+    pairs = pairs[np.argsort(pairs[:, 0], kind="stable")]
+    facets, start, number = np.unique(pairs[:, 0], return_index=True, return_counts=True)
+    column = np.arange(len(pairs)) - np.repeat(start, number)
+    around = np.repeat(facets[:, None], 5, axis=1)  # itself where it has no further neighbour
+    keep = column < 4
+    around[np.repeat(np.arange(len(facets)), number)[keep], 1 + column[keep]] = pairs[keep, 1]
+    first, second = _plane(axis)
+    arms = mesh.points[corners[around].reshape(len(facets), -1)] - centers[facets][:, None]
+    flat = np.stack([arms @ first, arms @ second], axis=2)
+    middle, radius = _fit_circles(flat)
+    off = np.abs(np.linalg.norm(flat - middle[:, None], axis=2) - radius[:, None]).max(axis=1)
+    size = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+    good = np.isfinite(radius) & (off < _LOCAL_FIT * radius) & (radius < size)
+    places = centers[facets[good]] + middle[good, :1] * first + middle[good, 1:] * second
+    return _most_proposed(places, radius[good], first, second)
+
+
+def _most_proposed(
+    places: FloatArray, radii: FloatArray, first: FloatArray, second: FloatArray
+) -> list[tuple[FloatArray, float]]:
+    """Circles that agree to their slack, as their medians, in order of how many propose them."""
+    if len(radii) == 0:
+        return []
+    size = np.exp(np.round(np.log(radii) / 0.05) * 0.05)  # bins of the same width for radii of the same size
+    bins = np.stack([places @ first / size, places @ second / size, radii / size], axis=1) / (2 * _SLACK)
+    keys = np.column_stack([np.round(bins).astype(np.int64), np.round(np.log(size) / 0.05).astype(np.int64)])
+    _, which, counts = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+    order = [one for one in np.argsort(-counts, kind="stable")[:_MOST_CIRCLES] if counts[one] >= _FEWEST_FACETS]
+    return [(np.median(places[which == one], axis=0), float(np.median(radii[which == one]))) for one in order]
+
+
+def _fit_circles(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """As :func:`_fit_circle` for many sets, shape (n, n_points, 2); not finite where points are in line."""
+    scale = np.abs(points).max(axis=(1, 2))
+    scaled = points / scale[:, None, None]
+    matrix = np.concatenate([scaled, np.ones((*scaled.shape[:2], 1))], axis=2)
+    normal = np.einsum("npi,npj->nij", matrix, matrix)
+    right = np.einsum("npi,np->ni", matrix, (scaled**2).sum(axis=2))
+    sound = np.linalg.det(normal) > 1e-9
+    solution = np.full((len(points), 3), np.nan)
+    solution[sound] = np.linalg.solve(normal[sound], right[sound][..., None])[..., 0]
+    center = solution[:, :2] / 2
+    radius = np.sqrt(np.maximum(solution[:, 2] + (center**2).sum(axis=1), 0.0))
+    return center * scale[:, None], radius * scale
+
+
+def _edge_neighbors(facets: Facets) -> IntArray:
+    """Pairs of facets that share an edge, shape (n_pairs, 2); facets are counted block after block."""
+    edges, owners, start = [], [], 0
+    for block in facets:
+        local = block.of.edges
+        edges.append(np.sort(block.nodes[:, local].reshape(-1, 2), axis=1))
+        owners.append(np.repeat(np.arange(start, start + len(block)), len(local)))
+        start += len(block)
+    edge, owner = np.concatenate(edges), np.concatenate(owners)
+    order = np.lexsort((edge[:, 1], edge[:, 0]))
+    edge, owner = edge[order], owner[order]
+    same = np.all(edge[1:] == edge[:-1], axis=1)
+    return np.stack([owner[:-1][same], owner[1:][same]], axis=1)
+
+
+def _connected(facets: Facets) -> IntArray:
+    """The number of the part that each facet belongs to; facets that share a node are of one part."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    nodes = facet_corners(facets)
+    facet, node, start = [], [], 0
+    for block in facets:
+        facet.append(np.repeat(np.arange(start, start + len(block)), block.corners.shape[1]))
+        node.append(np.searchsorted(nodes, block.corners).ravel())
+        start += len(block)
+    rows, columns = np.concatenate(facet), start + np.concatenate(node)
+    size = start + len(nodes)
+    graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(size, size)).tocsr()
+    _, part = connected_components(graph, directed=False)
+    return np.asarray(part[:start], dtype=np.int64)
+
+
+def _same(bore: CylindricalBore, other: CylindricalBore, axis: FloatArray) -> bool:
+    """Whether two are the same bore, found by two circles that both fit."""
+    gap = np.subtract(bore.center, other.center)
+    across = float(np.linalg.norm(_across(gap[None], axis)))
+    slack = 2 * _SLACK * bore.diameter
+    overlap = (bore.length + other.length) / 2 - abs(float(gap @ axis))
+    return across < slack and abs(bore.diameter - other.diameter) < slack and overlap > 0.5 * bore.length
+
+
+def _across(vectors: FloatArray, axis: FloatArray) -> FloatArray:
+    return np.asarray(vectors - (vectors @ axis)[:, None] * axis)
+
+
+def _plane(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Two unit vectors at right angles to an axis and to each other; x and y for the z axis."""
+    helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    first = helper - (helper @ axis) * axis
+    first /= np.linalg.norm(first)
+    return first, np.cross(axis, first)

@@ -1,0 +1,187 @@
+"""Whether ribs, cover, fillets and bolt patches fit a box: everything that does not, at once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from meshes.box import layout
+from meshes.box.fit_cover import cover_misfits
+from meshes.box.layout import Block
+from meshes.box.misfit import Misfit, mm
+from meshes.box.parts import FACES, Bore, Rib
+
+if TYPE_CHECKING:
+    from meshes.box.geometry import BoxGeometry
+
+__all__ = ["Misfit", "misfits"]
+
+_SLACK = 1e-9
+_LEAST_CORNER = 0.25  # of the thinner wall must be left where an edge is rounded
+
+
+def misfits(box: BoxGeometry) -> Iterator[Misfit]:
+    """Yield everything that does not fit; where a part has no sound size, what follows from it is left out."""
+    sound = True
+    for group in (_feet_misfits(box), _fillet_sizes(box), *(_rib_misfits(box, i) for i in range(len(box.ribs)))):
+        for misfit in group:
+            sound = False
+            yield misfit
+    if box.cover is not None:
+        for misfit in cover_misfits(box, box.cover):
+            sound = False
+            yield misfit
+    if sound:
+        yield from _corner_misfits(box)
+        yield from _rib_clashes(box)
+        for index, bore in enumerate(box.bores):
+            yield from _bore_clashes(box, index, bore)
+
+
+def _feet_misfits(box: BoxGeometry) -> Iterator[Misfit]:
+    if box.feet is None:
+        return
+    width, _, depth = box.feet.size
+    patch = box.feet.bolt_patch
+    if patch is not None and not 0.0 < patch < min(width, depth):
+        yield Misfit(("feet", "bolt_patch"), f"a diameter above 0 and below that of the feet, {mm(min(width, depth))}")
+    if box.fillets.outside >= min(width, depth):
+        yield Misfit(("feet", "size"), f"feet larger than the rounding above them, {mm(box.fillets.outside)}")
+
+
+def _fillet_sizes(box: BoxGeometry) -> Iterator[Misfit]:
+    """Radii that a box's own edges do not leave room for."""
+    for key, radius, block in (
+        ("inside", box.fillets.inside, layout.cavity_block(box)),
+        ("outside", box.fillets.outside, layout.body_block(box)),
+    ):
+        if radius < 0.0 or (radius > 0.0 and 2.0 * radius >= min(block.size)):
+            where = "cavity" if key == "inside" else "box"
+            yield Misfit(("fillets", key), f"a radius from 0 to less than half the {where}, {mm(min(block.size) / 2)}")
+
+
+def _corner_misfits(box: BoxGeometry) -> Iterator[Misfit]:
+    """A rounding outside that leaves too little of a sharper corner inside."""
+    if box.fillets.outside == 0.0:
+        return
+    faces = [face for face in FACES if box.cover is None or face != box.cover.face]
+    thinnest = math.inf
+    for i, first in enumerate(faces):
+        for second in faces[i + 1 :]:
+            if FACES[first][0] != FACES[second][0]:
+                walls = box.wall.of(first), box.wall.of(second)
+                left = _corner_thickness(walls, box.fillets.outside, box.fillets.inside)
+                thinnest = min(thinnest, left / min(walls))
+    if thinnest < _LEAST_CORNER:
+        expected = f"a radius that leaves a quarter of the wall at each edge; this one leaves {max(thinnest, 0.0):.0%}"
+        yield Misfit(("fillets", "outside"), f"{expected} (round the inside as well, or less outside)")
+
+
+def _corner_thickness(walls: tuple[float, float], outside: float, inside: float) -> float:
+    """Least material between a corner rounded outside and the one inside, in the plane across the edge [m]."""
+    least = math.inf
+    for step in range(33):
+        angle = math.pi / 2 * step / 32
+        u = walls[0] + inside * (1.0 - math.cos(angle))
+        v = walls[1] + inside * (1.0 - math.sin(angle))
+        if u < outside and v < outside:
+            least = min(least, outside - math.hypot(outside - u, outside - v))
+    return least
+
+
+def _rib_misfits(box: BoxGeometry, index: int) -> Iterator[Misfit]:
+    """A rib whose numbers make no rib on its wall."""
+    rib, location = box.ribs[index], ("ribs", index)
+    normal, _ = FACES[rib.face]
+    if "xyz".index(rib.along) == normal:
+        others = " or ".join(repr(axis) for axis in "xyz" if axis != "xyz"[normal])
+        yield Misfit((*location, "along"), f"{others}, which lie in the {rib.face} wall")
+        return
+    for key in ("height", "thickness"):
+        if getattr(rib, key) <= 0.0:
+            yield Misfit((*location, key), "a length above 0")
+            return
+    limits = layout.rib_range(box, rib)
+    across = 3 - normal - "xyz".index(rib.along)
+    low, high = limits.low[across] + rib.thickness / 2, limits.high[across] - rib.thickness / 2
+    if not low - _SLACK <= rib.at <= high + _SLACK:
+        expected = f"a place on the wall, from {mm(low)} to {mm(high)} for a rib {mm(rib.thickness)} thick"
+        yield Misfit((*location, "at"), expected)
+    yield from _rib_ends(rib, limits, location)
+    room = layout.cavity_block(box).size[normal]
+    if rib.side == "inside" and rib.height > room + _SLACK:
+        yield Misfit((*location, "height"), f"at most the {mm(room)} inside the box")
+
+
+def _rib_ends(rib: Rib, limits: Block, location: tuple[str | int, ...]) -> Iterator[Misfit]:
+    along = "xyz".index(rib.along)
+    low, high = limits.low[along], limits.high[along]
+    for key, end in (("start", rib.start), ("end", rib.end)):
+        if end is not None and not low - _SLACK <= end <= high + _SLACK:
+            expected = f"a place on the wall, which spans {rib.along} = {mm(low)} to {mm(high)} on its {rib.side}"
+            yield Misfit((*location, key), expected)
+            return
+    start, end = low if rib.start is None else rib.start, high if rib.end is None else rib.end
+    if start >= end:
+        yield Misfit((*location, "end" if rib.end is not None else "start"), f"an end beyond the start at {mm(start)}")
+
+
+def _rib_clashes(box: BoxGeometry) -> Iterator[Misfit]:
+    """Ribs that run into what they must not become one with: feet, and ribs across the joint of the cover."""
+    feet = layout.foot_blocks(box)
+    blocks = [layout.rib_block(box, rib) for rib in box.ribs]
+    for index, (rib, block) in enumerate(zip(box.ribs, blocks, strict=True)):
+        if any(block.overlaps(foot) for foot in feet):
+            yield Misfit(("ribs", index), f"a rib clear of the feet on the {rib.face} wall")
+        if not layout.on_cover(box, rib):
+            continue
+        for other, (its, its_block) in enumerate(zip(box.ribs, blocks, strict=True)):
+            if not layout.on_cover(box, its) and block.overlaps(its_block):
+                yield Misfit(("ribs", index), f"a rib of the cover clear of the body's, ribs[{other}]")
+
+
+def _bore_clashes(box: BoxGeometry, index: int, bore: Bore) -> Iterator[Misfit]:
+    """A bore that something stands in, or that crosses the joint of the cover."""
+    start, end = box.bore_span(bore)
+    radius = bore.diameter / 2
+    x, y, _ = bore.center
+    location = ("bores", index, "center")
+    margin = 0.1 * (end - start)
+
+    def stands_in(block: Block) -> bool:
+        (x1, y1, z1), (x2, y2, z2) = block.low, block.high
+        gap = math.hypot(max(x1 - x, 0.0, x - x2), max(y1 - y, 0.0, y - y2))
+        return gap < radius - _SLACK and z1 < end + margin and start - margin < z2
+
+    for number, rib in enumerate(box.ribs):
+        if stands_in(layout.rib_block(box, rib)):
+            yield Misfit(location, f"a bore clear of ribs; ribs[{number}] on the {rib.face} wall stands in it")
+    if box.cover is not None:
+        if any(stands_in(side) for side in layout.flange_sides(box, box.cover)):
+            yield Misfit(location, "a bore clear of the cover's flange")
+        yield from _joint_clashes(box, index, bore)
+    if box.fillets.inside > 0.0:
+        cavity = layout.cavity_block(box).widened((0, 1), -box.fillets.inside)
+        if any(
+            value - radius < cavity.low[axis] - _SLACK or value + radius > cavity.high[axis] + _SLACK
+            for axis, value in enumerate((x, y))
+        ):
+            yield Misfit(location, f"a bore clear of the cavity's edges, rounded by {mm(box.fillets.inside)}")
+
+
+def _joint_clashes(box: BoxGeometry, index: int, bore: Bore) -> Iterator[Misfit]:
+    assert box.cover is not None
+    normal, way = FACES[box.cover.face]
+    radius = (bore.boss.diameter if bore.boss else bore.diameter) / 2
+    if normal == 2:
+        for bolt in box.bolts if box.end_wall(bore) == box.cover.face else ():
+            apart = math.hypot(bolt.position[0] - bore.center[0], bolt.position[1] - bore.center[1])
+            if apart < bore.diameter / 2 + bolt.patch_diameter / 2:
+                yield Misfit(("bores", index, "center"), f"a bore clear of the cover's {bolt.name}")
+        return
+    plane = layout.parting_plane(box, box.cover.face)
+    if way * (plane - bore.center[normal]) < radius - _SLACK:
+        what = "boss" if bore.boss else "bore"
+        expected = f"a {what} clear of the joint under the {box.cover.face} cover, at {'xyz'[normal]} = {mm(plane)}"
+        yield Misfit(("bores", index, "center"), expected)

@@ -1,0 +1,28 @@
+"""One thing about a box that does not fit, and where it was said."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """A part of a box that does not fit.
+
+    Attributes
+    ----------
+    location : tuple of str or int
+        Attributes and indices from the :class:`~meshes.BoxGeometry` down, such as ``("ribs", 0, "at")``.
+    expected : str
+        What was expected there, to be read after "expected".
+    """
+
+    location: tuple[str | int, ...]
+    expected: str
+
+    def __str__(self) -> str:
+        place = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in self.location)
+        return f"box: {place.lstrip('.')}: expected {self.expected}"
+
+
+def mm(length: float) -> str:
+    """A length [m] in mm, for a message."""
+    return f"{1e3 * length:.6g} mm"

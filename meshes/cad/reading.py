@@ -1,0 +1,154 @@
+"""Housings from CAD files: STEP, IGES and BREP to a mesh of tetrahedra."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from meshes.cad.units import stated_unit
+from meshes.cad.worker import Request
+from meshes.errors import GeometryError, MesherUnavailableError
+from meshes.mesh import Mesh
+from meshes.tetrahedra import Tetrahedra, check_mesh_request
+
+KINDS = {".step": "step", ".stp": "step", ".iges": "iges", ".igs": "iges", ".brep": "brep"}
+"""What a file is, by its ending."""
+
+
+@dataclass(frozen=True)
+class CadMesh:
+    """The mesh of a CAD file, and what was found in it.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        Solids under their own names as volumes, and all of them as ``housing``; faces that carry a name in the
+        file as surfaces.
+    solids : tuple of str
+        Names of the solids; those without are ``solid-1`` and so on.
+    unit : float
+        Unit of the file's numbers [m].
+    remarks : tuple of str
+        What the user should know, such as a unit that contradicts the file's own.
+    """
+
+    mesh: Mesh
+    solids: tuple[str, ...]
+    unit: float
+    remarks: tuple[str, ...]
+
+
+def mesh_cad(
+    path: str | Path,
+    mesh_size: float,
+    *,
+    unit: float | None = None,
+    order: int = 2,
+    refine: Sequence[tuple[tuple[float, float, float], float]] = (),
+    refined_size: float | None = None,
+    time_limit: float = 3600.0,
+) -> CadMesh:
+    """Mesh the solids of a CAD file with tetrahedra.
+
+    Parameters
+    ----------
+    path : path
+        A STEP, IGES or BREP file.
+    mesh_size : float
+        Edge length aimed at [m].
+    unit : float, optional
+        Unit of the file's numbers [m], where it states none itself (BREP; default a millimetre). What a STEP or
+        IGES file states holds, unless the part would then be no housing by its size and is one in this unit.
+    order : {1, 2}
+        Polynomial order of the elements.
+    refine : sequence of (center, diameter)
+        Bores around which the elements are to be smaller [m].
+    refined_size : float, optional
+        Edge length aimed at there [m].
+    time_limit : float
+        Seconds after which the attempt is given up.
+
+    Raises
+    ------
+    GeometryError
+        Where the file is missing, of another kind, broken, without a solid, in a mistaken unit, or where a solid
+        cannot be meshed.
+    MesherUnavailableError
+        Where gmsh cannot be loaded.
+    """
+    check_mesh_request(mesh_size, order)
+    if refined_size is not None and not 0.0 < refined_size <= mesh_size:
+        raise GeometryError(f"refined mesh size {refined_size} m must be positive and at most {mesh_size} m")
+    path = Path(path)
+    kind = KINDS.get(path.suffix.lower())
+    if kind is None:
+        raise GeometryError(f"CAD file {path}: its ending is none of {' '.join(KINDS)}")
+    try:
+        stated = stated_unit(path, kind)
+    except OSError as error:
+        raise GeometryError(f"CAD file {path} cannot be read: {error.strerror or error}") from error
+    places = [(*center, diameter) for center, diameter in refine]
+    request = Request(str(path.resolve()), kind, mesh_size, order, stated, unit, places, refined_size)
+    with tempfile.TemporaryDirectory(prefix="gearwhine-cad-") as name:
+        folder = Path(name)
+        (folder / "request.json").write_text(json.dumps(asdict(request)), encoding="utf-8")
+        _work(folder, path, time_limit)
+        answer = json.loads((folder / "answer.json").read_text(encoding="utf-8"))
+        if "unavailable" in answer:
+            raise MesherUnavailableError(answer["unavailable"])
+        if "error" in answer:
+            raise GeometryError(f"CAD file {path}: {answer['error']}")
+        mesh = _load(folder, answer["arrays"]).mesh()
+    return CadMesh(mesh, tuple(answer["solids"]), answer["unit"], tuple(answer["remarks"]))
+
+
+def _work(folder: Path, path: Path, time_limit: float) -> None:
+    """Run the worker on the request in a folder, and make sure that it answered."""
+    room = Path(__file__).resolve().parents[2]
+    search = os.pathsep.join(part for part in (str(room), os.environ.get("PYTHONPATH", "")) if part)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "meshes.cad.worker", str(folder)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            env=os.environ | {"PYTHONPATH": search},
+            timeout=time_limit,
+            check=False,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise GeometryError(
+            f"CAD file {path}: given up after {time_limit:g} s while {_stage(folder)}; "
+            "a larger mesh_size, or a simpler or healed solid, may help"
+        ) from error
+    if (folder / "answer.json").is_file():
+        return
+    if done.returncode < 0:
+        raise GeometryError(
+            f"CAD file {path}: the CAD kernel broke down (signal {-done.returncode}) while {_stage(folder)}; "
+            "the file is damaged: export it anew"
+        )
+    last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+    raise GeometryError(f"CAD file {path}: the CAD kernel failed while {_stage(folder)}: {last}")
+
+
+def _stage(folder: Path) -> str:
+    stage = folder / "stage"
+    return stage.read_text(encoding="utf-8") if stage.is_file() else "starting"
+
+
+def _load(folder: Path, names: list[str]) -> Tetrahedra:
+    """The mesh from the arrays that the worker wrote, in the order of their names."""
+    arrays = {name: np.load(folder / f"{number}.npy", allow_pickle=False) for number, name in enumerate(names)}
+    return Tetrahedra(
+        points=arrays["points"],
+        cells=arrays["cells"],
+        surfaces={name.removeprefix("surface:"): a for name, a in arrays.items() if name.startswith("surface:")},
+        volumes={name.removeprefix("volume:"): a for name, a in arrays.items() if name.startswith("volume:")},
+    )

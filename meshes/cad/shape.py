@@ -1,0 +1,199 @@
+"""A CAD file as solids in gmsh's OpenCASCADE kernel: read, sewn where it holds surfaces only, made conforming."""
+
+import re
+from collections import Counter
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from meshes.errors import GeometryError
+
+_SEWING = 1e-5  # gaps between surfaces up to this part of the part's diagonal are closed
+_OVERLAP = 1e-6  # solids may share this part of the smaller one's volume, by rounding
+_UNNAMED = re.compile(r"Open CASCADE .* translator.*|SOLID|COMPOUND|=>.*|\s*")
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Solids of a gmsh model.
+
+    Attributes
+    ----------
+    solids : dict of str to list of int
+        The model's solids that make up each part, under the part's own name.
+    faces : dict of str to list of int
+        Faces that carry a name in the file.
+    """
+
+    solids: dict[str, list[int]]
+    faces: dict[str, list[int]]
+
+
+def read_solids(gmsh: Any, path: str, kind: str) -> list[int]:
+    """Read a file into the current model and return its solids, sewn from surfaces where there are none.
+
+    Raises
+    ------
+    GeometryError
+        Where the file holds nothing, or surfaces that do not close.
+    """
+    found = gmsh.model.occ.importShapes(path, highestDimOnly=True, format=kind)
+    gmsh.model.occ.synchronize()
+    if not found:
+        raise GeometryError("it holds no shape, or is broken")
+    solids = [tag for dimension, tag in found if dimension == 3]
+    if solids:
+        _drop_all_but(gmsh, solids)
+        return solids
+    n_faces = sum(dimension == 2 for dimension, _ in found)
+    if n_faces == 0:
+        raise GeometryError("it holds curves or points only, and no solid")
+    return _sewn(gmsh, path, kind, n_faces)
+
+
+def extent(gmsh: Any) -> float:
+    """Longest side of the model, in its own unit."""
+    bounds = np.array(gmsh.model.getBoundingBox(-1, -1)).reshape(2, 3)
+    return float(np.ptp(bounds, axis=0).max())
+
+
+def _drop_all_but(gmsh: Any, solids: list[int]) -> None:
+    """Remove loose faces and wires that a file carries beside its solids."""
+    kept = {(3, tag) for tag in solids}
+    for dimension in (2, 1, 0):
+        below = gmsh.model.getBoundary(sorted(kept), combined=False, oriented=False) if kept else []
+        kept = set(below)
+        loose = [entity for entity in gmsh.model.getEntities(dimension) if entity not in kept]
+        if loose:
+            gmsh.model.occ.remove(loose)
+    gmsh.model.occ.synchronize()
+
+
+def _sewn(gmsh: Any, path: str, kind: str, n_faces: int) -> list[int]:
+    """Solids from surfaces, as IGES has them: sewn together, each closed set of faces a shell, shells inside as voids.
+
+    The surfaces are read again, because the kernel sews while it reads.
+    """
+    tolerance = _SEWING * extent(gmsh)
+    gmsh.model.occ.remove(gmsh.model.occ.getEntities(2), recursive=True)
+    gmsh.model.occ.synchronize()
+    own = gmsh.option.getNumber("Geometry.Tolerance")
+    gmsh.option.setNumber("Geometry.OCCSewFaces", 1)
+    gmsh.option.setNumber("Geometry.Tolerance", tolerance)
+    try:
+        gmsh.model.occ.importShapes(path, highestDimOnly=False, format=kind)
+    finally:
+        gmsh.option.setNumber("Geometry.OCCSewFaces", 0)
+        gmsh.option.setNumber("Geometry.Tolerance", own)
+    gmsh.model.occ.synchronize()
+    shells = _shells(gmsh, n_faces)
+    outer = sorted(shells, key=lambda shell: -_diagonal(gmsh, shell))
+    voids: dict[int, list[list[int]]] = {}
+    for place, shell in enumerate(outer):
+        around = next((i for i in range(place) if i in voids and _lies_within(gmsh, shell, outer[i])), None)
+        if around is None:
+            voids[place] = []
+        else:
+            voids[around].append(shell)
+    solids = []
+    for place, inside in voids.items():
+        loops = [gmsh.model.occ.addSurfaceLoop(shell, sewing=False) for shell in (outer[place], *inside)]
+        solids.append(gmsh.model.occ.addVolume(loops))
+    gmsh.model.occ.synchronize()
+    return solids
+
+
+def _shells(gmsh: Any, n_faces: int) -> list[list[int]]:
+    """The faces of the model in sets that hang together by their edges."""
+    edges = {
+        face: [edge for _, edge in gmsh.model.getBoundary([(2, face)], oriented=False)]
+        for _, face in gmsh.model.getEntities(2)
+    }
+    uses = Counter(edge for around in edges.values() for edge in around)
+    open_edges = sorted(edge for edge, count in uses.items() if count == 1)
+    if open_edges:
+        x, y, z = np.array(gmsh.model.getBoundingBox(1, open_edges[0])).reshape(2, 3).mean(axis=0)
+        raise GeometryError(
+            f"it holds {n_faces} surfaces and no solid, and they do not close: {len(open_edges)} edges are open, "
+            f"the first near ({x:.5g}, {y:.5g}, {z:.5g}); export a closed solid (in STEP rather than IGES)"
+        )
+    by_edge: dict[int, list[int]] = {}
+    for face, around in edges.items():
+        for edge in around:
+            by_edge.setdefault(edge, []).append(face)
+    shells, left = [], set(edges)
+    while left:
+        shell, waiting = [], [min(left)]
+        left.discard(waiting[0])
+        while waiting:
+            face = waiting.pop()
+            shell.append(face)
+            for neighbor in {other for edge in edges[face] for other in by_edge[edge]} & left:
+                left.discard(neighbor)
+                waiting.append(neighbor)
+        shells.append(sorted(shell))
+    return shells
+
+
+def _bounds(gmsh: Any, faces: list[int]) -> tuple[Any, Any]:
+    boxes = np.array([gmsh.model.getBoundingBox(2, face) for face in faces])
+    return boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)
+
+
+def _diagonal(gmsh: Any, faces: list[int]) -> float:
+    low, high = _bounds(gmsh, faces)
+    return float(np.linalg.norm(high - low))
+
+
+def _lies_within(gmsh: Any, inner: list[int], outer: list[int]) -> bool:
+    (a, b), (c, d) = _bounds(gmsh, inner), _bounds(gmsh, outer)
+    return bool(np.all(a > c) and np.all(b < d))
+
+
+def conforming(gmsh: Any, solids: list[int]) -> Shape:
+    """Name the parts, and let solids that touch share their faces.
+
+    Raises
+    ------
+    GeometryError
+        Where two of them overlap.
+    """
+    names = _unique([_label(gmsh, 3, tag) or f"solid-{i}" for i, tag in enumerate(solids, start=1)])
+    labels = {(2, tag): _label(gmsh, 2, tag) for _, tag in gmsh.model.getEntities(2)}
+    named = [entity for entity, label in labels.items() if label]
+    if len(solids) == 1:
+        faces = {labels[entity]: [entity[1]] for entity in named}
+        return Shape({names[0]: solids}, faces)
+    volumes = [gmsh.model.occ.getMass(3, tag) for tag in solids]
+    _, pieces = gmsh.model.occ.fragment([(3, tag) for tag in solids], named)
+    gmsh.model.occ.synchronize()
+    parts = {name: [tag for d, tag in own if d == 3] for name, own in zip(names, pieces[: len(names)], strict=True)}
+    for i, first in enumerate(names):
+        for j, second in enumerate(names[:i]):
+            shared = sum(gmsh.model.occ.getMass(3, tag) for tag in set(parts[first]) & set(parts[second]))
+            if shared > _OVERLAP * min(abs(volumes[i]), abs(volumes[j])):
+                raise GeometryError(
+                    f"its solids {second!r} and {first!r} overlap in a volume of {shared:.4g} (in its own unit cubed); "
+                    "cut one from the other in the CAD program"
+                )
+    faces = {}
+    for entity, own in zip(named, pieces[len(names) :], strict=True):
+        faces[labels[entity]] = [tag for d, tag in own if d == 2]
+    return Shape(parts, faces)
+
+
+def _label(gmsh: Any, dimension: int, tag: int) -> str:
+    """The entity's own name in the file: the last part of gmsh's path of labels; nothing where it is a stand-in."""
+    label = str(gmsh.model.getEntityName(dimension, tag)).rpartition("/")[2].strip()
+    return "" if _UNNAMED.fullmatch(label) else label
+
+
+def _unique(names: list[str]) -> list[str]:
+    """The same names with numbers on those that stand for several solids."""
+    counts, seen = Counter(names), Counter[str]()
+    result = []
+    for name in names:
+        seen[name] += 1
+        result.append(f"{name}-{seen[name]}" if counts[name] > 1 else name)
+    return result

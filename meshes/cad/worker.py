@@ -1,0 +1,153 @@
+"""The process that reads a CAD file, apart from the caller's.
+
+OpenCASCADE writes to standard output and, given a damaged file, may end its process with a segmentation fault: so
+it gets a process of its own. What it found goes through a folder: ``request.json`` in; ``stage`` (what it is at),
+``answer.json`` and the mesh's arrays out.
+"""
+
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshes.cad.shape import Shape, conforming, extent, read_solids
+from meshes.cad.units import choose_unit
+from meshes.errors import GeometryError, MesherUnavailableError
+from meshes.gmsh_session import gmsh_session
+from meshes.tetrahedra import Tetrahedra, collect, mesh_solids
+
+_MOST_ELEMENTS = 3e6  # some twelve million degrees of freedom: beyond any solver that follows
+_BLEND = 3.0  # elements grow to their full size over this many of the small ones
+
+
+@dataclass(frozen=True)
+class Request:
+    """What to read and how to mesh it.
+
+    Attributes
+    ----------
+    path : str
+    kind : {"step", "iges", "brep"}
+    mesh_size : float
+        [m].
+    order : {1, 2}
+    stated, given : float or None
+        Units of length [m], as of :func:`meshes.cad.units.choose_unit`.
+    places : list of (x, y, z, diameter)
+        Bores to refine around [m].
+    place_size : float or None
+        Element size there [m].
+    """
+
+    path: str
+    kind: str
+    mesh_size: float
+    order: int
+    stated: float | None
+    given: float | None
+    places: list[tuple[float, float, float, float]]
+    place_size: float | None
+
+
+def main(folder: Path) -> None:
+    """Answer the request in a folder."""
+    request = Request(**json.loads((folder / "request.json").read_text(encoding="utf-8")))
+    try:
+        answer = _answer(request, folder)
+    except MesherUnavailableError as error:
+        answer = {"unavailable": str(error)}
+    except GeometryError as error:
+        answer = {"error": str(error)}
+    (folder / "answer.json").write_text(json.dumps(answer), encoding="utf-8")
+
+
+def _answer(request: Request, folder: Path) -> dict[str, Any]:
+    def at(stage: str) -> None:
+        (folder / "stage").write_text(stage, encoding="utf-8")
+
+    with gmsh_session("it") as gmsh:
+        at("reading it")
+        solids = read_solids(gmsh, request.path, request.kind)
+        # The kernel turns what STEP and IGES state into millimetres; BREP it takes as it is.
+        stated = request.stated if request.stated is not None else (None if request.kind == "brep" else 1e-3)
+        numbers = extent(gmsh) / (1.0 if stated is None else stated / 1e-3)
+        chosen = choose_unit(numbers, stated, request.given)
+        unit = chosen.length if stated is None else chosen.length * 1e-3 / stated
+        at("joining its solids")
+        shape = conforming(gmsh, solids)
+        _check_size(gmsh, shape, request.mesh_size / unit)
+        at("meshing it")
+        _refine(gmsh, request, unit)
+        _mesh(gmsh, shape, request, unit)
+        at("collecting its mesh")
+        everything = {tag for tags in shape.solids.values() for tag in tags}
+        volumes = {"housing": sorted(everything)} | shape.solids
+        arrays = _save(folder, collect(gmsh, request.order, shape.faces, volumes, unit=unit))
+        return {"solids": list(shape.solids), "unit": chosen.length, "remarks": chosen.remarks, "arrays": arrays}
+
+
+def _check_size(gmsh: Any, shape: Shape, mesh_size: float) -> None:
+    """Refuse a mesh size that would take hours and all memory before it takes them."""
+    volume = sum(abs(gmsh.model.occ.getMass(3, tag)) for tags in shape.solids.values() for tag in tags)
+    elements = 8.5 * volume / mesh_size**3  # a regular tetrahedron has edge³ / 8.49
+    if elements > _MOST_ELEMENTS:
+        raise GeometryError(f"elements of this size would be about {elements:.1g} in number; give a larger mesh_size")
+
+
+def _refine(gmsh: Any, request: Request, unit: float) -> None:
+    """Let elements be smaller in a ball around each place."""
+    if request.place_size is None or not request.places:
+        return
+    field, balls = gmsh.model.mesh.field, []
+    for *center, diameter in request.places:
+        ball = field.add("Ball")
+        for key, value in zip(("XCenter", "YCenter", "ZCenter"), center, strict=True):
+            field.setNumber(ball, key, value / unit)
+        field.setNumber(ball, "Radius", 0.75 * diameter / unit)
+        field.setNumber(ball, "Thickness", _BLEND * request.mesh_size / unit)
+        field.setNumber(ball, "VIn", request.place_size / unit)
+        field.setNumber(ball, "VOut", request.mesh_size / unit)
+        balls.append(ball)
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", balls)
+    field.setAsBackgroundMesh(least)
+
+
+def _mesh(gmsh: Any, shape: Shape, request: Request, unit: float) -> None:
+    """Mesh, and say which solid cannot be."""
+    smallest = min(request.mesh_size, request.place_size or request.mesh_size) / unit
+    trouble = ""
+    try:
+        mesh_solids(gmsh, request.mesh_size / unit, request.order, smallest=smallest)
+    except Exception as error:  # gmsh raises bare Exception for every failure of its kernel
+        if type(error) is not Exception:
+            raise
+        trouble = f": {error}"
+    empty = [
+        name
+        for name, tags in shape.solids.items()
+        if any(not any(len(found) for found in gmsh.model.mesh.getElements(3, tag)[1]) for tag in tags)
+    ]
+    if empty or trouble:
+        which = ", ".join(repr(name) for name in empty) or "it"
+        raise GeometryError(
+            f"{which} cannot be meshed with elements of {1e3 * request.mesh_size:g} mm{trouble}; "
+            "try a smaller mesh_size, and let the CAD program check and heal the solid"
+        )
+
+
+def _save(folder: Path, mesh: Tetrahedra) -> list[str]:
+    """Write the arrays of a mesh as ``0.npy`` and on, and return their names in that order."""
+    arrays = {"points": mesh.points, "cells": mesh.cells}
+    arrays |= {f"surface:{name}": facets for name, facets in mesh.surfaces.items()}
+    arrays |= {f"volume:{name}": members for name, members in mesh.volumes.items()}
+    for number, array in enumerate(arrays.values()):
+        np.save(folder / f"{number}.npy", array, allow_pickle=False)
+    return list(arrays)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,151 @@
+"""From a gmsh model of solids to a mesh of tetrahedra: element size, order, middle nodes, numbering."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from meshes.elements import FloatArray, IntArray
+from meshes.errors import GeometryError
+from meshes.mesh import Mesh
+
+# gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
+_GMSH_TO_VTK = {4: [0, 1, 2, 3], 10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
+# ... and these are its edges in gmsh's order of the middle nodes.
+_GMSH_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]])
+_TET10 = 11
+_WORST_JACOBIAN = 0.05  # of an element's least to its mean, below which it counts as folded
+_HALVINGS = 3
+_STRAIGHT = 1e-6  # an edge bent by less, as a part of its length, is straight
+
+
+def check_mesh_request(mesh_size: float, order: int) -> None:
+    """Hold the numbers that every mesher takes to their ranges.
+
+    Raises
+    ------
+    GeometryError
+        For a size that is not positive, or an order other than 1 and 2.
+    """
+    if not mesh_size > 0.0 or order not in (1, 2):
+        raise GeometryError(f"mesh size {mesh_size} m must be positive and order {order} be 1 or 2")
+
+
+def mesh_solids(gmsh: Any, mesh_size: float, order: int, *, smallest: float | None = None) -> None:
+    """Fill the solids of the current model with tetrahedra.
+
+    Parameters
+    ----------
+    gmsh : module
+    mesh_size : float
+        Edge length aimed at, in the model's unit.
+    order : {1, 2}
+    smallest : float, optional
+        Least edge length that a size field of the model may ask for; by default ``mesh_size``.
+    """
+    gmsh.option.setNumber("Mesh.MeshSizeMin", mesh_size if smallest is None else smallest)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", mesh_size)
+    gmsh.option.setNumber("Mesh.Algorithm3D", 1)
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(order)
+    if order == 2:
+        _unfold(gmsh)
+
+
+def _unfold(gmsh: Any) -> None:
+    """Straighten the edges of elements that their curved sides fold, as little as it takes.
+
+    A bore or a fillet that is small beside its elements bends their edges so far that an element may turn inside
+    out. The middle nodes of such an element are drawn back towards the middles of their edges, by halves and in the
+    end all the way; its neighbours follow by sharing them. (gmsh's own remedy, an optimisation, takes minutes on
+    fillets and ends the process where it does not converge.)
+    """
+    tags, connectivity = gmsh.model.mesh.getElementsByType(_TET10)
+    elements = np.asarray(connectivity, dtype=np.int64).reshape(-1, 10)
+    node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    number = np.zeros(int(node_tags.max()) + 1, dtype=np.int64)
+    number[node_tags] = np.arange(len(node_tags))
+    points = np.asarray(coordinates, dtype=np.float64).reshape(-1, 3)
+    curved = points.copy()
+    bend = np.ones(len(points))
+    for _ in range(_HALVINGS + 1):
+        folded = gmsh.model.mesh.getElementQualities(tags, "minSJ") < _WORST_JACOBIAN
+        nodes = number[elements[folded]]
+        middle, ends = nodes[:, 4:].ravel(), nodes[:, _GMSH_EDGES].reshape(-1, 2)
+        middle, first = np.unique(middle, return_index=True)
+        straight = points[ends[first]].mean(axis=1)
+        bent = np.linalg.norm(points[middle] - straight, axis=1) > _STRAIGHT * np.ptp(points[ends[first]], axis=1).max(
+            axis=1, initial=0.0
+        )
+        if not bent.any():
+            return
+        middle, straight = middle[bent], straight[bent]
+        bend[middle] = np.where(bend[middle] > 0.5**_HALVINGS, bend[middle] / 2, 0.0)
+        points[middle] = straight + bend[middle, None] * (curved[middle] - straight)
+        for node in middle:
+            gmsh.model.mesh.setNode(node_tags[node], points[node], [])
+
+
+@dataclass(frozen=True)
+class Tetrahedra:
+    """What gmsh made, as plain arrays in the mesh's own order of nodes; see :class:`~meshes.Mesh` for their shapes."""
+
+    points: FloatArray
+    cells: IntArray
+    surfaces: Mapping[str, IntArray]
+    volumes: Mapping[str, IntArray]
+
+    def mesh(self) -> Mesh:
+        """The mesh of these arrays.
+
+        Raises
+        ------
+        GeometryError
+            Where an element is inverted.
+        """
+        return Mesh.of_tetrahedra(self.points, self.cells, self.surfaces, self.volumes)
+
+
+def collect(
+    gmsh: Any,
+    order: int,
+    surfaces: Mapping[str, Sequence[int]],
+    volumes: Mapping[str, Sequence[int]],
+    *,
+    unit: float = 1.0,
+) -> Tetrahedra:
+    """Nodes, elements and named regions of the current gmsh model, numbered from zero.
+
+    Parameters
+    ----------
+    gmsh : module
+    order : {1, 2}
+        Of the elements.
+    surfaces, volumes : mapping of str to sequence of int
+        Which faces and solids of the model make up each named region.
+    unit : float
+        The model's unit of length [m].
+    """
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    number[tags] = np.arange(len(tags))
+    points = np.asarray(coordinates, dtype=np.float64).reshape(-1, 3)
+
+    tetrahedron, n_nodes = {1: (4, 4), 2: (11, 10)}[order]
+    elements, connectivity = gmsh.model.mesh.getElementsByType(tetrahedron)
+    cells = number[np.asarray(connectivity, dtype=np.int64)].reshape(-1, n_nodes)[:, _GMSH_TO_VTK[n_nodes]]
+
+    triangle, n_facet = {1: (2, 3), 2: (9, 6)}[order]
+    # gmsh orders a six-node triangle 01, 12, 20: our 01, 12, 02 are the same nodes.
+    facets: dict[str, IntArray] = {}
+    for name, faces in surfaces.items():
+        parts = [gmsh.model.mesh.getElementsByType(triangle, face)[1] for face in faces]
+        facets[name] = number[np.concatenate(parts).astype(np.int64)].reshape(-1, n_facet)
+    place = np.zeros(int(elements.max()) + 1 if len(elements) else 0, dtype=np.int64)
+    place[elements] = np.arange(len(elements))
+    members: dict[str, IntArray] = {}
+    for name, solids in volumes.items():
+        parts = [gmsh.model.mesh.getElementsByType(tetrahedron, solid)[0] for solid in solids]
+        members[name] = np.sort(place[np.concatenate(parts)])
+    return Tetrahedra(points * unit, cells, facets, members)
