@@ -86,6 +86,10 @@ class BoxGeometry:
         found = tuple(misfits(self))
         if found:
             raise BoxMisfitError(found)
+        patches = {name for bolt in self.bolts for name in (bolt.cover_surface, bolt.body_surface)}
+        for bore in self.bores:
+            if bore.name in {*FACES, *FOOT_NAMES, *(f"{name}-bolt" for name in FOOT_NAMES), *patches}:
+                raise GeometryError(f"a seat cannot be named {bore.name!r}, which is a surface of the box itself")
 
     @property
     def bolts(self) -> tuple[Bolt, ...]:
@@ -132,9 +136,6 @@ class BoxGeometry:
         return (self.wall.bottom, self.size[1] - self.wall.top)
 
     def _check_bore(self, bore: Bore) -> None:
-        patches = {name for bolt in self.bolts for name in (bolt.cover_surface, bolt.body_surface)}
-        if bore.name in {*FACES, *FOOT_NAMES, *(f"{name}-bolt" for name in FOOT_NAMES), *patches}:
-            raise GeometryError(f"a seat cannot be named {bore.name!r}, which is a surface of the box itself")
         self.end_wall(bore)
         if bore.diameter <= 0.0:
             raise GeometryError(f"seat {bore.name!r}: diameter {bore.diameter} m must be positive")

@@ -99,7 +99,7 @@ def test_simple_tetrahedra_and_large_elements_are_doubted(gearwhine: Any, case: 
     warnings = gearwhine("modes", case("tetra"), "--json", "-q").document["warnings"]
     assert [warning["name"] for warning in warnings] == ["size", "locking"]
     coarse = gearwhine("check", "steel-box", "-q", "--set", "housing.frequency_limit=30 kHz", "--json")
-    (warning,) = coarse.document["housing"]["warnings"]
+    (warning,) = coarse.document["warnings"]
     assert warning["name"] == "size"
     assert "use a mesh_size of at most" in warning["message"]
     assert warning["message"] in coarse.err

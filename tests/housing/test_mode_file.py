@@ -239,7 +239,7 @@ def test_a_record_that_does_not_fit_itself_is_refused(record: ModeRecord) -> Non
 def test_every_field_of_a_mode_set_has_its_place_in_the_file() -> None:
     """Whoever adds a field must say how it stands in the file, or re-used modes would lack it."""
     assert {field.name for field in fields(ModeSet)} == {
-        "frequencies", "shapes", "certificate", "seconds", "backend", "shift", "threads",
+        "frequencies", "shapes", "certificate", "seconds", "backend", "shift", "threads", "attachments",
     }  # fmt: skip
     assert {field.name for field in fields(Certificate)} == {
         "limit", "expected", "found", "max_residual", "max_overlap",

@@ -254,8 +254,9 @@ def compare_with_modal_sum(
     found = (ports @ vectors[:, stiff]).T
     error = worst(attached.proof.compliance, (found.T / values[stiff]) @ found)
     assert error < 1e-10
-    # The bound is one, but for the rounding of what it is compared with.
-    assert error < attached.proof.error + 2e-12
+    # The bound is one, but for the rounding of the sum it is compared with: dense eigenvalues err by a few units in
+    # the last place of the largest.
+    assert error < attached.proof.error + 8.0 * np.finfo(float).eps * values[-1] / values[stiff][0]
 
 
 def test_modes_that_are_not_the_housings_fail_the_proof(
@@ -298,5 +299,5 @@ def dense(
     stiffness, mass = (sparse.csr_array(part[free][:, free]) for part in (matrices.stiffness, matrices.mass))
     values, vectors = linalg.eigh(stiffness.toarray(), mass.toarray())
     sigma = shift * float(values[0])
-    factor = linalg.cho_factor((stiffness - sigma * mass).toarray())
-    return stiffness, mass, lambda b: linalg.cho_solve(factor, b), sigma, values, vectors, port[:, free], free
+    factor = linalg.lu_factor((stiffness - sigma * mass).toarray())
+    return stiffness, mass, lambda b: linalg.lu_solve(factor, b), sigma, values, vectors, port[:, free], free

@@ -117,8 +117,8 @@ MISFITS = {
     ),
     "bolt in a bore": (
         {
-            "cover": Cover("front", Flange(0.012, 0.01, "inside"), CoverBolts(0.006, (2, 2), patch_diameter=0.02)),
-            "bores": (Bore("b", (-0.07, 0.03, 0.12), 0.03),),
+            "cover": Cover("front", bolts=CoverBolts(0.006, (2, 5), patch_diameter=0.009)),
+            "bores": (Bore("b", (-0.083, 0.09, 0.12), 0.03),),
         },
         "bores[0].center",
         "clear of the cover's bolt-1",
