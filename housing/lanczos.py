@@ -105,7 +105,8 @@ def shift_invert(
         small[size : size + block.shape[1], begin:size] = remainder
         small[begin:size, size : size + block.shape[1]] = remainder.T
     raise IncompleteModesError(
-        f"Lanczos did not converge to {count} modes with a basis of {size}; ask for fewer, move the limit a little, or refine the mesh"
+        f"Lanczos did not converge to {count} modes with a basis of {size}; ask for fewer, move the limit a little or "
+        "refine the mesh"
     )
 
 
