@@ -8,10 +8,18 @@ from scipy import linalg, sparse
 
 from housing import FactorizationError, Factorizer, Matrices
 from housing.factorization import default_backend
+from housing.solvers import can_import
 from meshes import Mesh
 
-Backend = Literal["rslab", "superlu"]
-BACKENDS = pytest.mark.parametrize("backend", ["rslab", "superlu"])
+Backend = Literal["rslab", "superlu", "pardiso"]
+BACKENDS = pytest.mark.parametrize(
+    "backend",
+    [
+        "rslab",
+        "superlu",
+        pytest.param("pardiso", marks=pytest.mark.skipif(not can_import("pypardiso"), reason="no pypardiso here")),
+    ],
+)
 
 
 @BACKENDS
@@ -63,6 +71,13 @@ def test_a_free_body_at_rest_is_singular_even_where_rounding_hides_it(box_matric
     """Six eigenvalues of K are rounding errors, of either sign: an inertia read from them would be a guess."""
     with pytest.raises(FactorizationError, match=r"singular or nearly so|may be free"):
         Factorizer(backend=backend).factor(box_matrices.stiffness)
+
+
+def test_a_backend_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("housing.factorization.can_import", lambda module: False)
+    with pytest.raises(FactorizationError, match="pardiso needs the package pypardiso, which is not installed"):
+        Factorizer(backend="pardiso")
+    assert Factorizer().backend == "superlu"
 
 
 def test_rslab_is_the_default_where_it_is_installed() -> None:
