@@ -10,6 +10,10 @@ s, so convergence costs nothing to see, and one step of inverse iteration on a R
 
     A V s / ν = V s + V_{j+1} R_j s_j / ν.
 
+The eigenvalues then come from the quotients of K itself in the space of the vectors so found. The inverse's would not
+do: about a shift hard beside rigid modes A is huge along these, and its rounding there, by λ / |σ| larger beside an
+elastic mode's own ν, stands in that mode.
+
 The modes wanted have the largest ν where σ lies below them all, and the most negative where σ lies above them, with
 the gap from -1/σ to 0 behind them. Every block is orthogonalised twice against the whole basis, so that no mode is
 found twice. Several columns at a time because the factor is read once for all of them (Golub and Underwood 1977;
@@ -20,7 +24,7 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
+from scipy import linalg, sparse
 
 from housing.errors import IncompleteModesError
 
@@ -34,23 +38,21 @@ _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as
 
 def shift_invert(
     solve: Callable[[FloatArray], FloatArray],
+    stiffness: sparse.csr_array,
     mass: sparse.csr_array,
-    shift: float,
     count: int,
     *,
     above: bool = False,
     seed: int = 0,
 ) -> tuple[FloatArray, FloatArray]:
-    """The modes nearest to a shift on one side of it.
+    """The modes nearest to the shift σ of a factor, on one side of it.
 
     Parameters
     ----------
     solve : callable
         X from (K - σM) X = Y, shape (n, m) both.
-    mass : scipy.sparse.csr_array, shape (n, n)
-        M [kg].
-    shift : float
-        σ [rad²/s²].
+    stiffness, mass : scipy.sparse.csr_array, shape (n, n)
+        K [N/m] and M [kg].
     count : int
         How many.
     above : bool
@@ -74,7 +76,7 @@ def shift_invert(
     width = min(_BLOCK * 2**seed, n)
     most = min(n, 8 * count + 40 * width)
     basis = np.empty((n, most + width), order="F")  # the system gives memory to what is used of it
-    small = np.zeros((most + width, most + width))
+    small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
 
     start = np.random.default_rng(seed).standard_normal((n, width))
@@ -98,10 +100,8 @@ def shift_invert(
             errors = np.linalg.norm(outside, axis=0)
             if whole or (np.all(sign * wanted > 0.0) and np.all(errors < _TOLERANCE * np.abs(wanted))):
                 vectors = basis[:, :size] @ mixture + block @ (outside / wanted)
-                vectors /= np.sqrt(np.einsum("ij,ij->j", vectors, mass @ vectors))
-                values = shift + 1.0 / wanted
-                order = np.argsort(values)
-                return values[order], vectors[:, order]
+                values, mixture = linalg.eigh(vectors.T @ (stiffness @ vectors), vectors.T @ (mass @ vectors))
+                return values, vectors @ mixture
         small[size : size + block.shape[1], begin:size] = remainder
         small[begin:size, size : size + block.shape[1]] = remainder.T
     raise IncompleteModesError(

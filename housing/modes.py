@@ -28,6 +28,7 @@ RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
 _ATTEMPTS = 3
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
+_BELOW = 0.1  # part of the lowest elastic eigenvalue
 _FLOOR = 0.06  # part of the limit: its square is small beside the wanted eigenvalues
 _ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
 
@@ -186,9 +187,16 @@ def solve_modes(
     start = time.perf_counter()
     progress(f"searching {expected or count} modes")
     for attempt in range(_ATTEMPTS):
-        # Two more than asked for, to see the gap behind the last; of all below a limit there are no more.
-        wanted = expected if count is None else min(count + 2 + 2 * attempt, len(free) - 1)
-        values, vectors = shift_invert(factor.solve, reduced.mass, shift, wanted, above=above, seed=attempt)
+        # Some more than asked for, to see the gap behind the last; of all below a limit there are no more.
+        wanted = expected if count is None else min(count + 2 * 4**attempt, len(free) - 1)
+        try:
+            values, vectors = shift_invert(
+                factor.solve, reduced.stiffness, reduced.mass, wanted, above=above, seed=attempt
+            )
+        except IncompleteModesError:
+            if attempt + 1 < _ATTEMPTS:
+                continue  # with a wider block, as modes of high multiplicity want it
+            raise
         if frequency_limit is not None:
             limit = frequency_limit
         else:
@@ -200,6 +208,10 @@ def solve_modes(
         certificate = Certificate(limit, expected, int(keep.sum()), residual, overlap)
         if certificate.complete:
             break
+        if count is not None and values[-1] > floor:
+            # Farther from rigid modes, by the scale of the elastic ones: less of their rounding stands in these.
+            shift = -max(floor, _BELOW * float(values[values > floor][0]))
+            factor = factorizer.factor(reduced.shifted(shift))
     else:
         raise IncompleteModesError(
             f"{certificate.found} modes found below {limit / (2 * np.pi):.6g} Hz where the inertia demands "
