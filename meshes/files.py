@@ -12,6 +12,7 @@ from meshes.content import MeshContent
 from meshes.errors import GeometryError
 from meshes.from_meshio import content_from_meshio, load_meshio
 from meshes.mesh import Mesh
+from meshes.nastran import framed_file
 from meshes.to_meshio import meshio_from_mesh
 
 # Every kind of element comes back whole under these endings; under others some are lost or changed in silence.
@@ -103,8 +104,8 @@ def _through_meshio(path: Path) -> MeshContent:
     meshio = load_meshio()
     _check_tetgen(path)
     # meshio tells of trouble on the screen; standard output belongs to the caller.
-    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
-        content = meshio.read(path)
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()), framed_file(path) as readable:
+        content = meshio.read(readable)
     return content_from_meshio(content, path)
 
 
