@@ -142,16 +142,17 @@ def _orthonormal(basis: FloatArray, images: FloatArray, local: int, block: Float
     within = np.zeros((basis.shape[1], block.shape[1]))
     for first in (local, 0):
         part = images[:, first:].T @ block
-        block = block - basis[:, first:] @ part
+        block -= basis[:, first:] @ part
         within[first:] += part
     inertia = mass @ block
     left = np.sqrt(np.maximum(np.einsum("ij,ij->j", block, inertia), 0.0))
     given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
     kept = left > _DEPENDENT * given
-    scaled, scaled_inertia = block[:, kept] / left[kept], inertia[:, kept] / left[kept]
-    values, turn = np.linalg.eigh(scaled.T @ scaled_inertia)
-    turn = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE])
-    new, new_inertia = scaled @ turn, scaled_inertia @ turn
+    correlations = (block.T @ inertia)[np.ix_(kept, kept)] / np.outer(left[kept], left[kept])
+    values, turn = np.linalg.eigh(correlations)
+    mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
+    mixture[kept] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[kept, None]
+    new, new_inertia = block @ mixture, inertia @ mixture
     if new.shape[1]:
         # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
         if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
