@@ -1,7 +1,7 @@
 """A housing built apart from the package, written as STEP by gmsh's own kernel, beside the same shape as a box case.
 
-Ribs outside and inside, a rounded cavity, feet, bores with bosses, a cover on a flange: as one solid, and with the cover as
-a solid of its own.
+Ribs outside and inside, a rounded cavity, feet, bores with bosses, a cover on a flange: as one solid, and with the
+cover as a solid of its own.
 """
 
 from collections.abc import Callable
