@@ -1,0 +1,185 @@
+"""A housing built apart from the package, written as STEP by gmsh's own kernel, beside the same shape as a box case.
+
+Ribs outside and inside, a rounded cavity, feet, bores with bosses, a cover on a flange: as one solid, and with the
+cover as a solid of its own, glued or on bolts.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from housing import read_modes
+from meshes import facet_centers, facet_normals, mesh_cad, pick_facets, write_mesh
+from meshes.gmsh_session import gmsh_session
+
+# All in mm. The origin is the middle of the box in x and z, the underside of its base in y.
+X, Y, Z, WALL, FILLET = 140.0, 110.0, 130.0, 12.0, 8.0
+PLATE, FLANGE, RIM = 12.0, 14.0, 12.0  # the cover's thickness; how far the flange stands out, and its own thickness
+BORE, BOSS, STANDS = 40.0, 60.0, 8.0
+BOLT = 8.0  # the bolts' diameter, and the radius of what they clamp
+BOLTS = [(x, z) for x in (-70.0, 0.0, 70.0) for z in (-65.0, 65.0)]
+FOOT = (34.0, 12.0, 34.0)
+MESH = 25.0
+GAP = 0.02
+
+HEAD = """
+[material.iron]
+youngs_modulus = "110 GPa"
+poisson_ratio = 0.27
+density = "7200 kg/m^3"
+[housing]
+material = "iron"
+modes = 6
+"""
+SEATS = f"""
+[[housing.seat]]
+name = "drive end"
+center = ["10 mm", "50 mm", "{Z / 2} mm"]
+diameter = "{BORE} mm"
+{{boss}}
+[[housing.seat]]
+name = "free end"
+center = ["10 mm", "50 mm", "{-Z / 2} mm"]
+diameter = "{BORE} mm"
+{{boss}}
+"""
+BOX = f"""
+[housing.box]
+size = ["{X} mm", "{Y} mm", "{Z} mm"]
+wall = "{WALL} mm"
+mesh_size = "{MESH} mm"
+feet = {{ size = ["{FOOT[0]} mm", "{FOOT[1]} mm", "{FOOT[2]} mm"] }}
+fillets = {{ inside = "{FILLET} mm" }}
+ribs = [
+    {{ face = "left", along = "y", at = "5 mm", height = "14 mm", thickness = "10 mm", to = "80 mm" }},
+    {{ face = "bottom", side = "inside", along = "x", at = "-8 mm", height = "16 mm", thickness = "10 mm" }},
+]
+[housing.box.cover]
+face = "top"
+flange = {{ width = "{FLANGE} mm", thickness = "{RIM} mm" }}
+"""
+
+
+def _written(path: Path, *, parts: int, gap: float = 0.0) -> None:
+    """The solid as a STEP file: of one part, or with the cover as a second one, perhaps not quite touching.
+
+    Parts with a gap between them have the circles that their bolts clamp as faces of their own.
+    """
+    with gmsh_session("housing") as gmsh:
+        occ = gmsh.model.occ
+
+        def block(low: tuple[float, float, float], high: tuple[float, float, float]) -> tuple[int, int]:
+            return 3, occ.addBox(*low, *(b - a for a, b in zip(low, high, strict=True)))
+
+        top, half_x, half_z = Y - PLATE, X / 2, Z / 2
+        wide_x, wide_z = half_x + FLANGE, half_z + FLANGE
+        body = block((-half_x, 0, -half_z), (half_x, top, half_z))
+        more = [block((-wide_x, top - RIM, -wide_z), (wide_x, top, wide_z))]
+        for x in (-half_x, half_x - FOOT[0]):
+            for z in (-half_z, half_z - FOOT[2]):
+                more.append(block((x, -FOOT[1], z), (x + FOOT[0], 0, z + FOOT[2])))
+        more.append(block((-half_x - 14, 0, 0), (-half_x, 80, 10)))
+        for start in (half_z, -half_z - STANDS):
+            more.append((3, occ.addCylinder(10, 50, start, 0, 0, STANDS, BOSS / 2)))
+        body, *_ = occ.fuse([body], more)[0]
+
+        cavity = block((WALL - half_x, WALL, WALL - half_z), (half_x - WALL, top + 5, half_z - WALL))
+        occ.synchronize()
+        edges = {abs(tag) for _, tag in gmsh.model.getBoundary(gmsh.model.getBoundary([cavity]), combined=False)}
+        inside = [edge for edge in edges if gmsh.model.occ.getCenterOfMass(1, edge)[1] < top]
+        rounded = occ.fillet([cavity[1]], inside, [FILLET])
+        bores = [(3, occ.addCylinder(10, 50, end * (half_z - WALL - 3), 0, 0, end * 30, BORE / 2)) for end in (1, -1)]
+        body, *_ = occ.cut([body], [*rounded, *bores])[0]
+        rib = block((-half_x + 6, 6, -13), (half_x - 6, WALL + 16, -3))
+        body, *_ = occ.fuse([body], [rib])[0]
+        cover = block((-wide_x, top + gap, -wide_z), (wide_x, Y + gap, wide_z))
+        if parts == 1:
+            occ.fuse([body], [cover])
+        if gap > 0.0:
+            for solid, height in ((body, top), (cover, top + gap)):
+                circles = [(2, occ.addDisk(x, height, z, BOLT, BOLT, zAxis=[0, 1, 0])) for x, z in BOLTS]
+                occ.fragment([solid], circles)
+        occ.synchronize()
+        assert len(gmsh.model.getEntities(3)) == parts
+        gmsh.write(str(path))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the shape of one part, of two, and of two that do not touch."""
+    folder = tmp_path_factory.mktemp("step")
+    _written(folder / "one.step", parts=1)
+    _written(folder / "two.step", parts=2)
+    _written(folder / "apart.step", parts=2, gap=GAP)
+    return folder
+
+
+def _case(folder: Path, geometry: str, *, boss: str = "", more: str = "") -> str:
+    (folder / "case.toml").write_text(HEAD + geometry + SEATS.format(boss=boss) + FEET + more)
+    return str(folder / "case.toml")
+
+
+def _modes(gearwhine: Any, folder: Path, case: str) -> tuple[Any, Any]:
+    """The document of ``gearwhine modes``, and how the seats move."""
+    outcome = gearwhine("modes", case, "--json", "-q", "--fresh", "-o", str(folder / "out"))
+    assert outcome.code == 0, outcome.err
+    assert outcome.document["certificate"]["complete"]
+    return outcome.document, read_modes(folder / "out" / "modes.nc").seat_motions
+
+
+FEET = f"""
+[[housing.support]]
+name = "feet"
+plane = {{ axis = "y", at = "{-FOOT[1]} mm" }}
+fixed = ["x", "y", "z"]
+"""
+WITH_BOSS = f'boss = {{ diameter = "{BOSS} mm", length = "{STANDS} mm" }}'
+
+
+def _compare(ours: Any, theirs: Any) -> None:
+    hertz, expected = ([mode["frequency_hz"] for mode in document["modes"]] for document in (ours, theirs))
+    np.testing.assert_allclose(hertz, expected, rtol=0.005)
+
+
+def test_a_step_file_has_the_modes_of_the_same_box(gearwhine: Any, folder: Path) -> None:
+    box, box_seats = _modes(gearwhine, folder, _case(folder, f"{BOX}bonded = true\n", boss=WITH_BOSS))
+    assert len(box["modes"]) == 6
+    for name in ("one", "two"):
+        cad = f'[housing.cad]\nfile = "{name}.step"\nmesh_size = "{MESH} mm"\n'
+        step, seats = _modes(gearwhine, folder, _case(folder, cad))
+        assert step["mass_kg"] == pytest.approx(box["mass_kg"], rel=1e-3)
+        assert step["center_of_mass_m"] == pytest.approx(box["center_of_mass_m"], abs=1e-4)
+        _compare(step, box)
+        # The bores that were found by centre and diameter are the box's own seats: they move as these do. Above the
+        # fifth, modes lie so close that a mesh mixes them.
+        moved, expected = (np.linalg.norm(motion[:5, :, :3], axis=2) for motion in (seats, box_seats))
+        np.testing.assert_allclose(moved, expected, rtol=0.05)
+
+
+def test_a_step_file_of_two_parts_on_bolts_has_the_modes_of_the_same_box(gearwhine: Any, folder: Path) -> None:
+    """Parts that do not touch stay apart; their clamped circles, named by place, are tied by the box's own springs."""
+    positions = ", ".join(f'["{x} mm", "{z} mm"]' for x, z in BOLTS)
+    bolted = f'{BOX}bolts = {{ diameter = "{BOLT} mm", positions = [{positions}] }}\n'
+    case = _case(folder, bolted, boss=WITH_BOSS)
+    box, _ = _modes(gearwhine, folder, case)
+    bolts = gearwhine("check", case, "--json", "-q").document["housing"]["cover_bolts"]
+    assert len(bolts) == len(BOLTS)
+
+    mesh = mesh_cad(folder / "apart.step", 1e-3 * MESH).mesh
+    centers, normals = facet_centers(mesh.points, mesh.boundary), facet_normals(mesh.points, mesh.boundary)
+    surfaces, joints = {}, ""
+    for bolt in bolts:
+        name, (x, height, z) = bolt["name"], bolt["position_m"]
+        near = np.hypot(centers[:, 0] - x, centers[:, 2] - z) < 1e-3 * BOLT
+        for part, level, way in (("body", height, 1.0), ("cover", height + 1e-3 * GAP, -1.0)):
+            here = near & (np.abs(centers[:, 1] - level) < 1e-6) & (way * normals[:, 1] > 0.9)
+            surfaces[f"{name}-{part}"] = pick_facets(mesh.boundary, here)
+        springs = bolt["stiffness_n_per_m"] | bolt["stiffness_n_m_per_rad"]
+        joints += f'[[housing.joint]]\nname = "{name}"\naxis = "y"\nsurfaces = ["{name}-body", "{name}-cover"]\n'
+        joints += "stiffness = {" + ", ".join(f"{key} = {value}" for key, value in springs.items()) + "}\n"
+    write_mesh(replace(mesh, surfaces=surfaces), folder / "bolted.vtu")
+    step, _ = _modes(gearwhine, folder, _case(folder, '[housing.mesh]\nfile = "bolted.vtu"\n', more=joints))
+    _compare(step, box)
