@@ -11,9 +11,8 @@ from scipy import sparse
 
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
-from gearwhine.case import Sensor as GivenSensor
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.attachments import attach_all, build_supports, check_reach
+from gearwhine.stages.attachments import attach_all, build_supports, check_places
 from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.housing_checks import bearing_places, bearing_port, housing_checks
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
@@ -119,7 +118,7 @@ def solve_housing(
 
     Raises
     ------
-    CaseError, meshes.GeometryError, housing.HousingError
+    CaseError, housing.HousingError
         Where the case cannot be solved as it stands.
     housing.IncompleteModesError, housing.ReductionError, housing.HealthError
         Where the modes fail their certificate, their static compliance its proof, or the model its checks.
@@ -141,11 +140,15 @@ def solve_housing(
             mesh = build_mesh(case, remarks.append)
         warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
     meshed = time.perf_counter() - begin
-    # Ports before modes: what is wrong with them is found out before the long work.
+    # Places and ports before modes: what is wrong with them is found out before the long work.
+    check_places(case, mesh)
     seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
     seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
     loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
-    sensors = {entry.name: _sensor(mesh, index, entry) for index, entry in enumerate(given.sensor)}
+    sensors = {
+        entry.name: room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
+        for entry in given.sensor
+    }
     bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
     survey = room.survey_grid(mesh, bounds)
     if kept is None:
@@ -261,15 +264,6 @@ def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
     if solved.strengths is None:
         return list(range(1, min(count, len(solved.modes.frequencies)) + 1))
     return [int(mode) + 1 for mode in solved.strengths.strongest(count, (0.0, np.inf))]
-
-
-def _sensor(mesh: Mesh, index: int, entry: GivenSensor) -> room.SensorPort:
-    """A sensor on the surface; one that is not meant to sit there is refused rather than moved far."""
-    port = room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
-    key, label = f"housing.sensor[{index}].position", f'sensor "{entry.name}"'
-    if problems := list(check_reach(mesh, key, label, entry.position, port.position)):
-        raise CaseError(problems)
-    return port
 
 
 def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:

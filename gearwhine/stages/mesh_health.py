@@ -7,6 +7,7 @@ import numpy as np
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.box import Box
 from gearwhine.case.problems import UNSAID
+from gearwhine.stages.attachments import check_places
 from gearwhine.stages.geometry import UNITS, bolts_document, bores_document, build_mesh, cover_joints
 from gearwhine.stages.regions import materials_of
 from meshes import Ailment, Mesh, WaveCarrier, diagnose, resolution_ailments
@@ -17,7 +18,8 @@ _HERTZ = 2.0 * np.pi
 def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
     """Doubts about the mesh of a case.
 
-    Bodies that touch without being joined are wrong unless the case has joints, which may be what joins them.
+    Bodies that touch without being joined, or whose elements do not match there, are wrong or doubtful unless the case
+    has joints, which may be what joins them.
 
     Raises
     ------
@@ -29,13 +31,19 @@ def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
     source = given.mesh or given.cad
     unit = None if source is None or source.unit is None else UNITS[source.unit]
     found = diagnose(mesh, unit=unit)
-    meant = {"disconnected"} if given.joint or cover_joints(case) else set()
-    wrong = [one for one in found if one.severity == "error" and one.name not in meant]
+    if given.joint or cover_joints(case):
+        found = tuple(one for one in found if not _of_loose_bodies(one))
+    wrong = [one for one in found if one.severity == "error"]
     if wrong:
         key = "housing.mesh.file" if given.mesh else "housing.cad.file" if given.cad else "housing.box"
         value: object = UNSAID if source is None else str(source.file)
         raise CaseError([Problem(key, value, f"a sound mesh; {one.name}: {one.message}") for one in wrong])
-    return tuple(one for one in found if one.name not in meant)
+    return found
+
+
+def _of_loose_bodies(one: Ailment) -> bool:
+    """Whether an ailment lies between bodies; elements of one body that do not match are an error."""
+    return one.name == "disconnected" or (one.name == "non-conforming" and one.severity == "warning")
 
 
 def doubt_resolution(case: Case, mesh: Mesh, limit_hz: float | None) -> tuple[Ailment, ...]:
@@ -57,8 +65,8 @@ def foresee(case: Case) -> tuple[dict[str, Any], list[dict[str, Any]]]:
 
     Raises
     ------
-    CaseError, meshes.GeometryError
-        Where the file cannot be read, or its mesh is wrong.
+    CaseError
+        Where the file cannot be read, its mesh is wrong, or something finds no place on it.
     """
     given = case.housing
     assert given is not None
@@ -69,6 +77,7 @@ def foresee(case: Case) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     # Straight elements show the size and the bores of a CAD file as well as curved ones, sooner.
     mesh = build_mesh(case, remarks.append, order=1)
     materials_of(case, mesh)
+    check_places(case, mesh)
     warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
     document: dict[str, Any] = {
         "size_m": np.ptp(mesh.bounds, axis=0).tolist(),
