@@ -250,6 +250,8 @@ def run_command(arguments: list[str]) -> int:
         code, message = explain(error)
         if message is None:
             raise
+        for note in getattr(error, "__notes__", ()):
+            sys.stderr.write(f"{note}\n")
         sys.stderr.write(f"gearwhine: {message}\n")
         return code
     return 0

@@ -38,7 +38,7 @@ from meshes.box import (
     mesh_box,
 )
 from meshes.cad import CadMesh, mesh_cad
-from meshes.diagnosis import diagnose, unit_doubt
+from meshes.diagnosis import diagnose
 from meshes.elements import (
     KINDS,
     ElementBlock,
@@ -104,7 +104,6 @@ __all__ = [
     "plane_facets",
     "read_mesh",
     "resolution_ailments",
-    "unit_doubt",
     "wall_thickness",
     "with_bore",
     "write_mesh",

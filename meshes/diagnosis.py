@@ -35,10 +35,7 @@ def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[Ailment, ...]:
     -----
     An inverted or flat element is no part of a diagnosis, because :class:`Mesh` takes none.
     """
-    ailments = [*_elements(mesh), *connection_ailments(mesh), *_nodes(mesh)]
-    doubt = None if unit is None else unit_doubt(mesh, unit)
-    if doubt is not None:
-        ailments.append(doubt)
+    ailments = [*_elements(mesh), *connection_ailments(mesh), *_nodes(mesh), *_unit(mesh, unit)]
     return tuple(sorted(ailments, key=lambda one: one.severity != "error"))
 
 
@@ -88,18 +85,11 @@ def _nodes(mesh: Mesh) -> Iterator[Ailment]:
         yield ailment("unused nodes", "error", what, "leave them out", len(unused), mesh.points[unused[0]])
 
 
-def unit_doubt(mesh: Mesh, unit: float) -> Ailment | None:
-    """A size that no housing has, with the unit that would make it one; None where it is believed.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    unit : float
-        The unit of length of the file that it came from [m].
-    """
+def _unit(mesh: Mesh, unit: float | None) -> Iterator[Ailment]:
+    """Sizes that no housing has, with the unit that would make it one."""
     length = float(np.ptp(mesh.bounds, axis=0).max())
-    if _SMALLEST <= length <= _LARGEST:
-        return None
+    if unit is None or _SMALLEST <= length <= _LARGEST:
+        return
     name = next((name for name, value in _UNITS.items() if np.isclose(value, unit)), f"{unit:g} m")
     other = {other: length / unit * value for other, value in _UNITS.items() if other != name}
     believed = sorted(
@@ -109,7 +99,7 @@ def unit_doubt(mesh: Mesh, unit: float) -> Ailment | None:
     message = f"the part is {_size(length)} long; is the unit {name!r}?"
     if believed:
         message += f" With {believed[0]!r} it would be {_size(other[believed[0]])}"
-    return Ailment("unit", "warning", message, 1, mesh.bounds.mean(axis=0))
+    yield Ailment("unit", "warning", message, 1, mesh.bounds.mean(axis=0))
 
 
 def _size(length: float) -> str:

@@ -101,8 +101,8 @@ def _locking(mesh: Mesh, thickness: float) -> list[Ailment]:
     high = np.sqrt(1.0 + excess) - 1.0
     message = (
         f"{len(members)} elements are four-node tetrahedra: with edges of {_millimetres(edge)} in walls about "
-        f"{_millimetres(thickness)} thick these are about {100 * excess:.2g} % too stiff in bending, and its "
-        f"frequencies {100 * high:.2g} % too high; use ten-node ones"
+        f"{_millimetres(thickness)} thick these are about {_percent(excess)} too stiff in bending, and its "
+        f"frequencies {_percent(high)} too high; use ten-node ones"
     )
     return [Ailment("locking", "warning", message, len(members), mesh.centers[members[0]])]
 
@@ -114,3 +114,7 @@ def locking_excess(edge: float, thickness: float) -> float:
 
 def _millimetres(length: float) -> str:
     return f"{1e3 * length:.3g} mm"
+
+
+def _percent(part: float) -> str:
+    return f"{float(f'{100 * part:.2g}'):g} %"

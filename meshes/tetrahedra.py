@@ -62,8 +62,9 @@ def check_mesh_size(volume: float, extent: float, mesh_size: float) -> None:
         Where the elements would be larger than the part, or more than :data:`MOST_ELEMENTS`.
     """
     if mesh_size > extent:
+        meant = f"; did you mean {mesh_size:g} mm?" if 1e-3 * mesh_size <= extent else ""
         raise MeshSizeError(
-            f"elements of {_length(mesh_size)} are larger than the part, whose longest side is {_length(extent)}"
+            f"elements of {_length(mesh_size)} are larger than the part, whose longest side is {_length(extent)}{meant}"
         )
     number = expected_elements(volume, mesh_size)
     if number > MOST_ELEMENTS:

@@ -22,8 +22,8 @@ from gearwhine.case import (
 )
 from gearwhine.case.directions import unit_vector
 from gearwhine.case.problems import UNSAID
-from gearwhine.stages.geometry import UNITS, cover_joints
-from meshes import GeometryError, Mesh, unit_doubt
+from gearwhine.stages.geometry import cover_joints
+from meshes import GeometryError, Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def check_places(case: Case, mesh: Mesh) -> None:
     Raises
     ------
     CaseError
-        With every one that does not; first the unit of a mesh file, where that may be why.
+        With every one that does not.
     """
     given = case.housing
     assert given is not None
@@ -70,11 +70,8 @@ def check_places(case: Case, mesh: Mesh) -> None:
         found = room.sensor_port(mesh, room.Sensor(sensor.name, sensor.position, sensor.unit_vector)).position
         key, label = f"housing.sensor[{index}].position", f'sensor "{sensor.name}"'
         problems += _check_reach(mesh, key, label, sensor.position, found)
-    if not problems:
-        return
-    if given.mesh is not None and (doubt := unit_doubt(mesh, UNITS[given.mesh.unit])) is not None:
-        problems.insert(0, Problem("housing.mesh.unit", given.mesh.unit, f"the unit of the file; {doubt.message}"))
-    raise CaseError(problems)
+    if problems:
+        raise CaseError(problems)
 
 
 def attach_all(case: Case, mesh: Mesh, free: room.Matrices) -> room.Matrices:
@@ -103,9 +100,14 @@ def _check_reach(
     """Yield a place that is not meant to be on the surface, rather than move it far."""
     reach = _REACH * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
     if np.linalg.norm(found - asked) > reach:
-        place = ", ".join(f"{1e3 * value:.4g}" for value in found)
-        expected = f"a place within {1e3 * reach:.3g} mm of the surface; the nearest point of it is ({place}) mm"
-        yield Problem(key, list(asked), expected, label=label)
+        given, nearest = (
+            ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in place) for place in (asked, found)
+        )
+        expected = (
+            f"a place within {1e3 * reach:.3g} mm of the surface; ({given}) mm is not, the nearest point of it is "
+            f"({nearest}) mm"
+        )
+        yield Problem(key, UNSAID, expected, label=label)
 
 
 def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:

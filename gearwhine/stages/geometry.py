@@ -99,7 +99,8 @@ def cover_joints(case: Case) -> list[room.Joint]:
     if given is None or given.box is None or given.box.cover is None or given.box.cover.bolts is None:
         return []
     box = box_geometry(given.box, given.seat)
-    parts, own = (material_of(case, name) for name in (given.material, given.box.cover.bolts.material or given.material))
+    parts = material_of(case, given.material)
+    own = material_of(case, given.box.cover.bolts.material or given.material)
     return [_joint(bolt, parts, own, box.rim_width) for bolt in box.bolts]
 
 

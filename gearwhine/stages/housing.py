@@ -16,7 +16,7 @@ from gearwhine.stages.attachments import attach_all, build_supports, check_place
 from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.housing_checks import bearing_places, bearing_port, housing_checks
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
-from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, warnings_document
+from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, told_on_failure, warnings_document
 from gearwhine.stages.regions import materials_of
 from meshes import Mesh
 
@@ -140,25 +140,26 @@ def solve_housing(
             mesh = build_mesh(case, remarks.append)
         warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
     meshed = time.perf_counter() - begin
-    # Places and ports before modes: what is wrong with them is found out before the long work.
-    check_places(case, mesh)
-    seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
-    seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
-    loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
-    sensors = {
-        entry.name: room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
-        for entry in given.sensor
-    }
-    bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
-    survey = room.survey_grid(mesh, bounds)
-    if kept is None:
-        modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
-        seconds = {"mesh": meshed, **seconds}
-        warnings += warnings_document(doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ))
-    else:
-        modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
-        damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
-        seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
+    with told_on_failure(warnings):
+        # Places and ports before modes: what is wrong with them is found out before the long work.
+        check_places(case, mesh)
+        seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
+        seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
+        loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
+        sensors = {
+            entry.name: room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
+            for entry in given.sensor
+        }
+        bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
+        survey = room.survey_grid(mesh, bounds)
+        if kept is None:
+            modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
+            seconds = {"mesh": meshed, **seconds}
+            warnings += warnings_document(doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ))
+        else:
+            modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
+            damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
+            seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
     seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_ports.items()}
     strengths = None
     if seats:

@@ -1,5 +1,7 @@
 """The housing's mesh, examined: what makes it useless is an error of the case, what is doubtful a warning."""
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -76,9 +78,10 @@ def foresee(case: Case) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     remarks: list[str] = []
     # Straight elements show the size and the bores of a CAD file as well as curved ones, sooner.
     mesh = build_mesh(case, remarks.append, order=1)
-    materials_of(case, mesh)
-    check_places(case, mesh)
     warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
+    with told_on_failure(warnings):
+        materials_of(case, mesh)
+        check_places(case, mesh)
     document: dict[str, Any] = {
         "size_m": np.ptp(mesh.bounds, axis=0).tolist(),
         "bores": bores_document(mesh),
@@ -108,6 +111,17 @@ def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
         f"that frequency come out too high: use a mesh_size of at most {1e3 * length / 3.0:.3g} mm"
     )
     return [doubt("size", message)]
+
+
+@contextmanager
+def told_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
+    """Let a failure carry the doubts so far as notes: one of them may be its cause."""
+    try:
+        yield
+    except Exception as error:
+        for warning in warnings:
+            error.add_note(f"warning: {warning['message']}")
+        raise
 
 
 def doubt(name: str, message: str) -> dict[str, Any]:

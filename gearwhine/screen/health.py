@@ -38,7 +38,7 @@ def show_detail(console: Console, document: dict[str, Any]) -> None:
     """Effective masses, what the supports hold, and the modes that carry the forces."""
     _effective_mass(console, document)
     if document["health"]["supports"]:
-        _supports(console, document["health"]["supports"])
+        _supports(console, document["health"]["supports"], document["effective_mass"]["directions"])
     if document["selection"] is not None:
         _selection(console, document["selection"])
 
@@ -58,13 +58,13 @@ def _effective_mass(console: Console, document: dict[str, Any]) -> None:
     console.print(table)
 
 
-def _supports(console: Console, supports: list[dict[str, Any]]) -> None:
-    table = Table("support", "fixes", *_directions(list(supports[0]["share"])), box=SIMPLE_HEAD)
+def _supports(console: Console, supports: list[dict[str, Any]], directions: list[str]) -> None:
+    table = Table("support", "fixes", *_directions(directions), box=SIMPLE_HEAD)
     for column in table.columns[1:]:
         column.justify = "right"
     for support in supports:
         fixes = f"{support['fixes']} of 6" if support["fixes"] else ""
-        table.add_row(support["name"], fixes, *map(_part, support["share"].values()))
+        table.add_row(support["name"], fixes, *(_part(support["share"][name]) for name in directions))
     console.print("What the supports hold of the housing as a whole; shares of the springs' stiffness")
     console.print(table)
 
