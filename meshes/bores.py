@@ -139,7 +139,7 @@ def joined_by_span(
 
 def describe(bore: CylindricalBore) -> str:
     """A bore in words: diameter, middle and length in mm."""
-    place = ", ".join(f"{1e3 * value + 0.0:.5g}" for value in bore.center)
+    place = ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in bore.center)
     return f"{1e3 * bore.diameter:.5g} mm at ({place}) mm, {1e3 * bore.length:.4g} mm long"
 
 

@@ -46,8 +46,6 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     path = Path(path)
     if not path.is_file():
         raise GeometryError(f"mesh file {path}: no such file")
-    if not path.stat().st_size:
-        raise GeometryError(f"mesh file {path} is empty")
     try:
         content = read_abaqus(path) if path.suffix.lower() == ".inp" else _through_meshio(path)
     except GeometryError:
@@ -56,8 +54,8 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
         raise GeometryError(f"mesh file {path} is broken, or of a format that meshio does not read") from error
     except Exception as error:  # a broken file fails in whatever way its reader happens to stumble
         raise GeometryError(
-            f"mesh file {path} cannot be read: it is broken, cut short or of another format than its ending says "
-            f"({type(error).__name__}: {error})"
+            f"mesh file {path} cannot be read: {type(error).__name__}: {error}; it is broken, cut short, or of another "
+            "format than its ending says"
         ) from error
     if not content.solids:
         raise GeometryError(f"mesh file {path} holds no solid elements")
@@ -109,6 +107,8 @@ def _through_meshio(path: Path) -> MeshContent:
     meshio = load_meshio()
     _check_ending(path, meshio.extension_to_filetypes)
     _check_tetgen(path)
+    if not path.stat().st_size:
+        raise GeometryError(f"mesh file {path} is empty")
     # meshio tells of trouble on the screen; standard output belongs to the caller.
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         content = meshio.read(path)

@@ -10,19 +10,29 @@ _SHORT = {"rotation_x": "rot x", "rotation_y": "rot y", "rotation_z": "rot z"}
 _SHOWN = 1e-3  # of effective mass: less is left blank, so that what counts is seen
 
 
-def show_health(console: Console, document: dict[str, Any]) -> None:
-    """The checks, each with its value and its bound."""
-    health = document["health"]
+def show_health(console: Console, document: dict[str, Any], *, detail: bool = False) -> None:
+    """What the checks found: in detail each with its value and its bound, else those beyond theirs."""
+    lines = document["health"]["lines"]
+    bounded = [line for line in lines if line["bound"] is not None]
+    broken = [line for line in bounded if not line["ok"]]
+    if detail or broken:
+        console.print(_checks(lines if detail else broken))
+    if not detail:
+        which = f"all {len(bounded)}" if not broken else f"the other {len(bounded) - len(broken)}"
+        console.print(f"Health of the model: {which} checks keep their bounds (--detail shows them).")
+    if error := document["static_error"]:
+        console.print(static_error_line(error))
+
+
+def _checks(lines: list[dict[str, Any]]) -> Table:
     table = Table("check", "value", "bound", "", "what it says", box=SIMPLE_HEAD)
     table.columns[1].justify = table.columns[2].justify = "right"
-    for line in health["lines"]:
+    for line in lines:
         bound = "" if line["bound"] is None else f"{line['bound']:.0e}" if line["bound"] else "0"
         verdict = "" if line["bound"] is None else "ok" if line["ok"] else "look"
         value = f"{line['value']:.0f}" if line["bound"] == 0 else f"{line['value']:.1e}"
         table.add_row(line["name"], value, bound, verdict, line["why"])
-    console.print(table)
-    if error := document["static_error"]:
-        console.print(static_error_line(error))
+    return table
 
 
 def static_error_line(error: dict[str, Any]) -> str:
@@ -53,7 +63,8 @@ def _effective_mass(console: Console, document: dict[str, Any]) -> None:
     table.add_section()
     table.add_row("", "these modes", *map(_part, mass["captured"]))
     table.add_row("", "higher modes", *map(_part, mass["missing"]))
-    table.add_row("", "fixed patches", *map(_part, mass["held_by_supports"]))
+    if any(mass["held_by_supports"]):
+        table.add_row("", "fixed patches", *map(_part, mass["held_by_supports"]))
     console.print("Effective modal mass, as a part of the whole; rotations about the centre of gravity")
     console.print(table)
 

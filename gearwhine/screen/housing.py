@@ -21,12 +21,12 @@ def show_modes(document: dict[str, Any]) -> None:
 def show_modes_in_detail(document: dict[str, Any]) -> None:
     """The same, with effective masses, supports and the modes that matter between bearings and sensors."""
     console = open_console()
-    _modes(console, document)
+    _modes(console, document, detail=True)
     show_detail(console, document)
     show_written(console, document)
 
 
-def _modes(console: Console, document: dict[str, Any]) -> None:
+def _modes(console: Console, document: dict[str, Any], *, detail: bool = False) -> None:
     seats = any(mode["strength"] is not None for mode in document["modes"])
     table = Table("mode", "frequency [Hz]", "damping", *(["strength [1/kg]"] if seats else []), box=SIMPLE_HEAD)
     for column in table.columns:
@@ -36,7 +36,7 @@ def _modes(console: Console, document: dict[str, Any]) -> None:
         table.add_row(str(mode["number"]), f"{mode['frequency_hz']:.2f}", f"{mode['damping_ratio']:.4g}", *strength)
     console.print(table)
     modes_line(console, document)
-    show_health(console, document)
+    show_health(console, document, detail=detail)
 
 
 def show_comparison(document: dict[str, Any]) -> None:
