@@ -2,21 +2,27 @@
 
 import time
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, Literal
+from typing import Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from housing.errors import FactorizationError
+from housing.solvers import NumericFactor, PardisoSolver, RslabSolver, SuperluSolver, can_import
+from housing.symmetric import SymmetricMatrix
 
 FloatArray = npt.NDArray[np.float64]
-Backend = Literal["rslab", "superlu"]
+Backend = Literal["rslab", "superlu", "pardiso"]
 
 _RESIDUAL_BOUND = 1e-8
 _ERROR_BOUND = 1e-2  # of a solution: 1e-8 is usual, and a singular matrix gives 1 and more
+
+
+class _Solver(Protocol):
+    """A sparse solver that knows the pattern of the matrices to come."""
+
+    def factor(self, matrix: SymmetricMatrix) -> NumericFactor: ...
 
 
 @dataclass(frozen=True)
@@ -25,7 +31,7 @@ class Factorization:
 
     Attributes
     ----------
-    backend : {"rslab", "superlu"}
+    backend : {"rslab", "superlu", "pardiso"}
     size : int
         Order of the matrix.
     fill : int
@@ -34,7 +40,7 @@ class Factorization:
         Negative eigenvalues of A. By Sylvester's law of inertia, for A = K - σM this is the number of
         eigenvalues of (K, M) below σ.
     seconds : float
-        Time taken by the factorisation [s].
+        Time taken by the factorisation [s]; the first of a :class:`Factorizer` includes finding the ordering.
     """
 
     backend: Backend
@@ -42,13 +48,11 @@ class Factorization:
     fill: int
     negative: int
     seconds: float
-    _handle: Any
+    _factor: NumericFactor
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve A x = b for one or many right-hand sides, shape (n,) or (n, m)."""
-        if self.backend == "superlu" or right.ndim == 1:
-            return np.asarray(self._handle.solve(np.ascontiguousarray(right)))
-        return np.asarray(self._handle.solve_many(np.ascontiguousarray(right)))
+        return self._factor.solve(np.ascontiguousarray(right))
 
 
 class Factorizer:
@@ -56,26 +60,29 @@ class Factorizer:
 
     Parameters
     ----------
-    pattern : scipy.sparse.csr_array, shape (n, n)
-        Any symmetric matrix of the pattern.
-    backend : {"rslab", "superlu"}, optional
-        rslab where it can be imported, else SuperLU in symmetric mode (about three times slower).
+    backend : {"rslab", "superlu", "pardiso"}, optional
+        rslab where it can be imported, else SuperLU in symmetric mode, about ten times slower. PARDISO of the Math
+        Kernel Library is taken where it is asked for, through the package pypardiso.
     threads : int
-        Workers of rslab's factorisation.
+        Workers of the factorisation; SuperLU has one.
+
+    Raises
+    ------
+    FactorizationError
+        Where the backend asked for is not installed.
     """
 
-    def __init__(self, pattern: sparse.csr_array, *, backend: Backend | None = None, threads: int = 2) -> None:
+    def __init__(self, *, backend: Backend | None = None, threads: int = 2) -> None:
         self.backend: Backend = backend or default_backend()
-        self.threads = threads
-        self._pattern = pattern
+        self._solver: _Solver
+        if self.backend == "superlu":
+            self._solver = SuperluSolver()
+        elif not can_import(module := {"rslab": "rslab", "pardiso": "pypardiso"}[self.backend]):
+            raise FactorizationError(f"the backend {self.backend} needs the package {module}, which is not installed")
+        else:
+            self._solver = RslabSolver(threads) if self.backend == "rslab" else PardisoSolver(threads)
 
-    @cached_property
-    def _symbolic(self) -> Any:
-        import rslab
-
-        return rslab.analyze(sparse.csc_matrix(self._pattern), path="ldlt", threads=self.threads)
-
-    def factor(self, matrix: sparse.csr_array) -> Factorization:
+    def factor(self, matrix: SymmetricMatrix | sparse.csr_array) -> Factorization:
         """Factor a matrix and check that the factor solves.
 
         Raises
@@ -83,14 +90,11 @@ class Factorizer:
         FactorizationError
             Where the matrix is singular to working precision, or a solution leaves a relative residual above 1e-8.
         """
+        if not isinstance(matrix, SymmetricMatrix):
+            matrix = SymmetricMatrix.of(matrix)
         start = time.perf_counter()
         try:
-            if self.backend == "rslab":
-                handle = self._symbolic.factor(sparse.csc_matrix(matrix))
-                negative, fill = int(handle.inertia[1]), int(handle.factor_nnz)
-            else:
-                handle, negative = _superlu(matrix)
-                fill = int(handle.L.nnz)
+            found = self._solver.factor(matrix)
         except RuntimeError as error:
             raise FactorizationError(
                 f"{self.backend} could not factor a matrix of order {matrix.shape[0]}: {error}. The shift may sit on "
@@ -99,10 +103,10 @@ class Factorizer:
         factor = Factorization(
             backend=self.backend,
             size=matrix.shape[0],
-            fill=fill,
-            negative=negative,
+            fill=found.fill,
+            negative=found.negative,
             seconds=time.perf_counter() - start,
-            _handle=handle,
+            _factor=found,
         )
         _check(factor, matrix)
         return factor
@@ -110,27 +114,10 @@ class Factorizer:
 
 def default_backend() -> Backend:
     """rslab where it can be imported, else SuperLU."""
-    try:
-        import rslab  # noqa: F401
-    except ImportError:
-        return "superlu"
-    return "rslab"
+    return "rslab" if can_import("rslab") else "superlu"
 
 
-def _superlu(matrix: sparse.csr_array) -> tuple[Any, int]:
-    """SuperLU without row exchanges, so that the signs of U's diagonal are the inertia."""
-    handle = splu(
-        sparse.csc_matrix(matrix),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    if not np.array_equal(handle.perm_r, handle.perm_c):
-        raise RuntimeError("a pivot vanished and rows were exchanged, so the factor is not symmetric")
-    return handle, int(np.count_nonzero(handle.U.diagonal() < 0.0))
-
-
-def _check(factor: Factorization, matrix: sparse.csr_array) -> None:
+def _check(factor: Factorization, matrix: SymmetricMatrix) -> None:
     """Solve for a known vector; a factor that cannot is refused."""
     known = np.random.default_rng(0).standard_normal(factor.size)
     right = matrix @ known
@@ -142,5 +129,5 @@ def _check(factor: Factorization, matrix: sparse.csr_array) -> None:
         raise FactorizationError(
             f"the factor of {factor.backend} leaves a residual of {residual:.1e} and an error of {error:.1e}, bounds "
             f"{_RESIDUAL_BOUND:.0e} and {_ERROR_BOUND:.0e}; the matrix is singular or nearly so: try another shift or "
-            "the other backend"
+            "another backend"
         )

@@ -11,30 +11,32 @@ s, so convergence costs nothing to see, and one step of inverse iteration on a R
     A V s / ν = V s + V_{j+1} R_j s_j / ν.
 
 The modes wanted have the largest ν where σ lies below them all, and the most negative where σ lies above them, with
-the gap from -1/σ to 0 behind them. Every block is orthogonalised twice against the whole basis, so that no mode is
-found twice. Several columns at a time because the factor is read once for all of them (Golub and Underwood 1977;
-Grimes, Lewis and Simon 1994); a multiple mode needs a block at least as wide as it is manifold.
+the gap from -1/σ to 0 behind them. Every block is orthogonalised against the whole basis after the recurrence, so that
+no mode is found twice. Several columns at a time because the factor is read once for all of them (Golub and Underwood
+1977; Grimes, Lewis and Simon 1994); a multiple mode needs a block at least as wide as it is manifold.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
 
 from housing.errors import IncompleteModesError
+from housing.symmetric import Operator
 
 FloatArray = npt.NDArray[np.float64]
 
 _TOLERANCE = 1e-10  # of a Ritz pair's residual, as a part of ν
 _BLOCK = 8
 _DEPENDENT = 1e-11  # what is left of a column, as a part of it, where it lay in the basis
+_NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
 _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
 
 
 def shift_invert(
     solve: Callable[[FloatArray], FloatArray],
-    mass: sparse.csr_array,
+    mass: Operator,
     shift: float,
     count: int,
     *,
@@ -47,7 +49,7 @@ def shift_invert(
     ----------
     solve : callable
         X from (K - σM) X = Y, shape (n, m) both.
-    mass : scipy.sparse.csr_array, shape (n, n)
+    mass : matrix or operator, shape (n, n)
         M [kg].
     shift : float
         σ [rad²/s²].
@@ -73,21 +75,22 @@ def shift_invert(
     n = mass.shape[0]
     width = min(_BLOCK * 2**seed, n)
     most = min(n, 8 * count + 40 * width)
-    basis = np.empty((n, most + width), order="F")  # the system gives memory to what is used of it
+    # V and M V; the system gives memory to what is used of them.
+    basis, images = (np.empty((n, most + width), order="F") for _ in range(2))
     small = np.zeros((most + width, most + width))
     sign = -1.0 if above else 1.0
 
     start = np.random.default_rng(seed).standard_normal((n, width))
-    block, inertia, _ = _orthonormal(basis[:, :0], solve(np.ascontiguousarray(mass @ start)), mass)
-    size, checked = 0, 0
-    while block.shape[1] and size + block.shape[1] <= most + width:
-        begin, size = size, size + block.shape[1]
-        basis[:, begin:size] = block
-        image = solve(np.ascontiguousarray(inertia))
-        block, inertia, projections = _orthonormal(basis[:, :size], image, mass)
-        small[:size, begin:size] = projections[:size]
-        remainder = projections[size:]
-        whole = block.shape[1] == 0
+    found = _orthonormal(basis[:, :0], images[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass)
+    size, checked, last = 0, 0, 0
+    while found.block.shape[1] and size + found.block.shape[1] <= most + width:
+        begin, size = size, size + found.block.shape[1]
+        basis[:, begin:size], images[:, begin:size] = found.block, found.inertia
+        found = _orthonormal(basis[:, :size], images[:, :size], last, solve(found.inertia), mass)
+        last = begin
+        small[:size, begin:size] = found.projections[:size]
+        remainder = found.projections[size:]
+        whole = found.block.shape[1] == 0
         # Once in a tenth of the basis: the small eigenproblem must not outgrow the large one.
         if size >= count and (whole or size - checked >= max(width, size // 10) or size + width > most):
             checked = size
@@ -97,54 +100,62 @@ def shift_invert(
             outside = remainder @ mixture[begin:]
             errors = np.linalg.norm(outside, axis=0)
             if whole or (np.all(sign * wanted > 0.0) and np.all(errors < _TOLERANCE * np.abs(wanted))):
-                vectors = basis[:, :size] @ mixture + block @ (outside / wanted)
+                vectors = basis[:, :size] @ mixture + found.block @ (outside / wanted)
                 vectors /= np.sqrt(np.einsum("ij,ij->j", vectors, mass @ vectors))
                 values = shift + 1.0 / wanted
                 order = np.argsort(values)
                 return values[order], vectors[:, order]
-        small[size : size + block.shape[1], begin:size] = remainder
-        small[begin:size, size : size + block.shape[1]] = remainder.T
+        small[size : size + len(remainder), begin:size] = remainder
+        small[begin:size, size : size + len(remainder)] = remainder.T
     raise IncompleteModesError(
         f"Lanczos did not converge to {count} modes with a basis of {size}; ask for fewer, move the limit a little or "
         "refine the mesh"
     )
 
 
-def _orthonormal(
-    basis: FloatArray, block: FloatArray, mass: sparse.csr_array
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What a block adds to a basis.
+@dataclass(frozen=True)
+class _Addition:
+    """What a block adds to a basis of m vectors.
 
-    Returns
-    -------
-    new : ndarray, shape (n, r)
+    Attributes
+    ----------
+    block : ndarray, shape (n, r)
         M-orthonormal columns, orthogonal to the basis; r = 0 where the block lies in it.
     inertia : ndarray, shape (n, r)
-        M times these.
+        M times these, contiguous.
     projections : ndarray, shape (m + r, width)
         The block in terms of the basis and the new columns.
     """
-    given = np.sqrt(np.einsum("ij,ij->j", block, mass @ block))
+
+    block: FloatArray
+    inertia: FloatArray
+    projections: FloatArray
+
+
+def _orthonormal(basis: FloatArray, images: FloatArray, local: int, block: FloatArray, mass: Operator) -> _Addition:
+    """What a block adds to a basis V, with M V at hand so that one product with M is all that it takes.
+
+    First the last columns of the basis are taken off, from ``local`` on, which in exact arithmetic is everything;
+    then, once more, all of them.
+    """
     within = np.zeros((basis.shape[1], block.shape[1]))
-    for _ in range(2):
-        part = basis.T @ (mass @ block)
-        block = block - basis @ part
-        within += part
+    for first in (local, 0):
+        part = images[:, first:].T @ block
+        block = block - basis[:, first:] @ part
+        within[first:] += part
     inertia = mass @ block
     left = np.sqrt(np.maximum(np.einsum("ij,ij->j", block, inertia), 0.0))
+    given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
     kept = left > _DEPENDENT * given
     scaled, scaled_inertia = block[:, kept] / left[kept], inertia[:, kept] / left[kept]
     values, turn = np.linalg.eigh(scaled.T @ scaled_inertia)
     turn = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE])
-    new = scaled @ turn
+    new, new_inertia = scaled @ turn, scaled_inertia @ turn
     if new.shape[1]:
         # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
-        if basis.shape[1] and (float(np.min(left[kept] / given[kept])) < 1e-4 or values[0] < 1e-4):
-            new = new - basis @ (basis.T @ (mass @ new))
-        new_inertia = mass @ new
-        triangle = np.linalg.cholesky(new.T @ new_inertia).T
-        new = np.linalg.solve(triangle.T, new.T).T
-        new_inertia = np.linalg.solve(triangle.T, new_inertia.T).T
-    else:
-        new_inertia = new
-    return new, new_inertia, np.vstack([within, new.T @ inertia])
+        if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
+            new = new - basis @ (images.T @ new)
+            new_inertia = mass @ new
+        unit = np.linalg.inv(np.linalg.cholesky(new.T @ new_inertia)).T
+        new, new_inertia = new @ unit, new_inertia @ unit
+    return _Addition(new, new_inertia, np.vstack([within, new.T @ inertia]))

@@ -109,6 +109,12 @@ class Matrices:
             attached_damping=self.attached_damping + additions.damping,
         )
 
+    def attached_mass_blocks(self) -> FloatArray:
+        """The attached mass on the whole pattern, shape (n_blocks, 3, 3)."""
+        blocks = np.zeros_like(self.blocks)
+        blocks[self._attached_slots] = self.attached_mass.blocks
+        return blocks
+
     @cached_property
     def _keys(self) -> npt.NDArray[np.int64]:
         """A number for each pair of nodes of the pattern, ascending, shape (n_blocks,)."""

@@ -16,7 +16,8 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
-from housing.factorization import Backend, Factorizer
+from housing.factorization import Backend, Factorization, Factorizer
+from housing.free_system import FreeSystem
 from housing.lanczos import shift_invert
 from housing.matrices import Matrices
 from housing.reduction import Attachments, residual_attachments
@@ -28,8 +29,6 @@ RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
 _ATTEMPTS = 3
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
-_FLOOR = 0.06  # part of the limit: its square is small beside the wanted eigenvalues
-_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
 
 
 @dataclass(frozen=True)
@@ -152,93 +151,145 @@ def solve_modes(
     """
     if (frequency_limit is None) == (count is None):
         raise HousingError("give a frequency limit or a number of modes, one of the two")
-    free = _free_freedoms(3 * matrices.n_nodes, fixed)
-    reduced = _Reduced(matrices, free)
-    if count is not None and not 1 <= count < min(len(free) - 1, 2000):
+    system = FreeSystem(matrices, fixed)
+    if count is not None and not 1 <= count < min(system.size - 1, 2000):
         raise HousingError(
-            f"{count} modes asked of {len(free)} degrees of freedom: give 1 to {min(len(free) - 1, 2000) - 1}"
+            f"{count} modes asked of {system.size} degrees of freedom: give 1 to {min(system.size - 1, 2000) - 1}"
         )
     if frequency_limit is not None and frequency_limit <= 0.0:
         raise HousingError(f"frequency limit {frequency_limit} rad/s must be positive")
 
-    start = time.perf_counter()
-    factorizer = Factorizer(reduced.shifted(0.0), backend=backend, threads=threads)
-    expected = 0
-    # Far above the rounding of K, and its root small beside the wanted frequencies.
-    floor = _ROUNDING * float(np.max(reduced.stiffness.diagonal() / reduced.mass.diagonal()))
-    if frequency_limit is not None:
-        floor = max(floor, (_FLOOR * frequency_limit) ** 2)
-    above = frequency_limit is not None
-    shift = -floor if frequency_limit is None else frequency_limit**2
-    progress("counting the modes below the limit" if above else "factoring")
-    factor = factorizer.factor(reduced.shifted(shift))
-    if frequency_limit is not None:
-        expected = factor.negative
-        if expected == 0:
-            raise HousingError(f"the housing has no mode below {frequency_limit / (2 * np.pi):g} Hz; raise the limit")
-        if expected == len(free):
-            raise HousingError(
-                f"every mode of the mesh lies below {frequency_limit / (2 * np.pi):g} Hz; lower the limit or refine"
-            )
-    elif factor.negative:
-        raise _not_a_stiffness(f"K - {shift:g} M has {factor.negative} negative pivots")
-    factored = time.perf_counter() - start
-    start = time.perf_counter()
-    progress(f"searching {expected or count} modes")
-    for attempt in range(_ATTEMPTS):
-        # Two more than asked for, to see the gap behind the last; of all below a limit there are no more.
-        wanted = expected if count is None else min(count + 2 + 2 * attempt, len(free) - 1)
-        values, vectors = shift_invert(factor.solve, reduced.mass, shift, wanted, above=above, seed=attempt)
-        if frequency_limit is not None:
-            limit = frequency_limit
-        else:
-            assert count is not None
-            limit = _gap_after(values, count, floor)
-            expected = factorizer.factor(reduced.shifted(limit**2)).negative if limit > 0.0 else -1
-        keep = values < limit**2
-        residual, overlap = _proofs(reduced, values[keep], vectors[:, keep], limit**2 + floor)
-        certificate = Certificate(limit, expected, int(keep.sum()), residual, overlap)
-        if certificate.complete:
-            break
-    else:
-        raise IncompleteModesError(
-            f"{certificate.found} modes found below {limit / (2 * np.pi):.6g} Hz where the inertia demands "
-            f"{certificate.expected}, largest residual {certificate.max_residual:.1e}, largest overlap "
-            f"{certificate.max_overlap:.1e}; move the limit a little or refine the mesh"
-        )
-    vectors, values = _oriented(vectors[:, keep]), values[keep]
-    values[np.abs(values) < 1e-6 * floor] = 0.0
-    if values[0] < -floor:
+    search = _Search(system, Factorizer(backend=backend, threads=threads), system.floor(frequency_limit or 0.0))
+    found = (
+        search.below(frequency_limit, progress) if frequency_limit is not None else search.lowest(count or 0, progress)
+    )
+    values, vectors = found.values, _oriented(found.vectors)
+    values[np.abs(values) < 1e-6 * search.floor] = 0.0
+    if values[0] < -search.floor:
         raise _not_a_stiffness(f"the lowest eigenvalue of K is {values[0]:g} rad²/s²")
-    seconds = {"factorisation": factored, "eigensolver": time.perf_counter() - start}
-    shapes = np.zeros((certificate.found, 3 * matrices.n_nodes))
-    shapes[:, free] = vectors.T
     attachments = None
     if ports is not None:
         start = time.perf_counter()
         progress("attaching the static response at the ports")
         attachments = residual_attachments(
-            reduced.stiffness,
-            reduced.mass,
-            factor.solve,
+            system.stiffness,
+            system.mass,
+            found.factor.solve,
             values,
             vectors,
-            ports[:, free],
-            shift=shift,
-            floor=floor,
-            free=free,
-            n_nodes=matrices.n_nodes,
+            ports[:, system.free],
+            shift=found.certificate.limit**2,
+            floor=search.floor,
+            free=system.free,
+            n_nodes=system.n_nodes,
         )
-        seconds["reduction"] = time.perf_counter() - start
+        search.seconds["reduction"] = time.perf_counter() - start
     return ModeSet(
         frequencies=np.sqrt(np.maximum(values, 0.0)),
-        shapes=shapes.reshape(len(shapes), -1, 3),
-        certificate=certificate,
-        seconds=seconds,
-        backend=factor.backend,
-        shift=shift,
+        shapes=system.expand(vectors),
+        certificate=found.certificate,
+        seconds=search.seconds,
+        backend=found.factor.backend,
+        shift=found.shift,
         threads=threads,
         attachments=attachments,
+    )
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Certified modes, the shift of their search, and the factor of K - limit² M that counted them."""
+
+    values: FloatArray
+    vectors: FloatArray
+    certificate: Certificate
+    factor: Factorization
+    shift: float
+
+
+class _Search:
+    """Searches that are made again, wider, until their certificate is good; the seconds of each step add up."""
+
+    def __init__(self, system: FreeSystem, factorizer: Factorizer, floor: float) -> None:
+        self.floor = floor
+        self.seconds = {"factorisation": 0.0, "eigensolver": 0.0}
+        self._system = system
+        self._factorizer = factorizer
+
+    def below(self, limit: float, progress: Callable[[str], None]) -> _Found:
+        """All modes below a limit, which is itself the shift."""
+        progress("counting the modes below the limit")
+        shift = limit**2
+        factor = self._factor(shift)
+        count = factor.negative
+        if count == 0:
+            raise HousingError(f"the housing has no mode below {limit / (2 * np.pi):g} Hz; raise the limit")
+        if count == self._system.size:
+            raise HousingError(
+                f"every mode of the mesh lies below {limit / (2 * np.pi):g} Hz; lower the limit or refine"
+            )
+        progress(f"searching {count} modes")
+        for attempt in range(_ATTEMPTS):
+            values, vectors = self._modes(factor, shift, count, above=True, seed=attempt)
+            certificate, keep = self._certify(values, vectors, limit, factor)
+            if certificate.complete:
+                return _Found(values[keep], vectors[:, keep], certificate, factor, shift)
+        raise _incomplete(certificate)
+
+    def lowest(self, count: int, progress: Callable[[str], None]) -> _Found:
+        """The lowest modes by number, with the rest of the multiple mode that the last may be part of."""
+        shift = -self.floor
+        certificate = Certificate(0.0, count, 0, 0.0, 0.0)
+        for attempt in range(_ATTEMPTS):
+            progress("factoring")
+            factor = self._factor(shift)
+            if factor.negative:
+                raise _not_a_stiffness(f"K - {shift:g} M has {factor.negative} negative pivots")
+            progress(f"searching {count} modes")
+            # Two more than asked for, to see the gap behind the last.
+            wanted = min(count + 2 + 2 * attempt, self._system.size - 1)
+            values, vectors = self._modes(factor, shift, wanted, above=False, seed=attempt)
+            limit = _gap_after(values, count, self.floor)
+            if limit == 0.0:
+                continue
+            progress("counting the modes found")
+            del factor  # two at once would be the most memory that a search takes
+            factor = self._factor(limit**2)
+            certificate, keep = self._certify(values, vectors, limit, factor)
+            if certificate.complete:
+                return _Found(values[keep], vectors[:, keep], certificate, factor, shift)
+        raise _incomplete(certificate)
+
+    def _factor(self, shift: float) -> Factorization:
+        start = time.perf_counter()
+        factor = self._factorizer.factor(self._system.shifted(shift))
+        self.seconds["factorisation"] += time.perf_counter() - start
+        return factor
+
+    def _modes(
+        self, factor: Factorization, shift: float, count: int, *, above: bool, seed: int
+    ) -> tuple[FloatArray, FloatArray]:
+        start = time.perf_counter()
+        found = shift_invert(factor.solve, self._system.mass, shift, count, above=above, seed=seed)
+        self.seconds["eigensolver"] += time.perf_counter() - start
+        return found
+
+    def _certify(
+        self, values: FloatArray, vectors: FloatArray, limit: float, factor: Factorization
+    ) -> tuple[Certificate, npt.NDArray[np.bool_]]:
+        """The certificate of the modes below a limit, and which these are."""
+        start = time.perf_counter()
+        keep = values < limit**2
+        residual, overlap = _proofs(self._system, values[keep], vectors[:, keep], limit**2 + self.floor)
+        self.seconds["eigensolver"] += time.perf_counter() - start
+        return Certificate(limit, factor.negative, int(keep.sum()), residual, overlap), keep
+
+
+def _incomplete(certificate: Certificate) -> IncompleteModesError:
+    return IncompleteModesError(
+        f"{certificate.found} modes found below {certificate.limit / (2 * np.pi):.6g} Hz where the inertia demands "
+        f"{certificate.expected}, largest residual {certificate.max_residual:.1e}, largest overlap "
+        f"{certificate.max_overlap:.1e}; move the limit a little or refine the mesh"
     )
 
 
@@ -246,36 +297,10 @@ def _not_a_stiffness(what: str) -> FactorizationError:
     return FactorizationError(f"{what}; the stiffness is not positive semidefinite")
 
 
-class _Reduced:
-    """The matrices without the fixed degrees of freedom."""
-
-    def __init__(self, matrices: Matrices, free: IntArray) -> None:
-        self._matrices = matrices
-        self._free = free
-        self._all = len(free) == 3 * matrices.n_nodes
-        self.stiffness = self._reduce(matrices.stiffness)
-        self.mass = self._reduce(matrices.mass)
-
-    def shifted(self, shift: float) -> sparse.csr_array:
-        return self._reduce(self._matrices.shifted(shift))
-
-    def _reduce(self, matrix: sparse.csr_array) -> sparse.csr_array:
-        return matrix if self._all else sparse.csr_array(matrix[self._free][:, self._free])
-
-
-def _free_freedoms(size: int, fixed: IntArray | None) -> IntArray:
-    held = np.zeros(size, dtype=bool)
-    if fixed is not None:
-        held[fixed] = True
-    if held.all():
-        raise HousingError("every degree of freedom is fixed")
-    return np.flatnonzero(~held)
-
-
-def _proofs(reduced: _Reduced, values: FloatArray, vectors: FloatArray, scale: float) -> tuple[float, float]:
+def _proofs(system: FreeSystem, values: FloatArray, vectors: FloatArray, scale: float) -> tuple[float, float]:
     """The largest residual and the largest overlap of the modes; see :class:`Certificate`."""
-    inertia = reduced.mass @ vectors
-    error = reduced.stiffness @ vectors - inertia * values
+    inertia = system.mass @ vectors
+    error = system.stiffness @ vectors - inertia * values
     residuals = np.linalg.norm(error, axis=0) / ((np.abs(values) + scale) * np.linalg.norm(inertia, axis=0))
     overlaps = vectors.T @ inertia - np.eye(len(values))
     return float(residuals.max(initial=0.0)), float(np.abs(overlaps).max(initial=0.0))

@@ -8,14 +8,12 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.factorization import Backend, Factorization, Factorizer
+from housing.free_system import FreeSystem
 from housing.matrices import Matrices
 from housing.modes import ModeSet
 from housing.reduction import residual_attachments
 
 IntArray = npt.NDArray[np.int64]
-
-_FLOOR = 0.06  # part of the modes' limit: a shift so far below zero needs few sweeps
-_ROUNDING = 3e-8  # part of the largest K_ii / M_ii, below which the shift would drown in the rounding of K
 
 
 def attach_ports(
@@ -52,30 +50,22 @@ def attach_ports(
     HousingError, ReductionError
         See :func:`housing.reduction.residual_attachments`.
     """
-    held = np.zeros(3 * matrices.n_nodes, dtype=bool)
-    if fixed is not None:
-        held[fixed] = True
-    free = np.flatnonzero(~held)
-    stiffness = _reduced(matrices.stiffness, free)
-    mass = _reduced(matrices.mass, free)
-    floor = max(
-        (_FLOOR * modes.certificate.limit) ** 2, _ROUNDING * float(np.max(stiffness.diagonal() / mass.diagonal()))
-    )
+    system = FreeSystem(matrices, fixed)
+    floor = system.floor(modes.certificate.limit)
     if factor is None or shift is None:
         shift = -floor
-        definite = _reduced(matrices.shifted(shift), free)
-        factor = Factorizer(definite, backend=backend, threads=threads).factor(definite)
+        factor = Factorizer(backend=backend, threads=threads).factor(system.shifted(shift))
     attachments = residual_attachments(
-        stiffness,
-        mass,
+        system.stiffness,
+        system.mass,
         factor.solve,
         modes.frequencies**2,
-        modes.shapes.reshape(len(modes.shapes), -1).T[free],
-        stacked(ports)[:, free],
+        modes.shapes.reshape(len(modes.shapes), -1).T[system.free],
+        stacked(ports)[:, system.free],
         shift=shift,
         floor=floor,
-        free=free,
-        n_nodes=matrices.n_nodes,
+        free=system.free,
+        n_nodes=system.n_nodes,
     )
     return replace(modes, attachments=attachments)
 
@@ -85,7 +75,3 @@ def stacked(ports: Sequence[sparse.csr_array] | sparse.csr_array) -> sparse.csr_
     if isinstance(ports, sparse.csr_array):
         return ports
     return sparse.csr_array(sparse.vstack(list(ports), format="csr"))
-
-
-def _reduced(matrix: sparse.csr_array, free: IntArray) -> sparse.csr_array:
-    return matrix if len(free) == matrix.shape[0] else sparse.csr_array(matrix[free][:, free])

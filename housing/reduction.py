@@ -45,6 +45,7 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 from housing.errors import HousingError, ReductionError
+from housing.symmetric import Operator
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -113,8 +114,8 @@ class Attachments:
 
 
 def residual_attachments(
-    stiffness: sparse.csr_array,
-    mass: sparse.csr_array,
+    stiffness: Operator,
+    mass: Operator,
     solve: Solve,
     values: FloatArray,
     vectors: FloatArray,
@@ -129,7 +130,7 @@ def residual_attachments(
 
     Parameters
     ----------
-    stiffness, mass : scipy.sparse.csr_array, shape (n, n)
+    stiffness, mass : matrix or operator, shape (n, n)
         K [N/m] and M [kg] on the free degrees of freedom.
     solve : callable
         X = A⁻¹ B with A = K - shift M, for B of shape (n, m).
@@ -196,7 +197,7 @@ def residual_attachments(
 
 
 def _static_response(
-    stiffness: sparse.csr_array,
+    stiffness: Operator,
     solve: Solve,
     loads: FloatArray,
     vectors: FloatArray,
@@ -232,8 +233,8 @@ def _static_response(
 
 
 def _orthonormal(
-    stiffness: sparse.csr_array,
-    mass: sparse.csr_array,
+    stiffness: Operator,
+    mass: Operator,
     residual: FloatArray,
     known: FloatArray,
     vectors: FloatArray,
@@ -260,13 +261,13 @@ def _orthonormal(
     return squared, np.asarray(shapes * np.sign(largest))
 
 
-def _overlap(mass: sparse.csr_array, shapes: FloatArray, inertia: FloatArray) -> float:
+def _overlap(mass: Operator, shapes: FloatArray, inertia: FloatArray) -> float:
     own = shapes.T @ (mass @ shapes) - np.eye(shapes.shape[1])
     return float(max(np.abs(own).max(initial=0.0), np.abs(inertia.T @ shapes).max(initial=0.0)))
 
 
 def _static_error(
-    stiffness: sparse.csr_array,
+    stiffness: Operator,
     solve: Solve,
     loads: FloatArray,
     claimed: FloatArray,

@@ -57,10 +57,11 @@ def _skfem_matrices(mesh: Mesh, material: Material) -> tuple[sparse.csr_array, s
         return material.density * dot(u, v)
 
     matrices = []
-    degrees = (2 * kind.order - 2 if kind.corners == "tetra" else 2 * kind.order, 2 * kind.order)
+    # More than affine tetrahedra need, whose stiffness is exact at less.
+    degrees = (2 * kind.order + 1 if kind.corners == "tetra" else 2 * kind.order, 2 * kind.order)
     for form, degree in zip((elasticity, inertia), degrees, strict=True):
         # scikit-fem's own quadrature of a wedge is no product of a triangle's and a line's: its weights sum to 1/4.
-        rule = {"quadrature": quadrature("wedge", degree)} if kind.corners == "wedge" else {"intorder": max(degree, 1)}
+        rule = {"quadrature": quadrature("wedge", degree)} if kind.corners == "wedge" else {"intorder": degree}
         element = reference_element(block.kind)
         basis = skfem.Basis(solid, skfem.ElementVector(element), mapping=solid.mapping(), **rule)
         ours = (3 * nodes[:, :, None] + np.arange(3)).reshape(len(nodes), -1).T

@@ -1,0 +1,162 @@
+"""A housing's matrices on the degrees of freedom that are not fixed.
+
+Every shifted matrix K - σM of a search for modes has one sparsity pattern, so that where each of its entries comes
+from is found once: a shift is then one pass over the entries, and no sparse matrix is ever cut or converted.
+"""
+
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from housing.errors import HousingError
+from housing.matrices import Matrices
+from housing.symmetric import SymmetricMatrix
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_FLOOR = 0.06  # part of a limit: its square is small beside the wanted eigenvalues
+_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
+
+
+class FreeSystem:
+    """K and M without the fixed degrees of freedom.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        Of n_nodes nodes.
+    fixed : ndarray of int, optional
+        Degrees of freedom held at zero.
+
+    Attributes
+    ----------
+    free : ndarray of int, shape (n,)
+        Those left, among the 3 n_nodes.
+
+    Raises
+    ------
+    HousingError
+        Where none is left.
+    """
+
+    def __init__(self, matrices: Matrices, fixed: IntArray | None = None) -> None:
+        held = np.zeros(3 * matrices.n_nodes, dtype=bool)
+        if fixed is not None:
+            held[fixed] = True
+        if held.all():
+            raise HousingError("every degree of freedom is fixed")
+        self.free = np.flatnonzero(~held)
+        self._matrices = matrices
+        self._pointer, self._rows, self._source = _lower_pattern(matrices, self.free)
+
+    @property
+    def size(self) -> int:
+        """Number n of free degrees of freedom."""
+        return len(self.free)
+
+    @property
+    def n_nodes(self) -> int:
+        """Nodes of the mesh."""
+        return self._matrices.n_nodes
+
+    @cached_property
+    def stiffness(self) -> SymmetricMatrix:
+        """K [N/m]."""
+        return self._matrix(self._matrices.blocks.ravel()[self._source])
+
+    @cached_property
+    def mass(self) -> "FreeMass":
+        """M [kg], as an operator."""
+        return FreeMass(self._matrices, self.free)
+
+    def shifted(self, shift: float) -> SymmetricMatrix:
+        """K - shift M, always on the same pattern [rad²/s²]."""
+        values = self._matrices.blocks.ravel()[self._source]
+        if shift:
+            values -= shift * self._mass_values
+        return self._matrix(values)
+
+    def floor(self, limit: float = 0.0) -> float:
+        """λ up to which a mode counts as rigid [rad²/s²].
+
+        It is far above the rounding of K, and its root small beside a limit of circular frequencies [rad/s].
+        """
+        ratio = self.stiffness.diagonal() / self._mass_values[self._pointer[:-1]]
+        return max(_ROUNDING * float(ratio.max()), (_FLOOR * limit) ** 2)
+
+    def expand(self, vectors: FloatArray) -> FloatArray:
+        """Vectors on the free degrees of freedom, shape (n, m), as motions of all nodes, shape (m, n_nodes, 3)."""
+        full = np.zeros((vectors.shape[1], 3 * self.n_nodes))
+        full[:, self.free] = vectors.T
+        return full.reshape(len(full), self.n_nodes, 3)
+
+    @cached_property
+    def _mass_values(self) -> FloatArray:
+        """M's entries on the pattern."""
+        block, component = np.divmod(self._source, 9)
+        values = np.where(component % 4 == 0, self._matrices.node_mass[block], 0.0)
+        if len(self._matrices.attached_mass):
+            values += self._matrices.attached_mass_blocks().ravel()[self._source]
+        return values
+
+    def _matrix(self, values: FloatArray) -> SymmetricMatrix:
+        return SymmetricMatrix(self._pointer, self._rows, values)
+
+
+class FreeMass:
+    """M on the free degrees of freedom: the solid's m ⊗ I₃ acts on the three components of all nodes at once.
+
+    Parameters
+    ----------
+    matrices : Matrices
+    free : ndarray of int, shape (n,)
+        Ascending.
+    """
+
+    def __init__(self, matrices: Matrices, free: IntArray) -> None:
+        kept = np.unique(free // 3)
+        scalar = sparse.csr_array((matrices.node_mass, matrices.neighbors, matrices.pointer))
+        self._scalar = scalar if len(kept) == matrices.n_nodes else sparse.csr_array(scalar[kept][:, kept])
+        # Where the free degrees of freedom stand among all those of the nodes that have any.
+        self._places = None if 3 * len(kept) == len(free) else 3 * np.searchsorted(kept, free // 3) + free % 3
+        attached = matrices.attached_mass
+        self._attached = sparse.csr_array(attached.matrix(matrices.n_nodes)[free][:, free]) if len(attached) else None
+        self.shape = (len(free), len(free))
+
+    def __matmul__(self, vectors: FloatArray) -> FloatArray:
+        order = 3 * self._scalar.shape[0]
+        columns = vectors.reshape(len(vectors), -1)
+        if self._places is not None:
+            columns = np.zeros((order, columns.shape[1]))
+            columns[self._places] = vectors.reshape(len(vectors), -1)
+        product = np.asarray(self._scalar @ columns.reshape(order // 3, -1)).reshape(order, -1)
+        if self._places is not None:
+            product = product[self._places]
+        if self._attached is not None:
+            product += self._attached @ vectors.reshape(len(vectors), -1)
+        return product.reshape(vectors.shape)
+
+
+def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """The lower triangle by columns on the free degrees of freedom: pointer, rows, and each entry's place in blocks.
+
+    The blocks are in rows, and symmetric: the lower triangle's columns are the upper one's rows.
+    """
+    n = matrices.n_nodes
+    node = np.repeat(np.arange(n), np.diff(matrices.pointer))
+    upper = np.flatnonzero(matrices.neighbors >= node)
+    pointer = np.concatenate([[0], np.cumsum(np.bincount(node[upper], minlength=n))])
+    places = 9 * upper[:, None] + np.arange(9)
+    blocks = sparse.bsr_array((places.reshape(-1, 3, 3), matrices.neighbors[upper], pointer), shape=(3 * n, 3 * n))
+    entries = sparse.csr_array(blocks.tocsr())
+    row = np.repeat(np.arange(3 * n), np.diff(entries.indptr))
+    kept = entries.indices >= row
+    number = np.full(3 * n, -1, dtype=np.int64)
+    number[free] = np.arange(len(free))
+    if len(free) < 3 * n:
+        kept &= (number[row] >= 0) & (number[entries.indices] >= 0)
+    counts = np.bincount(row[kept], minlength=3 * n)[free]
+    return np.concatenate([[0], np.cumsum(counts)]), number[entries.indices[kept]], entries.data[kept]

@@ -1,0 +1,75 @@
+"""A sparse symmetric matrix by its lower triangle, as factorisations take it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+class Operator(Protocol):
+    """What can be multiplied with vectors: all that most algorithms ask of a matrix."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Rows and columns."""
+
+    def __matmul__(self, vectors: FloatArray, /) -> FloatArray:
+        """The product with one vector, shape (n,), or with many, shape (n, m)."""
+
+
+@dataclass(frozen=True)
+class SymmetricMatrix:
+    """The lower triangle by columns, which is also the upper one by rows.
+
+    Attributes
+    ----------
+    pointer : ndarray of int, shape (n + 1,)
+        Where each column begins.
+    rows : ndarray of int
+        Ascending within a column, the diagonal first.
+    values : ndarray
+    """
+
+    pointer: IntArray
+    rows: IntArray
+    values: FloatArray
+
+    @classmethod
+    def of(cls, matrix: sparse.csr_array) -> "SymmetricMatrix":
+        """From both triangles, of which the lower one is taken."""
+        lower = sparse.csc_array(sparse.tril(matrix, format="csc"))
+        lower.sum_duplicates()
+        return cls(lower.indptr.astype(np.int64), lower.indices.astype(np.int64), lower.data)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(n, n)."""
+        return len(self.pointer) - 1, len(self.pointer) - 1
+
+    def diagonal(self) -> FloatArray:
+        """Shape (n,)."""
+        return self.values[self.pointer[:-1]]
+
+    @cached_property
+    def lower(self) -> sparse.csc_array:
+        """The lower triangle alone."""
+        matrix = sparse.csc_array((self.values, self.rows, self.pointer), shape=self.shape)
+        matrix.has_canonical_format = True
+        return matrix
+
+    def full(self) -> sparse.csc_array:
+        """Both triangles."""
+        return sparse.csc_array(self.lower + sparse.tril(self.lower, k=-1).T)
+
+    def __matmul__(self, vectors: FloatArray) -> FloatArray:
+        own = self.diagonal() if vectors.ndim == 1 else self.diagonal()[:, None]
+        product = np.asarray(self.lower @ vectors)
+        product += self.lower.T @ vectors
+        product -= own * vectors
+        return product

@@ -1,0 +1,80 @@
+"""Matrices on the free degrees of freedom against the same rows and columns cut from the whole ones."""
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import sparse
+
+from housing import HousingError, LumpedMass, Material, Matrices, Patch, assemble, attach
+from housing.free_system import FreeSystem
+from housing.symmetric import SymmetricMatrix
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@pytest.fixture(scope="module", params=["bare", "with a mass"])
+def matrices(request: pytest.FixtureRequest, block: Callable[..., Mesh], steel: Material) -> Matrices:
+    mesh = block((0.05, 0.06, 0.1), (1, 1, 2))
+    bare = assemble(mesh, steel)
+    if request.param == "bare":
+        return bare
+    motor = LumpedMass("motor", 1.5, patch=Patch("top"), offset=(0.02, 0.0, 0.01))
+    return attach(bare, mesh, [motor])
+
+
+@settings(max_examples=25, deadline=None)
+@given(data=st.data(), shift=st.sampled_from([0.0, -1e7, 3e9]))
+def test_any_degrees_of_freedom_may_be_fixed(matrices: Matrices, data: st.DataObject, shift: float) -> None:
+    """Whole nodes, single components, or none."""
+    order = 3 * matrices.n_nodes
+    fixed = np.array(sorted(data.draw(st.sets(st.integers(0, order - 1), max_size=order - 1))), dtype=np.int64)
+    if data.draw(st.booleans()):
+        fixed = np.unique(3 * (fixed // 3)[:, None] + np.arange(3)).ravel()
+    free = np.setdiff1d(np.arange(order), fixed)
+    if not len(free):
+        return
+    system = FreeSystem(matrices, fixed)
+    np.testing.assert_array_equal(system.free, free)
+    stiffness, mass = (whole.toarray()[np.ix_(free, free)] for whole in (matrices.stiffness, matrices.mass))
+    np.testing.assert_array_equal(system.stiffness.full().toarray(), stiffness)
+    shifted = stiffness - shift * mass
+    np.testing.assert_allclose(system.shifted(shift).full().toarray(), shifted, atol=1e-15 * np.abs(shifted).max())
+    np.testing.assert_array_equal(system.shifted(shift).rows, system.stiffness.rows)
+    vectors = np.random.default_rng(len(free)).standard_normal((len(free), 3))
+    for found, expected in ((system.mass, mass), (system.stiffness, stiffness)):
+        scale = np.abs(expected) @ np.abs(vectors)
+        assert (np.abs(found @ vectors - expected @ vectors) <= 1e-14 * scale).all()
+        assert (np.abs(found @ vectors[:, 0] - expected @ vectors[:, 0]) <= 1e-14 * scale[:, 0]).all()
+    whole = system.expand(vectors).reshape(3, -1)
+    np.testing.assert_array_equal(whole[:, free], vectors.T)
+    assert not whole[:, fixed].any()
+
+
+def test_the_floor_is_clear_of_rounding_and_small_beside_the_limit(matrices: Matrices) -> None:
+    system = FreeSystem(matrices)
+    rounding = np.finfo(float).eps * (matrices.stiffness.diagonal() / matrices.mass.diagonal()).max()
+    assert system.floor() > 1e6 * rounding
+    assert system.floor(1e6) == pytest.approx(0.0036e12)
+
+
+def test_nothing_left_free_is_refused(matrices: Matrices) -> None:
+    with pytest.raises(HousingError, match="every degree of freedom is fixed"):
+        FreeSystem(matrices, np.arange(3 * matrices.n_nodes))
+
+
+def test_a_symmetric_matrix_is_its_lower_triangle() -> None:
+    rng = np.random.default_rng(1)
+    dense = rng.standard_normal((6, 6)) * (rng.random((6, 6)) < 0.5)
+    dense = dense + dense.T + 6.0 * np.eye(6)
+    matrix = SymmetricMatrix.of(sparse.csr_array(dense))
+    assert matrix.shape == (6, 6)
+    np.testing.assert_array_equal(matrix.diagonal(), dense.diagonal())
+    np.testing.assert_array_equal(matrix.lower.toarray(), np.tril(dense))
+    np.testing.assert_array_equal(matrix.full().toarray(), dense)
+    vectors = rng.standard_normal((6, 2))
+    np.testing.assert_allclose(matrix @ vectors, dense @ vectors, rtol=1e-13)
