@@ -53,6 +53,7 @@ from meshes.elements import (
 )
 from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.files import read_mesh, write_mesh
+from meshes.lengths import UNITS
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
 from meshes.regions import box_facets, cylinder_facets, plane_facets, with_bore
@@ -61,6 +62,7 @@ from meshes.tetrahedra import check_mesh_size, expected_elements
 
 __all__ = [
     "KINDS",
+    "UNITS",
     "Ailment",
     "Bolt",
     "Bore",

@@ -8,6 +8,7 @@ import numpy as np
 
 from meshes.elements import FloatArray, IntArray
 from meshes.errors import GeometryError, MeshSizeError
+from meshes.lengths import length_text
 from meshes.mesh import Mesh
 
 # gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
@@ -64,19 +65,16 @@ def check_mesh_size(volume: float, extent: float, mesh_size: float) -> None:
     if mesh_size > extent:
         meant = f"; did you mean {mesh_size:g} mm?" if 1e-3 * mesh_size <= extent else ""
         raise MeshSizeError(
-            f"elements of {_length(mesh_size)} are larger than the part, whose longest side is {_length(extent)}{meant}"
+            f"elements of {length_text(mesh_size)} are larger than the part, whose longest side is "
+            f"{length_text(extent)}{meant}"
         )
     number = expected_elements(volume, mesh_size)
     if number > MOST_ELEMENTS:
         least = mesh_size * np.cbrt(number / MOST_ELEMENTS)
         raise MeshSizeError(
-            f"elements of {_length(mesh_size)} would be about {number:.1g} in number, more than any solver takes "
-            f"({MOST_ELEMENTS:.0g}); expected at least {_length(least)}"
+            f"elements of {length_text(mesh_size)} would be about {number:.1g} in number, more than any solver takes "
+            f"({MOST_ELEMENTS:.0g}); expected at least {length_text(least)}"
         )
-
-
-def _length(value: float) -> str:
-    return f"{1e3 * value:.3g} mm" if value < 1.0 else f"{value:.4g} m"
 
 
 def mesh_solids(gmsh: Any, mesh_size: float, order: int, *, smallest: float | None = None) -> None:

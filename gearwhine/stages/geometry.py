@@ -8,10 +8,7 @@ import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.box_shape import box_geometry
 from gearwhine.case.problems import UNSAID
-from meshes import Bolt, GeometryError, Mesh, MeshSizeError, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
-
-UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
-"""Units of length of geometry files [m]."""
+from meshes import UNITS, Bolt, GeometryError, Mesh, MeshSizeError, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
 
 
 def unheard(warning: str) -> None:

@@ -10,9 +10,9 @@ from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.box import Box
 from gearwhine.case.problems import UNSAID
 from gearwhine.stages.attachments import check_places
-from gearwhine.stages.geometry import UNITS, bolts_document, bores_document, build_mesh, cover_joints
+from gearwhine.stages.geometry import bolts_document, bores_document, build_mesh, cover_joints
 from gearwhine.stages.regions import materials_of
-from meshes import Ailment, Mesh, WaveCarrier, diagnose, resolution_ailments
+from meshes import UNITS, Ailment, Mesh, WaveCarrier, diagnose, resolution_ailments
 
 _HERTZ = 2.0 * np.pi
 
