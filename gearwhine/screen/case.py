@@ -64,7 +64,7 @@ def _housing_lines(housing: dict[str, Any]) -> list[str]:
     if "mesh" in housing:
         shape += f", {housing['mesh']['nodes']} nodes, {_kinds(housing['kinds'])}"
     limit, count = housing["frequency_limit_hz"], housing["modes"]
-    wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {count or 20} modes"
+    wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {counted(count, 'mode')}"
     lines = [f"{shape}, {housing['material']}; {wanted}"]
     lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("regions", "seats", "supports") if housing[kind]]
     for kind in ("mounts", "joints"):

@@ -11,6 +11,7 @@ from scipy import sparse
 
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.problems import UNSAID
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_supports, check_places
 from gearwhine.stages.geometry import build_mesh
@@ -215,16 +216,18 @@ def _solve_modes(
     free = room.assemble(parted, material, materials)
     matrices = attach_all(case, mesh, free)
     assembled = time.perf_counter() - begin
-    # Without a limit or a number, what a first look wants.
-    count = given.modes if given.modes is not None else (None if given.frequency_limit is not None else 20)
-    modes = room.solve_modes(
-        matrices,
-        room.fixed_freedoms(mesh, build_supports(case)),
-        frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
-        count=count,
-        ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
-        progress=progress,
-    )
+    wanted = "modes" if given.frequency_limit is None else "frequency_limit"
+    try:
+        modes = room.solve_modes(
+            matrices,
+            room.fixed_freedoms(mesh, build_supports(case)),
+            frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
+            count=given.modes,
+            ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
+            progress=progress,
+        )
+    except room.HousingError as error:
+        raise CaseError([Problem(f"housing.{wanted}", UNSAID, f"what this model has; {error}")]) from error
     damping = room.modal_damping(modes, matrices) if matrices.damping.nnz else None
     progress("checking the housing against its geometry")
     begin = time.perf_counter()

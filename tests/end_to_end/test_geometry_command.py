@@ -164,6 +164,26 @@ def test_a_box_of_absurd_elements_is_refused_before_it_is_meshed(gearwhine: Any,
     assert "housing.box.mesh_size: expected another size of elements; elements of" in outcome.err
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("modes", "4000", "housing.modes: expected what this model has; 4000 modes asked of"),
+        (
+            "frequency_limit",
+            "1 Hz",
+            "housing.frequency_limit: expected what this model has; the housing has no mode below",
+        ),
+    ],
+)
+def test_modes_that_the_model_does_not_have_are_told_by_their_key(
+    gearwhine: Any, case: Any, key: str, value: str, said: str
+) -> None:
+    text = CAD.replace("modes = 4", f'{key} = "{value}"' if " " in value else f"{key} = {value}")
+    outcome = gearwhine("modes", case(text), "-q")
+    assert outcome.code == 2
+    assert said in outcome.err
+
+
 MESH = (
     STEEL
     + """
