@@ -18,8 +18,8 @@ def show_health(console: Console, document: dict[str, Any], *, detail: bool = Fa
     if detail or broken:
         console.print(_checks(lines if detail else broken))
     if not detail:
-        which = f"all {len(bounded)}" if not broken else f"the other {len(bounded) - len(broken)}"
-        console.print(f"Health of the model: {which} checks keep their bounds (--detail shows them).")
+        kept = len(bounded) - len(broken)
+        console.print(f"Health of the model: {kept} of {len(bounded)} checks keep their bounds (--detail shows all).")
     if error := document["static_error"]:
         console.print(static_error_line(error))
 
