@@ -64,7 +64,7 @@ def box_misfits(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Finding
 
     try:
         box_geometry(box, [seat for _, seat in seats])
-        check_mesh_size(_wall_volume(box), max(box.size), box.mesh_size)
+        check_mesh_size(wall_volume(box), max(box.size), box.mesh_size)
     except MeshSizeError as error:
         yield Finding(("housing", "box", "mesh_size"), f"another size of elements; {error}")
     except BoxMisfitError as error:
@@ -81,7 +81,7 @@ def box_misfits(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Finding
         yield Finding(("housing", "box"), f"parts that fit each other; {error}", UNSAID)
 
 
-def _wall_volume(box: Box) -> float:
+def wall_volume(box: Box) -> float:
     """Material of the plain walls [m³], without bores and without what is added to them."""
     walls, (x, y, z) = box.walls, box.size
     inside = (x - walls.left - walls.right) * (y - walls.bottom - walls.top) * (z - walls.back - walls.front)

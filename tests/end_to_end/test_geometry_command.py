@@ -156,6 +156,17 @@ def test_all_that_finds_no_place_is_told_at_once_and_before_solving(gearwhine: A
     assert not (tmp_path / "out").exists()
 
 
+def test_a_mesh_that_few_computers_solve_is_doubted_by_the_check(gearwhine: Any) -> None:
+    """Walls of 2.1e-3 m³ hold over 600 000 regular tetrahedra of 3 mm, with over 2.5 million degrees of freedom."""
+    fine = gearwhine("check", "steel-box", "--json", "-q", "--set", "housing.box.mesh_size=3 mm").document
+    assert "load" in [warning["name"] for warning in fine["warnings"]]
+    assert "load" not in [one["name"] for one in gearwhine("check", "steel-box", "--json", "-q").document["warnings"]]
+
+
+def test_the_check_says_that_it_meshes_a_drawing(gearwhine: Any, case: Any) -> None:
+    assert "meshing the drawing" in gearwhine("check", case()).err
+
+
 @pytest.mark.parametrize("size", ["0.1 mm", "3 m"])
 @pytest.mark.parametrize("command", ["check", "modes"])
 def test_a_box_of_absurd_elements_is_refused_before_it_is_meshed(gearwhine: Any, size: str, command: str) -> None:
