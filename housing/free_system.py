@@ -149,7 +149,8 @@ def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArr
     node = np.repeat(np.arange(n), np.diff(matrices.pointer))
     upper = np.flatnonzero(matrices.neighbors >= node)
     pointer = np.concatenate([[0], np.cumsum(np.bincount(node[upper], minlength=n))])
-    places = 9 * upper[:, None] + np.arange(9)
+    small = 9 * len(node) < np.iinfo(np.int32).max
+    places = (9 * upper[:, None] + np.arange(9)).astype(np.int32 if small else np.int64)
     blocks = sparse.bsr_array((places.reshape(-1, 3, 3), matrices.neighbors[upper], pointer), shape=(3 * n, 3 * n))
     entries = sparse.csr_array(blocks.tocsr())
     row = np.repeat(np.arange(3 * n), np.diff(entries.indptr))

@@ -10,6 +10,10 @@ s, so convergence costs nothing to see, and one step of inverse iteration on a R
 
     A V s / ν = V s + V_{j+1} R_j s_j / ν.
 
+The eigenvalues then come from the quotients of K itself in the space of the vectors so found. The inverse's would not
+do: about a shift hard beside rigid modes A is huge along these, and its rounding there, by λ / |σ| larger beside an
+elastic mode's own ν, stands in that mode.
+
 The modes wanted have the largest ν where σ lies below them all, and the most negative where σ lies above them, with
 the gap from -1/σ to 0 behind them. Every block is orthogonalised against the whole basis after the recurrence, so that
 no mode is found twice. Several columns at a time because the factor is read once for all of them (Golub and Underwood
@@ -21,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy import linalg
 
 from housing.errors import IncompleteModesError
 from housing.symmetric import Operator
@@ -36,23 +41,21 @@ _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as
 
 def shift_invert(
     solve: Callable[[FloatArray], FloatArray],
+    stiffness: Operator,
     mass: Operator,
-    shift: float,
     count: int,
     *,
     above: bool = False,
     seed: int = 0,
 ) -> tuple[FloatArray, FloatArray]:
-    """The modes nearest to a shift on one side of it.
+    """The modes nearest to the shift σ of a factor, on one side of it.
 
     Parameters
     ----------
     solve : callable
         X from (K - σM) X = Y, shape (n, m) both.
-    mass : matrix or operator, shape (n, n)
-        M [kg].
-    shift : float
-        σ [rad²/s²].
+    stiffness, mass : matrix or operator, shape (n, n)
+        K [N/m] and M [kg].
     count : int
         How many.
     above : bool
@@ -77,7 +80,7 @@ def shift_invert(
     most = min(n, 8 * count + 40 * width)
     # V and M V; the system gives memory to what is used of them.
     basis, images = (np.empty((n, most + width), order="F") for _ in range(2))
-    small = np.zeros((most + width, most + width))
+    small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
 
     start = np.random.default_rng(seed).standard_normal((n, width))
@@ -101,10 +104,8 @@ def shift_invert(
             errors = np.linalg.norm(outside, axis=0)
             if whole or (np.all(sign * wanted > 0.0) and np.all(errors < _TOLERANCE * np.abs(wanted))):
                 vectors = basis[:, :size] @ mixture + found.block @ (outside / wanted)
-                vectors /= np.sqrt(np.einsum("ij,ij->j", vectors, mass @ vectors))
-                values = shift + 1.0 / wanted
-                order = np.argsort(values)
-                return values[order], vectors[:, order]
+                values, mixture = linalg.eigh(vectors.T @ (stiffness @ vectors), vectors.T @ (mass @ vectors))
+                return values, vectors @ mixture
         small[size : size + len(remainder), begin:size] = remainder
         small[begin:size, size : size + len(remainder)] = remainder.T
     raise IncompleteModesError(
@@ -141,16 +142,17 @@ def _orthonormal(basis: FloatArray, images: FloatArray, local: int, block: Float
     within = np.zeros((basis.shape[1], block.shape[1]))
     for first in (local, 0):
         part = images[:, first:].T @ block
-        block = block - basis[:, first:] @ part
+        block -= basis[:, first:] @ part
         within[first:] += part
     inertia = mass @ block
     left = np.sqrt(np.maximum(np.einsum("ij,ij->j", block, inertia), 0.0))
     given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
     kept = left > _DEPENDENT * given
-    scaled, scaled_inertia = block[:, kept] / left[kept], inertia[:, kept] / left[kept]
-    values, turn = np.linalg.eigh(scaled.T @ scaled_inertia)
-    turn = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE])
-    new, new_inertia = scaled @ turn, scaled_inertia @ turn
+    correlations = (block.T @ inertia)[np.ix_(kept, kept)] / np.outer(left[kept], left[kept])
+    values, turn = np.linalg.eigh(correlations)
+    mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
+    mixture[kept] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[kept, None]
+    new, new_inertia = block @ mixture, inertia @ mixture
     if new.shape[1]:
         # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
         if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:

@@ -28,6 +28,7 @@ IntArray = npt.NDArray[np.int64]
 RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
 _ATTEMPTS = 3
+_BELOW = 0.1  # part of the lowest elastic eigenvalue
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
 
 
@@ -229,8 +230,9 @@ class _Search:
                 f"every mode of the mesh lies below {limit / (2 * np.pi):g} Hz; lower the limit or refine"
             )
         progress(f"searching {count} modes")
+        certificate = Certificate(limit, count, 0, 0.0, 0.0)
         for attempt in range(_ATTEMPTS):
-            values, vectors = self._modes(factor, shift, count, above=True, seed=attempt)
+            values, vectors = self._modes(factor, count, above=True, attempt=attempt)
             certificate, keep = self._certify(values, vectors, limit, factor)
             if certificate.complete:
                 return _Found(values[keep], vectors[:, keep], certificate, factor, shift)
@@ -246,9 +248,9 @@ class _Search:
             if factor.negative:
                 raise _not_a_stiffness(f"K - {shift:g} M has {factor.negative} negative pivots")
             progress(f"searching {count} modes")
-            # Two more than asked for, to see the gap behind the last.
-            wanted = min(count + 2 + 2 * attempt, self._system.size - 1)
-            values, vectors = self._modes(factor, shift, wanted, above=False, seed=attempt)
+            # Some more than asked for, to see the gap behind the last.
+            wanted = min(count + 2 * 4**attempt, self._system.size - 1)
+            values, vectors = self._modes(factor, wanted, above=False, attempt=attempt)
             limit = _gap_after(values, count, self.floor)
             if limit == 0.0:
                 continue
@@ -258,6 +260,9 @@ class _Search:
             certificate, keep = self._certify(values, vectors, limit, factor)
             if certificate.complete:
                 return _Found(values[keep], vectors[:, keep], certificate, factor, shift)
+            if values.max(initial=0.0) > self.floor:
+                # Farther from rigid modes, by the scale of the elastic ones: less of their rounding stands in these.
+                shift = -max(self.floor, _BELOW * float(values[values > self.floor][0]))
         raise _incomplete(certificate)
 
     def _factor(self, shift: float) -> Factorization:
@@ -266,13 +271,19 @@ class _Search:
         self.seconds["factorisation"] += time.perf_counter() - start
         return factor
 
-    def _modes(
-        self, factor: Factorization, shift: float, count: int, *, above: bool, seed: int
-    ) -> tuple[FloatArray, FloatArray]:
+    def _modes(self, factor: Factorization, count: int, *, above: bool, attempt: int) -> tuple[FloatArray, FloatArray]:
+        """Modes without a proof; of an attempt that does not converge, none, but for the last one's."""
         start = time.perf_counter()
-        found = shift_invert(factor.solve, self._system.mass, shift, count, above=above, seed=seed)
-        self.seconds["eigensolver"] += time.perf_counter() - start
-        return found
+        system = self._system
+        try:
+            return shift_invert(factor.solve, system.stiffness, system.mass, count, above=above, seed=attempt)
+        except IncompleteModesError:
+            if attempt + 1 == _ATTEMPTS:
+                raise
+            # The next one has a wider block, as modes of high multiplicity want it.
+            return np.empty(0), np.empty((system.size, 0))
+        finally:
+            self.seconds["eigensolver"] += time.perf_counter() - start
 
     def _certify(
         self, values: FloatArray, vectors: FloatArray, limit: float, factor: Factorization
@@ -311,7 +322,7 @@ def _gap_after(values: FloatArray, count: int, floor: float) -> float:
 
     ``floor`` [rad²/s²] is far above the rounding of rigid modes, whose differences are no gaps.
     """
-    scale = max(float(np.abs(values).max()), floor)
+    scale = max(float(np.abs(values).max(initial=0.0)), floor)
     for below, above in zip(values[count - 1 :], values[count:], strict=False):
         if above - below > _RELATIVE_GAP * scale:
             return float(np.sqrt(max(0.5 * (below + above), 0.0)))

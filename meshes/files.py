@@ -13,6 +13,7 @@ from meshes.content import MeshContent
 from meshes.errors import GeometryError
 from meshes.from_meshio import content_from_meshio, load_meshio
 from meshes.mesh import Mesh
+from meshes.nastran import framed_file
 from meshes.to_meshio import meshio_from_mesh
 
 # Every kind of element comes back whole under these endings; under others some are lost or changed in silence.
@@ -110,8 +111,8 @@ def _through_meshio(path: Path) -> MeshContent:
     if not path.stat().st_size:
         raise GeometryError(f"mesh file {path} is empty")
     # meshio tells of trouble on the screen; standard output belongs to the caller.
-    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
-        content = meshio.read(path)
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()), framed_file(path) as readable:
+        content = meshio.read(readable)
     return content_from_meshio(content, path)
 
 

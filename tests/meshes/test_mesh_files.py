@@ -367,3 +367,20 @@ def test_physical_groups_of_gmsh_are_read_once(tmp_path: Path, version: float) -
     mesh = read_mesh(path)
     assert {name: len(facets[0]) for name, facets in mesh.surfaces.items()} == {"one": counts[0], "three": sum(counts)}
     np.testing.assert_array_equal(np.sort(mesh.volumes["solid"]), np.arange(elements))
+
+
+def test_nastran_bulk_data_alone_with_blank_continuations_are_read(tmp_path: Path) -> None:
+    """As for an INCLUDE: no BEGIN BULK, no ENDDATA, lines not filled up; the second line begins with a blank field."""
+    places = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0)]
+    places += [(0, 0, 0.5), (0.5, 0, 0.5), (0, 0.5, 0.5)]
+    lines = [
+        f"GRID    {number:<8}{'':8}" + "".join(f"{value:<8}" for value in place)
+        for number, place in enumerate(places, start=1)
+    ]
+    lines += ["CTETRA  1       1       1       2       3       4       5       6", "        7       8       9       10"]
+    path = tmp_path / "part.bdf"
+    path.write_text("$ one element\n" + "\n".join(lines) + "\n")
+    mesh = read_mesh(path)
+    assert mesh.kinds == {"tetra10": 1}
+    assert mesh.element_volumes == pytest.approx([1 / 6])
+    np.testing.assert_allclose(mesh.points[mesh.blocks[0].nodes[0]], places)
