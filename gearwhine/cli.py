@@ -76,7 +76,7 @@ def check(case: CaseName, *, common: Common = _DEFAULTS) -> None:
     from gearwhine.screen import show_check
     from gearwhine.stages.summary import check_document
 
-    _on_case(case, common, lambda given, progress: check_document(given), show_check)
+    _on_case(case, common, check_document, show_check)
 
 
 @app.command
@@ -250,6 +250,8 @@ def run_command(arguments: list[str]) -> int:
         code, message = explain(error)
         if message is None:
             raise
+        for note in getattr(error, "__notes__", ()):
+            sys.stderr.write(f"{note}\n")
         sys.stderr.write(f"gearwhine: {message}\n")
         return code
     return 0

@@ -164,7 +164,7 @@ def _mass_lines(
                 "centre of gravity",
                 float(np.linalg.norm(body.center - center)) / size,
                 MASS_BOUND,
-                f"({x:.3f}, {y:.3f}, {z:.3f}) mm from the matrices, against the geometry's",
+                f"({x:z.3f}, {y:z.3f}, {z:z.3f}) mm from the matrices, against the geometry's",
             )
         )
     return lines

@@ -27,6 +27,8 @@ _FACES = {
     "front": ((0, 0, 1), 0, 1),
 }
 
+_FACING = 0.9  # least cosine between a facet's normal and that of the face it makes up
+
 
 @dataclass(frozen=True)
 class Survey:
@@ -70,14 +72,17 @@ def survey_grid(
     Raises
     ------
     HousingError
-        Where no facet of the mesh looks the way of a face.
+        Where the box lies beside the mesh.
 
     Notes
     -----
     Each point is projected along the face's normal on to the facets that look that way on the outer side; one
-    that falls into a bore moves to the nearest of them.
+    that falls into a bore moves to the nearest of them. Where no facet looks that way, those that come nearest to it
+    take their place.
     """
     box = mesh.bounds if bounds is None else bounds
+    if (box[0] > mesh.bounds[1]).any() or (box[1] < mesh.bounds[0]).any():
+        raise HousingError(f"no part of the housing lies in the box {box.tolist()} m")
     boundary = mesh.boundary
     facing = facet_normals(mesh.points, boundary)
     centers = facet_centers(mesh.points, boundary)
@@ -86,9 +91,9 @@ def survey_grid(
     for face, (columns, rows) in counts.items():
         normal_axes, column_axis, row_axis = _FACES[face]
         normal = np.array(normal_axes, dtype=np.float64)
-        outer = pick_facets(boundary, (facing @ normal > 0.9) & ((centers - middle) @ normal > 0.0))
-        if not outer:
-            raise HousingError(f"no facet of the housing makes up the {face} of the box {box.tolist()} m")
+        outer = pick_facets(boundary, (facing @ normal > _FACING) & ((centers - middle) @ normal > 0.0))
+        if not outer:  # as on a cone: what comes nearest to looking that way
+            outer = pick_facets(boundary, facing @ normal > _FACING * (facing @ normal).max())
         for column in (np.arange(columns) + 0.5) / columns:
             for row in (np.arange(rows) + 0.5) / rows:
                 place = middle.copy()

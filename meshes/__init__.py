@@ -7,6 +7,7 @@ What the room offers:
   :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
   dimensions; :func:`mesh_box` meshes it with gmsh.
 - :func:`mesh_cad` -- the solids of a STEP, IGES or BREP file, as a :class:`CadMesh`.
+- :func:`expected_elements`, :func:`check_mesh_size` -- how many elements a size makes, and whether they can be solved.
 - :func:`box_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`, :func:`with_bore` -- parts of
   the surface of any mesh by where they lie; bores by centre and diameter.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
@@ -50,15 +51,18 @@ from meshes.elements import (
     facets_of,
     pick_facets,
 )
-from meshes.errors import GeometryError, MesherUnavailableError
+from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.files import read_mesh, write_mesh
+from meshes.lengths import UNITS
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
 from meshes.regions import box_facets, cylinder_facets, plane_facets, with_bore
 from meshes.resolution import WaveCarrier, resolution_ailments, wall_thickness
+from meshes.tetrahedra import check_mesh_size, expected_elements
 
 __all__ = [
     "KINDS",
+    "UNITS",
     "Ailment",
     "Bolt",
     "Bore",
@@ -78,14 +82,17 @@ __all__ = [
     "GeometryError",
     "Mesh",
     "MeshQuality",
+    "MeshSizeError",
     "MesherUnavailableError",
     "Misfit",
     "Rib",
     "WallThickness",
     "WaveCarrier",
     "box_facets",
+    "check_mesh_size",
     "cylinder_facets",
     "diagnose",
+    "expected_elements",
     "facet_centers",
     "facet_corners",
     "facet_nodes",

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from meshes.ailments import Ailment, Severity, ailment
 from meshes.connections import connection_ailments
 from meshes.elements import FloatArray, IntArray
+from meshes.lengths import UNITS, length_text, plausible
 from meshes.mapping import determinants, jacobians
 from meshes.mesh import Mesh
 from meshes.quality import edge_lengths, shape_numbers
@@ -16,9 +17,7 @@ from meshes.shapes import quadrature, shape_functions
 LEAST_SHAPE = 0.05
 """Shape number below which an element spoils the stresses around it."""
 
-_SMALLEST, _LARGEST = 0.010, 20.0  # longest sides of a housing that are believed [m]
 _LIKELY = 0.5  # of several units that would do, the one that makes the housing nearest to this is proposed [m]
-_UNITS = {"mm": 1e-3, "m": 1.0, "in": 0.0254, "cm": 1e-2}
 _NO_VOLUME = 1e-9  # of the cube of an element's longest edge
 
 
@@ -88,19 +87,15 @@ def _nodes(mesh: Mesh) -> Iterator[Ailment]:
 def _unit(mesh: Mesh, unit: float | None) -> Iterator[Ailment]:
     """Sizes that no housing has, with the unit that would make it one."""
     length = float(np.ptp(mesh.bounds, axis=0).max())
-    if unit is None or _SMALLEST <= length <= _LARGEST:
+    if unit is None or plausible(length):
         return
-    name = next((name for name, value in _UNITS.items() if np.isclose(value, unit)), f"{unit:g} m")
-    other = {other: length / unit * value for other, value in _UNITS.items() if other != name}
+    name = next((name for name, value in UNITS.items() if np.isclose(value, unit)), f"{unit:g} m")
+    other = {other: length / unit * value for other, value in UNITS.items() if other != name}
     believed = sorted(
-        (other for other, size in other.items() if _SMALLEST <= size <= _LARGEST),
+        (other for other, size in other.items() if plausible(size)),
         key=lambda name: abs(np.log(other[name] / _LIKELY)),
     )
-    message = f"the part is {_size(length)} long; is the unit {name!r}?"
+    message = f"the part is {length_text(length)} long; is the unit {name!r}?"
     if believed:
-        message += f" With {believed[0]!r} it would be {_size(other[believed[0]])}"
+        message += f" With {believed[0]!r} it would be {length_text(other[believed[0]])}"
     yield Ailment("unit", "warning", message, 1, mesh.bounds.mean(axis=0))
-
-
-def _size(length: float) -> str:
-    return f"{length:.3g} m" if length >= 1.0 else f"{1e3 * length:.3g} mm"

@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from collections.abc import Mapping
 from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
@@ -53,7 +54,10 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     except SystemExit as error:  # meshio leaves through sys.exit where no reader takes the file
         raise GeometryError(f"mesh file {path} is broken, or of a format that meshio does not read") from error
     except Exception as error:  # a broken file fails in whatever way its reader happens to stumble
-        raise GeometryError(f"mesh file {path} cannot be read: {type(error).__name__}: {error}") from error
+        raise GeometryError(
+            f"mesh file {path} cannot be read: {type(error).__name__}: {error}; it is broken, cut short, or of another "
+            "format than its ending says"
+        ) from error
     if not content.solids:
         raise GeometryError(f"mesh file {path} holds no solid elements")
     return content.mesh(unit)
@@ -102,11 +106,24 @@ def _write(mesh: Mesh, path: Path) -> None:
 
 def _through_meshio(path: Path) -> MeshContent:
     meshio = load_meshio()
+    _check_ending(path, meshio.extension_to_filetypes)
     _check_tetgen(path)
+    if not path.stat().st_size:
+        raise GeometryError(f"mesh file {path} is empty")
     # meshio tells of trouble on the screen; standard output belongs to the caller.
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()), framed_file(path) as readable:
         content = meshio.read(readable)
     return content_from_meshio(content, path)
+
+
+def _check_ending(path: Path, known: Mapping[str, list[str]]) -> None:
+    """Refuse a file that no reader is chosen for."""
+    endings = ["".join(path.suffixes[first:]).lower() for first in range(len(path.suffixes))]
+    if not any(ending in known for ending in endings):
+        raise GeometryError(
+            f"mesh file {path}: no format of meshes has the ending {path.suffix!r}; "
+            f"such as {' '.join(WRITABLE)} .bdf .nas .e do"
+        )
 
 
 def _check_tetgen(path: Path) -> None:

@@ -94,8 +94,8 @@ def cylinder_facets(
     ----------
     mesh : Mesh
     center : sequence of float
-        A point on the bore's axis [m]. Of several bores on that axis the one is taken whose middle is nearest along
-        it.
+        A point on the bore's axis [m], at most a diameter beyond its ends. Of several bores on that axis the one is
+        taken whose middle is nearest along it.
     diameter : float
         [m].
     axis : sequence of float
@@ -130,8 +130,10 @@ def cylinder_facets(
         on &= _all_corners(mesh, np.abs(heights) <= length / 2 + _CIRCLE_SLACK * diameter)
     bores = joined_by_span(mesh, pick_facets(mesh.boundary, on), place, direction) if on.any() else ()
     bores = tuple(bore for bore in bores if bore.roundness >= _LEAST_ROUND)
-    if bores:
-        return min(bores, key=lambda bore: abs(float(np.dot(np.subtract(bore.center, place), direction)))).facets
+    along = [abs(float(np.dot(np.subtract(bore.center, place), direction))) for bore in bores]
+    # A centre far away on the axis is a slip, and would be a long arm to the seat that it names.
+    if bores and min(along) <= diameter + bores[int(np.argmin(along))].length / 2:
+        return bores[int(np.argmin(along))].facets
     raise GeometryError(_no_bore(mesh, place, diameter, direction))
 
 

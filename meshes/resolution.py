@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.ailments import Ailment, ailment
+from meshes.lengths import length_text
 from meshes.mesh import Mesh
 from meshes.quality import edge_lengths
 
@@ -73,13 +74,13 @@ def resolution_ailments(mesh: Mesh, wave: WaveCarrier) -> tuple[Ailment, ...]:
             number, worst = int(coarse.sum()), int(np.argmax(np.where(coarse, longest, 0.0)))
             what = (
                 f"{number} of {mesh.n_elements} elements have edges longer than 1/{part:g} of the shortest wave, "
-                f"{_millimetres(length)} at {wave.frequency / (2.0 * np.pi):.4g} Hz in walls about "
-                f"{_millimetres(thickness)} thick"
+                f"{length_text(length)} at {wave.frequency / (2.0 * np.pi):.4g} Hz in walls about "
+                f"{length_text(thickness)} thick"
             )
             advice = (
-                f"modes near that frequency come out too high; use elements of at most {_millimetres(length / part)}"
+                f"modes near that frequency come out too high; use elements of at most {length_text(length / part)}"
             )
-            which = f"the worst of {_millimetres(longest[worst])} at"
+            which = f"the worst of {length_text(longest[worst])} at"
             ailments.append(ailment("size", "warning", what, advice, number, mesh.centers[worst], which=which))
     ailments += _locking(mesh, thickness)
     return tuple(ailments)
@@ -100,9 +101,9 @@ def _locking(mesh: Mesh, thickness: float) -> list[Ailment]:
     excess = locking_excess(edge, thickness)
     high = np.sqrt(1.0 + excess) - 1.0
     message = (
-        f"{len(members)} elements are four-node tetrahedra: with edges of {_millimetres(edge)} in walls about "
-        f"{_millimetres(thickness)} thick these are about {100 * excess:.2g} % too stiff in bending, and its "
-        f"frequencies {100 * high:.2g} % too high; use ten-node ones"
+        f"{len(members)} elements are four-node tetrahedra: with edges of {length_text(edge)} in walls about "
+        f"{length_text(thickness)} thick these are about {_percent(excess)} too stiff in bending, and its "
+        f"frequencies {_percent(high)} too high; use ten-node ones"
     )
     return [Ailment("locking", "warning", message, len(members), mesh.centers[members[0]])]
 
@@ -112,5 +113,5 @@ def locking_excess(edge: float, thickness: float) -> float:
     return _LOCKING * (edge / thickness) ** 2
 
 
-def _millimetres(length: float) -> str:
-    return f"{1e3 * length:.3g} mm"
+def _percent(part: float) -> str:
+    return f"{float(f'{100 * part:.2g}'):g} %"

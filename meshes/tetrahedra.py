@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from meshes.elements import FloatArray, IntArray
-from meshes.errors import GeometryError
+from meshes.errors import GeometryError, MeshSizeError
+from meshes.lengths import length_text
 from meshes.mesh import Mesh
 
 # gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
@@ -17,6 +18,11 @@ _GMSH_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]])
 _TET10 = 11
 _WORST_JACOBIAN = 0.05  # of an element's least to its mean, below which it counts as folded
 _HALVINGS = 3
+_REGULAR = 6.0 * np.sqrt(2.0)  # regular tetrahedra of unit edge in a unit of volume
+
+MOST_ELEMENTS = 3e6
+"""Some twelve million degrees of freedom: beyond any solver that follows."""
+
 _STRAIGHT = 1e-6  # an edge bent by less, as a part of its length, is straight
 
 
@@ -30,6 +36,45 @@ def check_mesh_request(mesh_size: float, order: int) -> None:
     """
     if not mesh_size > 0.0 or order not in (1, 2):
         raise GeometryError(f"mesh size {mesh_size} m must be positive and order {order} be 1 or 2")
+
+
+def expected_elements(volume: float, mesh_size: float) -> float:
+    """About how many tetrahedra fill a volume: regular ones have edge³ / (6 √2) each.
+
+    Parameters
+    ----------
+    volume, mesh_size : float
+        [m³], [m], or both in another unit of length.
+    """
+    return float(_REGULAR * volume / mesh_size**3)
+
+
+def check_mesh_size(volume: float, extent: float, mesh_size: float) -> None:
+    """Refuse an element size that makes no sense before it takes hours and all memory.
+
+    Parameters
+    ----------
+    volume, extent, mesh_size : float
+        Of the solid, its longest side, and the edge length aimed at [m³, m, m].
+
+    Raises
+    ------
+    MeshSizeError
+        Where the elements would be larger than the part, or more than :data:`MOST_ELEMENTS`.
+    """
+    if mesh_size > extent:
+        meant = f"; did you mean {mesh_size:g} mm?" if 1e-3 * mesh_size <= extent else ""
+        raise MeshSizeError(
+            f"elements of {length_text(mesh_size)} are larger than the part, whose longest side is "
+            f"{length_text(extent)}{meant}"
+        )
+    number = expected_elements(volume, mesh_size)
+    if number > MOST_ELEMENTS:
+        least = mesh_size * np.cbrt(number / MOST_ELEMENTS)
+        raise MeshSizeError(
+            f"elements of {length_text(mesh_size)} would be about {number:.1g} in number, more than any solver takes "
+            f"({MOST_ELEMENTS:.0g}); expected at least {length_text(least)}"
+        )
 
 
 def mesh_solids(gmsh: Any, mesh_size: float, order: int, *, smallest: float | None = None) -> None:

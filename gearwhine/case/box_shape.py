@@ -60,10 +60,13 @@ def box_misfits(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Finding
     seats
         Its seats, each with its place in the case.
     """
-    from meshes import BoxMisfitError, GeometryError
+    from meshes import BoxMisfitError, GeometryError, MeshSizeError, check_mesh_size
 
     try:
         box_geometry(box, [seat for _, seat in seats])
+        check_mesh_size(wall_volume(box), max(box.size), box.mesh_size)
+    except MeshSizeError as error:
+        yield Finding(("housing", "box", "mesh_size"), f"another size of elements; {error}")
     except BoxMisfitError as error:
         for misfit in error.misfits:
             kind, *steps = misfit.location
@@ -76,3 +79,10 @@ def box_misfits(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Finding
                 yield Finding(("housing", "box", *inner), misfit.expected)
     except GeometryError as error:
         yield Finding(("housing", "box"), f"parts that fit each other; {error}", UNSAID)
+
+
+def wall_volume(box: Box) -> float:
+    """Material of the plain walls [m³], without bores and without what is added to them."""
+    walls, (x, y, z) = box.walls, box.size
+    inside = (x - walls.left - walls.right) * (y - walls.bottom - walls.top) * (z - walls.back - walls.front)
+    return x * y * z - inside

@@ -68,7 +68,7 @@ def _patches(draft: Draft) -> Iterator[tuple[Location, Patch]]:
 
 
 def _check_walls(box: Box) -> Iterator[Finding]:
-    """Yield walls that meet, feet that overlap, and elements larger than the box."""
+    """Yield walls that meet, and feet that overlap."""
     walls = box.walls
     pairs = (("left", "right"), ("bottom", "top"), ("back", "front"))
     for axis, size, (low, high) in zip("xyz", box.size, pairs, strict=True):
@@ -80,9 +80,6 @@ def _check_walls(box: Box) -> Iterator[Finding]:
             if 2.0 * box.feet.size[place] > box.size[place] + _SLACK:
                 expected = f"feet of at most half the base along {axis}, {millimetres(box.size[place] / 2)}"
                 yield Finding(("housing", "box", "feet", "size", place), expected)
-    if box.mesh_size > max(box.size):
-        expected = f"elements smaller than the box, {millimetres(max(box.size))}"
-        yield Finding(("housing", "box", "mesh_size"), expected)
 
 
 def _wall_of(box: Box, seat: Seat) -> str | None:

@@ -55,6 +55,25 @@ def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
         yield f"housing.mass[{index}]", f'mass "{mass.name}"', _mass(mass)
 
 
+def check_places(case: Case, mesh: Mesh) -> None:
+    """See that all that is fastened to a case's housing, and every sensor, finds its place on the mesh.
+
+    Raises
+    ------
+    CaseError
+        With every one that does not.
+    """
+    given = case.housing
+    assert given is not None
+    problems = list(_misplaced(case, mesh))
+    for index, sensor in enumerate(given.sensor):
+        found = room.sensor_port(mesh, room.Sensor(sensor.name, sensor.position, sensor.unit_vector)).position
+        key, label = f"housing.sensor[{index}].position", f'sensor "{sensor.name}"'
+        problems += _check_reach(mesh, key, label, sensor.position, found)
+    if problems:
+        raise CaseError(problems)
+
+
 def attach_all(case: Case, mesh: Mesh, free: room.Matrices) -> room.Matrices:
     """The free housing's matrices with supports, mounts, joints and masses of a case on it.
 
@@ -63,9 +82,7 @@ def attach_all(case: Case, mesh: Mesh, free: room.Matrices) -> room.Matrices:
     CaseError
         With every one of them that does not fit the mesh.
     """
-    problems = list(_misplaced(case, mesh))
-    if problems:
-        raise CaseError(problems)
+    problems: list[Problem] = []
     additions = room.Additions()
     for key, label, attachment in build_attachments(case):
         try:
@@ -77,26 +94,20 @@ def attach_all(case: Case, mesh: Mesh, free: room.Matrices) -> room.Matrices:
     return free.plus(additions)
 
 
-def check_reach(
+def _check_reach(
     mesh: Mesh, key: str, label: str, asked: tuple[float, float, float], found: FloatArray
 ) -> Iterator[Problem]:
-    """Yield a place that is not meant to be on the surface, rather than move it far.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    key, label : str
-        Where it stands in the case, and whose it is.
-    asked : tuple of float
-        The place given [m].
-    found : ndarray, shape (3,)
-        The nearest point of the surface [m].
-    """
+    """Yield a place that is not meant to be on the surface, rather than move it far."""
     reach = _REACH * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
     if np.linalg.norm(found - asked) > reach:
-        place = ", ".join(f"{1e3 * value:.4g}" for value in found)
-        expected = f"a place within {1e3 * reach:.3g} mm of the surface; the nearest point of it is ({place}) mm"
-        yield Problem(key, list(asked), expected, label=label)
+        given, nearest = (
+            ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in place) for place in (asked, found)
+        )
+        expected = (
+            f"a place within {1e3 * reach:.3g} mm of the surface; ({given}) mm is not, the nearest point of it is "
+            f"({nearest}) mm"
+        )
+        yield Problem(key, UNSAID, expected, label=label)
 
 
 def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
@@ -133,7 +144,7 @@ def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
         if mass.position is not None:
             found = _mass(mass).place(mesh).position
             label = f'mass "{mass.name}"'
-            yield from check_reach(mesh, f"housing.mass[{index}].position", label, mass.position, found)
+            yield from _check_reach(mesh, f"housing.mass[{index}].position", label, mass.position, found)
 
 
 def _patch(entry: Patch) -> room.Patch:

@@ -1,16 +1,14 @@
 """The geometry of a case's housing: box, CAD file or mesh file to a mesh in which every seat has its surface."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.box_shape import box_geometry
 from gearwhine.case.problems import UNSAID
-from meshes import Bolt, GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
-
-UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
-"""Units of length of geometry files [m]."""
+from meshes import UNITS, Bolt, GeometryError, Mesh, MeshSizeError, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
 
 
 def unheard(warning: str) -> None:
@@ -31,29 +29,42 @@ def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int 
     Raises
     ------
     CaseError
-        Where the case has no housing, or a seat is not found in it.
-    meshes.GeometryError
-        Where the shape cannot be meshed or the file not read.
+        Where the case has no housing, its shape cannot be meshed or its file not read, or a seat is not found in it.
     """
     require(case, "housing", command="mesh")
     given = case.housing
     assert given is not None
     if given.box is not None:
-        return mesh_box(box_geometry(given.box, given.seat), given.box.mesh_size, order=order)
+        with _at_fault("housing.box", "a box that can be meshed"):
+            return mesh_box(box_geometry(given.box, given.seat), given.box.mesh_size, order=order)
     if given.mesh is not None:
-        return _with_seats(case, read_mesh(given.mesh.file, unit=UNITS[given.mesh.unit]))
+        with _at_fault("housing.mesh", "a mesh of solid elements", file=True):
+            mesh = read_mesh(given.mesh.file, unit=UNITS[given.mesh.unit])
+        return _with_seats(case, mesh)
     assert given.cad is not None
-    found = mesh_cad(
-        given.cad.file,
-        given.cad.mesh_size,
-        unit=None if given.cad.unit is None else UNITS[given.cad.unit],
-        order=order,
-        refine=[(seat.center, seat.diameter) for seat in given.seat],
-        refined_size=given.cad.seat_mesh_size,
-    )
+    with _at_fault("housing.cad", "a solid that can be meshed", file=True):
+        found = mesh_cad(
+            given.cad.file,
+            given.cad.mesh_size,
+            unit=None if given.cad.unit is None else UNITS[given.cad.unit],
+            order=order,
+            refine=[(seat.center, seat.diameter) for seat in given.seat],
+            refined_size=given.cad.seat_mesh_size,
+        )
     for remark in found.remarks:
         warn(f"{given.cad.file.name}: {remark}")
     return _with_seats(case, found.mesh)
+
+
+@contextmanager
+def _at_fault(key: str, expected: str, *, file: bool = False) -> Iterator[None]:
+    """Tell what is wrong with a geometry as a problem of the key that it comes from."""
+    try:
+        yield
+    except MeshSizeError as error:
+        raise CaseError([Problem(f"{key}.mesh_size", UNSAID, f"another size of elements; {error}")]) from error
+    except GeometryError as error:
+        raise CaseError([Problem(f"{key}.file" if file else key, UNSAID, f"{expected}; {error}")]) from error
 
 
 def _with_seats(case: Case, mesh: Mesh) -> Mesh:
@@ -85,11 +96,13 @@ def cover_joints(case: Case) -> list[room.Joint]:
     if given is None or given.box is None or given.box.cover is None or given.box.cover.bolts is None:
         return []
     box = box_geometry(given.box, given.seat)
-    parts, own = (_material(case, name) for name in (given.material, given.box.cover.bolts.material or given.material))
+    parts = material_of(case, given.material)
+    own = material_of(case, given.box.cover.bolts.material or given.material)
     return [_joint(bolt, parts, own, box.rim_width) for bolt in box.bolts]
 
 
-def _material(case: Case, name: str) -> room.Material:
+def material_of(case: Case, name: str) -> room.Material:
+    """A material of the case."""
     steel = case.material[name]
     return room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
 

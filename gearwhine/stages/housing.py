@@ -11,13 +11,13 @@ from scipy import sparse
 
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
-from gearwhine.case import Sensor as GivenSensor
+from gearwhine.case.problems import UNSAID
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.attachments import attach_all, build_supports, check_reach
+from gearwhine.stages.attachments import attach_all, build_supports, check_places
 from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.housing_checks import bearing_places, bearing_port, housing_checks
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
-from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, warnings_document
+from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, told_on_failure, warnings_document
 from gearwhine.stages.regions import materials_of
 from meshes import Mesh
 
@@ -119,7 +119,7 @@ def solve_housing(
 
     Raises
     ------
-    CaseError, meshes.GeometryError, housing.HousingError
+    CaseError, housing.HousingError
         Where the case cannot be solved as it stands.
     housing.IncompleteModesError, housing.ReductionError, housing.HealthError
         Where the modes fail their certificate, their static compliance its proof, or the model its checks.
@@ -141,21 +141,26 @@ def solve_housing(
             mesh = build_mesh(case, remarks.append)
         warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
     meshed = time.perf_counter() - begin
-    # Ports before modes: what is wrong with them is found out before the long work.
-    seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
-    seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
-    loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
-    sensors = {entry.name: _sensor(mesh, index, entry) for index, entry in enumerate(given.sensor)}
-    bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
-    survey = room.survey_grid(mesh, bounds)
-    if kept is None:
-        modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
-        seconds = {"mesh": meshed, **seconds}
-        warnings += warnings_document(doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ))
-    else:
-        modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
-        damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
-        seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
+    with told_on_failure(warnings):
+        # Places and ports before modes: what is wrong with them is found out before the long work.
+        check_places(case, mesh)
+        seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
+        seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
+        loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
+        sensors = {
+            entry.name: room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
+            for entry in given.sensor
+        }
+        bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
+        survey = room.survey_grid(mesh, bounds)
+        if kept is None:
+            modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
+            seconds = {"mesh": meshed, **seconds}
+            warnings += warnings_document(doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ))
+        else:
+            modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
+            damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
+            seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
     seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_ports.items()}
     strengths = None
     if seats:
@@ -211,16 +216,18 @@ def _solve_modes(
     free = room.assemble(parted, material, materials)
     matrices = attach_all(case, mesh, free)
     assembled = time.perf_counter() - begin
-    # Without a limit or a number, what a first look wants.
-    count = given.modes if given.modes is not None else (None if given.frequency_limit is not None else 20)
-    modes = room.solve_modes(
-        matrices,
-        room.fixed_freedoms(mesh, build_supports(case)),
-        frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
-        count=count,
-        ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
-        progress=progress,
-    )
+    wanted = "modes" if given.frequency_limit is None else "frequency_limit"
+    try:
+        modes = room.solve_modes(
+            matrices,
+            room.fixed_freedoms(mesh, build_supports(case)),
+            frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
+            count=given.modes,
+            ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
+            progress=progress,
+        )
+    except room.HousingError as error:
+        raise CaseError([Problem(f"housing.{wanted}", UNSAID, f"what this model has; {error}")]) from error
     damping = room.modal_damping(modes, matrices) if matrices.damping.nnz else None
     progress("checking the housing against its geometry")
     begin = time.perf_counter()
@@ -261,15 +268,6 @@ def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
     if solved.strengths is None:
         return list(range(1, min(count, len(solved.modes.frequencies)) + 1))
     return [int(mode) + 1 for mode in solved.strengths.strongest(count, (0.0, np.inf))]
-
-
-def _sensor(mesh: Mesh, index: int, entry: GivenSensor) -> room.SensorPort:
-    """A sensor on the surface; one that is not meant to sit there is refused rather than moved far."""
-    port = room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
-    key, label = f"housing.sensor[{index}].position", f'sensor "{entry.name}"'
-    if problems := list(check_reach(mesh, key, label, entry.position, port.position)):
-        raise CaseError(problems)
-    return port
 
 
 def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:

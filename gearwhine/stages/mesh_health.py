@@ -1,23 +1,31 @@
 """The housing's mesh, examined: what makes it useless is an error of the case, what is doubtful a warning."""
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.box import Box
+from gearwhine.case.box_shape import wall_volume
 from gearwhine.case.problems import UNSAID
-from gearwhine.stages.geometry import UNITS, bolts_document, bores_document, build_mesh, cover_joints
+from gearwhine.progress import Progress, silent
+from gearwhine.stages.attachments import check_places
+from gearwhine.stages.geometry import bolts_document, bores_document, build_mesh, cover_joints
 from gearwhine.stages.regions import materials_of
-from meshes import Ailment, Mesh, WaveCarrier, diagnose, resolution_ailments
+from meshes import UNITS, Ailment, Mesh, WaveCarrier, diagnose, expected_elements, resolution_ailments
 
 _HERTZ = 2.0 * np.pi
+_UNKNOWNS_EACH = 4.2  # degrees of freedom for each 10-node tetrahedron of a bulky solid; in thin walls up to 6
+_MANY_UNKNOWNS = 1.5e6
 
 
 def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
     """Doubts about the mesh of a case.
 
-    Bodies that touch without being joined are wrong unless the case has joints, which may be what joins them.
+    Bodies that touch without being joined, or whose elements do not match there, are wrong or doubtful unless the case
+    has joints, which may be what joins them.
 
     Raises
     ------
@@ -29,13 +37,19 @@ def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
     source = given.mesh or given.cad
     unit = None if source is None or source.unit is None else UNITS[source.unit]
     found = diagnose(mesh, unit=unit)
-    meant = {"disconnected"} if given.joint or cover_joints(case) else set()
-    wrong = [one for one in found if one.severity == "error" and one.name not in meant]
+    if given.joint or cover_joints(case):
+        found = tuple(one for one in found if not _of_loose_bodies(one))
+    wrong = [one for one in found if one.severity == "error"]
     if wrong:
         key = "housing.mesh.file" if given.mesh else "housing.cad.file" if given.cad else "housing.box"
         value: object = UNSAID if source is None else str(source.file)
         raise CaseError([Problem(key, value, f"a sound mesh; {one.name}: {one.message}") for one in wrong])
-    return tuple(one for one in found if one.name not in meant)
+    return found
+
+
+def _of_loose_bodies(one: Ailment) -> bool:
+    """Whether an ailment lies between bodies; elements of one body that do not match are an error."""
+    return one.name == "disconnected" or (one.name == "non-conforming" and one.severity == "warning")
 
 
 def doubt_resolution(case: Case, mesh: Mesh, limit_hz: float | None) -> tuple[Ailment, ...]:
@@ -50,26 +64,30 @@ def _wave(case: Case, limit_hz: float) -> WaveCarrier:
     return WaveCarrier(given.youngs_modulus, given.poisson_ratio, given.density, _HERTZ * limit_hz)
 
 
-def foresee(case: Case) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+def foresee(case: Case, progress: Progress = silent) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """What the mesh will be and what is doubtful in it, before anything is solved.
 
     A file is read and examined whole; of a box it is said whether its elements will be small enough.
 
     Raises
     ------
-    CaseError, meshes.GeometryError
-        Where the file cannot be read, or its mesh is wrong.
+    CaseError
+        Where the file cannot be read, its mesh is wrong, or something finds no place on it.
     """
     given = case.housing
     assert given is not None
     if given.box is not None:
         size = {"size_m": list(given.box.size), "mesh_size_m": given.box.mesh_size}
-        return size | {"cover_bolts": bolts_document(case)}, _foresee_size(case, given.box)
+        load = _foresee_load(expected_elements(wall_volume(given.box), given.box.mesh_size))
+        return size | {"cover_bolts": bolts_document(case)}, _foresee_size(case, given.box) + load
     remarks: list[str] = []
+    progress("meshing the drawing" if given.mesh is None else "reading the mesh")
     # Straight elements show the size and the bores of a CAD file as well as curved ones, sooner.
     mesh = build_mesh(case, remarks.append, order=1)
-    materials_of(case, mesh)
     warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
+    with told_on_failure(warnings):
+        materials_of(case, mesh)
+        check_places(case, mesh)
     document: dict[str, Any] = {
         "size_m": np.ptp(mesh.bounds, axis=0).tolist(),
         "bores": bores_document(mesh),
@@ -77,7 +95,7 @@ def foresee(case: Case) -> tuple[dict[str, Any], list[dict[str, Any]]]:
         "volumes": sorted(mesh.volumes),
     }
     if given.cad is not None:
-        return document | {"mesh_size_m": given.cad.mesh_size}, warnings
+        return document | {"mesh_size_m": given.cad.mesh_size}, warnings + _foresee_load(mesh.n_elements)
     document["mesh"] = {"nodes": len(mesh.points), "elements": mesh.n_elements, "dofs": 3 * len(mesh.points)}
     document["kinds"] = mesh.kinds
     return document, warnings + warnings_document(doubt_resolution(case, mesh, given.frequency_limit))
@@ -99,6 +117,29 @@ def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
         f"that frequency come out too high: use a mesh_size of at most {1e3 * length / 3.0:.3g} mm"
     )
     return [doubt("size", message)]
+
+
+def _foresee_load(elements: float) -> list[dict[str, Any]]:
+    """A doubt about a mesh that few computers solve."""
+    unknowns = _UNKNOWNS_EACH * elements
+    if unknowns < _MANY_UNKNOWNS:
+        return []
+    message = (
+        f"about {elements:.1g} elements or more, that is {unknowns:.1g} degrees of freedom: modes of so many take tens "
+        "of gigabytes of memory and long; a larger mesh_size takes less"
+    )
+    return [doubt("load", message)]
+
+
+@contextmanager
+def told_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
+    """Let a failure carry the doubts so far as notes: one of them may be its cause."""
+    try:
+        yield
+    except Exception as error:
+        for warning in warnings:
+            error.add_note(f"warning: {warning['message']}")
+        raise
 
 
 def doubt(name: str, message: str) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import housing as room
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.problems import did_you_mean
 from gearwhine.case.region import Region
+from gearwhine.stages.geometry import material_of
 from meshes import Mesh
 
 
@@ -23,7 +24,7 @@ def materials_of(case: Case, mesh: Mesh) -> tuple[Mesh, room.Material, dict[str,
     """
     given = case.housing
     assert given is not None
-    rest = _material(case, given.material)
+    rest = material_of(case, given.material)
     if not given.region:
         return mesh, rest, {}
     problems: list[Problem] = []
@@ -42,7 +43,7 @@ def materials_of(case: Case, mesh: Mesh) -> tuple[Mesh, room.Material, dict[str,
         members[region.name] = elements
     if problems:
         raise CaseError(problems)
-    materials = {region.name: _material(case, region.material) for region in given.region}
+    materials = {region.name: material_of(case, region.material) for region in given.region}
     return replace(mesh, volumes=members), rest, materials
 
 
@@ -68,8 +69,3 @@ def _elements(mesh: Mesh, index: int, region: Region, problems: list[Problem]) -
 def _problem(index: int, region: Region, expected: str) -> Problem:
     key, value = ("volume", region.volume) if region.volume is not None else ("box", region.box)
     return Problem(f"housing.region[{index}].{key}", value, expected, label=f'region "{region.name}"')
-
-
-def _material(case: Case, name: str) -> room.Material:
-    given = case.material[name]
-    return room.Material(given.youngs_modulus, given.poisson_ratio, given.density)

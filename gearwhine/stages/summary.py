@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from gearwhine.case import Case, Joint, Mount, amounts, applied_torques, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.progress import Progress, silent
 from gearwhine.stages import mesh_health
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gears import pair_geometry
@@ -12,11 +13,11 @@ from gearwhine.stages.gears import pair_geometry
 _RPM = 60.0 / (2.0 * np.pi)
 
 
-def check_document(case: Case) -> dict[str, Any]:
+def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
     """Everything that follows from the case by arithmetic alone, and what the file of its geometry holds."""
     document: dict[str, Any] = {"title": case.title}
     if case.housing is not None:
-        foreseen, warnings = mesh_health.foresee(case)
+        foreseen, warnings = mesh_health.foresee(case, progress)
         document["housing"] = _housing(case) | foreseen
         document["warnings"] = warnings
     if case.rotor:

@@ -13,7 +13,7 @@ import numpy as np
 
 from meshes.cad.units import stated_unit
 from meshes.cad.worker import Request
-from meshes.errors import GeometryError, MesherUnavailableError
+from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.mesh import Mesh
 from meshes.tetrahedra import Tetrahedra, check_mesh_request
 
@@ -28,8 +28,7 @@ class CadMesh:
     Attributes
     ----------
     mesh : Mesh
-        Solids under their own names as volumes, and all of them as ``housing``; faces that carry a name in the
-        file as surfaces.
+        Solids under their own names as volumes; faces that carry a name in the file as surfaces.
     solids : tuple of str
         Names of the solids; those without are ``solid-1`` and so on.
     unit : float
@@ -76,6 +75,8 @@ def mesh_cad(
 
     Raises
     ------
+    MeshSizeError
+        See :func:`meshes.check_mesh_size`.
     GeometryError
         Where the file is missing, of another kind, broken, without a solid, in a mistaken unit, or where a solid
         cannot be meshed.
@@ -102,6 +103,8 @@ def mesh_cad(
         answer = json.loads((folder / "answer.json").read_text(encoding="utf-8"))
         if "unavailable" in answer:
             raise MesherUnavailableError(answer["unavailable"])
+        if "size" in answer:
+            raise MeshSizeError(f"CAD file {path}: {answer['size']}")
         if "error" in answer:
             raise GeometryError(f"CAD file {path}: {answer['error']}")
         mesh = _load(folder, answer["arrays"]).mesh()

@@ -38,7 +38,12 @@ def read_solids(gmsh: Any, path: str, kind: str) -> list[int]:
     GeometryError
         Where the file holds nothing, or surfaces that do not close.
     """
-    found = gmsh.model.occ.importShapes(path, highestDimOnly=True, format=kind)
+    try:
+        found = gmsh.model.occ.importShapes(path, highestDimOnly=True, format=kind)
+    except Exception as error:  # gmsh raises bare Exception for every failure of its kernel
+        if type(error) is not Exception:
+            raise
+        raise GeometryError(f"it is empty or broken, or no {kind.upper()} file; export it anew") from error
     gmsh.model.occ.synchronize()
     if not found:
         raise GeometryError("it holds no shape, or is broken")

@@ -5,12 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from meshes.errors import GeometryError
-
-UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
-"""Units that a user may name, in m."""
-
-SMALLEST, LARGEST = 0.01, 20.0
-"""A gearbox housing is longer than the one and shorter than the other [m]; else its unit is mistaken."""
+from meshes.lengths import LARGEST, SMALLEST, UNITS, length_text, plausible
 
 _PREFIXES = {"$": 1.0, "MILLI": 1e-3, "CENTI": 1e-2, "DECI": 0.1, "MICRO": 1e-6, "KILO": 1e3, "NANO": 1e-9}
 _CONVERTED = {"INCH": 0.0254, "INCHES": 0.0254, "IN": 0.0254, "FOOT": 0.3048, "FEET": 0.3048, "FT": 0.3048}
@@ -103,33 +98,25 @@ def choose_unit(extent: float, stated: float | None, given: float | None) -> Cho
     """
     unit = stated if stated is not None else (given if given is not None else UNITS["mm"])
     differs = stated is not None and given is not None and abs(given / stated - 1.0) > 1e-9
-    if _plausible(extent * unit):
+    if plausible(extent * unit):
         if differs:
             assert given is not None
             remark = f"the file states {_named(unit)} and is read so, against the unit given, {_named(given)}"
             return ChosenUnit(unit, (remark,))
         return ChosenUnit(unit)
-    if differs and given is not None and _plausible(extent * given):
+    if differs and given is not None and plausible(extent * given):
         remark = (
-            f"the file states {_named(unit)}, in which the part would be {_long(extent * unit)} long; "
+            f"the file states {_named(unit)}, in which the part would be {length_text(extent * unit)} long; "
             f"it is read in {_named(given)}, the unit given"
         )
         return ChosenUnit(given, (remark,))
-    fitting = [name for name, length in UNITS.items() if _plausible(extent * length)]
+    fitting = [name for name, length in UNITS.items() if plausible(extent * length)]
     whose = "" if stated is None else f", in the {_named(stated)} that the file states"
     question = f"; is the unit {_named(UNITS[fitting[0]])}? (unit = {fitting[0]!r})" if fitting else ""
     raise GeometryError(
-        f"the part is {_long(extent * unit)} long{whose}{question}; "
-        f"housings from {_long(SMALLEST)} to {_long(LARGEST)} are meshed"
+        f"the part is {length_text(extent * unit)} long{whose}{question}; "
+        f"housings from {length_text(SMALLEST)} to {length_text(LARGEST)} are meshed"
     )
-
-
-def _plausible(length: float) -> bool:
-    return SMALLEST <= length <= LARGEST
-
-
-def _long(length: float) -> str:
-    return f"{1e3 * length:.3g} mm" if length < 1.0 else f"{length:.4g} m"
 
 
 def _named(unit: float) -> str:

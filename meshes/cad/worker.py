@@ -15,11 +15,10 @@ import numpy as np
 
 from meshes.cad.shape import Shape, conforming, extent, read_solids
 from meshes.cad.units import choose_unit
-from meshes.errors import GeometryError, MesherUnavailableError
+from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.gmsh_session import gmsh_session
-from meshes.tetrahedra import Tetrahedra, collect, mesh_solids
+from meshes.tetrahedra import Tetrahedra, check_mesh_size, collect, mesh_solids
 
-_MOST_ELEMENTS = 3e6  # some twelve million degrees of freedom: beyond any solver that follows
 _BLEND = 3.0  # elements grow to their full size over this many of the small ones
 
 
@@ -59,6 +58,8 @@ def main(folder: Path) -> None:
         answer = _answer(request, folder)
     except MesherUnavailableError as error:
         answer = {"unavailable": str(error)}
+    except MeshSizeError as error:
+        answer = {"size": str(error)}
     except GeometryError as error:
         answer = {"error": str(error)}
     (folder / "answer.json").write_text(json.dumps(answer), encoding="utf-8")
@@ -78,23 +79,14 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
         unit = chosen.length if stated is None else chosen.length * 1e-3 / stated
         at("joining its solids")
         shape = conforming(gmsh, solids)
-        _check_size(gmsh, shape, request.mesh_size / unit)
+        filled = sum(abs(gmsh.model.occ.getMass(3, tag)) for tags in shape.solids.values() for tag in tags)
+        check_mesh_size(filled * unit**3, extent(gmsh) * unit, request.mesh_size)
         at("meshing it")
         _refine(gmsh, request, unit)
         _mesh(gmsh, shape, request, unit)
         at("collecting its mesh")
-        everything = {tag for tags in shape.solids.values() for tag in tags}
-        volumes = {"housing": sorted(everything)} | shape.solids
-        arrays = _save(folder, collect(gmsh, request.order, shape.faces, volumes, unit=unit))
+        arrays = _save(folder, collect(gmsh, request.order, shape.faces, shape.solids, unit=unit))
         return {"solids": list(shape.solids), "unit": chosen.length, "remarks": chosen.remarks, "arrays": arrays}
-
-
-def _check_size(gmsh: Any, shape: Shape, mesh_size: float) -> None:
-    """Refuse a mesh size that would take hours and all memory before it takes them."""
-    volume = sum(abs(gmsh.model.occ.getMass(3, tag)) for tags in shape.solids.values() for tag in tags)
-    elements = 8.5 * volume / mesh_size**3  # a regular tetrahedron has edge³ / 8.49
-    if elements > _MOST_ELEMENTS:
-        raise GeometryError(f"elements of this size would be about {elements:.1g} in number; give a larger mesh_size")
 
 
 def _refine(gmsh: Any, request: Request, unit: float) -> None:

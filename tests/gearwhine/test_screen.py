@@ -124,3 +124,61 @@ def test_the_hunting_period_has_its_own_line() -> None:
     out = _said(screen.show_gears, {"pairs": [pair]})
     assert "static transmission error 5.000 µm in the mean, 2.000 µm peak to peak" in out
     assert "over the hunting period: 6.000 µm in the mean, 9.000 µm peak to peak" in out
+
+
+def _modes(*, ok: bool = True, strength: float | None = None) -> Document:
+    names = ["x", "y", "rotation_x"]
+    lines = [
+        {"name": "mass", "value": 1e-15, "bound": 1e-6, "ok": True, "why": "alike"},
+        {"name": "grounding", "value": 0.0 if ok else 2.0, "bound": 0.0, "ok": ok, "why": "what holds it"},
+        {"name": "static error", "value": 0.4, "bound": None, "ok": True, "why": "for information"},
+    ]
+    # As a mode file gives them back: the keys of a table in the order of the alphabet.
+    shares = dict(sorted(zip(names, (0.1, 0.2, 0.3), strict=True)))
+    parts = {key: [0.9, 0.8, 0.7] for key in ("captured", "missing")} | {"held_by_supports": [0.0, 0.0, 0.0]}
+    mode = {
+        "number": 1,
+        "frequency_hz": 100.0,
+        "damping_ratio": 0.01,
+        "strength": strength,
+        "effective_mass": [0.5] * 3,
+    }
+    return _run()["housing"] | {
+        "modes": [mode],
+        "health": {"lines": lines, "supports": [{"name": "foot", "fixes": 0, "share": shares}]},
+        "static_error": None,
+        "effective_mass": {"directions": names} | parts,
+        "selection": None,
+        "folder": "out",
+        "files": ["modes.nc"],
+    }
+
+
+def test_a_sound_model_is_told_in_a_line_and_what_is_not_is_shown() -> None:
+    sound, doubtful = _said(screen.show_modes, _modes()), _said(screen.show_modes, _modes(ok=False))
+    assert "2 of 2 checks keep their bounds" in sound
+    assert "what it says" not in sound
+    assert "what holds it" in doubtful
+    assert "alike" not in doubtful
+    assert "1 of 2 checks keep their bounds" in doubtful
+
+
+def test_detail_shows_every_check_and_ends_with_the_files() -> None:
+    said = _said(screen.show_modes_in_detail, _modes())
+    for text in ("alike", "what holds it", "for information"):
+        assert text in said
+    assert said.rstrip().endswith("Written to out: modes.nc")
+    assert "fixed patches" not in said  # there are none
+
+
+def test_shares_stand_under_their_own_directions_whatever_the_order_of_the_document() -> None:
+    lines = _said(screen.show_modes_in_detail, _modes()).splitlines()
+    (head,) = [line.split() for line in lines if "fixes" in line]
+    (foot,) = [line.split() for line in lines if line.split()[:1] == ["foot"]]
+    assert head == ["support", "fixes", "x", "y", "rot", "x"]
+    assert foot == ["foot", "10.0", "%", "20.0", "%", "30.0", "%"]
+
+
+def test_strength_has_a_column_only_where_there_are_seats() -> None:
+    assert "strength" not in _said(screen.show_modes, _modes())
+    assert "1.000e-02" in _said(screen.show_modes, _modes(strength=0.01))

@@ -67,5 +67,5 @@ def test_other_grids_can_be_asked_for(box: Mesh) -> None:
 
 
 def test_a_box_that_is_not_the_housing_is_refused(box: Mesh) -> None:
-    with pytest.raises(HousingError, match="no facet of the housing makes up the top"):
+    with pytest.raises(HousingError, match="no part of the housing lies in the box"):
         survey_grid(box, BOX + 5.0)

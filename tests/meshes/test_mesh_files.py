@@ -308,7 +308,7 @@ def test_missing_broken_and_unknown_files_are_named(tmp_path: Path) -> None:
     with pytest.raises(GeometryError, match=r"notes\.docx"):
         read_mesh(tmp_path / "notes.docx")
     (tmp_path / "empty.vtu").touch()
-    with pytest.raises(GeometryError, match=r"empty\.vtu is broken, or of a format"):
+    with pytest.raises(GeometryError, match=r"empty\.vtu is empty"):
         read_mesh(tmp_path / "empty.vtu")
 
 

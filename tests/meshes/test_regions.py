@@ -96,9 +96,10 @@ def test_the_outside_of_a_boss_of_the_same_diameter_is_not_taken() -> None:
         (Bore("a", (0.0, 0.08, 0.12), 0.05, Boss(0.07, 0.02)), Bore("b", (0.0, 0.08, -0.12), 0.07)),
     )
     mesh = mesh_box(geometry, 0.02, order=1)
-    # Both cylinders of 70 mm lie on one axis, and the boss is the nearer to this place.
-    found = cylinder_facets(mesh, (0.0, 0.08, 0.13), 0.07)
-    assert _as_set(found) == _as_set(mesh.surface("b"))
+    # Both cylinders of 70 mm lie on one axis; near the boss there is none to be found, at the bore there is.
+    with pytest.raises(GeometryError, match=r"no bore of 70 mm .*70 mm at \(0, 80, -114\) mm"):
+        cylinder_facets(mesh, (0.0, 0.08, 0.13), 0.07)
+    assert _as_set(cylinder_facets(mesh, (0.0, 0.08, -0.13), 0.07)) == _as_set(mesh.surface("b"))
 
 
 @pytest.mark.parametrize("sectors", [6, 7, 12, 40])

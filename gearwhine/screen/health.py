@@ -10,19 +10,29 @@ _SHORT = {"rotation_x": "rot x", "rotation_y": "rot y", "rotation_z": "rot z"}
 _SHOWN = 1e-3  # of effective mass: less is left blank, so that what counts is seen
 
 
-def show_health(console: Console, document: dict[str, Any]) -> None:
-    """The checks, each with its value and its bound."""
-    health = document["health"]
+def show_health(console: Console, document: dict[str, Any], *, detail: bool = False) -> None:
+    """What the checks found: in detail each with its value and its bound, else those beyond theirs."""
+    lines = document["health"]["lines"]
+    bounded = [line for line in lines if line["bound"] is not None]
+    broken = [line for line in bounded if not line["ok"]]
+    if detail or broken:
+        console.print(_checks(lines if detail else broken))
+    if not detail:
+        kept = len(bounded) - len(broken)
+        console.print(f"Health of the model: {kept} of {len(bounded)} checks keep their bounds (--detail shows all).")
+    if error := document["static_error"]:
+        console.print(static_error_line(error))
+
+
+def _checks(lines: list[dict[str, Any]]) -> Table:
     table = Table("check", "value", "bound", "", "what it says", box=SIMPLE_HEAD)
     table.columns[1].justify = table.columns[2].justify = "right"
-    for line in health["lines"]:
+    for line in lines:
         bound = "" if line["bound"] is None else f"{line['bound']:.0e}" if line["bound"] else "0"
         verdict = "" if line["bound"] is None else "ok" if line["ok"] else "look"
         value = f"{line['value']:.0f}" if line["bound"] == 0 else f"{line['value']:.1e}"
         table.add_row(line["name"], value, bound, verdict, line["why"])
-    console.print(table)
-    if error := document["static_error"]:
-        console.print(static_error_line(error))
+    return table
 
 
 def static_error_line(error: dict[str, Any]) -> str:
@@ -38,7 +48,7 @@ def show_detail(console: Console, document: dict[str, Any]) -> None:
     """Effective masses, what the supports hold, and the modes that carry the forces."""
     _effective_mass(console, document)
     if document["health"]["supports"]:
-        _supports(console, document["health"]["supports"])
+        _supports(console, document["health"]["supports"], document["effective_mass"]["directions"])
     if document["selection"] is not None:
         _selection(console, document["selection"])
 
@@ -53,18 +63,19 @@ def _effective_mass(console: Console, document: dict[str, Any]) -> None:
     table.add_section()
     table.add_row("", "these modes", *map(_part, mass["captured"]))
     table.add_row("", "higher modes", *map(_part, mass["missing"]))
-    table.add_row("", "fixed patches", *map(_part, mass["held_by_supports"]))
+    if any(mass["held_by_supports"]):
+        table.add_row("", "fixed patches", *map(_part, mass["held_by_supports"]))
     console.print("Effective modal mass, as a part of the whole; rotations about the centre of gravity")
     console.print(table)
 
 
-def _supports(console: Console, supports: list[dict[str, Any]]) -> None:
-    table = Table("support", "fixes", *_directions(list(supports[0]["share"])), box=SIMPLE_HEAD)
+def _supports(console: Console, supports: list[dict[str, Any]], directions: list[str]) -> None:
+    table = Table("support", "fixes", *_directions(directions), box=SIMPLE_HEAD)
     for column in table.columns[1:]:
         column.justify = "right"
     for support in supports:
         fixes = f"{support['fixes']} of 6" if support["fixes"] else ""
-        table.add_row(support["name"], fixes, *map(_part, support["share"].values()))
+        table.add_row(support["name"], fixes, *(_part(support["share"][name]) for name in directions))
     console.print("What the supports hold of the housing as a whole; shares of the springs' stiffness")
     console.print(table)
 

@@ -1,0 +1,19 @@
+"""What a person sees on the terminal: a function for each command, given the document that its JSON holds."""
+
+from gearwhine.screen.case import show_check, show_examples, show_mesh
+from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail
+from gearwhine.screen.machine import show_gears, show_rotors, show_run, show_system
+
+__all__ = [
+    "show_check",
+    "show_comparison",
+    "show_examples",
+    "show_files",
+    "show_gears",
+    "show_mesh",
+    "show_modes",
+    "show_modes_in_detail",
+    "show_rotors",
+    "show_run",
+    "show_system",
+]

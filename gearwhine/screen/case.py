@@ -1,0 +1,153 @@
+"""A case before anything is solved: what it means, its mesh, the bundled ones."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+
+from gearwhine.screen.console import counted, open_console, show_written
+
+
+def show_check(document: dict[str, Any]) -> None:
+    """What the case means, a line for each part."""
+    table = Table.grid(padding=(0, 2))
+    table.add_column(style="bold")
+    table.add_column()
+    for part, text in _parts(document):
+        table.add_row(part, text)
+    console = open_console()
+    console.print(document["title"], style="bold")
+    console.print(table)
+
+
+def _parts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """The parts of a case in words; a part's name stands on its first line only."""
+    if "housing" in document:
+        yield from _named("housing", _housing_lines(document["housing"]))
+    yield from _named("rotors", [_rotor_line(rotor) for rotor in document.get("rotors", ())])
+    bearings = [f"{one['name']}: {one['rotor']} on {one['seat']}" for one in document.get("bearings", ())]
+    yield from _named("bearings", bearings)
+    yield from _named("gear pairs", [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair)])
+    if "operation" in document:
+        operation = document["operation"]
+        lines = [f"{operation['speed_rpm']:.6g} rpm, {operation['torque_n_m']:.6g} N·m"]
+        for torque in operation["torques"]:
+            place = "" if torque["at_m"] is None else f" at {1e3 * torque['at_m']:.4g} mm"
+            lines.append(f"torque on {torque['rotor']}{place}: {torque['torque_n_m']:+.6g} N·m about z")
+        yield from _named("operation", lines)
+    if "transient" in document:
+        given = document["transient"]
+        recorded, all_of_them = given["recorded_revolutions"], given["revolutions"]
+        yield (
+            "transient",
+            f"{all_of_them:g} revolutions, the last {recorded:g} recorded; tolerance {given['tolerance']:g}",
+        )
+    if "sweep" in document:
+        yield "sweep", counted(document["sweep"]["speeds"], "speed")
+    if "measured" in document:
+        yield "measured", ", ".join(f"{one:g}" for one in document["measured"]["frequencies_hz"]) + " Hz"
+    yield from _named("standing", [f"{key}: {text}" for key, text in document.get("provenance", {}).items()])
+
+
+def _named(part: str, lines: Sequence[str]) -> Iterator[tuple[str, str]]:
+    for number, line in enumerate(lines):
+        yield ("" if number else part), line
+
+
+def _housing_lines(housing: dict[str, Any]) -> list[str]:
+    shape = {"box": "box", "cad": "CAD file", "mesh": "mesh"}[housing["geometry"]]
+    if "size_m" in housing:
+        shape += f" of {' x '.join(f'{1e3 * length:.6g}' for length in housing['size_m'])} mm"
+    if "mesh_size_m" in housing:
+        shape += f", elements of {1e3 * housing['mesh_size_m']:g} mm"
+    if "mesh" in housing:
+        shape += f", {housing['mesh']['nodes']} nodes, {_kinds(housing['kinds'])}"
+    limit, count = housing["frequency_limit_hz"], housing["modes"]
+    wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {counted(count, 'mode')}"
+    lines = [f"{shape}, {housing['material']}; {wanted}"]
+    lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("regions", "seats", "supports") if housing[kind]]
+    for kind in ("mounts", "joints"):
+        lines += [_bushing_line(kind[:-1], one) for one in housing[kind]]
+    if housing.get("cover_bolts"):
+        first, *others = housing["cover_bolts"]
+        lines.append(_bushing_line("cover", first) + (f"; so {counted(len(others), 'more bolt')}" if others else ""))
+    lines += [_bore_line(bore) for bore in housing.get("bores", ())]
+    if housing["masses"]:
+        lines.append("masses: " + ", ".join(f"{one['name']} {one['mass_kg']:g} kg" for one in housing["masses"]))
+    return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
+
+
+def _bushing_line(kind: str, bushing: dict[str, Any]) -> str:
+    between = f" ({' to '.join(bushing['surfaces'])})" if "surfaces" in bushing else ""
+    parts = [
+        f"{motion} {amount:.4g} {unit}"
+        for key, unit in (
+            ("stiffness_n_per_m", "N/m"),
+            ("stiffness_n_m_per_rad", "N·m/rad"),
+            ("damping_n_s_per_m", "N·s/m"),
+            ("damping_n_m_s_per_rad", "N·m·s/rad"),
+        )
+        for motion, amount in bushing.get(key, {}).items()
+    ]
+    return f"{kind} {bushing['name']}{between}: {', '.join(parts)}"
+
+
+def _bore_line(bore: dict[str, Any]) -> str:
+    place = ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in bore["center_m"])
+    return f"bore of {1e3 * bore['diameter_m']:.5g} mm at ({place}) mm, {1e3 * bore['length_m']:.4g} mm long"
+
+
+def _rotor_line(rotor: dict[str, Any]) -> str:
+    speed = "" if rotor["speed_rpm"] is None else f", {rotor['speed_rpm']:+.6g} rpm"
+    return f"{rotor['name']}: {1e3 * rotor['length_m']:g} mm, {rotor['mass_kg']:.4g} kg, {rotor['mass_model']}{speed}"
+
+
+def _pair_lines(pair: dict[str, Any]) -> list[str]:
+    lines = [
+        f"{pair['driver']} → {pair['driven']}: ratio {pair['ratio']:.6g}, contact ratio {pair['contact_ratio']:.5f}, "
+        f"stiffness {pair['stiffness_model']}",
+        f"shafts {1e3 * pair['centre_distance_m']:.6g} mm apart, working pressure angle "
+        f"{pair['working_pressure_angle_deg']:.4g}°",
+    ]
+    if pair["mesh_frequency_hz"] is not None:
+        lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
+    return lines
+
+
+def show_mesh(document: dict[str, Any]) -> None:
+    """The mesh's size and quality."""
+    console = open_console()
+    mesh, edge, shape = document["mesh"], document["edge_length_m"], document["shape_number"]
+    console.print(f"{mesh['nodes']} nodes, {_kinds(document['kinds'])}")
+    console.print(f"Volume {document['volume_m3']:.6g} m³; median edge {1e3 * edge['median']:.3g} mm")
+    console.print(f"Shape number (1 is ideal): median {shape['median']:.2f}, smallest {shape['min']:.2f}")
+    console.print(f"Surfaces: {', '.join(document['surfaces']) or 'none named'}")
+    console.print(f"Volumes: {', '.join(document['volumes']) or 'none named'}")
+    for bore in document["bores"]:
+        console.print(_bore_line(bore).capitalize())
+    show_written(console, document)
+
+
+def _kinds(kinds: dict[str, int]) -> str:
+    """How many elements of which kind, in words."""
+    words = {
+        "tetra": "tetrahedra of 4 nodes",
+        "tetra10": "tetrahedra of 10 nodes",
+        "hexahedron": "bricks of 8 nodes",
+        "hexahedron20": "bricks of 20 nodes",
+        "hexahedron27": "bricks of 27 nodes",
+        "wedge": "wedges of 6 nodes",
+        "wedge15": "wedges of 15 nodes",
+    }
+    return " and ".join(f"{count} {words[kind]}" for kind, count in kinds.items())
+
+
+def show_examples(document: dict[str, Any]) -> None:
+    """The bundled cases."""
+    console = open_console()
+    table = Table("name", "what it is", box=SIMPLE_HEAD)
+    for example in document["examples"]:
+        table.add_row(example["name"], example["title"])
+    console.print(table)
+    console.print("Run one:   gearwhine run NAME\nChange one: gearwhine examples copy NAME")

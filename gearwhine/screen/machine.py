@@ -1,0 +1,134 @@
+"""Rotors, gears, the coupled system, and the main job that runs them all."""
+
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from gearwhine.screen.console import counted, open_console, percent, show_origin, show_written
+from gearwhine.screen.health import static_error_line
+from gearwhine.screen.housing import comparison_table, modes_line
+
+_PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
+
+
+def show_run(document: dict[str, Any]) -> None:
+    """The main job's outcome."""
+    console = open_console()
+    console.print(document["title"], style="bold")
+    if "housing" in document:
+        modes_line(console, document["housing"])
+    if "compare" in document:
+        comparison_table(console, document["compare"])
+    for pair in document.get("gear_pairs", ()):
+        console.print(
+            f"Gear mesh {pair['driver']} → {pair['driven']}: mean force {pair['mean_force_n']:.0f} N, "
+            f"peak {pair['peak_force_n']:.0f} N, apart {percent(pair['contact_loss_fraction'])} of the time"
+        )
+    if document.get("sensors"):
+        _sensors(console, document)
+    if "steps" in document:
+        console.print(
+            f"Transient: {document['steps']} steps, {document['steps_per_second']:.0f} a second; energy balance closes "
+            f"to {document['energy_error']:.1e}; {document['coordinates']} modal coordinates"
+        )
+    elif "system" in document:
+        console.print(f"Coupled system: {counted(len(document['system']['modes']), 'mode')}")
+    show_written(console, document)
+    console.print(f"Time: {document['seconds']['total']:.1f} s")
+
+
+def _sensors(console: Console, document: dict[str, Any]) -> None:
+    table = Table("sensor", "rms [m/s²]", "highest lines: Hz (m/s², peak)", box=SIMPLE_HEAD)
+    table.columns[1].justify = "right"
+    for sensor in document["sensors"]:
+        lines = "  ".join(
+            f"{peak['frequency_hz']:.0f} ({peak['amplitude_m_per_s2']:.2g})" for peak in sensor["peaks"][:5]
+        )
+        table.add_row(sensor["name"], f"{sensor['rms_m_per_s2']:.3g}", lines)
+    console.print(table)
+
+
+def show_rotors(document: dict[str, Any]) -> None:
+    """Each rotor's frequencies."""
+    console = open_console()
+    for rotor in document["rotors"]:
+        console.print(Text.assemble((rotor["name"], "bold"), f"  {rotor['mass_kg']:.3f} kg"))
+        rows = [("lateral at rest [Hz]", rotor["lateral_hz"]), ("torsional [Hz]", rotor["torsional_hz"])]
+        rows += [(f"whirl at {whirl['speed_rpm']:.0f} rpm [Hz]", whirl["frequency_hz"]) for whirl in rotor["whirl"]]
+        for name, values in rows:
+            console.print(f"  {name:26s} {'  '.join(f'{value:.5g}' for value in values[:10])}")
+        console.print(_critical_speeds(rotor))
+        console.print(f"  {_rotor_proof(rotor['certificate'])}")
+    show_written(console, document)
+
+
+def _rotor_proof(certificate: dict[str, Any]) -> str:
+    if certificate["expected"] is None:
+        return "no count: the bearings' stiffness couples the planes"
+    found, counted = certificate["found"], certificate["expected"]
+    return f"complete below {certificate['limit_hz']:.5g} Hz: {found} found, {counted} counted"
+
+
+def _critical_speeds(rotor: dict[str, Any]) -> str:
+    """Critical speeds on one line; those of backward whirl carry a mark, since unbalance hardly excites them."""
+    speeds = rotor["critical_speeds_rpm"][:10]
+    directions = rotor.get("critical_directions") or [0.0] * len(speeds)
+    backward = [direction < -_PLANAR for direction in directions[: len(speeds)]]
+    marked = [f"{speed:.5g}{' (b)' if back else ''}" for speed, back in zip(speeds, backward, strict=True)]
+    note = "   (b): backward whirl" if any(backward) else ""
+    return f"  {'critical speeds [rpm]':26s} {'  '.join(marked)}{note}"
+
+
+def show_gears(document: dict[str, Any]) -> None:
+    """Each gear pair's figures."""
+    console = open_console()
+    for pair in document["pairs"]:
+        stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
+        console.print(Text.assemble((f"{pair['driver']} → {pair['driven']}", "bold"), f"  {pair['model']}"))
+        console.print(f"  contact ratio {pair['contact_ratio']:.5f}")
+        if pair["mesh_frequency_hz"] is not None:
+            console.print(
+                f"  mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mesh force {pair['mean_force_n']:.1f} N"
+            )
+        console.print(
+            f"  mesh stiffness {1e-6 * stiffness['mean']:.2f} N/µm in the mean, {1e-6 * stiffness['min']:.2f} to "
+            f"{1e-6 * stiffness['max']:.2f}"
+        )
+        console.print(f"  static transmission error {_error(error)}")
+        if error.get("over_hunting_period"):
+            console.print(f"    over the hunting period: {_error(error['over_hunting_period'])}")
+    show_written(console, document)
+
+
+def _error(error: dict[str, Any]) -> str:
+    return f"{1e6 * error['mean']:.3f} µm in the mean, {1e6 * error['peak_to_peak']:.3f} µm peak to peak"
+
+
+def show_system(document: dict[str, Any]) -> None:
+    """Coupled modes, up to twice the frequency below which the housing's modes are all there."""
+    console = open_console()
+    modes, trusted = document["modes"], document.get("trusted_below_hz")
+    shown = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
+    console.print(f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm")
+    shares_of = ("housing", "rotor", "torsion", "residual", "teeth")
+    table = Table("frequency [Hz]", "damping ratio", "kind", *shares_of, box=SIMPLE_HEAD)
+    for column in table.columns:
+        column.justify = "right"
+    for mode in shown:
+        # A rigid mode is the free turning of the train: its shares say nothing of vibration.
+        kinds = () if mode["kind"] == "rigid" else ("housing", "rotor", "torsion", "residual", "mesh")
+        shares = [f"{100 * mode['energy'][kind]:z.0f} %" for kind in kinds]
+        table.add_row(f"{mode['frequency_hz']:z.2f}", f"{mode['damping_ratio']:z.4f}", mode["kind"], *shares)
+    console.print(table)
+    console.print("Shares of the kinetic energy; teeth: share of the strain energy.")
+    if any(mode["kind"] == "residual" for mode in shown):
+        console.print("Residual: local compliance at the seats, no mode of the housing; its frequency means nothing.")
+    if error := document.get("static_error"):
+        console.print(static_error_line(error))
+    if trusted and len(shown) < len(modes):
+        console.print(f"{counted(len(modes) - len(shown), 'more mode')} above {2.0 * trusted:.5g} Hz.")
+    show_origin(console, document)
+    show_written(console, document)

@@ -1,0 +1,157 @@
+"""CAD files: solids, units and names against closed forms, and what is said of files that are no good.
+
+The files are written here by gmsh's own kernel, from shapes whose volumes are known.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from meshes import GeometryError, MeshSizeError, cylinder_facets, facet_centers, find_bores, mesh_cad, plane_facets
+from meshes.gmsh_session import gmsh_session
+
+SIZE, WALL, BORE = np.array([200.0, 150.0, 120.0]), 10.0, 40.0  # mm
+# The box without its cavity and without two discs of the walls.
+VOLUME = float(SIZE.prod() - (SIZE - 2 * WALL).prod() - 2 * WALL * np.pi * BORE**2 / 4)
+Draw = Callable[[Any], object]
+
+
+def _case(gmsh: Any) -> None:
+    """A closed box, its middle at the origin in x and z, with a bore of 40 mm along z through both end walls."""
+    occ, (x, y, z) = gmsh.model.occ, SIZE
+    outside = occ.addBox(-x / 2, 0, -z / 2, x, y, z)
+    inside = occ.addBox(-x / 2 + WALL, WALL, -z / 2 + WALL, x - 2 * WALL, y - 2 * WALL, z - 2 * WALL)
+    walls, _ = occ.cut([(3, outside)], [(3, inside)])
+    occ.cut(walls, [(3, occ.addCylinder(-40, 75, -z, 0, 0, 2 * z, BORE / 2))])
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, Draw], Path]:
+    """``drawn(name, draw)``: the file of a shape drawn in millimetres."""
+    folder = tmp_path_factory.mktemp("cad")
+
+    def make(name: str, draw: Draw) -> Path:
+        if not (folder / name).exists():
+            with gmsh_session(name) as gmsh:
+                draw(gmsh)
+                gmsh.model.occ.synchronize()
+                gmsh.write(str(folder / name))
+        return folder / name
+
+    return make
+
+
+@pytest.mark.parametrize("ending", ["step", "iges", "brep"])
+def test_every_kind_of_file_is_the_same_solid(drawn: Any, ending: str) -> None:
+    """BREP states no unit and IGES holds surfaces, which are sewn: neither changes volume, size or bores."""
+    found = mesh_cad(drawn(f"case.{ending}", _case), 0.03)
+    assert found.unit == pytest.approx(1e-3)
+    # Curved elements of order 2 miss the bores' circle by far less than a straight polygon would.
+    assert found.mesh.element_volumes.sum() == pytest.approx(1e-9 * VOLUME, rel=2e-4)
+    np.testing.assert_allclose(found.mesh.bounds, 1e-3 * np.array([[-100, 0, -60], [100, 150, 60]]), atol=1e-8)
+    bores = find_bores(found.mesh)
+    assert [bore.diameter for bore in bores] == pytest.approx([0.04, 0.04], rel=1e-6)
+    assert sorted(bore.center[2] for bore in bores) == pytest.approx([-0.055, 0.055])
+
+
+def test_seats_and_faces_are_found_by_where_they_lie(drawn: Any) -> None:
+    mesh = mesh_cad(drawn("case.step", _case), 0.03).mesh
+    bore = cylinder_facets(mesh, (-0.04, 0.075, -0.055), 0.04)
+    assert facet_centers(mesh.points, bore)[:, 2].max() < -0.05  # the nearer of the two on this axis
+    base = facet_centers(mesh.points, plane_facets(mesh, (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
+    np.testing.assert_allclose(base[:, 1], 0.0, atol=1e-9)
+
+
+def test_elements_are_smaller_around_places_where_that_is_asked(drawn: Any) -> None:
+    path, place = drawn("case.step", _case), ((-0.04, 0.075, -0.055), 0.04)
+    even = mesh_cad(path, 0.04, order=1).mesh
+    finer = mesh_cad(path, 0.04, order=1, refine=[place], refined_size=0.01).mesh
+    near = [np.linalg.norm(mesh.centers - place[0], axis=1) < 0.03 for mesh in (even, finer)]
+    assert near[1].sum() > 2 * near[0].sum()
+
+
+def test_solids_that_touch_share_nodes_under_names_of_their_own(drawn: Any) -> None:
+    """Two blocks on each other: one body, two volumes, and no third for the whole, which .msh could not hold."""
+
+    def two(gmsh: Any) -> None:
+        gmsh.model.occ.addBox(0, 0, 0, 100, 100, 20)
+        gmsh.model.occ.addBox(0, 0, 20, 100, 100, 30)
+
+    found = mesh_cad(drawn("two.step", two), 0.05, order=1)
+    assert found.solids == ("solid-1", "solid-2")
+    volumes = [found.mesh.element_volumes[found.mesh.volumes[name]].sum() for name in found.solids]
+    assert volumes == pytest.approx([2e-4, 3e-4])
+    assert sorted(found.mesh.volumes) == ["solid-1", "solid-2"]
+    nodes = [np.unique(found.mesh.blocks[0].nodes[found.mesh.volumes[name]]) for name in found.solids]
+    shared = found.mesh.points[np.intersect1d(*nodes)]
+    assert len(shared) > 3
+    np.testing.assert_allclose(shared[:, 2], 0.02, atol=1e-9)
+
+
+def _overlapping(gmsh: Any) -> None:
+    gmsh.model.occ.addBox(0, 0, 0, 100, 100, 20)
+    gmsh.model.occ.addBox(0, 0, 10, 100, 100, 20)
+
+
+def _sheets(gmsh: Any) -> None:
+    gmsh.model.occ.addRectangle(0, 0, 0, 100, 100)
+
+
+def _pin(gmsh: Any) -> None:
+    gmsh.model.occ.addBox(0, 0, 0, 0.33, 0.2, 0.2)
+
+
+@pytest.mark.parametrize(
+    ("name", "draw", "said"),
+    [
+        ("overlapping.step", _overlapping, r"'solid-1' and 'solid-2' overlap in a volume of 1e\+05"),
+        ("sheets.step", _sheets, "1 surfaces and no solid, and they do not close: 4 edges are open"),
+        ("pin.step", _pin, "the part is 0.33 mm long, in the millimetres that the file states; is the unit metres"),
+    ],
+)
+def test_shapes_that_are_no_housing_are_told_by_what_they_are(drawn: Any, name: str, draw: Draw, said: str) -> None:
+    with pytest.raises(GeometryError, match=said):
+        mesh_cad(drawn(name, draw), 0.03)
+
+
+def test_a_unit_that_makes_sense_of_the_part_holds_against_the_files_own(drawn: Any) -> None:
+    found = mesh_cad(drawn("pin.step", _pin), 0.1, unit=1.0, order=1)
+    assert np.ptp(found.mesh.bounds, axis=0).max() == pytest.approx(0.33)
+    assert any("it is read in metres, the unit given" in remark for remark in found.remarks)
+
+
+@pytest.mark.parametrize("content", [b"", b"ISO-10303-21;\nHEADER;", bytes(range(256)) * 8])
+def test_broken_files_are_refused(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "broken.step").write_bytes(content)
+    with pytest.raises(GeometryError, match=r"broken\.step: it is empty or broken, or no STEP file"):
+        mesh_cad(tmp_path / "broken.step", 0.03)
+
+
+def test_a_file_that_ends_too_early_is_refused(drawn: Any, tmp_path: Path) -> None:
+    text = drawn("case.step", _case).read_text()
+    (tmp_path / "cut.step").write_text(text[: len(text) // 2])
+    with pytest.raises(GeometryError, match="empty or broken"):
+        mesh_cad(tmp_path / "cut.step", 0.03)
+
+
+@pytest.mark.parametrize(
+    ("size", "said"),
+    [
+        (1e-5, r"would be about 1e\+13 in number, more than any solver takes \(3e\+06\); expected at least 1.52 mm"),
+        (25.0, "elements of 25 m are larger than the part, whose longest side is 200 mm; did you mean 25 mm"),
+    ],
+)
+def test_sizes_that_no_computer_takes_are_refused_with_one_that_it_does(drawn: Any, size: float, said: str) -> None:
+    """8.49 V / h³ tetrahedra: of 1.25e-3 m³ at 10 µm that is 1.06e13, and 3e6 of them are 1.52 mm long."""
+    with pytest.raises(MeshSizeError, match=said):
+        mesh_cad(drawn("case.step", _case), size)
+
+
+def test_files_of_other_kinds_and_missing_ones_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(GeometryError, match=r"its ending is none of \.step \.stp"):
+        mesh_cad(tmp_path / "part.dwg", 0.03)
+    with pytest.raises(GeometryError, match="cannot be read: No such file"):
+        mesh_cad(tmp_path / "part.step", 0.03)
