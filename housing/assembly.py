@@ -9,9 +9,9 @@ from which Hooke's law for an isotropic solid with Lamé's constants λ, μ make
 
     K[a i, b k] = λ G[a i, b k] + μ G[a k, b i] + μ δ_ik Σ_j G[a j, b j],        M[a i, b k] = δ_ik m[a, b].
 
-scikit-fem gives the elements and their quadrature (:mod:`meshes.shapes`). Of each element only the pairs a <= b are
-computed and summed; the other half is their transpose, so that K and M are symmetric to the last bit. The pattern is
-that of the product Eᵀ E of the elements' incidence E. Degree of freedom 3 n + i is component i of node n.
+scikit-fem gives the elements and their quadrature (:mod:`meshes.shapes`). Of each pair of an element's nodes one order
+is computed and summed, transposed where it lies below the diagonal, so that K and M are symmetric to the last bit. The
+pattern is that of the product Eᵀ E of the elements' incidence E. Degree of freedom 3 n + i is component i of node n.
 """
 
 from collections import deque
@@ -35,7 +35,6 @@ IntArray = npt.NDArray[np.int64]
 
 _WORKING_SET = 2**20  # numbers in the gradient products of one chunk: 8 MB
 _BENT = 1e-9  # how far from half way an edge's node may be by rounding, as a part of the element
-_STRETCH = 2**14  # blocks transposed at a time, so that they stay in the processor's cache
 
 
 def assemble(
@@ -83,18 +82,21 @@ def assemble(
         raise HousingError(f"{unused} of the mesh's {len(mesh.points)} nodes belong to no element; leave them out")
     constants = element_constants(mesh, material, materials or {})
     pattern = _node_graph(mesh)
-    half = np.zeros((9, pattern.nnz))
-    half_mass = np.zeros(pattern.nnz)
+    blocks = np.zeros((pattern.nnz, 9))
+    node_mass = np.zeros(pattern.nnz)
     try:
         for share in _in_order(
             _chunks(mesh, chunk), lambda part: _contribution(mesh, part, constants, pattern), threads
         ):
             for component, values in enumerate(share.stiffness):
-                np.add.at(half[component], share.slots, values)
-            np.add.at(half_mass, share.slots, share.mass)
+                np.add.at(blocks[:, component], share.slots, values)
+            np.add.at(node_mass, share.slots, share.mass)
     except _FoldedError:
         raise _folded(mesh) from None
-    return _mirrored(pattern, half, half_mass)
+    whole = blocks.reshape(-1, 3, 3)
+    own = whole[pattern.indptr[:-1]]
+    whole[pattern.indptr[:-1]] = 0.5 * (own + own.transpose(0, 2, 1))  # symmetric but for rounding
+    return Matrices(pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32), whole, node_mass)
 
 
 class _FoldedError(Exception):
@@ -163,9 +165,9 @@ def _in_order(
 
 
 def _node_graph(mesh: Mesh) -> sparse.csr_array:
-    """Which nodes share an element, rows in order; each entry is its own place in the pattern."""
+    """Which nodes share an element with one of no lower number, rows in order; each entry is its place."""
     incidence = mesh.incidence
-    graph = sparse.csr_array(incidence.T @ incidence)
+    graph = sparse.csr_array(sparse.triu(incidence.T @ incidence, format="csr"))
     graph.sort_indices()
     # Counting from one, since a stored zero would be none.
     places = np.arange(1, graph.nnz + 1, dtype=np.int64)
@@ -191,7 +193,14 @@ def _contribution(mesh: Mesh, chunk: _Chunk, constants: FloatArray, pattern: spa
             if i == k:
                 entry += trace
     mass = density * _shape_products(mesh, kind, nodes, first, second)
-    slots = pattern[nodes[:, first].ravel(), nodes[:, second].ravel()] - 1
+    pairs = np.sort(np.stack([nodes[:, first], nodes[:, second]]), axis=0)
+    below = nodes[:, first] > nodes[:, second]
+    for i, k in ((0, 1), (0, 2), (1, 2)):
+        one, other = stiffness[3 * i + k], stiffness[3 * k + i]
+        exchanged = one[below]
+        one[below] = other[below]
+        other[below] = exchanged
+    slots = pattern[pairs[0].ravel(), pairs[1].ravel()] - 1
     return _Contribution(np.asarray(slots), stiffness.reshape(9, -1), mass.ravel())
 
 
@@ -247,24 +256,3 @@ def _folded(mesh: Mesh) -> HousingError:
 def _folds(mesh: Mesh, block: ElementBlock) -> npt.NDArray[np.bool_]:
     reference = shape_functions(block.kind, quadrature(block.kind, 2 * block.of.order)[0])[1]
     return np.asarray((determinants(jacobians(mesh.points, block.nodes, reference)) <= 0.0).any(axis=1))
-
-
-def _mirrored(pattern: sparse.csr_array, half: FloatArray, half_mass: FloatArray) -> Matrices:
-    """The whole matrices from the sums over the pairs a <= b of each element, H + Hᵀ."""
-    opposite = sparse.csr_array(pattern.T).data - 1
-    blocks = np.empty((pattern.nnz, 9))
-    transposed = [0, 3, 6, 1, 4, 7, 2, 5, 8]
-    for start in range(0, pattern.nnz, _STRETCH):  # the sums lie by components, the blocks by places
-        stretch = slice(start, start + _STRETCH)
-        blocks[stretch] = (half[:, stretch] + half[:, opposite[stretch]][transposed]).T
-    node_mass = half_mass + half_mass[opposite]
-    # A node's own block stands in the sums once and in their transpose again.
-    diagonal = np.flatnonzero(opposite == np.arange(pattern.nnz))
-    blocks[diagonal] *= 0.5
-    node_mass[diagonal] *= 0.5
-    return Matrices(
-        pointer=pattern.indptr.astype(np.int32),
-        neighbors=pattern.indices.astype(np.int32),
-        blocks=blocks.reshape(-1, 3, 3),
-        node_mass=node_mass,
-    )

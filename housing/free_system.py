@@ -5,6 +5,7 @@ from is found once: a shift is then one pass over the entries, and no sparse mat
 """
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -118,8 +119,11 @@ class FreeMass:
 
     def __init__(self, matrices: Matrices, free: IntArray) -> None:
         kept = np.unique(free // 3)
-        scalar = sparse.csr_array((matrices.node_mass, matrices.neighbors, matrices.pointer))
-        self._scalar = scalar if len(kept) == matrices.n_nodes else sparse.csr_array(scalar[kept][:, kept])
+        scalar = matrices.scalar_mass
+        if len(kept) < matrices.n_nodes:
+            scalar = sparse.csr_array(scalar[kept][:, kept])
+        self._scalar = scalar
+        self._order = 3 * len(kept)
         # Where the free degrees of freedom stand among all those of the nodes that have any.
         self._places = None if 3 * len(kept) == len(free) else 3 * np.searchsorted(kept, free // 3) + free % 3
         attached = matrices.attached_mass
@@ -127,12 +131,11 @@ class FreeMass:
         self.shape = (len(free), len(free))
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
-        order = 3 * self._scalar.shape[0]
         columns = vectors.reshape(len(vectors), -1)
         if self._places is not None:
-            columns = np.zeros((order, columns.shape[1]))
+            columns = np.zeros((self._order, columns.shape[1]))
             columns[self._places] = vectors.reshape(len(vectors), -1)
-        product = np.asarray(self._scalar @ columns.reshape(order // 3, -1)).reshape(order, -1)
+        product = np.asarray(self._scalar @ columns.reshape(self._order // 3, -1)).reshape(self._order, -1)
         if self._places is not None:
             product = product[self._places]
         if self._attached is not None:
@@ -140,20 +143,17 @@ class FreeMass:
         return product.reshape(vectors.shape)
 
 
-def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArray, npt.NDArray[Any]]:
     """The lower triangle by columns on the free degrees of freedom: pointer, rows, and each entry's place in blocks.
 
-    The blocks are in rows, and symmetric: the lower triangle's columns are the upper one's rows.
+    The blocks are the upper triangle's, by rows, which are the lower one's columns.
     """
     n = matrices.n_nodes
-    node = np.repeat(np.arange(n), np.diff(matrices.pointer))
-    upper = np.flatnonzero(matrices.neighbors >= node)
-    pointer = np.concatenate([[0], np.cumsum(np.bincount(node[upper], minlength=n))])
-    small = 9 * len(node) < np.iinfo(np.int32).max
-    places = (9 * upper[:, None] + np.arange(9)).astype(np.int32 if small else np.int64)
-    blocks = sparse.bsr_array((places.reshape(-1, 3, 3), matrices.neighbors[upper], pointer), shape=(3 * n, 3 * n))
+    count = matrices.blocks.size
+    places: npt.NDArray[Any] = np.arange(count, dtype=np.int32 if count < np.iinfo(np.int32).max else np.int64)
+    blocks = sparse.bsr_array((places.reshape(-1, 3, 3), matrices.neighbors, matrices.pointer), shape=(3 * n, 3 * n))
     entries = sparse.csr_array(blocks.tocsr())
-    row = np.repeat(np.arange(3 * n), np.diff(entries.indptr))
+    row = np.repeat(np.arange(3 * n, dtype=np.int32), np.diff(entries.indptr))
     kept = entries.indices >= row
     number = np.full(3 * n, -1, dtype=np.int64)
     number[free] = np.arange(len(free))

@@ -78,24 +78,24 @@ def shift_invert(
     n = mass.shape[0]
     width = min(_BLOCK * 2**seed, n)
     most = min(n, 8 * count + 40 * width)
-    # V and M V; the system gives memory to what is used of them.
-    basis, images = (np.empty((n, most + width), order="F") for _ in range(2))
+    basis = np.empty((n, most + width), order="F")  # the system gives memory to what is used of it
     small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
 
     start = np.random.default_rng(seed).standard_normal((n, width))
-    found = _orthonormal(basis[:, :0], images[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass)
-    size, checked, last = 0, 0, 0
+    found = _orthonormal(basis[:, :0], [], solve(np.ascontiguousarray(mass @ start)), mass)
+    size, checked = 0, 0
+    recent: list[FloatArray] = []
     while found.block.shape[1] and size + found.block.shape[1] <= most + width:
         begin, size = size, size + found.block.shape[1]
-        basis[:, begin:size], images[:, begin:size] = found.block, found.inertia
-        found = _orthonormal(basis[:, :size], images[:, :size], last, solve(found.inertia), mass)
-        last = begin
+        basis[:, begin:size] = found.block
+        recent = [*recent[-1:], found.inertia]
+        found = _orthonormal(basis[:, :size], recent, solve(found.inertia), mass)
         small[:size, begin:size] = found.projections[:size]
         remainder = found.projections[size:]
         whole = found.block.shape[1] == 0
-        # Once in a tenth of the basis: the small eigenproblem must not outgrow the large one.
-        if size >= count and (whole or size - checked >= max(width, size // 10) or size + width > most):
+        # Once in a twentieth of the basis: the small eigenproblem must not outgrow the large one.
+        if size >= count and (whole or size - checked >= size // 20 or size + width > most):
             checked = size
             nu, mixtures = np.linalg.eigh(0.5 * (small[:size, :size] + small[:size, :size].T))
             chosen = np.argsort(-sign * nu)[:count]
@@ -133,17 +133,22 @@ class _Addition:
     projections: FloatArray
 
 
-def _orthonormal(basis: FloatArray, images: FloatArray, local: int, block: FloatArray, mass: Operator) -> _Addition:
-    """What a block adds to a basis V, with M V at hand so that one product with M is all that it takes.
+def _orthonormal(basis: FloatArray, recent: list[FloatArray], block: FloatArray, mass: Operator) -> _Addition:
+    """What a block adds to a basis V.
 
-    First the last columns of the basis are taken off, from ``local`` on, which in exact arithmetic is everything;
-    then, once more, all of them.
+    First its last blocks are taken off, whose products with M are at hand: in exact arithmetic that is everything.
+    Then, once more, all of it.
     """
     within = np.zeros((basis.shape[1], block.shape[1]))
-    for first in (local, 0):
-        part = images[:, first:].T @ block
-        block -= basis[:, first:] @ part
-        within[first:] += part
+    end = basis.shape[1]
+    for inertia in reversed(recent):
+        place = slice(end - inertia.shape[1], end)
+        within[place] = inertia.T @ block
+        block -= basis[:, place] @ within[place]
+        end = place.start
+    again = basis.T @ (mass @ block)
+    block -= basis @ again
+    within += again
     inertia = mass @ block
     left = np.sqrt(np.maximum(np.einsum("ij,ij->j", block, inertia), 0.0))
     given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
@@ -156,7 +161,7 @@ def _orthonormal(basis: FloatArray, images: FloatArray, local: int, block: Float
     if new.shape[1]:
         # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
         if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
-            new = new - basis @ (images.T @ new)
+            new = new - basis @ (basis.T @ (mass @ new))
             new_inertia = mass @ new
         unit = np.linalg.inv(np.linalg.cholesky(new.T @ new_inertia)).T
         new, new_inertia = new @ unit, new_inertia @ unit

@@ -17,15 +17,16 @@ IntArray = npt.NDArray[np.int32]
 class Matrices:
     """Stiffness and mass on one sparsity pattern of 3 x 3 blocks, rows in order (block compressed sparse rows).
 
-    The solid's own mass is scalar, m ⊗ I₃, and it has no damping; what is attached to it (a rigid body, a dashpot)
-    has neither of these forms and stands beside.
+    Both are symmetric, and only the blocks on and above the diagonal are kept. The solid's own mass is scalar,
+    m ⊗ I₃, and it has no damping; what is attached to it (a rigid body, a dashpot) has neither of these forms and
+    stands beside.
 
     Attributes
     ----------
     pointer : ndarray of int, shape (n_nodes + 1,)
-        Where each node's row of blocks begins.
+        Where each node's row of blocks begins, with the node's own.
     neighbors : ndarray of int, shape (n_blocks,)
-        The column node of each block, ascending within a row.
+        The column node of each block, ascending within a row from the node itself.
     blocks : ndarray, shape (n_blocks, 3, 3)
         Stiffness K [N/m], attachments included.
     node_mass : ndarray, shape (n_blocks,)
@@ -51,7 +52,8 @@ class Matrices:
     @property
     def total_mass(self) -> float:
         """∫ ρ dV and the masses attached [kg]."""
-        return float(self.node_mass.sum() + np.trace(self.attached_mass.resultant) / 3.0)
+        solid = 2.0 * self.node_mass.sum() - self.node_mass[self.pointer[:-1]].sum()
+        return float(solid + np.trace(self.attached_mass.resultant) / 3.0)
 
     @cached_property
     def stiffness(self) -> sparse.csr_array:
@@ -59,10 +61,15 @@ class Matrices:
         return self._matrix(self.blocks)
 
     @cached_property
+    def scalar_mass(self) -> sparse.csr_array:
+        """m of the solid alone [kg], shape (n_nodes, n_nodes)."""
+        pointer, neighbors, place, _ = self._whole
+        return sparse.csr_array((self.node_mass[place], neighbors, pointer))
+
+    @cached_property
     def mass(self) -> sparse.csr_array:
         """M [kg], shape (3 n_nodes, 3 n_nodes), symmetric positive definite; entries that m ⊗ I₃ leaves out are out."""
-        scalar = sparse.csr_array((self.node_mass, self.neighbors, self.pointer))
-        solid = sparse.csr_array(sparse.kron(scalar, sparse.eye_array(3), format="csr"))
+        solid = sparse.csr_array(sparse.kron(self.scalar_mass, sparse.eye_array(3), format="csr"))
         if not len(self.attached_mass):
             return solid
         return sparse.csr_array(solid + self.attached_mass.matrix(self.n_nodes))
@@ -76,7 +83,7 @@ class Matrices:
         """K - shift M, always on the same pattern, whatever the shift [rad²/s²]."""
         blocks = self.blocks - shift * self.node_mass[:, None, None] * np.eye(3)
         if len(self.attached_mass):
-            blocks[self._attached_slots] -= shift * self.attached_mass.blocks
+            blocks -= shift * self.attached_mass_blocks()
         return self._matrix(blocks)
 
     def plus(self, additions: Additions) -> "Matrices":
@@ -84,7 +91,7 @@ class Matrices:
 
         Pairs of nodes that share no element and are now tied, by stiffness or by mass, join the pattern.
         """
-        stiffness, mass = additions.stiffness, additions.mass
+        stiffness, mass = additions.stiffness.upper, additions.mass.upper
         own = self._keys
         keys = np.union1d(own, np.concatenate([self._keys_of(stiffness), self._keys_of(mass)]))
         pointer, neighbors, blocks, node_mass = self.pointer, self.neighbors, self.blocks, self.node_mass
@@ -105,30 +112,46 @@ class Matrices:
             neighbors=neighbors,
             blocks=blocks,
             node_mass=node_mass,
-            attached_mass=self.attached_mass + mass,
+            attached_mass=self.attached_mass + additions.mass,
             attached_damping=self.attached_damping + additions.damping,
         )
 
     def attached_mass_blocks(self) -> FloatArray:
-        """The attached mass on the whole pattern, shape (n_blocks, 3, 3)."""
+        """The attached mass on the pattern, shape (n_blocks, 3, 3)."""
         blocks = np.zeros_like(self.blocks)
-        blocks[self._attached_slots] = self.attached_mass.blocks
+        upper = self.attached_mass.upper
+        blocks[np.searchsorted(self._keys, self._keys_of(upper))] = upper.blocks
         return blocks
+
+    @cached_property
+    def rows(self) -> IntArray:
+        """The row node of each block, shape (n_blocks,)."""
+        return np.repeat(np.arange(self.n_nodes, dtype=np.int32), np.diff(self.pointer))
 
     @cached_property
     def _keys(self) -> npt.NDArray[np.int64]:
         """A number for each pair of nodes of the pattern, ascending, shape (n_blocks,)."""
-        row = np.repeat(np.arange(self.n_nodes, dtype=np.int64), np.diff(self.pointer))
-        return row * self.n_nodes + self.neighbors
+        return self.rows.astype(np.int64) * self.n_nodes + self.neighbors
 
     def _keys_of(self, blocks: NodeBlocks) -> npt.NDArray[np.int64]:
         return blocks.rows * self.n_nodes + blocks.columns
 
     @cached_property
-    def _attached_slots(self) -> npt.NDArray[np.int64]:
-        """Where the attached mass stands in the pattern."""
-        return np.searchsorted(self._keys, self._keys_of(self.attached_mass))
+    def _whole(self) -> tuple[IntArray, IntArray, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+        """The pattern with what lies below the diagonal: its pointer and neighbours, where each block is kept, and
+        whether it stands there transposed."""
+        upper = np.flatnonzero(self.neighbors != self.rows)
+        places = np.concatenate([np.arange(len(self.neighbors)), upper])
+        row = np.concatenate([self.rows, self.neighbors[upper]])
+        column = np.concatenate([self.neighbors, self.rows[upper]])
+        # Counting from one, since a stored zero would be none.
+        graph = sparse.csr_array((places + 1, (row, column)), shape=(self.n_nodes, self.n_nodes))
+        below = graph.indices < np.repeat(np.arange(self.n_nodes), np.diff(graph.indptr))
+        return graph.indptr, graph.indices, graph.data - 1, below
 
     def _matrix(self, blocks: FloatArray) -> sparse.csr_array:
+        pointer, neighbors, place, below = self._whole
+        whole = blocks[place]
+        whole[below] = whole[below].transpose(0, 2, 1)
         order = 3 * self.n_nodes
-        return sparse.csr_array(sparse.bsr_array((blocks, self.neighbors, self.pointer), shape=(order, order)).tocsr())
+        return sparse.csr_array(sparse.bsr_array((whole, neighbors, pointer), shape=(order, order)).tocsr())

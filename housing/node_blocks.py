@@ -78,6 +78,12 @@ class NodeBlocks:
         return sparse.csr_array(blocked.tocsr())
 
     @cached_property
+    def upper(self) -> "NodeBlocks":
+        """The blocks on and above the diagonal."""
+        kept = self.rows <= self.columns
+        return NodeBlocks(self.rows[kept], self.columns[kept], self.blocks[kept])
+
+    @cached_property
     def resultant(self) -> FloatArray:
         """The sum of all blocks, shape (3, 3): of a mass matrix, the mass that a translation meets."""
         return np.asarray(self.blocks.sum(axis=0))
