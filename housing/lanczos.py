@@ -10,10 +10,6 @@ s, so convergence costs nothing to see, and one step of inverse iteration on a R
 
     A V s / ν = V s + V_{j+1} R_j s_j / ν.
 
-The eigenvalues then come from the quotients of K itself in the space of the vectors so found. The inverse's would not
-do: about a shift hard beside rigid modes A is huge along these, and its rounding there, by λ / |σ| larger beside an
-elastic mode's own ν, stands in that mode.
-
 The modes wanted have the largest ν where σ lies below them all, and the most negative where σ lies above them, with
 the gap from -1/σ to 0 behind them. Every block is orthogonalised against the whole basis after the recurrence, so that
 no mode is found twice. Several columns at a time because the factor is read once for all of them (Golub and Underwood
@@ -25,7 +21,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
 
 from housing.errors import IncompleteModesError
 from housing.symmetric import Operator
@@ -41,21 +36,23 @@ _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as
 
 def shift_invert(
     solve: Callable[[FloatArray], FloatArray],
-    stiffness: Operator,
     mass: Operator,
+    shift: float,
     count: int,
     *,
     above: bool = False,
     seed: int = 0,
 ) -> tuple[FloatArray, FloatArray]:
-    """The modes nearest to the shift σ of a factor, on one side of it.
+    """The modes nearest to a shift on one side of it.
 
     Parameters
     ----------
     solve : callable
         X from (K - σM) X = Y, shape (n, m) both.
-    stiffness, mass : matrix or operator, shape (n, n)
-        K [N/m] and M [kg].
+    mass : matrix or operator, shape (n, n)
+        M [kg].
+    shift : float
+        σ [rad²/s²].
     count : int
         How many.
     above : bool
@@ -104,8 +101,9 @@ def shift_invert(
             errors = np.linalg.norm(outside, axis=0)
             if whole or (np.all(sign * wanted > 0.0) and np.all(errors < _TOLERANCE * np.abs(wanted))):
                 vectors = basis[:, :size] @ mixture + found.block @ (outside / wanted)
-                values, mixture = linalg.eigh(vectors.T @ (stiffness @ vectors), vectors.T @ (mass @ vectors))
-                return values, vectors @ mixture
+                vectors /= np.sqrt(np.einsum("ij,ij->j", vectors, mass @ vectors))
+                order = np.argsort(1.0 / wanted)
+                return shift + 1.0 / wanted[order], vectors[:, order]
         small[size : size + len(remainder), begin:size] = remainder
         small[begin:size, size : size + len(remainder)] = remainder.T
     raise IncompleteModesError(

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
+from scipy import linalg, sparse
 
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Backend, Factorization, Factorizer
@@ -232,10 +232,10 @@ class _Search:
         progress(f"searching {count} modes")
         certificate = Certificate(limit, count, 0, 0.0, 0.0)
         for attempt in range(_ATTEMPTS):
-            values, vectors = self._modes(factor, count, above=True, attempt=attempt)
-            certificate, keep = self._certify(values, vectors, limit, factor)
+            values, vectors = self._modes(factor, shift, count, above=True, attempt=attempt)
+            certificate, values, vectors = self._certify(values, vectors, limit, factor)
             if certificate.complete:
-                return _Found(values[keep], vectors[:, keep], certificate, factor, shift)
+                return _Found(values, vectors, certificate, factor, shift)
         raise _incomplete(certificate)
 
     def lowest(self, count: int, progress: Callable[[str], None]) -> _Found:
@@ -250,16 +250,16 @@ class _Search:
             progress(f"searching {count} modes")
             # Some more than asked for, to see the gap behind the last.
             wanted = min(count + 2 * 4**attempt, self._system.size - 1)
-            values, vectors = self._modes(factor, wanted, above=False, attempt=attempt)
+            values, vectors = self._modes(factor, shift, wanted, above=False, attempt=attempt)
             limit = _gap_after(values, count, self.floor)
             if limit == 0.0:
                 continue
             progress("counting the modes found")
             del factor  # two at once would be the most memory that a search takes
             factor = self._factor(limit**2)
-            certificate, keep = self._certify(values, vectors, limit, factor)
+            certificate, values, vectors = self._certify(values, vectors, limit, factor)
             if certificate.complete:
-                return _Found(values[keep], vectors[:, keep], certificate, factor, shift)
+                return _Found(values, vectors, certificate, factor, shift)
             if values.max(initial=0.0) > self.floor:
                 # Farther from rigid modes, by the scale of the elastic ones: less of their rounding stands in these.
                 shift = -max(self.floor, _BELOW * float(values[values > self.floor][0]))
@@ -271,12 +271,14 @@ class _Search:
         self.seconds["factorisation"] += time.perf_counter() - start
         return factor
 
-    def _modes(self, factor: Factorization, count: int, *, above: bool, attempt: int) -> tuple[FloatArray, FloatArray]:
+    def _modes(
+        self, factor: Factorization, shift: float, count: int, *, above: bool, attempt: int
+    ) -> tuple[FloatArray, FloatArray]:
         """Modes without a proof; of an attempt that does not converge, none, but for the last one's."""
         start = time.perf_counter()
         system = self._system
         try:
-            return shift_invert(factor.solve, system.stiffness, system.mass, count, above=above, seed=attempt)
+            return shift_invert(factor.solve, system.mass, shift, count, above=above, seed=attempt)
         except IncompleteModesError:
             if attempt + 1 == _ATTEMPTS:
                 raise
@@ -287,13 +289,16 @@ class _Search:
 
     def _certify(
         self, values: FloatArray, vectors: FloatArray, limit: float, factor: Factorization
-    ) -> tuple[Certificate, npt.NDArray[np.bool_]]:
-        """The certificate of the modes below a limit, and which these are."""
+    ) -> tuple[Certificate, FloatArray, FloatArray]:
+        """The certificate of the modes below a limit; and these, the most that their space gives."""
         start = time.perf_counter()
+        values, vectors, residuals, overlap = _refined(self._system, values, vectors, limit**2 + self.floor)
         keep = values < limit**2
-        residual, overlap = _proofs(self._system, values[keep], vectors[:, keep], limit**2 + self.floor)
+        certificate = Certificate(
+            limit, factor.negative, int(keep.sum()), float(residuals[keep].max(initial=0.0)), overlap
+        )
         self.seconds["eigensolver"] += time.perf_counter() - start
-        return Certificate(limit, factor.negative, int(keep.sum()), residual, overlap), keep
+        return certificate, values[keep], vectors[:, keep]
 
 
 def _incomplete(certificate: Certificate) -> IncompleteModesError:
@@ -308,13 +313,24 @@ def _not_a_stiffness(what: str) -> FactorizationError:
     return FactorizationError(f"{what}; the stiffness is not positive semidefinite")
 
 
-def _proofs(system: FreeSystem, values: FloatArray, vectors: FloatArray, scale: float) -> tuple[float, float]:
-    """The largest residual and the largest overlap of the modes; see :class:`Certificate`."""
-    inertia = system.mass @ vectors
-    error = system.stiffness @ vectors - inertia * values
-    residuals = np.linalg.norm(error, axis=0) / ((np.abs(values) + scale) * np.linalg.norm(inertia, axis=0))
-    overlaps = vectors.T @ inertia - np.eye(len(values))
-    return float(residuals.max(initial=0.0)), float(np.abs(overlaps).max(initial=0.0))
+def _refined(
+    system: FreeSystem, values: FloatArray, vectors: FloatArray, scale: float
+) -> tuple[FloatArray, FloatArray, FloatArray, float]:
+    """Modes by the quotients of K and M in the space of those found, their residuals and their largest overlap.
+
+    The inverse's own eigenvalues would not do: about a shift hard beside rigid modes it is huge along these, and its
+    rounding there, by λ / |σ| larger beside an elastic mode's own, stands in that mode. Vectors that overlap already
+    are left as they are, to fail their certificate.
+    """
+    inertia, force = system.mass @ vectors, system.stiffness @ vectors
+    overlaps = vectors.T @ inertia
+    if np.abs(overlaps - np.eye(len(values))).max(initial=0.0) < OVERLAP_BOUND:
+        values, mixture = linalg.eigh(vectors.T @ force, overlaps)
+        vectors, inertia, force = vectors @ mixture, inertia @ mixture, force @ mixture
+        overlaps = vectors.T @ inertia
+    error = np.linalg.norm(force - inertia * values, axis=0)
+    residuals = error / ((np.abs(values) + scale) * np.linalg.norm(inertia, axis=0))
+    return values, vectors, residuals, float(np.abs(overlaps - np.eye(len(values))).max(initial=0.0))
 
 
 def _gap_after(values: FloatArray, count: int, floor: float) -> float:

@@ -234,7 +234,7 @@ def test_certificate_catches_a_solver_that_loses_members_of_multiple_modes(
 ) -> None:
     """A Krylov space of a single vector holds one mode of a pair or a triple; others enter by rounding, if at all."""
 
-    def single_vector(solve: Any, stiffness: Any, mass: Any, count: int, **_: Any) -> tuple[Any, Any]:
+    def single_vector(solve: Any, mass: Any, shift: float, count: int, **_: Any) -> tuple[Any, Any]:
         basis = np.empty((mass.shape[0], 0))
         vector = np.random.default_rng(0).standard_normal(mass.shape[0])
         for _step in range(35):
@@ -242,7 +242,7 @@ def test_certificate_catches_a_solver_that_loses_members_of_multiple_modes(
                 vector = vector - basis @ (basis.T @ (mass @ vector))
             basis = np.column_stack([basis, vector / np.sqrt(vector @ (mass @ vector))])
             vector = solve(mass @ basis[:, -1])
-        values, mixture = linalg.eigh(basis.T @ (stiffness @ basis))
+        values, mixture = linalg.eigh(basis.T @ (cube[1].stiffness @ basis))
         return values[:count], basis @ mixture[:, :count]
 
     honest = solve_modes(cube[1], count=11)
