@@ -24,6 +24,7 @@ from housing.assembly import assemble
 from housing.attachments import Attachment, attach
 from housing.bolts import BoltedJoint, bolted_joint
 from housing.bushings import GLOBAL_AXES, Axial, Bushing, Joint, Mount, axes_along
+from housing.certificate import Certificate
 from housing.comparison import Comparison, ModePair, compare_by_dominance
 from housing.damping import damping_ratios, modal_damping
 from housing.dominance import Dominance, dominance
@@ -48,7 +49,7 @@ from housing.matrices import Matrices
 from housing.mesh_arrays import mesh_digest
 from housing.mode_file import read_modes, write_modes
 from housing.mode_record import ModeRecord, with_sensors
-from housing.modes import Certificate, ModeSet, solve_modes
+from housing.modes import ModeSet, solve_modes
 from housing.node_blocks import Additions, NodeBlocks
 from housing.patches import Patch, patch_center, patch_matrix, point_matrix
 from housing.port_attachments import attach_ports

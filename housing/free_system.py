@@ -4,7 +4,9 @@ Every shifted matrix K - σM of a search for modes has one sparsity pattern, so 
 from is found once: a shift is then one pass over the entries, and no sparse matrix is ever cut or converted.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -31,6 +33,8 @@ class FreeSystem:
         Of n_nodes nodes.
     fixed : ndarray of int, optional
         Degrees of freedom held at zero.
+    threads : int
+        That multiply the mass with vectors; the products are the same to the last bit for any number.
 
     Attributes
     ----------
@@ -43,7 +47,7 @@ class FreeSystem:
         Where none is left.
     """
 
-    def __init__(self, matrices: Matrices, fixed: IntArray | None = None) -> None:
+    def __init__(self, matrices: Matrices, fixed: IntArray | None = None, *, threads: int = 1) -> None:
         held = np.zeros(3 * matrices.n_nodes, dtype=bool)
         if fixed is not None:
             held[fixed] = True
@@ -51,6 +55,7 @@ class FreeSystem:
             raise HousingError("every degree of freedom is fixed")
         self.free = np.flatnonzero(~held)
         self._matrices = matrices
+        self._threads = threads
         self._pointer, self._rows, self._source = _lower_pattern(matrices, self.free)
 
     @property
@@ -71,7 +76,7 @@ class FreeSystem:
     @cached_property
     def mass(self) -> "FreeMass":
         """M [kg], as an operator."""
-        return FreeMass(self._matrices, self.free)
+        return FreeMass(self._matrices, self.free, self._threads)
 
     def shifted(self, shift: float) -> SymmetricMatrix:
         """K - shift M, always on the same pattern [rad²/s²]."""
@@ -115,14 +120,17 @@ class FreeMass:
     matrices : Matrices
     free : ndarray of int, shape (n,)
         Ascending.
+    threads : int
+        Each multiplies a share of the rows.
     """
 
-    def __init__(self, matrices: Matrices, free: IntArray) -> None:
+    def __init__(self, matrices: Matrices, free: IntArray, threads: int = 1) -> None:
         kept = np.unique(free // 3)
         scalar = matrices.scalar_mass
         if len(kept) < matrices.n_nodes:
             scalar = sparse.csr_array(scalar[kept][:, kept])
-        self._scalar = scalar
+        ends = [len(kept) * share // threads for share in range(threads + 1)]
+        self._shares = [scalar[first:last] for first, last in pairwise(ends)] if threads > 1 else [scalar]
         self._order = 3 * len(kept)
         # Where the free degrees of freedom stand among all those of the nodes that have any.
         self._places = None if 3 * len(kept) == len(free) else 3 * np.searchsorted(kept, free // 3) + free % 3
@@ -135,12 +143,25 @@ class FreeMass:
         if self._places is not None:
             columns = np.zeros((self._order, columns.shape[1]))
             columns[self._places] = vectors.reshape(len(vectors), -1)
-        product = np.asarray(self._scalar @ columns.reshape(self._order // 3, -1)).reshape(self._order, -1)
+        product = self._multiply(columns.reshape(self._order // 3, -1)).reshape(self._order, -1)
         if self._places is not None:
             product = product[self._places]
         if self._attached is not None:
             product += self._attached @ vectors.reshape(len(vectors), -1)
         return product.reshape(vectors.shape)
+
+    def _multiply(self, columns: FloatArray) -> FloatArray:
+        """The scalar mass times some columns; scipy's products let other threads run."""
+        product = np.empty((self._order // 3, columns.shape[1]))
+
+        def fill(share: int) -> None:
+            rows = self._shares[share].shape[0]
+            start = sum(part.shape[0] for part in self._shares[:share])
+            product[start : start + rows] = self._shares[share] @ columns
+
+        with ThreadPoolExecutor(len(self._shares)) as pool:
+            list(pool.map(fill, range(len(self._shares))))
+        return product
 
 
 def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArray, npt.NDArray[Any]]:

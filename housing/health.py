@@ -13,10 +13,11 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.bushings import Mount
+from housing.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
 from housing.errors import HealthError
 from housing.grounding import Grounding, grounding
 from housing.matrices import Matrices
-from housing.modes import OVERLAP_BOUND, RESIDUAL_BOUND, ModeSet
+from housing.modes import ModeSet
 from housing.reduction import STATIC_BOUND
 from housing.rigid import RigidBody, rigid_body, rigid_motions
 from housing.supports import Support

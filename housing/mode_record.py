@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from housing.attachment_arrays import attachment_arrays, attachments_of
+from housing.certificate import Certificate
 from housing.errors import HousingError
 from housing.labelled import LabelledArray, canonical_json, content_key
 from housing.mesh_arrays import mesh_arrays, mesh_from_arrays
-from housing.modes import Certificate, ModeSet
+from housing.modes import ModeSet
 from housing.ports import Seat, Sensor, SensorPort
 from meshes import Mesh
 

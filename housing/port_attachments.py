@@ -50,7 +50,7 @@ def attach_ports(
     HousingError, ReductionError
         See :func:`housing.reduction.residual_attachments`.
     """
-    system = FreeSystem(matrices, fixed)
+    system = FreeSystem(matrices, fixed, threads=threads)
     floor = system.floor(modes.certificate.limit)
     if factor is None or shift is None:
         shift = -floor

@@ -38,7 +38,7 @@ def test_any_degrees_of_freedom_may_be_fixed(matrices: Matrices, data: st.DataOb
     free = np.setdiff1d(np.arange(order), fixed)
     if not len(free):
         return
-    system = FreeSystem(matrices, fixed)
+    system = FreeSystem(matrices, fixed, threads=data.draw(st.integers(1, 3)))
     np.testing.assert_array_equal(system.free, free)
     stiffness, mass = (whole.toarray()[np.ix_(free, free)] for whole in (matrices.stiffness, matrices.mass))
     np.testing.assert_array_equal(system.stiffness.full().toarray(), stiffness)

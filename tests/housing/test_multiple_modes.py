@@ -19,9 +19,9 @@ import pytest
 from scipy import linalg, stats
 from scipy.spatial import KDTree
 
-import housing.modes
+import housing.search
 from housing import IncompleteModesError, Material, Matrices, ModeSet, assemble, solve_modes
-from housing.modes import OVERLAP_BOUND, RESIDUAL_BOUND
+from housing.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
 from meshes import ElementBlock, Mesh
 from meshes.gmsh_session import gmsh_session
 from meshes.tetrahedra import collect, mesh_solids
@@ -246,7 +246,7 @@ def test_certificate_catches_a_solver_that_loses_members_of_multiple_modes(
         return values[:count], basis @ mixture[:, :count]
 
     honest = solve_modes(cube[1], count=11)
-    monkeypatch.setattr(housing.modes, "shift_invert", single_vector)
+    monkeypatch.setattr(housing.search, "shift_invert", single_vector)
     with pytest.raises(IncompleteModesError, match="where the inertia demands 11,") as caught:
         solve_modes(cube[1], frequency_limit=honest.certificate.limit)
     assert int(str(caught.value).split()[0]) < len(honest.frequencies) == 11

@@ -1,0 +1,200 @@
+"""Searches for modes, made again, wider, until they can be proved complete.
+
+Block Lanczos on the shifted inverse of K φ = λ M φ (:mod:`housing.lanczos`). The proof is Sylvester's law of inertia:
+the number of negative pivots in K - σM = L D Lᵀ is the number of eigenvalues below σ, however many of them coincide.
+A limit is itself the shift, so that one factor both counts the modes below it and finds them; for a number of modes
+the shift lies just below zero, which keeps the shifted matrix positive definite for a free body too, and a second
+factor counts up to the gap behind the last.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from housing.certificate import OVERLAP_BOUND, Certificate
+from housing.errors import FactorizationError, HousingError, IncompleteModesError
+from housing.factorization import Factorization, Factorizer
+from housing.free_system import FreeSystem
+from housing.lanczos import shift_invert
+
+FloatArray = npt.NDArray[np.float64]
+
+_ATTEMPTS = 3
+_ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away from a mode beside it
+MOST_MODES = 2000
+"""More at a time would take a basis that no memory holds."""
+_BELOW = 0.1  # part of the lowest elastic eigenvalue
+_RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
+
+
+@dataclass(frozen=True)
+class Found:
+    """Certified modes, the shift of their search, and the factor of K - limit² M that counted them."""
+
+    values: FloatArray
+    vectors: FloatArray
+    certificate: Certificate
+    factor: Factorization
+    shift: float
+
+
+class Search:
+    """Searches that are made again, wider, until their certificate is good; the seconds of each step add up."""
+
+    def __init__(self, system: FreeSystem, factorizer: Factorizer, floor: float) -> None:
+        self.floor = floor
+        self.seconds = {"factorisation": 0.0, "eigensolver": 0.0}
+        self._system = system
+        self._factorizer = factorizer
+
+    def below(self, limit: float, progress: Callable[[str], None]) -> Found:
+        """All modes below a limit, which is itself the shift."""
+        progress("counting the modes below the limit")
+        shift = limit**2
+        factor = self._factor(shift)
+        count = factor.negative
+        if count == 0:
+            raise HousingError(f"the housing has no mode below {limit / (2 * np.pi):g} Hz; raise the limit")
+        if count > MOST_MODES:
+            raise HousingError(
+                f"the housing has {count} modes below {limit / (2 * np.pi):g} Hz, more than the {MOST_MODES} that are "
+                "solved for at most: lower the limit"
+            )
+        if count == self._system.size:
+            raise HousingError(
+                f"every mode of the mesh lies below {limit / (2 * np.pi):g} Hz; lower the limit or refine"
+            )
+        progress(f"searching {count} modes")
+        certificate = Certificate(limit, count, 0, 0.0, 0.0)
+        pole, place = factor, shift
+        for attempt in range(_ATTEMPTS):
+            values, vectors = self._modes(pole, place, count, above=True, attempt=attempt)
+            certificate, values, vectors = self._certify(values, vectors, limit, factor)
+            if certificate.complete:
+                return Found(values, vectors, certificate, factor, shift)
+            if pole is factor and certificate.found == count:
+                pole, place = self._beside(factor, shift)
+        raise _incomplete(certificate)
+
+    def _beside(self, factor: Factorization, shift: float) -> tuple[Factorization, float]:
+        """A factor at a little distance from a shift that sits all but upon a mode, with as many modes below.
+
+        The inverse is so large along that mode that the others' images drown in its rounding.
+        """
+        for part in _ASIDE:
+            aside = shift * (1.0 + part)
+            other = self._factor(aside)
+            if other.negative == factor.negative:
+                return other, aside
+        return factor, shift
+
+    def lowest(self, count: int, progress: Callable[[str], None]) -> Found:
+        """The lowest modes by number, with the rest of the multiple mode that the last may be part of."""
+        shift = -self.floor
+        certificate = Certificate(0.0, count, 0, 0.0, 0.0)
+        for attempt in range(_ATTEMPTS):
+            progress("factoring")
+            factor = self._factor(shift)
+            if factor.negative:
+                raise not_a_stiffness(f"K - {shift:g} M has {factor.negative} negative pivots")
+            progress(f"searching {count} modes")
+            # Some more than asked for, to see the gap behind the last.
+            wanted = min(count + 2 * 4**attempt, self._system.size - 1)
+            values, vectors = self._modes(factor, shift, wanted, above=False, attempt=attempt)
+            limit = _gap_after(values, count, self.floor)
+            if limit == 0.0:
+                continue
+            progress("counting the modes found")
+            del factor  # two at once would be the most memory that a search takes
+            factor = self._factor(limit**2)
+            certificate, values, vectors = self._certify(values, vectors, limit, factor)
+            if certificate.complete:
+                return Found(values, vectors, certificate, factor, shift)
+            if values.max(initial=0.0) > self.floor:
+                # Farther from rigid modes, by the scale of the elastic ones: less of their rounding stands in these.
+                shift = -max(self.floor, _BELOW * float(values[values > self.floor][0]))
+        raise _incomplete(certificate)
+
+    def _factor(self, shift: float) -> Factorization:
+        start = time.perf_counter()
+        factor = self._factorizer.factor(self._system.shifted(shift))
+        self.seconds["factorisation"] += time.perf_counter() - start
+        return factor
+
+    def _modes(
+        self, factor: Factorization, shift: float, count: int, *, above: bool, attempt: int
+    ) -> tuple[FloatArray, FloatArray]:
+        """Modes without a proof; of an attempt that does not converge, none, but for the last one's."""
+        start = time.perf_counter()
+        system = self._system
+        try:
+            return shift_invert(factor.solve, system.mass, shift, count, above=above, seed=attempt)
+        except IncompleteModesError:
+            if attempt + 1 == _ATTEMPTS:
+                raise
+            # The next one has a wider block, as modes of high multiplicity want it.
+            return np.empty(0), np.empty((system.size, 0))
+        finally:
+            self.seconds["eigensolver"] += time.perf_counter() - start
+
+    def _certify(
+        self, values: FloatArray, vectors: FloatArray, limit: float, factor: Factorization
+    ) -> tuple[Certificate, FloatArray, FloatArray]:
+        """The certificate of the modes below a limit; and these, the most that their space gives."""
+        start = time.perf_counter()
+        values, vectors, residuals, overlap = _refined(self._system, values, vectors, limit**2 + self.floor)
+        keep = values < limit**2
+        certificate = Certificate(
+            limit, factor.negative, int(keep.sum()), float(residuals[keep].max(initial=0.0)), overlap
+        )
+        self.seconds["eigensolver"] += time.perf_counter() - start
+        return certificate, values[keep], vectors[:, keep]
+
+
+def _incomplete(certificate: Certificate) -> IncompleteModesError:
+    return IncompleteModesError(
+        f"{certificate.found} modes found below {certificate.limit / (2 * np.pi):.6g} Hz where the inertia demands "
+        f"{certificate.expected}, largest residual {certificate.max_residual:.1e}, largest overlap "
+        f"{certificate.max_overlap:.1e}; move the limit a little or refine the mesh"
+    )
+
+
+def not_a_stiffness(what: str) -> FactorizationError:
+    """What to say of a stiffness with negative energies."""
+    return FactorizationError(f"{what}; the stiffness is not positive semidefinite")
+
+
+def _refined(
+    system: FreeSystem, values: FloatArray, vectors: FloatArray, scale: float
+) -> tuple[FloatArray, FloatArray, FloatArray, float]:
+    """Modes by the quotients of K and M in the space of those found, their residuals and their largest overlap.
+
+    The inverse's own eigenvalues would not do: about a shift hard beside rigid modes it is huge along these, and its
+    rounding there, by λ / |σ| larger beside an elastic mode's own, stands in that mode. Vectors that overlap already
+    are left as they are, to fail their certificate.
+    """
+    inertia, force = system.mass @ vectors, system.stiffness @ vectors
+    overlaps = vectors.T @ inertia
+    if np.abs(overlaps - np.eye(len(values))).max(initial=0.0) < OVERLAP_BOUND:
+        values, mixture = linalg.eigh(vectors.T @ force, overlaps)
+        vectors, inertia, force = vectors @ mixture, inertia @ mixture, force @ mixture
+        overlaps = vectors.T @ inertia
+    error = np.linalg.norm(force - inertia * values, axis=0)
+    residuals = error / ((np.abs(values) + scale) * np.linalg.norm(inertia, axis=0))
+    return values, vectors, residuals, float(np.abs(overlaps - np.eye(len(values))).max(initial=0.0))
+
+
+def _gap_after(values: FloatArray, count: int, floor: float) -> float:
+    """A circular frequency in the first gap after ``count`` modes; 0 where they run out within a multiple mode.
+
+    ``floor`` [rad²/s²] is far above the rounding of rigid modes, whose differences are no gaps.
+    """
+    scale = max(float(np.abs(values).max(initial=0.0)), floor)
+    for below, above in zip(values[count - 1 :], values[count:], strict=False):
+        if above - below > _RELATIVE_GAP * scale:
+            return float(np.sqrt(max(0.5 * (below + above), 0.0)))
+    return 0.0
