@@ -10,7 +10,7 @@ from housing.errors import HousingError
 from housing.node_blocks import NOTHING, NodeBlocks
 from housing.rigid import rigid_motions
 from housing.surface import IntArray, SurfacePoint, SurfaceQuadrature, surface_quadrature
-from meshes import Facets, Mesh, box_facets, plane_facets
+from meshes import Facets, Mesh, box_facets, circle_facets, plane_facets
 
 FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -21,7 +21,7 @@ _FARTHEST = 1e4  # of a patch's radii may lie between it and its centre: beyond,
 
 @dataclass(frozen=True)
 class Patch:
-    """A part of the surface: a named surface of the mesh, the facets in a box, or those on a plane.
+    """A part of the surface: a named surface of the mesh, the facets in a box, on a plane, or in a circle.
 
     Attributes
     ----------
@@ -31,15 +31,18 @@ class Patch:
         Its low and high corners [m]; the facets inside belong to the patch.
     plane : tuple of two points, optional
         A point of it [m] and its normal; the facets on it belong to the patch.
+    circle : tuple of center, normal and diameter, optional
+        Of a flat face, the way it looks out of its material [m]; see :func:`meshes.circle_facets`.
     """
 
     surface: str | None = None
     box: tuple[Point, Point] | None = None
     plane: tuple[Point, Point] | None = None
+    circle: tuple[Point, Point, float] | None = None
 
     def __post_init__(self) -> None:
-        if sum(place is not None for place in (self.surface, self.box, self.plane)) != 1:
-            raise HousingError("a patch needs a surface, a box or a plane, one of the three")
+        if sum(place is not None for place in (self.surface, self.box, self.plane, self.circle)) != 1:
+            raise HousingError("a patch needs a surface, a box, a plane or a circle, one of the four")
 
     def facets(self, mesh: Mesh) -> Facets:
         """The facets of the patch.
@@ -47,14 +50,16 @@ class Patch:
         Raises
         ------
         meshes.GeometryError
-            Where the mesh has no such surface, or no facet lies in the box or on the plane.
+            Where the mesh has no such surface, or no facet lies in the box, on the plane or in the circle.
         """
         if self.surface is not None:
             return mesh.surface(self.surface)
         if self.box is not None:
             return box_facets(mesh, *self.box)
-        assert self.plane is not None
-        return plane_facets(mesh, *self.plane)
+        if self.plane is not None:
+            return plane_facets(mesh, *self.plane)
+        assert self.circle is not None
+        return circle_facets(mesh, *self.circle)
 
     def center(self, mesh: Mesh) -> FloatArray:
         """The centre of its area [m], shape (3,)."""

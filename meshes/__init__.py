@@ -8,8 +8,8 @@ What the room offers:
   dimensions; :func:`mesh_box` meshes it with gmsh.
 - :func:`mesh_cad` -- the solids of a STEP, IGES or BREP file, as a :class:`CadMesh`.
 - :func:`expected_elements`, :func:`check_mesh_size` -- how many elements a size makes, and whether they can be solved.
-- :func:`box_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`, :func:`with_bore` -- parts of
-  the surface of any mesh by where they lie; bores by centre and diameter.
+- :func:`box_facets`, :func:`circle_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`,
+  :func:`with_bore` -- parts of the surface of any mesh by where they lie; bores by centre and diameter.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
 - :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
 - :func:`diagnose` -- what is wrong with a mesh, or doubtful in it, by name (:class:`Ailment`);
@@ -56,7 +56,7 @@ from meshes.files import read_mesh, write_mesh
 from meshes.lengths import UNITS
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
-from meshes.regions import box_facets, cylinder_facets, plane_facets, with_bore
+from meshes.regions import box_facets, circle_facets, cylinder_facets, plane_facets, with_bore
 from meshes.resolution import WaveCarrier, resolution_ailments, wall_thickness
 from meshes.tetrahedra import check_mesh_size, expected_elements
 
@@ -90,6 +90,7 @@ __all__ = [
     "WaveCarrier",
     "box_facets",
     "check_mesh_size",
+    "circle_facets",
     "cylinder_facets",
     "diagnose",
     "expected_elements",

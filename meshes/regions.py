@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from meshes.bores import CylindricalBore, describe, find_bores, fits_circle, joined_by_span, unit_vector
-from meshes.elements import Facets, FloatArray, facet_corners, facet_normals, pick_facets
+from meshes.elements import Facets, FloatArray, facet_centers, facet_corners, facet_normals, pick_facets
 from meshes.errors import GeometryError
 from meshes.mesh import Mesh
 
@@ -78,6 +78,44 @@ def plane_facets(mesh: Mesh, point: Sequence[float], normal: Sequence[float]) ->
             f", and the nearest facet that looks that way lies at {levels[np.abs(levels - level).argmin()]:.6g} m"
         )
     raise GeometryError(message)
+
+
+def circle_facets(mesh: Mesh, center: Sequence[float], normal: Sequence[float], diameter: float) -> Facets:
+    """Boundary facets of a flat face that look one way, in a circle: such as what a bolt clamps of one of two parts.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    center : sequence of float
+        Middle of the circle, on the face or near it [m].
+    normal : sequence of float
+        The way that the face looks, out of its material; of any length.
+    diameter : float
+        Facets whose middles lie in the circle belong to it [m].
+
+    Raises
+    ------
+    GeometryError
+        Where there is none within half a diameter of the centre along the normal.
+
+    Notes
+    -----
+    Of several such faces one behind the other, as on both sides of a thin plate, it is the one nearest to the centre.
+    """
+    axis = unit_vector(normal)
+    offset = facet_centers(mesh.points, mesh.boundary) - np.asarray(center)
+    height = offset @ axis
+    beside = np.linalg.norm(offset - height[:, None] * axis, axis=1)
+    looks = facet_normals(mesh.points, mesh.boundary) @ axis > _NORMAL
+    chosen = looks & (beside <= diameter / 2.0) & (np.abs(height) <= diameter / 2.0)
+    if not chosen.any():
+        raise GeometryError(
+            f"no facet of the surface that looks along {_triple(axis)} lies in a circle of {diameter:.6g} m around "
+            f"{_triple(center)} m; is it wider than the elements there?"
+        )
+    level = height[chosen][np.abs(height[chosen]).argmin()]
+    slack = _PLANE_SLACK * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+    return pick_facets(mesh.boundary, chosen & (np.abs(height - level) <= slack))
 
 
 def cylinder_facets(

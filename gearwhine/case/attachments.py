@@ -12,7 +12,17 @@ from pydantic import Discriminator, Tag, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.directions import Direction, UnitVector, Vector, unit_vector
-from gearwhine.case.fields import DampingFromZero, Inertia, Name, Point, Quantity, StiffnessFromZero, Table, wrong
+from gearwhine.case.fields import (
+    DampingFromZero,
+    Inertia,
+    Name,
+    Point,
+    PositiveLength,
+    Quantity,
+    StiffnessFromZero,
+    Table,
+    wrong,
+)
 from gearwhine.case.patches import Patch
 
 TiltStiffness = Annotated[float, Quantity(units.TILT_STIFFNESS, at_least=0.0)]
@@ -149,15 +159,24 @@ class Mount(Patch, Bushing):
 
 
 class Joint(Bushing):
-    """`[[housing.joint]]`: six springs and dashpots between the rigid motions of two named surfaces."""
+    """`[[housing.joint]]`: six springs and dashpots between the rigid motions of two patches, such as a bolt.
+
+    The patches are two named `surfaces`, or the circles of a `diameter` [m] on the two faces that look at each other at
+    the `center`, at right angles to the `axis`.
+    """
 
     name: Name
-    surfaces: tuple[Name, Name]
+    surfaces: tuple[Name, Name] | None = None
+    diameter: PositiveLength | None = None
 
     @model_validator(mode="after")
-    def _two_surfaces(self) -> Joint:
-        if self.surfaces[0] == self.surfaces[1]:
+    def _two_patches(self) -> Joint:
+        if (self.surfaces is None) == (self.diameter is None):
+            raise wrong("exactly one of 'surfaces', two names, and 'diameter', of the circles around 'center'")
+        if self.surfaces is not None and self.surfaces[0] == self.surfaces[1]:
             raise wrong("two different surfaces", "surfaces")
+        if self.diameter is not None and (self.center is None or self.axis is None):
+            raise wrong("'center' and 'axis' with it: where the two faces meet, and across them", "diameter")
         return self
 
 

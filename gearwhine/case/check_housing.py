@@ -138,7 +138,8 @@ def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
         ((*place, "surface"), patch.surface) for place, patch in _patches(draft)
     ]
     for index, joint in draft.joints:
-        named += [(("housing", "joint", index, "surfaces", end), joint.surfaces[end]) for end in (0, 1)]
+        for end, surface in enumerate(joint.surfaces or ()):
+            named.append((("housing", "joint", index, "surfaces", end), surface))
     for location, name in named:
         if name is not None and name not in known:
             feet = "" if box.feet is not None else "; it has no feet"

@@ -58,13 +58,15 @@ class Material(Table):
 class CadFile(Table):
     """`[housing.cad]`: a STEP, IGES or BREP file and the element size [m], if wanted a smaller one around the seats.
 
-    `unit` is that of the file's numbers where the file states none itself; then it is by default a millimetre.
+    `unit` is that of the file's numbers where the file states none itself; then it is by default a millimetre. Solids
+    that touch are one piece with `glue`; without it they are apart but for joints.
     """
 
     file: CaseFile
     mesh_size: PositiveLength
     seat_mesh_size: PositiveLength | None = None
     unit: Literal["m", "mm", "cm", "in"] | None = None
+    glue: bool = True
 
     @model_validator(mode="after")
     def _finer_at_seats(self) -> CadFile:

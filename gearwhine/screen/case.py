@@ -80,6 +80,9 @@ def _housing_lines(housing: dict[str, Any]) -> list[str]:
 
 def _bushing_line(kind: str, bushing: dict[str, Any]) -> str:
     between = f" ({' to '.join(bushing['surfaces'])})" if "surfaces" in bushing else ""
+    if "diameter_m" in bushing:
+        place = ", ".join(f"{1e3 * value:.6g}" for value in bushing["center_m"])
+        between = f" (circles of {1e3 * bushing['diameter_m']:.6g} mm at {place} mm)"
     parts = [
         f"{motion} {amount:.4g} {unit}"
         for key, unit in (

@@ -12,6 +12,7 @@ from gearwhine.case import (
     Bushing,
     Case,
     CaseError,
+    Joint,
     LumpedMass,
     Mount,
     Patch,
@@ -46,7 +47,7 @@ def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
         fastened = room.Mount(mount.name, _patch(mount), _bushing(mount), mount.center)
         yield f"housing.mount[{index}]", f'mount "{mount.name}"', fastened
     for index, joint in enumerate(given.joint):
-        first, second = (room.Patch(surface) for surface in joint.surfaces)
+        first, second = _ends(joint)
         tied = room.Joint(joint.name, first, second, _bushing(joint), joint.center)
         yield f"housing.joint[{index}]", f'joint "{joint.name}"', tied
     for tied in cover_joints(case):
@@ -132,7 +133,7 @@ def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
                     f"{key}.{form}", UNSAID, f"a {form} that {holds} some of the surface; {error}", label=label
                 )
     for index, joint in enumerate(given.joint):
-        for end, surface in enumerate(joint.surfaces):
+        for end, surface in enumerate(joint.surfaces or ()):
             named.append((f"housing.joint[{index}].surfaces[{end}]", f'joint "{joint.name}"', surface))
     known = sorted(mesh.surfaces)
     for key, label, surface in named:
@@ -145,6 +146,21 @@ def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
             found = _mass(mass).place(mesh).position
             label = f'mass "{mass.name}"'
             yield from _check_reach(mesh, f"housing.mass[{index}].position", label, mass.position, found)
+
+
+def _ends(joint: Joint) -> tuple[room.Patch, room.Patch]:
+    """The two patches of a joint: named, or circles on the faces that look along its axis and against it."""
+    if joint.surfaces is not None:
+        first, second = joint.surfaces
+        return room.Patch(first), room.Patch(second)
+    assert joint.center is not None
+    assert joint.axis is not None
+    assert joint.diameter is not None
+    x, y, z = unit_vector(joint.axis)
+    return (
+        room.Patch(circle=(joint.center, (x, y, z), joint.diameter)),
+        room.Patch(circle=(joint.center, (-x, -y, -z), joint.diameter)),
+    )
 
 
 def _patch(entry: Patch) -> room.Patch:

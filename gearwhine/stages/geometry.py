@@ -46,6 +46,7 @@ def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int 
         found = mesh_cad(
             given.cad.file,
             given.cad.mesh_size,
+            glue=given.cad.glue,
             unit=None if given.cad.unit is None else UNITS[given.cad.unit],
             order=order,
             refine=[(seat.center, seat.diameter) for seat in given.seat],

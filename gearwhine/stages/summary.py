@@ -63,11 +63,18 @@ def _housing(case: Case) -> dict[str, Any]:
         "seats": [seat.name for seat in housing.seat],
         "supports": [support.name for support in housing.support],
         "mounts": [_bushing(mount) for mount in housing.mount],
-        "joints": [_bushing(joint) | {"surfaces": list(joint.surfaces)} for joint in housing.joint],
+        "joints": [_bushing(joint) | _ends(joint) for joint in housing.joint],
         "masses": [{"name": mass.name, "mass_kg": mass.mass} for mass in housing.mass],
         "sensors": [sensor.name for sensor in housing.sensor],
         "regions": [f"{region.name} of {region.material}" for region in housing.region],
     }
+
+
+def _ends(joint: Joint) -> dict[str, Any]:
+    """What a joint ties."""
+    if joint.surfaces is not None:
+        return {"surfaces": list(joint.surfaces)}
+    return {"diameter_m": joint.diameter, "center_m": joint.center}
 
 
 def _bushing(given: Mount | Joint) -> dict[str, Any]:

@@ -48,6 +48,7 @@ def mesh_cad(
     mesh_size: float,
     *,
     unit: float | None = None,
+    glue: bool = True,
     order: int = 2,
     refine: Sequence[tuple[tuple[float, float, float], float]] = (),
     refined_size: float | None = None,
@@ -64,6 +65,8 @@ def mesh_cad(
     unit : float, optional
         Unit of the file's numbers [m], where it states none itself (BREP; default a millimetre). What a STEP or
         IGES file states holds, unless the part would then be no housing by its size and is one in this unit.
+    glue : bool
+        Whether solids that touch share their nodes there, as one piece; else they are apart until joints tie them.
     order : {1, 2}
         Polynomial order of the elements.
     refine : sequence of (center, diameter)
@@ -95,7 +98,7 @@ def mesh_cad(
     except OSError as error:
         raise GeometryError(f"CAD file {path} cannot be read: {error.strerror or error}") from error
     places = [(*center, diameter) for center, diameter in refine]
-    request = Request(str(path.resolve()), kind, mesh_size, order, stated, unit, places, refined_size)
+    request = Request(str(path.resolve()), kind, mesh_size, order, stated, unit, glue, places, refined_size)
     with tempfile.TemporaryDirectory(prefix="gearwhine-cad-") as name:
         folder = Path(name)
         (folder / "request.json").write_text(json.dumps(asdict(request)), encoding="utf-8")

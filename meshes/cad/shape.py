@@ -156,8 +156,8 @@ def _lies_within(gmsh: Any, inner: list[int], outer: list[int]) -> bool:
     return bool(np.all(a > c) and np.all(b < d))
 
 
-def conforming(gmsh: Any, solids: list[int]) -> Shape:
-    """Name the parts, and let solids that touch share their faces.
+def conforming(gmsh: Any, solids: list[int], *, glue: bool = True) -> Shape:
+    """Name the parts, and let solids that touch share their faces if they are to be one piece.
 
     Raises
     ------
@@ -167,9 +167,10 @@ def conforming(gmsh: Any, solids: list[int]) -> Shape:
     names = _unique([_label(gmsh, 3, tag) or f"solid-{i}" for i, tag in enumerate(solids, start=1)])
     labels = {(2, tag): _label(gmsh, 2, tag) for _, tag in gmsh.model.getEntities(2)}
     named = [entity for entity, label in labels.items() if label]
-    if len(solids) == 1:
+    if len(solids) == 1 or not glue:
+        _check_apart(gmsh, dict(zip(names, solids, strict=True)))
         faces = {labels[entity]: [entity[1]] for entity in named}
-        return Shape({names[0]: solids}, faces)
+        return Shape({name: [tag] for name, tag in zip(names, solids, strict=True)}, faces)
     volumes = [gmsh.model.occ.getMass(3, tag) for tag in solids]
     _, pieces = gmsh.model.occ.fragment([(3, tag) for tag in solids], named)
     gmsh.model.occ.synchronize()
@@ -178,14 +179,32 @@ def conforming(gmsh: Any, solids: list[int]) -> Shape:
         for j, second in enumerate(names[:i]):
             shared = sum(gmsh.model.occ.getMass(3, tag) for tag in set(parts[first]) & set(parts[second]))
             if shared > _OVERLAP * min(abs(volumes[i]), abs(volumes[j])):
-                raise GeometryError(
-                    f"its solids {second!r} and {first!r} overlap in a volume of {shared:.4g} (in its own unit cubed); "
-                    "cut one from the other in the CAD program"
-                )
+                raise _overlapping(second, first, shared)
     faces = {}
     for entity, own in zip(named, pieces[len(names) :], strict=True):
         faces[labels[entity]] = [tag for d, tag in own if d == 2]
     return Shape(parts, faces)
+
+
+def _check_apart(gmsh: Any, solids: dict[str, int]) -> None:
+    """Refuse solids that overlap, without changing them."""
+    parts = list(solids.items())
+    for i, (first, one) in enumerate(parts):
+        for second, other in parts[:i]:
+            shared, _ = gmsh.model.occ.intersect([(3, one)], [(3, other)], removeObject=False, removeTool=False)
+            volume = sum(gmsh.model.occ.getMass(3, tag) for dimension, tag in shared if dimension == 3)
+            if shared:
+                gmsh.model.occ.remove(shared, recursive=True)
+            if volume > _OVERLAP * min(gmsh.model.occ.getMass(3, one), gmsh.model.occ.getMass(3, other)):
+                raise _overlapping(second, first, volume)
+    gmsh.model.occ.synchronize()
+
+
+def _overlapping(first: str, second: str, volume: float) -> GeometryError:
+    return GeometryError(
+        f"its solids {first!r} and {second!r} overlap in a volume of {volume:.4g} (in its own unit cubed); cut one "
+        "from the other in the CAD program"
+    )
 
 
 def _label(gmsh: Any, dimension: int, tag: int) -> str:

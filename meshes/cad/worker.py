@@ -35,6 +35,8 @@ class Request:
     order : {1, 2}
     stated, given : float or None
         Units of length [m], as of :func:`meshes.cad.units.choose_unit`.
+    glue : bool
+        Whether solids that touch become one piece.
     places : list of (x, y, z, diameter)
         Bores to refine around [m].
     place_size : float or None
@@ -47,6 +49,7 @@ class Request:
     order: int
     stated: float | None
     given: float | None
+    glue: bool
     places: list[tuple[float, float, float, float]]
     place_size: float | None
 
@@ -78,7 +81,7 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
         chosen = choose_unit(numbers, stated, request.given)
         unit = chosen.length if stated is None else chosen.length * 1e-3 / stated
         at("joining its solids")
-        shape = conforming(gmsh, solids)
+        shape = conforming(gmsh, solids, glue=request.glue)
         filled = sum(abs(gmsh.model.occ.getMass(3, tag)) for tags in shape.solids.values() for tag in tags)
         check_mesh_size(filled * unit**3, extent(gmsh) * unit, request.mesh_size)
         at("meshing it")

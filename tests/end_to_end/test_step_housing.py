@@ -4,7 +4,6 @@ Ribs outside and inside, a rounded cavity, feet, bores with bosses, a cover on a
 cover as a solid of its own, glued or on bolts.
 """
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,6 @@ import numpy as np
 import pytest
 
 from housing import read_modes
-from meshes import facet_centers, facet_normals, mesh_cad, pick_facets, write_mesh
 from meshes.gmsh_session import gmsh_session
 
 # All in mm. The origin is the middle of the box in x and z, the underside of its base in y.
@@ -23,7 +21,6 @@ BOLT = 8.0  # the bolts' diameter, and the radius of what they clamp
 BOLTS = [(x, z) for x in (-70.0, 0.0, 70.0) for z in (-65.0, 65.0)]
 FOOT = (34.0, 12.0, 34.0)
 MESH = 25.0
-GAP = 0.02
 
 HEAD = """
 [material.iron]
@@ -63,10 +60,10 @@ flange = {{ width = "{FLANGE} mm", thickness = "{RIM} mm" }}
 """
 
 
-def _written(path: Path, *, parts: int, gap: float = 0.0) -> None:
-    """The solid as a STEP file: of one part, or with the cover as a second one, perhaps not quite touching.
+def _written(path: Path, *, parts: int, circles: bool = False) -> None:
+    """The solid as a STEP file: of one part, or with the cover as a second one that touches it.
 
-    Parts with a gap between them have the circles that their bolts clamp as faces of their own.
+    With circles, what the bolts clamp are faces of their own.
     """
     with gmsh_session("housing") as gmsh:
         occ = gmsh.model.occ
@@ -95,12 +92,12 @@ def _written(path: Path, *, parts: int, gap: float = 0.0) -> None:
         body, *_ = occ.cut([body], [*rounded, *bores])[0]
         rib = block((-half_x + 6, 6, -13), (half_x - 6, WALL + 16, -3))
         body, *_ = occ.fuse([body], [rib])[0]
-        cover = block((-wide_x, top + gap, -wide_z), (wide_x, Y + gap, wide_z))
+        cover = block((-wide_x, top, -wide_z), (wide_x, Y, wide_z))
         if parts == 1:
             occ.fuse([body], [cover])
-        if gap > 0.0:
-            for solid, height in ((body, top), (cover, top + gap)):
-                circles = [(2, occ.addDisk(x, height, z, BOLT, BOLT, zAxis=[0, 1, 0])) for x, z in BOLTS]
+        if circles:
+            for solid in (body, cover):
+                circles = [(2, occ.addDisk(x, top, z, BOLT, BOLT, zAxis=[0, 1, 0])) for x, z in BOLTS]
                 occ.fragment([solid], circles)
         occ.synchronize()
         assert len(gmsh.model.getEntities(3)) == parts
@@ -113,7 +110,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("step")
     _written(folder / "one.step", parts=1)
     _written(folder / "two.step", parts=2)
-    _written(folder / "apart.step", parts=2, gap=GAP)
+    _written(folder / "bolted.step", parts=2, circles=True)
     return folder
 
 
@@ -160,7 +157,7 @@ def test_a_step_file_has_the_modes_of_the_same_box(gearwhine: Any, folder: Path)
 
 
 def test_a_step_file_of_two_parts_on_bolts_has_the_modes_of_the_same_box(gearwhine: Any, folder: Path) -> None:
-    """Parts that do not touch stay apart; their clamped circles, named by place, are tied by the box's own springs."""
+    """Parts that touch are left apart; circles that bolts clamp are found by place and tied by the box's springs."""
     positions = ", ".join(f'["{x} mm", "{z} mm"]' for x, z in BOLTS)
     bolted = f'{BOX}bolts = {{ diameter = "{BOLT} mm", positions = [{positions}] }}\n'
     case = _case(folder, bolted, boss=WITH_BOSS)
@@ -168,18 +165,12 @@ def test_a_step_file_of_two_parts_on_bolts_has_the_modes_of_the_same_box(gearwhi
     bolts = gearwhine("check", case, "--json", "-q").document["housing"]["cover_bolts"]
     assert len(bolts) == len(BOLTS)
 
-    mesh = mesh_cad(folder / "apart.step", 1e-3 * MESH).mesh
-    centers, normals = facet_centers(mesh.points, mesh.boundary), facet_normals(mesh.points, mesh.boundary)
-    surfaces, joints = {}, ""
+    joints = ""
     for bolt in bolts:
-        name, (x, height, z) = bolt["name"], bolt["position_m"]
-        near = np.hypot(centers[:, 0] - x, centers[:, 2] - z) < 1e-3 * BOLT
-        for part, level, way in (("body", height, 1.0), ("cover", height + 1e-3 * GAP, -1.0)):
-            here = near & (np.abs(centers[:, 1] - level) < 1e-6) & (way * normals[:, 1] > 0.9)
-            surfaces[f"{name}-{part}"] = pick_facets(mesh.boundary, here)
         springs = bolt["stiffness_n_per_m"] | bolt["stiffness_n_m_per_rad"]
-        joints += f'[[housing.joint]]\nname = "{name}"\naxis = "y"\nsurfaces = ["{name}-body", "{name}-cover"]\n'
+        joints += f'[[housing.joint]]\nname = "{bolt["name"]}"\naxis = "y"\ndiameter = "{2 * BOLT} mm"\n'
+        joints += f"center = {bolt['position_m']}\n"
         joints += "stiffness = {" + ", ".join(f"{key} = {value}" for key, value in springs.items()) + "}\n"
-    write_mesh(replace(mesh, surfaces=surfaces), folder / "bolted.vtu")
-    step, _ = _modes(gearwhine, folder, _case(folder, '[housing.mesh]\nfile = "bolted.vtu"\n', more=joints))
+    cad = f'[housing.cad]\nfile = "bolted.step"\nmesh_size = "{MESH} mm"\nglue = false\n'
+    step, _ = _modes(gearwhine, folder, _case(folder, cad, more=joints))
     _compare(step, box)

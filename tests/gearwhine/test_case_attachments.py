@@ -105,6 +105,7 @@ ONE_WRONG = {
     "mount on no surface": ("mount.0.surface", "foot-9", "housing.mount[0].surface", "did you mean 'foot-4'?"),
     "joint to itself": ("joint.0.surfaces", ["left", "left"], "housing.joint[0].surfaces", "two different surfaces"),
     "joint to nothing": ("joint.0.surfaces.1", "rihgt", "housing.joint[0].surfaces[1]", "did you mean 'right'?"),
+    "joint of two kinds": ("joint.0.diameter", "10 mm", "housing.joint[0]", "exactly one of 'surfaces'"),
     "joint of one": ("joint.0.surfaces", ["left"], "housing.joint[0].surfaces[1]", "a name or text"),
     "mass of nothing": ("mass.0.mass", "0 kg", "housing.mass[0].mass", "above 0 kg"),
     "mass nowhere": ("mass.1.position", GONE, "housing.mass[1]", "exactly one of 'position', 'box', 'surface'"),
