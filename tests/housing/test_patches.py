@@ -48,9 +48,9 @@ def test_a_point_moves_with_the_field_there(box: Mesh) -> None:
 
 
 def test_patches_that_make_no_sense_are_refused(box: Mesh) -> None:
-    with pytest.raises(HousingError, match="a surface, a box or a plane, one of the three"):
+    with pytest.raises(HousingError, match="a surface, a box, a plane or a circle, one of the four"):
         Patch()
-    with pytest.raises(HousingError, match="one of the three"):
+    with pytest.raises(HousingError, match="one of the four"):
         Patch("foot-1", ((0, 0, 0), (1, 1, 1)))
     with pytest.raises(GeometryError, match=r"no surface 'foot-5'"):
         Patch("foot-5").facets(box)
