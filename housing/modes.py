@@ -32,7 +32,7 @@ class ModeSet:
         Displacement at each node, normalised to φᵀ M φ = 1 [1/√kg].
     certificate : Certificate
     seconds : dict of str to float
-        Time taken by ``factorisation`` and ``eigensolver`` [s].
+        Time taken by ``factorisation``, ``eigensolver`` and, where ports were given, ``reduction`` [s].
     backend : str
         Which factorisation was used.
     shift : float
@@ -89,7 +89,7 @@ def solve_modes(
     frequency_limit : float
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
-        The lowest so many; one or two more where the last would split a multiple mode.
+        The lowest so many, and the rest of a multiple mode that the last is part of.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes), optional
         Motions whose static compliance the mode set is to hold exactly: it then has attachments.
     backend, threads

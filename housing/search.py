@@ -156,6 +156,11 @@ class Search:
 
 
 def _incomplete(certificate: Certificate) -> IncompleteModesError:
+    if certificate.limit == 0.0:
+        return IncompleteModesError(
+            f"no search of the lowest {certificate.expected} modes came to a gap behind the last; ask for another "
+            "number, or give a frequency limit"
+        )
     return IncompleteModesError(
         f"{certificate.found} modes found below {certificate.limit / (2 * np.pi):.6g} Hz where the inertia demands "
         f"{certificate.expected}, largest residual {certificate.max_residual:.1e}, largest overlap "

@@ -33,7 +33,6 @@ def test_each_face_of_a_joint_is_found_by_the_way_it_looks(drawing: Callable[[fl
     assert "disconnected" in {one.name for one in diagnose(mesh)}
     center, diameter = (0.04, 0.01, 0.03), 0.03
     normals = facet_normals(mesh.points, mesh.boundary)
-    assert (np.abs(facet_centers(mesh.points, mesh.boundary)[:, 1] - 0.01) < 1e-9).sum() > 0
     for way in (1.0, -1.0):
         facets = circle_facets(mesh, center, (0.0, 2.0 * way, 0.0), diameter)
         middles = facet_centers(mesh.points, facets)
