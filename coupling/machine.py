@@ -154,7 +154,7 @@ def couple(
                 seat = embed(components, number[housing.name], housing.seat_direction(mounted.seat, axis, z))
                 columns[axis] = columns[axis] - seat
         name, law = mounted.bearing.name, mounted.bearing
-        linear.append(LinearConnector(name, np.array(columns).T, law.stiffness, law.damping))
+        linear.append(LinearConnector(name, np.array(columns).T, law.radial_stiffness, law.radial_damping))
 
     drive, back = [], []
     for mesh in meshes:

@@ -20,27 +20,32 @@ the gyroscopic sign are those of `rotors.whirl`.
 """
 
 from .attachment import attach_loads
-from .bearing import Bearing, RadialSupport
+from .bearing import Bearing, Pedestal, RadialSupport
 from .certificate import ModeCertificate
 from .errors import IncompleteModesError, RotorError
 from .lateral import LateralModes, solve_lateral_modes
 from .material import ShaftMaterial, shear_coefficient
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .section import Section
 from .shaft import Disc, Rotor, Segment
+from .shaft_coupling import Coupling
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
 from .whirl import WhirlModes, solve_whirl, whirl_basis
 
 __all__ = [
     "Bearing",
+    "Coupling",
     "CriticalSpeeds",
     "Disc",
     "IncompleteModesError",
     "LateralModes",
     "ModeCertificate",
+    "Pedestal",
     "RadialSupport",
     "RestFrequencies",
     "Rotor",
     "RotorError",
+    "Section",
     "Segment",
     "ShaftMaterial",
     "TorsionalModes",

@@ -1,11 +1,12 @@
-"""What holds a rotor: springs of one plane, and radial bearings of both."""
+"""What holds a rotor: springs of one plane, and bearings in all directions, on pedestals or on the ground."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import PchipInterpolator
 
-from .errors import require, require_finite
+from .errors import RotorError, require, require_finite
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -34,9 +35,35 @@ class RadialSupport:
             require(value >= 0.0, f"support {what}", value, "zero, a positive number or infinity")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class Pedestal:
+    """What a bearing stands on: a mass on springs and dashpots, free to move in x and y.
+
+    Parameters
+    ----------
+    stiffness, damping
+        (2, 2) over x, y: to the ground, N/m and N·s/m.
+    mass
+        That moves with it, kg.
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    mass: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_finite("pedestal mass", self.mass, minimum=0.0)
+        for what in ("stiffness", "damping"):
+            matrix = _frozen(f"pedestal {what}", getattr(self, what))
+            require(matrix.shape == (2, 2), f"pedestal {what} shape", matrix.shape, "(2, 2), rows and columns x, y")
+            object.__setattr__(self, what, matrix)
+        held = bool(np.linalg.det(self.stiffness) != 0.0)
+        require(held, "pedestal stiffness", self.stiffness.tolist(), "a matrix that holds it in x and y")
+
+
+@dataclass(frozen=True, eq=False)
 class Bearing:
-    """A linear radial bearing between the shaft and whatever carries it.
+    """A linear bearing between the shaft and whatever carries it.
 
     Parameters
     ----------
@@ -45,65 +72,156 @@ class Bearing:
     at
         Position from the rotor's left end, m.
     stiffness, damping
-        (2, 2), rows and columns x, y: force on the carrier per displacement (N/m) or velocity (N·s/m)
-        of the shaft. They need not be symmetric.
+        Force on the carrier per displacement or velocity of the shaft, which need not be symmetric: (2, 2) over x, y
+        in N/m and N·s/m; or (5, 5) over x, y, z and the rotations about x and about y, also in N/rad, N·m/rad
+        and their like; or (s, 2, 2) or (s, 5, 5), one for each of some speeds. Both need not be of one form.
+    speeds
+        (s,): ascending speeds of rotation of the tables, rad/s; between them the coefficients follow a monotone
+        cubic (Fritsch and Carlson 1980).
+    pedestal
+        What it stands on, where that is not rigid.
 
     Raises
     ------
     RotorError
-        A matrix of another shape or not finite, or a direct stiffness that is negative.
+        A matrix of another shape or not finite, a direct stiffness that is negative, or speeds that do not fit the
+        tables or do not ascend.
     """
 
     name: str
     at: float
     stiffness: FloatArray
     damping: FloatArray
+    speeds: FloatArray | None = None
+    pedestal: Pedestal | None = None
 
     def __post_init__(self) -> None:
-        require_finite(f"bearing {self.name!r} position", self.at, minimum=0.0)
+        label = f"bearing {self.name!r}"
+        require_finite(f"{label} position", self.at, minimum=0.0)
+        if self.speeds is not None:
+            speeds = _frozen(f"{label} speeds", self.speeds)
+            fits = speeds.ndim == 1 and speeds.size >= 2 and bool((np.diff(speeds) > 0.0).all())
+            require(fits, f"{label} speeds", speeds.tolist(), "two or more speeds in rad/s, ascending")
+            object.__setattr__(self, "speeds", speeds)
         for what in ("stiffness", "damping"):
-            matrix = np.array(getattr(self, what), dtype=np.float64)
-            label = f"bearing {self.name!r} {what}"
-            require(matrix.shape == (2, 2), f"{label} shape", matrix.shape, "(2, 2), rows and columns x, y")
-            require(bool(np.isfinite(matrix).all()), label, matrix.tolist(), "finite numbers")
-            matrix.setflags(write=False)
+            matrix = _frozen(f"{label} {what}", getattr(self, what))
+            shapes: list[tuple[int, ...]] = [(2, 2), (5, 5)]
+            if self.speeds is not None:
+                shapes += [(self.speeds.size, 2, 2), (self.speeds.size, 5, 5)]
+            require(matrix.shape in shapes, f"{label} {what} shape", matrix.shape, f"one of {shapes}")
             object.__setattr__(self, what, matrix)
-        direct = np.diag(self.stiffness)
-        expected = "not negative in xx and yy"
-        require(bool((direct >= 0.0).all()), f"bearing {self.name!r} stiffness", direct.tolist(), expected)
+        tabled = self.stiffness.ndim == 3 or self.damping.ndim == 3
+        require(
+            tabled or self.speeds is None, f"{label} speeds", self.speeds, "a table of stiffness or damping with them"
+        )
+        direct = np.diagonal(self.stiffness, axis1=-2, axis2=-1)
+        require(bool((direct >= 0.0).all()), f"{label} stiffness", direct.tolist(), "no negative direct stiffness")
 
     def __eq__(self, other: object) -> bool:
         """Equal in name, place and every coefficient."""
-        if not isinstance(other, Bearing):
-            return NotImplemented
-        same = (self.name, self.at) == (other.name, other.at)
-        matrices = np.array_equal(self.stiffness, other.stiffness)
-        return same and matrices and np.array_equal(self.damping, other.damping)
+        return isinstance(other, Bearing) and self._identity() == other._identity()
 
     def __hash__(self) -> int:
         """Hash that agrees with equality."""
-        return hash((self.name, self.at, self.stiffness.tobytes(), self.damping.tobytes()))
+        return hash(self._identity())
 
     @classmethod
     def isotropic(cls, name: str, at: float, stiffness: float, damping: float = 0.0) -> "Bearing":
         """Bearing alike in every direction: one stiffness (N/m) and one damping (N·s/m)."""
         return cls(name, at, stiffness * np.eye(2), damping * np.eye(2))
 
+    def at_speed(self, speed: float) -> "Bearing":
+        """The bearing with the constant coefficients that its tables hold for a speed of rotation (rad/s).
+
+        The sense of rotation does not matter to a table.
+
+        Raises
+        ------
+        RotorError
+            The speed is beyond the tables.
+        """
+        if self.speeds is None:
+            return self
+        low, high = float(self.speeds[0]), float(self.speeds[-1])
+        turning = abs(speed)
+        inside = low * (1.0 - 1e-12) <= turning <= high * (1.0 + 1e-12)
+        require(inside, f"speed of bearing {self.name!r}", speed, f"a speed in its table, {low:g} to {high:g} rad/s")
+        turning = min(max(turning, low), high)
+        stiffness, damping = (
+            np.asarray(PchipInterpolator(self.speeds, table)(turning)) if table.ndim == 3 else table
+            for table in (self.stiffness, self.damping)
+        )
+        return replace(self, stiffness=stiffness, damping=damping, speeds=None)
+
+    @property
+    def radial_stiffness(self) -> FloatArray:
+        """(2, 2) over x, y, N/m."""
+        return self._constant(self.stiffness)[:2, :2]
+
+    @property
+    def radial_damping(self) -> FloatArray:
+        """(2, 2) over x, y, N·s/m."""
+        return self._constant(self.damping)[:2, :2]
+
+    @property
+    def spatial_stiffness(self) -> FloatArray:
+        """(5, 5) over x, y, z and the rotations about x and y."""
+        return _spatial(self._constant(self.stiffness))
+
+    @property
+    def spatial_damping(self) -> FloatArray:
+        """(5, 5) over x, y, z and the rotations about x and y."""
+        return _spatial(self._constant(self.damping))
+
     @property
     def mean_stiffness(self) -> float:
         """(k_xx + k_yy) / 2, the stiffness of the planar modal basis (TM-101442 Eq. 7), N/m."""
-        return 0.5 * float(self.stiffness[0, 0] + self.stiffness[1, 1])
+        return 0.5 * float(np.trace(self.radial_stiffness))
+
+    @property
+    def mean_tilt_stiffness(self) -> float:
+        """The same of the rotations about x and y, N·m/rad."""
+        return 0.5 * float(np.trace(self.spatial_stiffness[3:, 3:]))
 
     @property
     def has_cross_stiffness(self) -> bool:
         """Whether a displacement in x is answered in y, or the reverse."""
-        return bool(self.stiffness[0, 1] != 0.0 or self.stiffness[1, 0] != 0.0)
+        return bool(self.radial_stiffness[0, 1] != 0.0 or self.radial_stiffness[1, 0] != 0.0)
 
     @property
     def mean_support(self) -> RadialSupport:
         """The planar spring of the modal basis."""
-        return RadialSupport(self.at, self.mean_stiffness)
+        return RadialSupport(self.at, self.mean_stiffness, self.mean_tilt_stiffness)
 
     def plane_support(self, direction: int) -> RadialSupport:
         """The bearing's own direct spring in x (``direction`` 0) or y (1)."""
-        return RadialSupport(self.at, float(self.stiffness[direction, direction]))
+        # The section's slope in x is its rotation about y; the slope in y is minus that about x.
+        tilt = float(self.spatial_stiffness[4 - direction, 4 - direction])
+        return RadialSupport(self.at, float(self.radial_stiffness[direction, direction]), tilt)
+
+    def _constant(self, matrix: FloatArray) -> FloatArray:
+        if matrix.ndim == 3:
+            raise RotorError(f"bearing {self.name!r} has a table over speed; expected one speed of it, by at_speed")
+        return matrix
+
+    def _identity(self) -> tuple[object, ...]:
+        arrays = [self.stiffness, self.damping, self.speeds]
+        if self.pedestal is not None:
+            arrays += [self.pedestal.stiffness, self.pedestal.damping, np.array(self.pedestal.mass)]
+        return (self.name, self.at, *(None if array is None else (array.shape, array.tobytes()) for array in arrays))
+
+
+def _frozen(what: str, value: npt.ArrayLike) -> FloatArray:
+    """A finite array that nobody can change."""
+    array = np.array(value, dtype=np.float64)
+    require(bool(np.isfinite(array).all()), what, array.tolist(), "finite numbers")
+    array.setflags(write=False)
+    return array
+
+
+def _spatial(matrix: FloatArray) -> FloatArray:
+    if matrix.shape == (5, 5):
+        return matrix
+    whole = np.zeros((5, 5))
+    whole[:2, :2] = matrix
+    return whole

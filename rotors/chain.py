@@ -145,8 +145,8 @@ def bending_chain(rotor: Rotor, supports: tuple[RadialSupport, ...], highest: fl
     distributed = rotor.mass_model == "distributed"
     sections = np.array(
         [
-            (1.0 / s.shear_stiffness, 1.0 / s.bending_stiffness, s.mass / s.length, s.polar_inertia / s.length)
-            for s in rotor.segments
+            (1.0 / s.shear_stiffness, 1.0 / s.bending_stiffness, s.mass_per_length, s.polar_inertia_per_length)
+            for s in (segment.section(0.5) for segment in rotor.segments)
         ]
     )
     per_length = sections[_segment_of_span(rotor, stations)]
@@ -186,7 +186,12 @@ def bending_chain(rotor: Rotor, supports: tuple[RadialSupport, ...], highest: fl
 def torsion_chain(rotor: Rotor, highest: float) -> Chain:
     """Chain of a rotor's free torsion, good up to ``highest`` rad/s."""
     stations = merged_positions(rotor.joints, [*(disc.at for disc in rotor.discs)])
-    sections = np.array([(1.0 / s.torsional_stiffness, s.polar_inertia / s.length) for s in rotor.segments])
+    sections = np.array(
+        [
+            (1.0 / s.torsional_stiffness, s.polar_inertia_per_length)
+            for s in (segment.section(0.5) for segment in rotor.segments)
+        ]
+    )
     per_length = sections[_segment_of_span(rotor, stations)]
     distributed = float(rotor.mass_model == "distributed")
     flexibility, inertia = per_length[:, :1], per_length[:, 1:] * distributed

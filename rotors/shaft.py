@@ -1,7 +1,7 @@
 """The rotor as the user describes it: round segments end to end, and rigid discs on them."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import RotorError, require, require_finite
-from .material import ShaftMaterial, ShearFormula, shear_coefficient
+from .material import ShaftMaterial, ShearFormula
+from .section import Section
 
 FloatArray = npt.NDArray[np.float64]
 MassModel = Literal["distributed", "lumped"]
@@ -22,16 +23,20 @@ STATION_TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight round piece of shaft.
+    """A straight round piece of shaft, cylindrical or conical.
 
     Parameters
     ----------
     length, outer_diameter, inner_diameter
-        In m; the bore (inner diameter) may be zero.
+        In m; the bore (inner diameter) may be zero. Of a cone these are the diameters at its left end.
     material
         Its material.
     shear_coefficient
         ``"cowper"``, ``"hutchinson"``, or the number κ itself.
+    right_outer_diameter, right_inner_diameter
+        At the right end in m, between which the diameters change linearly; None where they do not change.
+    axial_force
+        Static force in N that the piece carries, tension positive.
 
     Raises
     ------
@@ -45,66 +50,79 @@ class Segment:
     inner_diameter: float
     material: ShaftMaterial
     shear_coefficient: ShearFormula | float = "cowper"
+    right_outer_diameter: float | None = None
+    right_inner_diameter: float | None = None
+    axial_force: float = 0.0
 
     def __post_init__(self) -> None:
         require_finite("segment length", self.length, positive=True)
-        require_finite("segment outer_diameter", self.outer_diameter, positive=True)
-        require_finite("segment inner_diameter", self.inner_diameter, minimum=0.0)
-        require(
-            self.inner_diameter < self.outer_diameter,
-            "segment inner_diameter",
-            self.inner_diameter,
-            f"less than the outer diameter {self.outer_diameter:g} m",
-        )
-        require_finite("shear coefficient", self.shear_factor, positive=True)
-
-    @property
-    def shear_factor(self) -> float:
-        """Shear coefficient κ as a number."""
+        require_finite("segment axial_force", self.axial_force)
+        for side, (outer, inner) in zip(("", "right_"), self.end_diameters, strict=True):
+            require_finite(f"segment {side}outer_diameter", outer, positive=True)
+            require_finite(f"segment {side}inner_diameter", inner, minimum=0.0)
+            expected = f"less than the outer diameter {outer:g} m"
+            require(inner < outer, f"segment {side}inner_diameter", inner, expected)
         if isinstance(self.shear_coefficient, str):
-            ratio = self.inner_diameter / self.outer_diameter
-            return shear_coefficient(self.shear_coefficient, ratio, self.material.poisson_ratio)
-        return float(self.shear_coefficient)
+            _ = self.section(0.0).shear_factor  # raises where the material does not suit the formula
+        else:
+            require_finite("shear coefficient", self.shear_coefficient, positive=True)
 
     @property
-    def area(self) -> float:
-        """Area of the section in m²."""
-        return math.pi / 4.0 * (self.outer_diameter**2 - self.inner_diameter**2)
+    def end_diameters(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Outer and inner diameter at the left end, and at the right end, m."""
+        right_outer = self.outer_diameter if self.right_outer_diameter is None else self.right_outer_diameter
+        right_inner = self.inner_diameter if self.right_inner_diameter is None else self.right_inner_diameter
+        return (self.outer_diameter, self.inner_diameter), (right_outer, right_inner)
 
     @property
-    def second_moment(self) -> float:
-        """Second moment of area about a diameter, m⁴; twice this is the polar one."""
-        return math.pi / 64.0 * (self.outer_diameter**4 - self.inner_diameter**4)
+    def is_conical(self) -> bool:
+        """Whether a diameter changes along the piece."""
+        left, right = self.end_diameters
+        return left != right
 
-    @property
-    def bending_stiffness(self) -> float:
-        """E I in N·m²."""
-        return self.material.youngs_modulus * self.second_moment
-
-    @property
-    def shear_stiffness(self) -> float:
-        """κ G A in N."""
-        return self.shear_factor * self.material.shear_modulus * self.area
-
-    @property
-    def torsional_stiffness(self) -> float:
-        """G J in N·m²."""
-        return 2.0 * self.material.shear_modulus * self.second_moment
+    def section(self, fraction: float) -> Section:
+        """The section at a fraction of the length from the left end, 0 to 1."""
+        (outer, inner), (right_outer, right_inner) = self.end_diameters
+        return Section(
+            outer + fraction * (right_outer - outer),
+            inner + fraction * (right_inner - inner),
+            self.material,
+            self.shear_coefficient,
+        )
 
     @property
     def mass(self) -> float:
         """Mass in kg."""
-        return self.material.density * self.area * self.length
+        return self._integral(lambda section, _: section.mass_per_length)
+
+    @property
+    def mass_centre(self) -> float:
+        """Distance of the centre of mass from the left end, m."""
+        return self._integral(lambda section, z: section.mass_per_length * z) / self.mass if self.mass else 0.0
 
     @property
     def polar_inertia(self) -> float:
         """Moment of inertia about the axis, kg·m²."""
-        return 2.0 * self.material.density * self.second_moment * self.length
+        return self._integral(lambda section, _: section.polar_inertia_per_length)
 
     @property
     def diametral_inertia(self) -> float:
-        """Moment of inertia about a diameter through its own centre, kg·m²: I_p/2 + m l²/12."""
-        return 0.5 * self.polar_inertia + self.mass * self.length**2 / 12.0
+        """Moment of inertia about a diameter through its own centre of mass, kg·m²."""
+        about_left = self._integral(lambda section, z: section.mass_per_length * z**2)
+        return 0.5 * self.polar_inertia + about_left - self.mass * self.mass_centre**2
+
+    def _integral(self, density: Callable[[Section, float], float]) -> float:
+        """Integral along the piece; Gauss's four points are exact for the polynomials of a cone (degree 4)."""
+        points, weights = np.polynomial.legendre.leggauss(4)
+        fractions = 0.5 * (points + 1.0)
+        return (
+            0.5
+            * self.length
+            * math.fsum(
+                weight * density(self.section(fraction), fraction * self.length)
+                for fraction, weight in zip(fractions.tolist(), weights.tolist(), strict=True)
+            )
+        )
 
 
 @dataclass(frozen=True)

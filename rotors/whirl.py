@@ -211,8 +211,8 @@ def plane_matrices(basis: LateralModes, bearings: Sequence[Bearing]) -> tuple[Fl
         shape = basis.evaluate([bearing.at])[0]
         outer = shape @ shape.T
         # Compensation: the basis already holds the averaged stiffness.
-        stiffness += np.kron(bearing.stiffness - bearing.mean_stiffness * np.eye(2), outer)
-        damping += np.kron(bearing.damping, outer)
+        stiffness += np.kron(bearing.radial_stiffness - bearing.mean_stiffness * np.eye(2), outer)
+        damping += np.kron(bearing.radial_damping, outer)
     return stiffness, damping
 
 

@@ -1,0 +1,45 @@
+"""A flexible coupling between two shafts on one axis."""
+
+from dataclasses import dataclass
+
+from .errors import require_finite
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A flexible coupling between two shafts on one axis, in their row of segments.
+
+    Its compliances are spread evenly over its length, as those of a massless beam with κGA = k L, EI = k_t L,
+    GJ = k_θ L and EA = k_z L; what it weighs is half at either end.
+
+    Parameters
+    ----------
+    length
+        From hub to hub, m.
+    lateral_stiffness, axial_stiffness
+        k and k_z, N/m.
+    tilt_stiffness, torsional_stiffness
+        k_t against an angle between the axes and k_θ about them, N·m/rad.
+    mass, polar_inertia, diametral_inertia
+        Of the whole coupling, kg and kg·m².
+
+    Raises
+    ------
+    RotorError
+        A length or stiffness that is not positive and finite, or a negative inertia.
+    """
+
+    length: float
+    lateral_stiffness: float
+    tilt_stiffness: float
+    torsional_stiffness: float
+    axial_stiffness: float
+    mass: float = 0.0
+    polar_inertia: float = 0.0
+    diametral_inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        for what in ("length", "lateral_stiffness", "tilt_stiffness", "torsional_stiffness", "axial_stiffness"):
+            require_finite(f"coupling {what}", getattr(self, what), positive=True)
+        for what in ("mass", "polar_inertia", "diametral_inertia"):
+            require_finite(f"coupling {what}", getattr(self, what), minimum=0.0)
