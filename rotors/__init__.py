@@ -19,12 +19,13 @@ Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z al
 the gyroscopic sign are those of `rotors.whirl`.
 """
 
-from .attachment import attach_loads
+from .attachment import attach_loads, attach_torques
 from .bearing import Bearing, Pedestal, RadialSupport
 from .certificate import ModeCertificate
 from .errors import IncompleteModesError, RotorError
 from .lateral import LateralModes, solve_lateral_modes
 from .material import ShaftMaterial, shear_coefficient
+from .modal import ModalRotor, modal_rotor
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
 from .section import Section
 from .shaft import Disc, Rotor, Segment
@@ -39,6 +40,7 @@ __all__ = [
     "Disc",
     "IncompleteModesError",
     "LateralModes",
+    "ModalRotor",
     "ModeCertificate",
     "Pedestal",
     "RadialSupport",
@@ -51,7 +53,9 @@ __all__ = [
     "TorsionalModes",
     "WhirlModes",
     "attach_loads",
+    "attach_torques",
     "critical_speeds",
+    "modal_rotor",
     "rest_frequencies",
     "shear_coefficient",
     "solve_lateral_modes",

@@ -78,7 +78,7 @@ def solve_torsional_modes(
         The modes fail their own proof.
     """
     require(rotor.polar_inertia > 0.0, f"rotor {rotor.name!r} polar inertia", 0.0, "a positive inertia")
-    return _torsional_modes(find_modes(lambda highest: torsion_chain(rotor, highest), frequency_limit, count))
+    return _of(find_modes(lambda highest: torsion_chain(rotor, highest), frequency_limit, count))
 
 
 def solve_torsional_chain(inertias: Sequence[float], stiffnesses: Sequence[float]) -> TorsionalModes:
@@ -121,19 +121,26 @@ def solve_torsional_chain(inertias: Sequence[float], stiffnesses: Sequence[float
             is_station=np.ones(masses.size, dtype=np.bool_),
         )
 
-    return _torsional_modes(find_modes(build, None, int(np.count_nonzero(masses))))
+    return _of(find_modes(build, None, int(np.count_nonzero(masses))))
 
 
-def _torsional_modes(found: FoundModes) -> TorsionalModes:
-    chain = found.fields.chain
-    nodal = found.mixture @ found.fields.states[:, chain.is_station, 0]
+def _of(found: FoundModes) -> TorsionalModes:
+    return torsional_modes(found.frequencies, found.fields, found.mixture, found.certificate)
+
+
+def torsional_modes(
+    frequencies: FloatArray, fields: Fields, mixture: FloatArray, certificate: ModeCertificate
+) -> TorsionalModes:
+    """Assemble the result from fields in the chain's units and the mixture that makes modes of them."""
+    chain = fields.chain
+    nodal = mixture @ fields.states[:, chain.is_station, 0]
     largest = np.take_along_axis(nodal, np.abs(nodal).argmax(axis=1)[:, None], axis=1)
     sign = np.where(largest < 0.0, -1.0, 1.0)
     return TorsionalModes(
-        frequencies=found.frequencies,
+        frequencies=frequencies,
         stations=chain.nodes[chain.is_station],
         angle=sign * nodal * chain.displacement_unit[0],
-        certificate=found.certificate,
-        fields=found.fields,
-        mixture=sign * found.mixture,
+        certificate=certificate,
+        fields=fields,
+        mixture=sign * mixture,
     )

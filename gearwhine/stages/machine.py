@@ -20,7 +20,6 @@ _HERTZ = 2.0 * np.pi
 # what lies above answers statically, through attachment vectors at bearings and gears.
 _LATERAL_LIMIT_HZ = 8000.0
 _LIMIT_FACTOR = 2.5
-_FEWEST_TORSIONAL = 4
 
 
 def build_machine(
@@ -46,8 +45,12 @@ def build_machine(
         components.append(
             room.rotor_component(
                 given.name,
-                _lateral_basis(case, rotor, held, gears_at),
-                _torsional_basis(case, rotor),
+                rotor_room.modal_rotor(
+                    rotor,
+                    [bearing.at_speed(speeds[given.name]) for bearing in held],
+                    frequency_limit=_HERTZ * _basis_limit(case),
+                    gears_at=gears_at,
+                ),
                 start=given.start,
                 damping_ratio=given.damping_ratio,
             )
@@ -113,24 +116,6 @@ def system_document(
         "trusted_below_hz": None if housing is None else housing.modes.certificate.limit / _HERTZ,
         "static_error": None if housing is None else static_error_document(housing.modes, housing.loaded),
     }
-
-
-def _lateral_basis(
-    case: Case, rotor: rotor_room.Rotor, bearings: tuple[rotor_room.Bearing, ...], gears_at: list[float]
-) -> rotor_room.LateralModes:
-    supports = [bearing.mean_support for bearing in bearings]
-    limit = _basis_limit(case)
-    modes = rotor_room.solve_lateral_modes(rotor, supports, frequency_limit=_HERTZ * limit)
-    if modes.count < 4:
-        modes = rotor_room.solve_lateral_modes(rotor, supports)
-    if rotor.mass_model == "lumped":
-        return modes
-    return rotor_room.attach_loads(modes, forces_at=[bearing.at for bearing in bearings] + gears_at)
-
-
-def _torsional_basis(case: Case, rotor: rotor_room.Rotor) -> rotor_room.TorsionalModes:
-    modes = rotor_room.solve_torsional_modes(rotor, frequency_limit=_HERTZ * _basis_limit(case))
-    return modes if modes.count >= _FEWEST_TORSIONAL else rotor_room.solve_torsional_modes(rotor)
 
 
 def _basis_limit(case: Case) -> float:

@@ -1,0 +1,5 @@
+"""Placeholder."""
+
+from .torsion import TorsionalModes
+
+AxialModes = TorsionalModes
