@@ -18,8 +18,10 @@ FloatArray = npt.NDArray[np.float64]
 
 # A residual smaller than this part of the static response is rounding: the basis has it already.
 NOTHING_LEFT = 1e-7
-# A free shaft has no static response: a shift of ω² this far below its first elastic ω stands in for it.
-FREE_SHIFT = 1e-3
+# A free shaft has no static response: a shift of ω² this far below its first elastic ω stands in for it. Of that
+# response all but a thousandth is rigid; what is left has a direction in error by the same part at most, and so a
+# compliance in error by its square. A smaller part would lose to rounding what it gains.
+FREE_SHIFT = 0.03
 
 
 def attach_loads(

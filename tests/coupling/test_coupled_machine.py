@@ -120,7 +120,7 @@ def rigid_motion(parts: Machine, translation: FloatArray, rotation: FloatArray) 
     axes = {gear.rotor: gear.axis for gear in (parts.meshes[0].driver, parts.meshes[0].driven)}
     for rotor in parts.rotors:
         axis = axes[rotor.name]
-        places = np.linspace(0.0, LENGTH, 7)
+        places = np.linspace(0.0, LENGTH, 15)
         rows, wanted = [], []
         for at in places:
             moved = translation + np.cross(rotation, [*axis, rotor.start + at])
