@@ -112,9 +112,7 @@ class Line:
             start = start[span] + within * part[span]
             end = start + part[span]
             nodes = np.append(nodes[span] + within * (np.diff(nodes) / counts)[span], nodes[-1])
-        table, element = piece_table(
-            self.coefficients, self.uniform, kind, start, end, lengths / self.length_unit
-        )
+        table, element = piece_table(self.coefficients, self.uniform, kind, start, end, lengths / self.length_unit)
         return Chain(
             nodes=nodes,
             table=table,

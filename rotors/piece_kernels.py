@@ -195,6 +195,4 @@ def place_transfers(
     for z in range(element.size):
         e = element[z]
         for b in range(translation.size):
-            piece_transfers(
-                lengths[e], given[e], translation[b], rotation[b], fractions[z : z + 1], out[z, b : b + 1]
-            )
+            piece_transfers(lengths[e], given[e], translation[b], rotation[b], fractions[z : z + 1], out[z, b : b + 1])

@@ -11,8 +11,8 @@ from .bearing import Bearing
 from .certificate import ModeCertificate
 from .errors import require, require_count
 from .lateral import LateralModes, solve_lateral_modes
-from .rotor_lines import bending_chain, bending_line
 from .root_count import count_below
+from .rotor_lines import bending_chain, bending_line
 from .shaft import Rotor
 from .shapes import SAME_ROOT
 from .whirl import (

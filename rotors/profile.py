@@ -148,9 +148,7 @@ def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
     return np.array(values), np.array([shear, bending, 0.0, 0.0, 0.0])
 
 
-def _taper(
-    part: Segment, start: float, end: float, halvings: int
-) -> list[tuple[float, float, FloatArray, FloatArray]]:
+def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:
     """Start and end (fractions of the cone), coefficients and extremes of pieces mild enough."""
     samples = [_segment_values(part, start + fraction * (end - start)) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
     values, rows = np.array([value for value, _ in samples[:-2]]), np.array([row for _, row in samples])
