@@ -19,7 +19,9 @@ Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z al
 the gyroscopic sign are those of `rotors.whirl`.
 """
 
-from .attachment import attach_loads, attach_torques
+from .attachment import attach_loads, attach_motions
+from .axial import AxialModes, solve_axial_modes
+from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
 from .certificate import ModeCertificate
 from .errors import IncompleteModesError, RotorError
@@ -28,12 +30,15 @@ from .material import ShaftMaterial, shear_coefficient
 from .modal import ModalRotor, modal_rotor
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
 from .section import Section
-from .shaft import Disc, Rotor, Segment
+from .segment import Segment
+from .shaft import Disc, Rotor
 from .shaft_coupling import Coupling
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
 from .whirl import WhirlModes, solve_whirl, whirl_basis
 
 __all__ = [
+    "AxialModes",
+    "AxisSpring",
     "Bearing",
     "Coupling",
     "CriticalSpeeds",
@@ -53,11 +58,12 @@ __all__ = [
     "TorsionalModes",
     "WhirlModes",
     "attach_loads",
-    "attach_torques",
+    "attach_motions",
     "critical_speeds",
     "modal_rotor",
     "rest_frequencies",
     "shear_coefficient",
+    "solve_axial_modes",
     "solve_lateral_modes",
     "solve_torsional_chain",
     "solve_torsional_modes",

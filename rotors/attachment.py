@@ -5,14 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg
-from scipy.sparse.linalg import splu
 
-from .chain import Chain
 from .fields import Fields
 from .lateral import LateralModes, lateral_modes
-from .search import require_positions
-from .shapes import ritz_vectors, shooting_matrix
-from .torsion import TorsionalModes, torsional_modes
+from .rods import Modes, RodModes, rod_modes
+from .search import FoundModes, require_positions
+from .shapes import responses, ritz_vectors
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -48,39 +46,38 @@ def attach_loads(
     """
     forces = require_positions(modes.stations, list(forces_at))
     moments = require_positions(modes.stations, list(moments_at))
-    found = _attached(modes, [(place, 0) for place in forces.tolist()] + [(place, 1) for place in moments.tolist()])
+    loads = [(place, 0) for place in forces.tolist()] + [(place, 1) for place in moments.tolist()]
+    found = _attached(modes, loads)
     if found is None:
         return modes
-    return lateral_modes(*found, modes.supports, modes.certificate)
+    return lateral_modes(found.frequencies, found.fields, found.mixture, modes.supports, modes.certificate)
 
 
-def attach_torques(modes: TorsionalModes, *, torques_at: Sequence[float]) -> TorsionalModes:
-    """Torsional modes, and behind them vectors that make the static twist under point torques exact.
+def attach_motions(modes: Modes, at: Sequence[float]) -> Modes:
+    """Torsional or axial modes, and behind them vectors that make the static response to point loads exact.
 
-    As `attach_loads`; the shaft is free to turn, so that a torque's static response is the twist that it leaves beside
-    the rotation of the whole.
+    As `attach_loads`, of torques or of forces along the axis. Of a free shaft it is the strain that a load leaves
+    beside the motion of the whole.
 
     Parameters
     ----------
     modes
-        A certified set from `rotors.solve_torsional_modes`.
-    torques_at
-        Places of torques, m from the left end.
+        A certified set from `rotors.solve_torsional_modes` or `rotors.solve_axial_modes`.
+    at
+        Places of the loads, m from the left end.
 
     Raises
     ------
     RotorError
         A place that is not on the shaft.
     """
-    places = require_positions(modes.stations, list(torques_at))
+    places = require_positions(modes.stations, list(at))
     found = _attached(modes, [(place, 0) for place in places.tolist()])
-    return modes if found is None else torsional_modes(*found, modes.certificate)
+    return modes if found is None else rod_modes(type(modes), found)
 
 
-def _attached(
-    modes: LateralModes | TorsionalModes, loads_at: list[tuple[float, int]]
-) -> tuple[FloatArray, Fields, FloatArray] | None:
-    """Frequencies, fields and mixture of modes and the vectors of some loads behind them; None if these add nothing.
+def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]]) -> FoundModes | None:
+    """Modes with the vectors of some loads behind them; None where these add nothing.
 
     Each load is a place (m) and the component of displacement along which it acts.
     """
@@ -90,35 +87,26 @@ def _attached(
     if not loads:
         return None
     elastic = modes.frequencies[modes.frequencies > 0.0]
-    is_free = chain.rigid_shapes().shape[0] > 0
+    zeros = modes.count - elastic.size
+    is_free = chain.rigid_shapes.shape[0] > 0
     reference = elastic[0] if elastic.size else 1.0
-    responses = _responses(chain, loads, -((FREE_SHIFT * reference) ** 2) if is_free else 0.0)
-    fields = modes.fields.on(chain).joined(responses)
-    mixture = _residuals(fields, modes.mixture, int(np.count_nonzero(modes.frequencies == 0.0)), len(loads))
+    squared_shift = -((FREE_SHIFT * reference) ** 2) if is_free else 0.0
+    static = Fields(chain, np.full(len(loads), squared_shift), responses(chain, loads, squared_shift))
+    fields = modes.fields.on(chain).joined(static)
+    mixture = _residuals(fields, modes.mixture, zeros, len(loads))
     if mixture.shape[0] == 0:
         return None
     squared, vectors = ritz_vectors(*fields.energies(mixture))
     old = np.hstack([modes.mixture, np.zeros((modes.count, len(loads)))])
     frequencies = np.concatenate([modes.frequencies, np.sqrt(np.maximum(squared, 0.0))])
-    return frequencies, fields, np.vstack([old, vectors.T @ mixture])
-
-
-def _responses(chain: Chain, loads: list[tuple[int, int]], frequency_squared: float) -> Fields:
-    """Fields of the responses to unit loads, each a node and a component, at one ω²."""
-    order = 2 * chain.size * chain.nodes.size
-    sides = np.zeros((order, len(loads)))
-    for load, (node, component) in enumerate(loads):
-        sides[2 * chain.size * node + component, load] = -1.0
-    solved = splu(shooting_matrix(chain, frequency_squared)).solve(sides)
-    states = solved.T.reshape(len(loads), chain.nodes.size, 2 * chain.size)
-    return Fields(chain, np.full(len(loads), frequency_squared), states)
+    return FoundModes(frequencies, fields, np.vstack([old, vectors.T @ mixture]), modes.certificate)
 
 
 def _residuals(fields: Fields, modes: FloatArray, zeros: int, count: int) -> FloatArray:
     """Combinations of fields that span the last ``count`` of them less the modes, (r, fields).
 
     The first ``zeros`` modes are rigid. They go first: the response of a shaft that is all but free is rigid but for
-    a part in millions, and it is this part of which something may be left.
+    a small part, and it is this part of which something may be left.
     """
     kept = np.hstack([modes, np.zeros((modes.shape[0], count))])
     rows = np.hstack([np.zeros((count, modes.shape[1])), np.eye(count)])

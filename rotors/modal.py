@@ -21,8 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .attachment import attach_loads, attach_torques
-from .axial import AxialModes
+from .attachment import attach_loads, attach_motions
+from .axial import AxialModes, solve_axial_modes
 from .bearing import Bearing
 from .errors import require
 from .lateral import LateralModes, solve_lateral_modes
@@ -151,5 +151,16 @@ def modal_rotor(
     if rotor.mass_model == "distributed":
         tilted = [support.at for support in supports if support.tilt_stiffness > 0.0]
         lateral = attach_loads(lateral, forces_at=ports, moments_at=tilted)
-        torsional = attach_torques(torsional, torques_at=gears_at)
-    return ModalRotor(lateral, torsional, None, tuple(bearings), ports)
+        torsional = attach_motions(torsional, gears_at)
+    return ModalRotor(lateral, torsional, _axial(rotor, bearings, frequency_limit, count), tuple(bearings), ports)
+
+
+def _axial(
+    rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
+) -> AxialModes | None:
+    """Free axial modes with vectors for forces at the bearings that hold the shaft along its axis, if any do."""
+    thrust = [b.at for b in bearings if b.spatial_stiffness[2].any() or b.spatial_damping[2].any()]
+    if not thrust:
+        return None
+    modes = solve_axial_modes(rotor, frequency_limit=frequency_limit, count=count)
+    return modes if rotor.mass_model == "lumped" else attach_motions(modes, thrust)

@@ -12,7 +12,7 @@ from rotors import (
     RotorError,
     Segment,
     ShaftMaterial,
-    attach_torques,
+    attach_motions,
     modal_rotor,
     solve_torsional_modes,
     solve_whirl,
@@ -77,7 +77,7 @@ def test_attached_torques_make_the_static_twist_exact() -> None:
     """Opposite torques at two places of a free shaft twist the length between them by M L / GJ."""
     shaft = Rotor("shaft", [BAR] * 4, [Disc(0.0, 1.0, 0.02, 0.01), Disc(1.0, 1.0, 0.05, 0.02)])
     modes = solve_torsional_modes(shaft, count=3)
-    attached = attach_torques(modes, torques_at=[0.25, 0.75])
+    attached = attach_motions(modes, [0.25, 0.75])
     assert attached.count == 5
     assert np.array_equal(attached.frequencies[:3], modes.frequencies)
 
@@ -91,7 +91,7 @@ def test_attached_torques_make_the_static_twist_exact() -> None:
 
 
 def test_torsional_set_stays_orthonormal_with_its_vectors() -> None:
-    attached = attach_torques(solve_torsional_modes(SHAFT, count=4), torques_at=[0.3, 0.9, 0.9])
+    attached = attach_motions(solve_torsional_modes(SHAFT, count=4), [0.3, 0.9, 0.9])
     mass, stiffness = attached.fields.energies(attached.mixture)
     assert np.abs(mass - np.eye(attached.count)).max() < 1e-9
     off = stiffness - np.diag(np.diag(stiffness))
