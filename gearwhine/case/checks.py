@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from gearwhine.case.check_bearings import check_bearings
 from gearwhine.case.check_gears import check_gears
 from gearwhine.case.check_housing import check_box, check_housing_form
 from gearwhine.case.check_later import check_later
@@ -22,6 +23,7 @@ def check(draft: Draft) -> Iterator[Finding]:
     yield from check_housing_form(draft)
     yield from check_box(draft)
     yield from check_shafts(draft)
+    yield from check_bearings(draft)
     yield from check_gears(draft)
     yield from check_running(draft)
     yield from check_provenance(draft)

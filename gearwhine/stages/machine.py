@@ -35,12 +35,13 @@ def build_machine(
     require(case, "rotor", "operation", command="system")
     assert case.operation is not None
     speeds = rotor_speeds(case)
-    _check_bows(case)
+    require_no_bow(case)
     components = []
     bearings: list[room.MountedBearing] = []
     for given in case.rotor:
         progress(f"modes of rotor {given.name}")
         rotor, held = build_rotor(case, given), build_bearings(case, given.name)
+        limit, count = _kept(case, given.name)
         gears_at = [gear.at for gear in case.gear if gear.rotor == given.name and gear.at is not None]
         components.append(
             room.rotor_component(
@@ -48,7 +49,8 @@ def build_machine(
                 rotor_room.modal_rotor(
                     rotor,
                     [bearing.at_speed(speeds[given.name]) for bearing in held],
-                    frequency_limit=_HERTZ * _basis_limit(case),
+                    frequency_limit=limit,
+                    count=count,
                     gears_at=gears_at,
                 ),
                 start=given.start,
@@ -84,6 +86,7 @@ def solve_machine(
     ``folder`` and ``fresh`` are those of :func:`gearwhine.stages.housing.solve_housing`.
     """
     require(case, "rotor", "operation", command="system")
+    require_no_bow(case)
     pairs = solve_gears(case, progress) if case.gear_pair else ()
     housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     return housing, pairs, build_machine(case, housing, pairs, progress)
@@ -118,9 +121,15 @@ def system_document(
     }
 
 
-def _basis_limit(case: Case) -> float:
+def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
+    """What is kept of a rotor: a frequency limit [rad/s], or a number of modes of each kind."""
+    given = case.rotor_named(rotor)
+    if given.modes is not None:
+        return None, given.modes
+    if given.frequency_limit is not None:
+        return _HERTZ * given.frequency_limit, None
     limit = (case.housing.frequency_limit or 0.0) if case.housing else 0.0
-    return max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit)
+    return _HERTZ * max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit), None
 
 
 def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingComponent:
@@ -145,8 +154,14 @@ def _mesh(case: Case, pair: SolvedPair) -> room.GearMesh:
     return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, pair.given.backlash)
 
 
-def _check_bows(case: Case) -> None:
+def require_no_bow(case: Case) -> None:
+    """Raise for residual bows, which so far only the analysis of a rotor by itself knows.
+
+    Raises
+    ------
+    CaseError
+    """
     for index, rotor in enumerate(case.rotor):
         if rotor.bow:
-            expected = "nothing: residual bow comes in a later version"
+            expected = "no bow for the coupled system, which takes it in a later version; 'gearwhine rotors' does now"
             raise CaseError([Problem(f"rotor[{index}].bow", "a bow", expected, label=f'rotor "{rotor.name}"')])

@@ -1,20 +1,14 @@
-"""The rotors of a case: modes at rest, whirl at speed, critical speeds."""
+"""The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
 
 import rotors as room
-from gearwhine.case import Case, require, rotor_speeds
+from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import build_bearings, build_rotor
 
-FloatArray = npt.NDArray[np.float64]
-
-_HERTZ = 2.0 * np.pi
-_RPM = 60.0 / (2.0 * np.pi)
+Bearings = tuple[room.Bearing, ...]
 
 
 @dataclass(frozen=True)
@@ -25,23 +19,34 @@ class SolvedRotor:
     ----------
     rotor : rotors.Rotor
         With its gears as discs.
-    bearings : tuple of rotors.Bearing
+    bearings, resting : tuple of rotors.Bearing
+        As given, with their tables over speed; and as they hold the rotor at rest.
+    rest_speed : float or None
+        The speed of their tables that stands for rest, the lowest that all of them hold [rad/s]; None without tables.
     rest : rotors.RestFrequencies
     lateral : rotors.LateralModes
         In one plane at averaged support stiffness.
     torsional : rotors.TorsionalModes
     whirl : tuple of rotors.WhirlModes
         At the speed of operation, then at those of the sweep.
+    campbell : tuple of rotors.WhirlModes
+        At the speeds of the Campbell diagram.
     critical : rotors.CriticalSpeeds
+    operation : float or None
+        Speed of operation [rad/s].
     """
 
     rotor: room.Rotor
-    bearings: tuple[room.Bearing, ...]
+    bearings: Bearings
+    resting: Bearings
+    rest_speed: float | None
     rest: room.RestFrequencies
     lateral: room.LateralModes
     torsional: room.TorsionalModes
     whirl: tuple[room.WhirlModes, ...]
+    campbell: tuple[room.WhirlModes, ...]
     critical: room.CriticalSpeeds
+    operation: float | None
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
@@ -53,71 +58,39 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         Where the case has no rotors, or one cannot be solved as it stands.
     """
     require(case, "rotor", command="rotors")
+    analysis = case.rotor_analysis or RotorAnalysis()
     solved = []
     for given in case.rotor:
         progress(f"rotor {given.name}")
         rotor, bearings = build_rotor(case, given), build_bearings(case, given.name)
-        basis = room.whirl_basis(rotor, bearings)
+        lowest, _ = table_range(case, given.name)
+        resting = tuple(bearing.at_speed(lowest) for bearing in bearings)
+        speeds = whirl_speeds(case, given.name)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
                 bearings=bearings,
-                rest=room.rest_frequencies(rotor, bearings),
-                lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in bearings]),
+                resting=resting,
+                rest_speed=lowest if any(bearing.speeds is not None for bearing in bearings) else None,
+                rest=room.rest_frequencies(rotor, resting, count=analysis.modes),
+                lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
                 torsional=room.solve_torsional_modes(rotor),
-                whirl=tuple(
-                    room.solve_whirl(rotor, bearings, speed, basis=basis) for speed in _speeds(case, given.name)
-                ),
-                critical=room.critical_speeds(rotor, bearings, basis=basis),
+                whirl=_whirl(rotor, bearings, speeds, analysis.modes),
+                campbell=_whirl(rotor, bearings, campbell_speeds(case, given.name), analysis.modes),
+                critical=room.critical_speeds(rotor, resting, count=analysis.modes),
+                operation=speeds[0] if case.operation is not None else None,
             )
         )
     return tuple(solved)
 
 
-def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
-    """The rotors as the command's JSON."""
-    return {
-        "rotors": [
-            {
-                "name": one.rotor.name,
-                "mass_kg": one.rotor.mass,
-                "lateral_hz": (one.rest.frequencies / _HERTZ).tolist(),
-                "torsional_hz": (one.torsional.frequencies / _HERTZ).tolist(),
-                "whirl": [
-                    {
-                        "speed_rpm": whirl.speed * _RPM,
-                        "frequency_hz": (whirl.frequencies / _HERTZ).tolist(),
-                        "damping_ratio": whirl.damping_ratios.tolist(),
-                        "direction": whirl.direction.tolist(),
-                    }
-                    for whirl in one.whirl
-                ],
-                "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
-                "critical_directions": one.critical.direction.round(6).tolist(),
-                "damping": "of the bearings; the shaft's own acts in the coupled system",
-                "certificate": _certificate(one),
-            }
-            for one in solved
-        ]
-    }
-
-
-def _certificate(one: SolvedRotor) -> dict[str, Any]:
-    """The count's proof; for stiffness that couples the planes there is no count, and nothing is claimed."""
-    certificate = one.rest.certificate
-    coupled = any(bearing.has_cross_stiffness for bearing in one.bearings)
-    return {
-        "limit_hz": None if coupled else certificate.limit / _HERTZ,
-        "expected": None if coupled else certificate.expected,
-        "found": len(one.rest.frequencies),
-        "complete": None if coupled else certificate.complete,
-        "max_residual": certificate.max_residual,
-    }
-
-
-def _speeds(case: Case, rotor: str) -> list[float]:
-    """Speeds of one rotor at operation and through the sweep [rad/s]."""
-    speeds = [] if case.operation is None else [rotor_speeds(case).get(rotor, 0.0)]
-    for speed in case.sweep.speeds if case.sweep else ():
-        speeds.append(rotor_speeds(case, speed).get(rotor, 0.0))
-    return speeds
+def _whirl(
+    rotor: room.Rotor, bearings: Bearings, speeds: Sequence[float], count: int | None
+) -> tuple[room.WhirlModes, ...]:
+    """Whirl at each speed; bearings that do not change share one basis."""
+    constant = all(bearing.speeds is None for bearing in bearings)
+    basis = room.whirl_basis(rotor, bearings, count=count) if constant and speeds else None
+    return tuple(
+        room.solve_whirl(rotor, [bearing.at_speed(speed) for bearing in bearings], speed, count=count, basis=basis)
+        for speed in speeds
+    )
