@@ -1,22 +1,24 @@
 """How every figure looks: colours, sizes on paper, axes, and the file it goes to."""
 
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
-FloatArray = npt.NDArray[np.float64]
 
 INK, BLUE, RED, GREY, PALE = "#202428", "#1f5a96", "#b5382a", "#8a9097", "#e4e7ea"
 SERIES = (BLUE, "#c77d1e", "#3b7d4f", "#7a4f9a", "#5b6770", "#a3485f")
 SHEET_WIDTH = 160.0  # of a figure made for print [mm]
-NOTE, TICK, LABEL, TITLE = 6.5, 7.5, 8.0, 9.0  # letters on such a sheet [points]
+LEFT, RIGHT = 15.0, 4.0  # margins of such a sheet beside its panels [mm]
+HEAD, FOOT = 11.0, 11.0  # ... for its title and note, and for an axis with its name [mm]
+PANEL_WIDTH = SHEET_WIDTH - LEFT - RIGHT
+NOTE, TICK, LABEL, TITLE = 6.5, 7.0, 7.5, 9.0  # letters on it [points]
+MM_PER_INCH = 25.4
+RPM = 9.549296585513721  # revolutions per minute of 1 rad/s
 
 _SCREEN_DPI, _PRINT_DPI = 130, 200
-_MM_PER_INCH = 25.4
 
 
 def tidy(axes: Axes, *, size: float = 9.0) -> None:
@@ -27,19 +29,19 @@ def tidy(axes: Axes, *, size: float = 9.0) -> None:
     axes.set_axisbelow(True)
 
 
-def sheet(height: float) -> Figure:
-    """An empty sheet for print, 160 mm wide and ``height`` mm high."""
-    return Figure(figsize=(SHEET_WIDTH / _MM_PER_INCH, height / _MM_PER_INCH), dpi=_PRINT_DPI)
+def sheet(height: float, title: str, note: str = "") -> Figure:
+    """A sheet for print, 160 mm wide and ``height`` mm high, with a title and a note in grey at its upper left."""
+    figure = Figure(figsize=(SHEET_WIDTH / MM_PER_INCH, height / MM_PER_INCH), dpi=_PRINT_DPI)
+    # Names are the user's: a dollar sign in one is no formula.
+    for text, size, color, down in ((title, TITLE, INK, 1.5), (note, NOTE, GREY, 6.2)):
+        if text:
+            figure.text(0.0125, 1.0 - down / height, text, size=size, color=color, va="top", parse_math=False)
+    return figure
 
 
-def sheet_height(figure: Figure) -> float:
-    """Height of a sheet [mm]."""
-    return float(figure.get_size_inches()[1]) * _MM_PER_INCH
-
-
-def panel(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
+def panel(figure: Figure, bottom: float, height: float, *, left: float = LEFT, width: float = PANEL_WIDTH) -> Axes:
     """Axes at a place of a sheet, all in mm from its lower left corner, so that a scale can be true."""
-    across, up = SHEET_WIDTH, sheet_height(figure)
+    across, up = (float(inches) * MM_PER_INCH for inches in figure.get_size_inches())
     axes = figure.add_axes((left / across, bottom / up, width / across, height / up))
     tidy(axes, size=TICK)
     axes.xaxis.label.set(size=LABEL, color=INK)
@@ -47,13 +49,13 @@ def panel(figure: Figure, left: float, bottom: float, width: float, height: floa
     return axes
 
 
-def head(figure: Figure, title: str, note: str = "") -> None:
-    """A sheet's title at its upper left, and a note in grey below; nine millimetres in all."""
-    up = sheet_height(figure)
-    # Names are the user's: a dollar sign in one is no formula.
-    figure.text(0.02, 1.0 - 1.5 / up, title, size=TITLE, color=INK, va="top", parse_math=False)
-    if note:
-        figure.text(0.02, 1.0 - 6.0 / up, note, size=NOTE, color=GREY, va="top", parse_math=False)
+def panel_size(axes: Axes) -> tuple[float, float]:
+    """Width and height of a panel, mm."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    across, up = figure.get_size_inches()
+    place = axes.get_position()
+    return place.width * float(across) * MM_PER_INCH, place.height * float(up) * MM_PER_INCH
 
 
 def shortened(text: str, most: int = 28) -> str:
@@ -62,10 +64,16 @@ def shortened(text: str, most: int = 28) -> str:
     return line if len(line) <= most else f"{line[: most - 1].rstrip()}…"
 
 
+@contextmanager
+def unknown_letters_drawn_as_boxes() -> Iterator[None]:
+    """Draw a letter that no font here has as a box, which says as much as a warning would."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
+        yield
+
+
 def save(figure: Figure, path: Path) -> str:
     """Write a figure as PNG and return the file's name; sheets for print are finer than figures for the screen."""
-    with warnings.catch_warnings():
-        # A letter that no font here has is drawn as a box, which says as much as a warning would.
-        warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
+    with unknown_letters_drawn_as_boxes():
         figure.savefig(path, dpi=max(_SCREEN_DPI, int(figure.dpi)))
     return path.name
