@@ -106,9 +106,11 @@ def _stacked(
     for number, (level, shape) in enumerate(zip(levels, shapes, strict=False), start=1):
         line = level + _SWING * shape / np.abs(shape).max()
         axes.plot(MM * z, line, color=BLUE, lw=1.2, zorder=2, label=f"mode {number}")
-        for places, style in ((held, {"marker": "o", "markerfacecolor": "white"}), (loaded, {"marker": "s"})):
+        for places, marker, face in ((held, "o", "white"), (loaded, "s", BLUE)):
             at = np.searchsorted(z, places)
-            axes.plot(MM * places, line[at], ls="", color=BLUE, markersize=3.2, mew=0.8, zorder=3, **style)
+            axes.plot(
+                MM * places, line[at], ls="", marker=marker, color=BLUE, markerfacecolor=face, ms=3.2, mew=0.8, zorder=3
+            )
     names = [f"mode {number}\n{_frequency(value)}" for number, value in enumerate(frequencies / _HERTZ, start=1)]
     axes.set_yticks(levels, names)
     axes.tick_params(axis="y", length=0.0, colors=INK)

@@ -14,7 +14,7 @@ from gearwhine.figures.shaft_outline import TINTS, draw_outline, materials
 from gearwhine.figures.shaft_view import MM, ShaftView, fitted
 from gearwhine.figures.style import FOOT, HEAD, INK, NOTE, PANEL_WIDTH, RED, panel, sheet, shortened
 from gearwhine.figures.support_signs import depth, draw_support
-from rotors import Coupling, Segment
+from rotors import Coupling
 
 _CLEAR = 1.5  # between what is drawn and leaders that slant, and round the panel [mm of paper]
 _SPOT, _PROBE = 0.8, 2.4  # radius of an unbalance's dot, height of a probe [mm of paper]
@@ -126,7 +126,7 @@ def _labels_above(assembly: RotorAssembly, view: ShaftView) -> list[Label]:
         if isinstance(part, Coupling):
             middle = left + 0.5 * part.length
             labels.append(Label("coupling", MM * middle, view.across(assembly.shaft_radius(middle))))
-        elif isinstance(part, Segment) and part.axial_force:
+        elif part.axial_force:
             middle, sense = left + 0.5 * part.length, "tension" if part.axial_force > 0.0 else "compression"
             text = f"{sense} {1e-3 * abs(part.axial_force):.3g} kN"
             labels.append(Label(text, MM * middle, view.across(assembly.shaft_radius(middle))))

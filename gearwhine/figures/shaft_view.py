@@ -73,7 +73,9 @@ class ShaftView:
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{2.0 * abs(value) / self.stretch:g}"))
         axes.spines["left"].set_bounds(-self.across(largest), self.across(largest))
         low, high = axes.get_ylim()
-        axes.set_ylabel("diameter [mm]", y=-low / (high - low))
+        axes.set_ylabel("diameter [mm]")
+        across, _ = axes.yaxis.label.get_position()
+        axes.yaxis.set_label_coords(across, -low / (high - low))
 
 
 def _ticks(largest: float, paper: float) -> FloatArray:

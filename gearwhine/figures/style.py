@@ -18,6 +18,7 @@ NOTE, TICK, LABEL, TITLE = 6.5, 7.0, 7.5, 9.0  # letters on it [points]
 MM_PER_INCH = 25.4
 RPM = 9.549296585513721  # revolutions per minute of 1 rad/s
 
+_NAME_OF_AXIS = 11.5  # left of a panel [mm]
 _SCREEN_DPI, _PRINT_DPI = 130, 200
 
 
@@ -46,6 +47,8 @@ def panel(figure: Figure, bottom: float, height: float, *, left: float = LEFT, w
     tidy(axes, size=TICK)
     axes.xaxis.label.set(size=LABEL, color=INK)
     axes.yaxis.label.set(size=LABEL, color=INK)
+    # At one place on every sheet, clear of numbers of five digits.
+    axes.yaxis.set_label_coords(-_NAME_OF_AXIS / width, 0.5)
     return axes
 
 

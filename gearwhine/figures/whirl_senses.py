@@ -47,10 +47,10 @@ def with_rotation(directions: npt.ArrayLike, speeds: npt.ArrayLike) -> FloatArra
     return np.asarray(values * sign.reshape(-1, *(1,) * (values.ndim - 1)))
 
 
-def legend_lines(senses: Sequence[Sense]) -> list[Line2D]:
-    """A line for each of the senses that occur, in the order forward, backward, mixed."""
+def legend_lines(senses: Sequence[Sense], *, solid: bool = False) -> list[Line2D]:
+    """A line for each of the senses that occur, in the order forward, backward, mixed; ``solid`` for colour alone."""
     return [
-        Line2D([], [], color=sense.color, ls=sense.line, lw=1.3, label=sense.name)
+        Line2D([], [], color=sense.color, ls="-" if solid else sense.line, lw=1.3, label=sense.name)
         for sense in (FORWARD, BACKWARD, MIXED)
         if sense in senses
     ]

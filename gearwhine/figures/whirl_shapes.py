@@ -67,9 +67,7 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     axes.set_yticks(levels, [_name(whirl, number) for number in range(count)])
     axes.tick_params(axis="y", length=0.0, colors=INK)
     axes.spines["left"].set_visible(False)
-    figure.legend(
-        handles=legend_lines(senses), loc="upper right", ncols=3, frameon=False, fontsize=NOTE, handlelength=2.2
-    )
+    figure.legend(handles=legend_lines(senses, solid=True), loc="upper right", ncols=3, frameon=False, fontsize=NOTE)
     return figure
 
 
@@ -121,21 +119,13 @@ def _project(
 
 
 def _draw_directions(axes: Axes, view: ShaftView) -> None:
-    """Show where x and y point, in the upper right corner."""
-    start, low = view.high - view.length(7.0), axes.get_ylim()[1] - 8.0
-    for name, (x, y) in (("x", (0.6, 0.0)), ("y", (0.0, 0.5))):
-        across, up = _project(view, start, np.array([x]), np.array([y]), low)
-        tip = (float(across[0]), float(up[0]))
-        arrow = {
-            "arrowstyle": "-|>,head_width=0.1,head_length=0.25",
-            "color": GREY,
-            "lw": 0.7,
-            "shrinkA": 0,
-            "shrinkB": 0,
-        }
-        axes.annotate("", tip, (start, low), arrowprops=arrow)
-        beyond = (tip[0] + 1.5 * (tip[0] - start) / 3.0, tip[1] + 0.5 * (tip[1] - low))
-        axes.text(*beyond, name, fontsize=NOTE, color=GREY, ha="center", va="center")
+    """Show where x and y point, left of the first mode and below its name."""
+    start, low = view.low - view.length(11.0), axes.get_ylim()[1] - 0.5 * _HEIGHT - 10.5
+    head = {"arrowstyle": "-|>,head_width=0.1,head_length=0.25", "color": GREY, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
+    for name, (x, y) in (("x", (0.7, 0.0)), ("y", (0.0, 0.5))):
+        across, up = _project(view, 0.0, np.array([x, 1.6 * x]), np.array([y, 1.5 * y]), 0.0)
+        axes.annotate("", (start + across[0], low + up[0]), (start, low), arrowprops=head, annotation_clip=False)
+        axes.text(start + across[1], low + up[1], name, fontsize=NOTE, color=GREY, ha="center", va="center")
 
 
 def _name(whirl: WhirlModes, number: int) -> str:
