@@ -12,7 +12,10 @@ _THINNEST = 1e-6
 
 @dataclass(frozen=True)
 class DrawnGear:
-    """A gear's outline, m: where its middle is, its face width, its diameters; and what it is called."""
+    """A gear's outline, m: where its middle is, its face width, its diameters; and what it is called.
+
+    ``disc`` is the one of the rotor's discs that carries its inertia, which is then not drawn beside it.
+    """
 
     name: str
     at: float
@@ -20,8 +23,8 @@ class DrawnGear:
     tip_diameter: float
     pitch_diameter: float
     root_diameter: float
-    bore: float = 0.0
     teeth: int | None = None
+    disc: Disc | None = None
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,7 @@ class RotorAssembly:
     bearings
         What holds it.
     gears, unbalances, probes
-        What else sits on it. A gear is drawn by its own size, so the rotor here has no disc that stands for it.
+        What else sits on it.
     rolling
         Names of the bearings drawn with the sign of a rolling bearing; the others are springs.
     seats
@@ -76,6 +79,15 @@ class RotorAssembly:
         """The row of segments, couplings among them."""
         return self.rotor.segments
 
+    @property
+    def discs(self) -> list[Disc]:
+        """The rotor's discs that are drawn as such: those that no gear stands for."""
+        left = list(self.rotor.discs)
+        for gear in self.gears:
+            if gear.disc in left:
+                left.remove(gear.disc)
+        return left
+
     def shaft_radius(self, at: float) -> float:
         """Outer radius of the shaft at a place (m); of two that meet there, the larger one."""
         slack = 1e-9 * self.rotor.length
@@ -95,7 +107,7 @@ class RotorAssembly:
     @property
     def largest_radius(self) -> float:
         """Largest radius of anything on the rotor, m."""
-        rings = [ring for disc in self.rotor.discs if (ring := self.ring(disc)) is not None]
+        rings = [ring for disc in self.discs if (ring := self.ring(disc)) is not None]
         return max(
             [self.largest_shaft_radius, *(radius for radius, _ in rings), *(0.5 * g.tip_diameter for g in self.gears)]
         )
@@ -103,7 +115,7 @@ class RotorAssembly:
     def outer_radius(self, at: float) -> float:
         """Radius of the largest thing on the rotor that covers a place (m)."""
         radii = [self.shaft_radius(at)]
-        for disc in self.rotor.discs:
+        for disc in self.discs:
             ring = self.ring(disc)
             if ring is not None and abs(disc.at - at) <= 0.5 * ring[1]:
                 radii.append(ring[0])
@@ -113,7 +125,7 @@ class RotorAssembly:
     @property
     def reach(self) -> tuple[float, float]:
         """Where the drawing begins and ends along the axis, m: the shaft, and discs and gears that stand out."""
-        widths = [(disc.at, ring[1]) for disc in self.rotor.discs if (ring := self.ring(disc)) is not None]
+        widths = [(disc.at, ring[1]) for disc in self.discs if (ring := self.ring(disc)) is not None]
         widths += [(gear.at, gear.face_width) for gear in self.gears]
         return (
             min([0.0, *(at - 0.5 * width for at, width in widths)]),

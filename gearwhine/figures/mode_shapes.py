@@ -64,7 +64,7 @@ def _places(assembly: RotorAssembly) -> tuple[FloatArray, FloatArray, FloatArray
     """Places (m) along the shaft, ascending, and among them those of bearings and of discs and gears."""
     length = assembly.rotor.length
     held = np.clip([bearing.at for bearing in assembly.bearings], 0.0, length)
-    loaded = np.clip([*(d.at for d in assembly.rotor.discs), *(g.at for g in assembly.gears)], 0.0, length)
+    loaded = np.clip([*(d.at for d in assembly.discs), *(g.at for g in assembly.gears)], 0.0, length)
     along = np.linspace(0.0, length, _PLACES)
     return np.unique(np.concatenate([along, held, loaded])), np.unique(held), np.unique(loaded)
 

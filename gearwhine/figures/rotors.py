@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -74,13 +73,10 @@ def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
     """A solved rotor as it is drawn: its gears by their size rather than as discs."""
     name = one.rotor.name
     given = case.rotor_named(name)
-    gears, discs = [], list(one.rotor.discs)
+    gears = []
     for gear in case.gear:
         if gear.rotor != name or gear.at is None:
             continue
-        stand_in = room.Disc(gear.at, *gear_inertia(case, gear))
-        if stand_in in discs:
-            discs.remove(stand_in)
         module, shift = gear.tooth_module, gear.profile_shift
         gears.append(
             DrawnGear(
@@ -91,12 +87,13 @@ def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
                 pitch_diameter=2.0 * gear.pitch_radius,
                 root_diameter=2.0 * (gear.pitch_radius - (_DEDENDUM - shift) * module),
                 teeth=gear.teeth,
+                disc=room.Disc(gear.at, *gear_inertia(case, gear)),
             )
         )
     on_it = [bearing for bearing in case.bearing if bearing.rotor == name]
     parts: Sequence[room.Segment | room.Coupling] = one.rotor.segments
     return RotorAssembly(
-        rotor=replace(one.rotor, discs=discs),
+        rotor=one.rotor,
         bearings=one.bearings,
         gears=gears,
         unbalances=[DrawnUnbalance(at.at, at.moment, at.phase) for at in given.unbalance],

@@ -43,7 +43,7 @@ class OutlinePanel:
         remarks = []
         if self.view.stretch > 1:
             remarks.append(f"diameters {self.view.stretch} times as large as lengths")
-        if any(self.assembly.ring(disc) for disc in self.assembly.rotor.discs):
+        if any(self.assembly.ring(disc) for disc in self.assembly.discs):
             remarks.append("discs as rings of their mass and inertias")
         if left_out := self.above.left_out + self.below.left_out:
             remarks.append(f"{left_out} labels left out")
@@ -130,7 +130,7 @@ def _labels_above(assembly: RotorAssembly, view: ShaftView) -> list[Label]:
             middle, sense = left + 0.5 * part.length, "tension" if part.axial_force > 0.0 else "compression"
             text = f"{sense} {1e-3 * abs(part.axial_force):.3g} kN"
             labels.append(Label(text, MM * middle, view.across(assembly.shaft_radius(middle))))
-    for disc in assembly.rotor.discs:
+    for disc in assembly.discs:
         ring = assembly.ring(disc)
         labels.append(Label(f"{disc.mass:.3g} kg", MM * disc.at, view.across(ring[0]) if ring else 0.0))
     for gear in assembly.gears:

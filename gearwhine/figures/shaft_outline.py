@@ -32,7 +32,7 @@ def draw_outline(axes: Axes, assembly: RotorAssembly, view: ShaftView) -> None:
             _segment(axes, view, part, float(left), float(right), TINTS[kinds.index(part.material) % len(TINTS)])
         else:
             _coupling(axes, assembly, view, part, float(left), float(right))
-    for disc in assembly.rotor.discs:
+    for disc in assembly.discs:
         _disc(axes, assembly, view, disc)
     for gear in assembly.gears:
         _gear(axes, view, gear)

@@ -78,7 +78,9 @@ def draw_unbalance_response(
     low, high = float(turning[0]), float(turning[-1])
     marked = [speed for speed in np.atleast_1d(critical_speeds).tolist() if low <= speed <= high]
 
-    top = max((_largest(probe) for probe in probes), default=0.0) or 1.0
+    moving = max((_largest(probe) for probe in probes), default=0.0)
+    # A logarithmic axis has no place for what does not move at all.
+    logarithmic, top = logarithmic and moving > 0.0, moving or 1.0
     ceiling = 2.0 * top if logarithmic else 1.08 * top
     labels = [Label(f"{RPM * speed:.4g}", RPM * speed, ceiling) for speed in marked]
     row = arrange(labels, [(label.x / RPM - low) / (high - low) * PANEL_WIDTH for label in labels], PANEL_WIDTH)
