@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearwhine.figures.labels import Label, arrange, draw_row
-from gearwhine.figures.style import FOOT, GREY, HEAD, INK, NOTE, PANEL_WIDTH, RPM, panel, sheet
+from gearwhine.figures.style import FOOT, GREY, HEAD, INK, NOTE, PANEL_WIDTH, RPM, legend, panel, sheet
 from gearwhine.figures.whirl_senses import Sense, legend_lines, sense_of, with_rotation
 
 FloatArray = npt.NDArray[np.float64]
@@ -94,6 +94,7 @@ def draw_campbell(
     lower = _DAMPING_HEIGHT + _BETWEEN if is_damped else 0.0
 
     note = "speeds in rpm above the diagram: critical speeds, ● forward, ○ backward" if criticals else ""
+    note += f"; {row.left_out} not named" * bool(row.left_out)
     figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + lower + FOOT, title, note)
     axes = panel(figure, FOOT + lower, _HEIGHT)
     axes.set(xlim=(RPM * low, RPM * high), ylim=(0.0, top / _HERTZ), ylabel="whirl frequency [Hz]")
@@ -120,7 +121,7 @@ def draw_campbell(
             handles = [*legend_lines(met), line]
         if onset is not None:
             each.axvspan(RPM * onset[0], RPM * high, color=GREY, alpha=0.14, lw=0.0, zorder=0.2, label="unstable")
-    figure.legend(handles=handles, loc="upper right", ncols=4, frameon=False, fontsize=NOTE, handlelength=2.6)
+    legend(figure, handles)
     return figure
 
 

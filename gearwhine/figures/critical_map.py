@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from gearwhine.figures.labels import Label, arrange, draw_row
-from gearwhine.figures.style import BLUE, FOOT, HEAD, INK, NOTE, PANEL_WIDTH, RPM, SERIES, panel, sheet, shortened
+from gearwhine.figures.style import BLUE, FOOT, HEAD, INK, PANEL_WIDTH, RPM, SERIES, legend, panel, sheet, shortened
 from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
@@ -93,7 +93,7 @@ def draw_critical_map(
     if operating_speed is not None:
         at = RPM * abs(operating_speed)
         line = axes.axhline(at, color=INK, lw=0.8, ls=":", zorder=1, label="operation")
-        figure.legend(handles=[line], loc="upper right", frameon=False, fontsize=NOTE)
+        legend(figure, [line])
     draw_row(axes, row, _HEIGHT + 1.0)
     return figure
 

@@ -15,7 +15,7 @@ from gearwhine.figures.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
 from gearwhine.figures.campbell import draw_campbell
 from gearwhine.figures.mode_shapes import draw_lateral_modes, draw_torsional_modes
 from gearwhine.figures.shaft import draw_shaft
-from gearwhine.figures.style import save
+from gearwhine.figures.style import save, shortened
 from gearwhine.figures.whirl_shapes import draw_whirl_modes
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import gear_inertia
@@ -120,9 +120,9 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
         figures.append(("whirl", draw_whirl_modes(assembly, one.whirl[0], most=_MODES)))
     whirl = list({modes.speed: modes for modes in sorted(one.whirl, key=lambda modes: abs(modes.speed))}.values())
     if len(whirl) > 1 and min(modes.frequencies.size for modes in whirl):
-        frequencies, directions, ratios = _branches(whirl)
+        frequencies, directions, ratios = whirl_branches(whirl)
         campbell = draw_campbell(
-            f"Rotor {one.rotor.name}: Campbell diagram",
+            f"Rotor {shortened(one.rotor.name, 20)}: Campbell diagram",
             [modes.speed for modes in whirl],
             frequencies,
             directions,
@@ -135,7 +135,7 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
     return figures
 
 
-def _branches(whirl: Sequence[room.WhirlModes]) -> tuple[FloatArray, FloatArray, FloatArray]:
+def whirl_branches(whirl: Sequence[room.WhirlModes]) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Frequencies, directions and damping ratios, each (s, w), of modes that stay themselves from speed to speed.
 
     Neighbours belong together whose modal coordinates overlap most in sum. It goes down from the highest speed,

@@ -12,7 +12,7 @@ from gearwhine.figures.assembly import RotorAssembly
 from gearwhine.figures.labels import Label, LabelRow, arrange, draw_row
 from gearwhine.figures.shaft_outline import TINTS, draw_outline, materials
 from gearwhine.figures.shaft_view import MM, ShaftView, fitted
-from gearwhine.figures.style import FOOT, HEAD, INK, NOTE, PANEL_WIDTH, RED, panel, sheet, shortened
+from gearwhine.figures.style import FOOT, HEAD, INK, PANEL_WIDTH, RED, legend, panel, sheet, shortened
 from gearwhine.figures.support_signs import depth, draw_support
 from rotors import Coupling
 
@@ -44,7 +44,7 @@ class OutlinePanel:
         if self.view.stretch > 1:
             remarks.append(f"diameters {self.view.stretch} times as large as lengths")
         if any(self.assembly.ring(disc) for disc in self.assembly.discs):
-            remarks.append("discs as rings of their mass and inertias")
+            remarks.append("discs as rings of equal inertia")
         if left_out := self.above.left_out + self.below.left_out:
             remarks.append(f"{left_out} labels left out")
         return remarks
@@ -91,10 +91,10 @@ def draw_shaft(assembly: RotorAssembly) -> Figure:
         ]
         tints = [TINTS[index % len(TINTS)] for index in range(len(kinds))]
         patches = [
-            Patch(facecolor=tint, edgecolor=INK, lw=0.5, label=name.replace("$", r"\$"))
+            Patch(facecolor=tint, edgecolor=INK, lw=0.5, label=shortened(name, 20).replace("$", r"\$"))
             for tint, name in zip(tints, names, strict=True)
         ]
-        figure.legend(handles=patches, loc="upper right", ncols=3, frameon=False, fontsize=NOTE, handlelength=1.2)
+        legend(figure, patches)
     return figure
 
 

@@ -2,13 +2,14 @@
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from gearwhine.figures.assembly import RotorAssembly
 from gearwhine.figures.mode_shapes import draw_along
 from gearwhine.figures.shaft import lay_out
 from gearwhine.figures.shaft_view import MM
-from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, NOTE, SERIES, panel, sheet
+from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, NOTE, SERIES, legend, panel, sheet, shortened
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -52,7 +53,7 @@ def draw_static_deflection(
             f"({len(assembly.bearings)}, 2)"
         )
     outline = lay_out(assembly, labelled=False)
-    title = f"Rotor {assembly.rotor.name}: static deflection and bearing loads"
+    title = f"Rotor {shortened(assembly.rotor.name, 20)}: static deflection and bearing loads"
     carried = f"bearings carry {np.linalg.norm(loads.sum(axis=0)):.5g} N"
     figure = sheet(HEAD + outline.height + _HEIGHT + FOOT, title, "; ".join([carried, *outline.remarks]))
     upper = outline.draw(figure, FOOT + _HEIGHT)
@@ -63,10 +64,11 @@ def draw_static_deflection(
     draw_along(axes, assembly, outline.view, [bearing.at for bearing in assembly.bearings])
     axes.axhline(0.0, color=GREY, lw=0.5, zorder=1)
     largest = float(np.abs(moved).max(initial=0.0))
+    curves: list[Artist] = []
     for column, name in ((1, "y"), (0, "x")):
         if np.abs(moved[:, column]).max(initial=0.0) > _NEGLIGIBLE * largest or column == 1:
             color = BLUE if column else SERIES[1]
-            axes.plot(MM * places, _MICRO * moved[:, column], color=color, lw=1.3, zorder=3, label=name)
+            curves += axes.plot(MM * places, _MICRO * moved[:, column], color=color, lw=1.3, zorder=3, label=name)
     low, high = min(0.0, _MICRO * float(moved.min())), max(0.0, _MICRO * float(moved.max()))
     span = (high - low) or 1.0
     # Room for the longest arrow and what it is called, below the line and, where a bearing pulls down, above it.
@@ -91,6 +93,6 @@ def draw_static_deflection(
             va="top" if load[1] >= 0.0 else "bottom",
         )
     axes.set_ylabel("deflection [µm]")
-    if len([line for line in axes.get_lines() if line.get_label() in ("x", "y")]) > 1:
-        axes.legend(loc="lower center", ncols=2, frameon=False, fontsize=NOTE)
+    if len(curves) > 1:
+        legend(figure, curves)
     return figure

@@ -1,23 +1,26 @@
 """How every figure looks: colours, sizes on paper, axes, and the file it goes to."""
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from textwrap import wrap
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 INK, BLUE, RED, GREY, PALE = "#202428", "#1f5a96", "#b5382a", "#8a9097", "#e4e7ea"
-SERIES = (BLUE, "#c77d1e", "#3b7d4f", "#7a4f9a", "#5b6770", "#a3485f")
+SERIES = (BLUE, "#c77d1e", "#3b7d4f", "#7a4f9a", "#5b6770", "#a3485f", "#2a8c8c", "#8c6d1f")
 SHEET_WIDTH = 160.0  # of a figure made for print [mm]
 LEFT, RIGHT = 15.0, 4.0  # margins of such a sheet beside its panels [mm]
-HEAD, FOOT = 11.0, 11.0  # ... for its title and note, and for an axis with its name [mm]
+HEAD, FOOT = 13.0, 11.0  # ... for its title and note, and for an axis with its name [mm]
 PANEL_WIDTH = SHEET_WIDTH - LEFT - RIGHT
 NOTE, TICK, LABEL, TITLE = 6.5, 7.0, 7.5, 9.0  # letters on it [points]
 MM_PER_INCH = 25.4
 RPM = 9.549296585513721  # revolutions per minute of 1 rad/s
 
+_NOTE_LETTERS = 124  # of a note in one line
 _NAME_OF_AXIS = 11.2  # left of a panel [mm]
 _SCREEN_DPI, _PRINT_DPI = 130, 200
 
@@ -31,10 +34,14 @@ def tidy(axes: Axes, *, size: float = 9.0) -> None:
 
 
 def sheet(height: float, title: str, note: str = "") -> Figure:
-    """A sheet for print, 160 mm wide and ``height`` mm high, with a title and a note in grey at its upper left."""
+    """A sheet for print, 160 mm wide and ``height`` mm high, with a title and a note in grey at its upper left.
+
+    A title may share its line with a legend, so it is cut after 60 letters; a note takes two lines at most.
+    """
     figure = Figure(figsize=(SHEET_WIDTH / MM_PER_INCH, height / MM_PER_INCH), dpi=_PRINT_DPI)
     # Names are the user's: a dollar sign in one is no formula.
-    for text, size, color, down in ((title, TITLE, INK, 1.5), (note, NOTE, GREY, 6.2)):
+    lines = "\n".join(wrap(note, _NOTE_LETTERS, max_lines=2, placeholder=" …"))
+    for text, size, color, down in ((shortened(title, 60), TITLE, INK, 1.5), (lines, NOTE, GREY, 6.2)):
         if text:
             figure.text(0.0125, 1.0 - down / height, text, size=size, color=color, va="top", parse_math=False)
     return figure
@@ -59,6 +66,20 @@ def panel_size(axes: Axes) -> tuple[float, float]:
     across, up = figure.get_size_inches()
     place = axes.get_position()
     return place.width * float(across) * MM_PER_INCH, place.height * float(up) * MM_PER_INCH
+
+
+def legend(figure: Figure, handles: Sequence[Artist]) -> None:
+    """Explain lines and tints in the upper right corner of a sheet, in one line."""
+    if handles:  # an empty one would warn
+        figure.legend(
+            handles=handles,
+            loc="upper right",
+            ncols=len(handles),
+            frameon=False,
+            fontsize=NOTE,
+            handlelength=2.0,
+            columnspacing=1.2,
+        )
 
 
 def shortened(text: str, most: int = 28) -> str:

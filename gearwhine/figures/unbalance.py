@@ -10,13 +10,27 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from gearwhine.figures.labels import Label, arrange, draw_row
-from gearwhine.figures.style import FOOT, GREY, HEAD, INK, NOTE, PANEL_WIDTH, RPM, SERIES, panel, sheet, shortened
+from gearwhine.figures.style import (
+    FOOT,
+    GREY,
+    HEAD,
+    INK,
+    NOTE,
+    PANEL_WIDTH,
+    RPM,
+    SERIES,
+    legend,
+    panel,
+    sheet,
+    shortened,
+)
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _AMPLITUDE, _PHASE, _BETWEEN = 70.0, 40.0, 4.0  # heights of the panels and the room between them [mm of paper]
 _PEAK_TO_PEAK = 2e6  # µm of a displacement amplitude of one metre
+_IN_HEAD = 4  # so many lines are explained beside the title
 _DECADES = 5.0  # of a logarithmic amplitude, below its highest
 
 
@@ -87,6 +101,7 @@ def draw_unbalance_response(
     notes = ["peak to peak", "phase lag behind the unbalance"]
     notes += ["dashed: major axis of the orbit"] * any(probe.major_axis is not None for probe in probes)
     notes += ["above: critical speeds in rpm"] * bool(marked)
+    notes += [f"{row.left_out} of them not named"] * bool(row.left_out)
     figure = sheet(HEAD + row.height + 2.0 + _AMPLITUDE + _BETWEEN + _PHASE + FOOT, title, "; ".join(notes))
     upper, lower = panel(figure, FOOT + _PHASE + _BETWEEN, _AMPLITUDE), panel(figure, FOOT, _PHASE)
     handles: list[Artist] = []
@@ -104,7 +119,7 @@ def draw_unbalance_response(
     for number, probe in enumerate(probes):
         color = SERIES[number % len(SERIES)]
         size = _PEAK_TO_PEAK * np.abs(probe.amplitude)
-        name = shortened(probe.name).replace("$", r"\$")
+        name = shortened(probe.name, 16).replace("$", r"\$")
         handles += upper.plot(RPM * turning, size, color=color, lw=1.2, zorder=3, label=name)
         if probe.major_axis is not None:
             axis = _PEAK_TO_PEAK * np.asarray(probe.major_axis)
@@ -119,8 +134,10 @@ def draw_unbalance_response(
     upper.set_ylabel("amplitude [µm peak to peak]")
     lower.set(xlabel="speed of rotation [rpm]", ylabel="phase lag [°]")
     lower.yaxis.set_major_locator(MultipleLocator(90.0))
-    if handles:
-        figure.legend(handles=handles, loc="upper right", ncols=3, frameon=False, fontsize=NOTE)
+    if len(handles) <= _IN_HEAD:
+        legend(figure, handles)
+    else:
+        upper.legend(handles=handles, loc="best", ncols=2, framealpha=0.9, edgecolor="none", fontsize=NOTE)
     draw_row(upper, row, _AMPLITUDE + 1.0)
     return figure
 

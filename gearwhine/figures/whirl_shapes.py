@@ -9,7 +9,7 @@ from gearwhine.figures.assembly import RotorAssembly
 from gearwhine.figures.mode_shapes import draw_along
 from gearwhine.figures.shaft import lay_out
 from gearwhine.figures.shaft_view import MM, ShaftView
-from gearwhine.figures.style import FOOT, GREY, HEAD, INK, NOTE, RPM, panel, sheet
+from gearwhine.figures.style import FOOT, GREY, HEAD, INK, NOTE, RPM, legend, panel, sheet, shortened
 from gearwhine.figures.whirl_senses import Sense, legend_lines, sense_of
 from rotors import WhirlModes
 
@@ -47,7 +47,7 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     height = _HEIGHT * max(count, 1)
     some = [f"the lowest {count} of {whirl.frequencies.size}"] if count < whirl.frequencies.size else []
     note = "; ".join([*some, "orbits begin at the dot; each mode over its largest displacement", *outline.remarks])
-    title = f"Rotor {assembly.rotor.name}: whirl at {abs(whirl.speed) * RPM:.5g} rpm"
+    title = f"Rotor {shortened(assembly.rotor.name, 20)}: whirl at {abs(whirl.speed) * RPM:.5g} rpm"
     figure = sheet(HEAD + outline.height + height + FOOT, title, note)
     upper = outline.draw(figure, FOOT + height)
     upper.spines["bottom"].set_visible(False)
@@ -67,7 +67,7 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     axes.set_yticks(levels, [_name(whirl, number) for number in range(count)])
     axes.tick_params(axis="y", length=0.0, colors=INK)
     axes.spines["left"].set_visible(False)
-    figure.legend(handles=legend_lines(senses, solid=True), loc="upper right", ncols=3, frameon=False, fontsize=NOTE)
+    legend(figure, legend_lines(senses, solid=True))
     return figure
 
 
