@@ -142,13 +142,14 @@ def modes_case(
 
 
 def rotors_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
-    """The rotors; with a folder, also as a results file."""
-    from gearwhine import results
+    """The rotors; with a folder, also as a results file and pictures."""
+    from gearwhine import figures, results
 
     rotors = rotor_stage.solve_rotors(case, progress)
 
     def write(place: Path) -> None:
         results.write(place / "results.nc", case, None, rotors, (), None, None)
+        figures.draw_rotors(place, case, rotors, progress)
 
     return _kept(rotor_documents.rotors_document(rotors), case, folder, write)
 
