@@ -143,7 +143,7 @@ def test_the_coupled_system_keeps_what_the_rotor_says(gearwhine: Any) -> None:
 
 def test_check_says_what_a_rotor_and_its_bearings_are_made_of(gearwhine: Any) -> None:
     out = gearwhine("check", "overhung-fan").out
-    assert "fan: 2220 mm with 1 coupling" in out
+    assert "fan: 2570 mm with 1 coupling" in out
     assert "by a pedestal of 150 kg, tables over 200 to 2500 rpm" in out
     assert "Campbell diagram at 47 speeds, 200 to 2500 rpm" in out
     assert "response to unbalance and bow at 231 speeds" in out
