@@ -39,9 +39,13 @@ def _at_rest(console: Console, rotor: dict[str, Any]) -> None:
     bending, torsion = list(_bending(rotor["lateral_hz"])), list(_torsion(rotor["torsional_hz"]))
     known = min(rows[-1][0] for rows in (bending, torsion) if rows) if bending or torsion else 0.0
     rows = [row for row in sorted([*bending, *torsion], key=lambda row: row[0]) if row[0] <= known]
-    speed = rotor["rest_bearings_at_rpm"]
-    note = "" if speed is None else f", with the bearings' coefficients at {speed:.6g} rpm"
-    _show(console, f"At rest{note}", ("frequency [Hz]", "kind"), [(f"{f:.5g}", kind) for f, kind in rows[:_MOST]])
+    title = f"At rest{_with_bearings_at(rotor['rest_bearings_at_rpm'])}"
+    _show(console, title, ("frequency [Hz]", "kind"), [(f"{f:.5g}", kind) for f, kind in rows[:_MOST]])
+
+
+def _with_bearings_at(speed: float | None) -> str:
+    """Which of their tables' speeds bearings are taken at; None: they have no tables."""
+    return "" if speed is None else f", with the bearings' coefficients at {speed:.6g} rpm"
 
 
 def _bending(frequencies: Sequence[float]) -> Iterator[tuple[float, str]]:
@@ -79,16 +83,17 @@ def _whirl(console: Console, rotor: dict[str, Any]) -> None:
 def _critical_speeds(console: Console, rotor: dict[str, Any]) -> None:
     """Critical speeds, which way they whirl, and how far they are from the speed of operation."""
     speeds, directions, margins = (rotor[f"critical_{key}"] for key in ("speeds_rpm", "directions", "margins"))
+    title = f"Undamped critical speeds{_with_bearings_at(rotor['critical_bearings_at_rpm'])}"
     if margins is None:
         listed = [(f"{speed:.5g}", _whirl_name(way)) for speed, way in zip(speeds, directions, strict=True)]
-        _show(console, "Undamped critical speeds", ("speed [rpm]", "whirl"), listed[:_MOST])
+        _show(console, title, ("speed [rpm]", "whirl"), listed[:_MOST])
         return
     reach = sum(margin <= _REACH - 1.0 for margin in margins) + 1  # and the first beyond
     rows = [
         (f"{speed:.5g}", _whirl_name(way), _beside(margin))
         for speed, way, margin in list(zip(speeds, directions, margins, strict=True))[: min(reach, _MOST)]
     ]
-    _show(console, "Undamped critical speeds", ("speed [rpm]", "whirl", "from operation"), rows)
+    _show(console, title, ("speed [rpm]", "whirl", "from operation"), rows)
     excited = [
         (abs(margin), speed, margin)
         for speed, way, margin in zip(speeds, directions, margins, strict=True)

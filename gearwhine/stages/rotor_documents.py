@@ -27,10 +27,11 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "length_m": one.rotor.length,
                 "lateral_hz": (one.rest.frequencies / _HERTZ).tolist(),
                 "torsional_hz": (one.torsional.frequencies / _HERTZ).tolist(),
-                "rest_bearings_at_rpm": None if one.rest_speed is None else one.rest_speed * _RPM,
-                "operation_rpm": None if one.operation is None else one.operation * _RPM,
+                "rest_bearings_at_rpm": _in_rpm(one.rest_speed),
+                "operation_rpm": _in_rpm(one.operation),
                 "whirl": [{"speed_rpm": whirl.speed * _RPM} | _modes(whirl) for whirl in one.whirl],
                 "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
+                "critical_bearings_at_rpm": _in_rpm(one.critical_speed),
                 "critical_directions": one.critical.direction.round(6).tolist(),
                 "critical_margins": _margins(one),
                 "campbell": _campbell(one.campbell),
@@ -50,6 +51,10 @@ def log_decrement(damping_ratio: FloatArray) -> FloatArray:
 def is_stable(whirl: room.WhirlModes) -> bool:
     """Whether no mode grows by itself."""
     return bool((whirl.damping_ratios >= -NEUTRAL).all())
+
+
+def _in_rpm(speed: float | None) -> float | None:
+    return None if speed is None else speed * _RPM
 
 
 def _modes(whirl: room.WhirlModes) -> dict[str, Any]:

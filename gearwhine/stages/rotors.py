@@ -32,6 +32,9 @@ class SolvedRotor:
     campbell : tuple of rotors.WhirlModes
         At the speeds of the Campbell diagram.
     critical : rotors.CriticalSpeeds
+        With the bearings' coefficients at one speed.
+    critical_speed : float or None
+        That speed: of operation, or of rest where there is none [rad/s]; None without tables.
     operation : float or None
         Speed of operation [rad/s].
     """
@@ -46,6 +49,7 @@ class SolvedRotor:
     whirl: tuple[room.WhirlModes, ...]
     campbell: tuple[room.WhirlModes, ...]
     critical: room.CriticalSpeeds
+    critical_speed: float | None
     operation: float | None
 
 
@@ -66,19 +70,25 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         lowest, _ = table_range(case, given.name)
         resting = tuple(bearing.at_speed(lowest) for bearing in bearings)
         speeds = whirl_speeds(case, given.name)
+        operation = speeds[0] if case.operation is not None else None
+        reference = lowest if operation is None else operation
+        tabled = any(bearing.speeds is not None for bearing in bearings)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
                 bearings=bearings,
                 resting=resting,
-                rest_speed=lowest if any(bearing.speeds is not None for bearing in bearings) else None,
+                rest_speed=lowest if tabled else None,
                 rest=room.rest_frequencies(rotor, resting, count=analysis.modes),
                 lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
                 torsional=room.solve_torsional_modes(rotor),
                 whirl=_whirl(rotor, bearings, speeds, analysis.modes),
                 campbell=_whirl(rotor, bearings, campbell_speeds(case, given.name), analysis.modes),
-                critical=room.critical_speeds(rotor, resting, count=analysis.modes),
-                operation=speeds[0] if case.operation is not None else None,
+                critical=room.critical_speeds(
+                    rotor, [bearing.at_speed(reference) for bearing in bearings], count=analysis.modes
+                ),
+                critical_speed=reference if tabled else None,
+                operation=operation,
             )
         )
     return tuple(solved)

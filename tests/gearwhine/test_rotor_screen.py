@@ -27,6 +27,7 @@ def rotor(**more: Any) -> Document:
         "lateral_hz": [10.0, 10.0, 40.0, 45.0],
         "torsional_hz": [0.0, 30.0, 700.0],
         "rest_bearings_at_rpm": None,
+        "critical_bearings_at_rpm": None,
         "operation_rpm": 1000.0,
         "whirl": [whirl],
         "critical_speeds_rpm": [600.0, 900.0, 1080.0, 2500.0, 9000.0],
@@ -73,8 +74,11 @@ def test_frequencies_at_rest_stand_in_order_with_their_kind_as_far_as_both_kinds
     assert rows(free, "At rest")[1] == ["0", "moves freely, both planes"]
 
 
-def test_tables_say_which_of_their_speeds_stands_for_rest() -> None:
+def test_tables_say_which_of_their_speeds_is_taken() -> None:
     assert "At rest, with the bearings' coefficients at 200 rpm" in said(rest_bearings_at_rpm=200.0)
+    critical = "Undamped critical speeds, with the bearings' coefficients at 900 rpm"
+    assert critical in said(critical_bearings_at_rpm=900.0)
+    assert critical in said(critical_bearings_at_rpm=900.0, critical_margins=None)
     assert "coefficients" not in said()
 
 
