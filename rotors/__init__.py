@@ -23,6 +23,7 @@ from .attachment import attach_loads
 from .axial import AxialModes, solve_axial_modes
 from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
+from .buckling import buckling_factor
 from .certificate import ModeCertificate
 from .errors import IncompleteModesError, RotorError
 from .lateral import LateralModes, solve_lateral_modes
@@ -56,6 +57,7 @@ __all__ = [
     "TorsionalModes",
     "WhirlModes",
     "attach_loads",
+    "buckling_factor",
     "critical_speeds",
     "rest_frequencies",
     "shear_coefficient",
