@@ -23,6 +23,7 @@ from .attachment import attach_loads, attach_motions
 from .axial import AxialModes, solve_axial_modes
 from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
+from .buckling import buckling_factor
 from .certificate import ModeCertificate
 from .errors import IncompleteModesError, RotorError
 from .lateral import LateralModes, solve_lateral_modes
@@ -59,6 +60,7 @@ __all__ = [
     "WhirlModes",
     "attach_loads",
     "attach_motions",
+    "buckling_factor",
     "critical_speeds",
     "modal_rotor",
     "rest_frequencies",

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .bearing import RadialSupport
+from .buckling import require_unbuckled
 from .certificate import ModeCertificate
 from .fields import Fields
 from .rotor_lines import bending_line
@@ -104,11 +105,13 @@ def solve_lateral_modes(
     Raises
     ------
     RotorError
-        A support off the shaft, both a limit and a count, or more modes than a lumped rotor has.
+        A support off the shaft, both a limit and a count, more modes than a lumped rotor has, or axial forces that
+        buckle the shaft.
     IncompleteModesError
         The modes fail their own proof.
     """
     held = tuple(supports)
+    require_unbuckled(rotor, held)
     found = find_modes(bending_line(rotor, held), frequency_limit, count)
     return lateral_modes(found.frequencies, found.fields, found.mixture, held, found.certificate)
 
