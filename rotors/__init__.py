@@ -26,6 +26,7 @@ from .errors import IncompleteModesError, RotorError
 from .lateral import LateralModes, solve_lateral_modes
 from .material import ShaftMaterial, shear_coefficient
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .ross_files import RossModel, read_ross, write_ross
 from .section import Section
 from .shaft import Disc, Rotor, Segment
 from .shaft_coupling import Coupling
@@ -43,6 +44,7 @@ __all__ = [
     "Pedestal",
     "RadialSupport",
     "RestFrequencies",
+    "RossModel",
     "Rotor",
     "RotorError",
     "Section",
@@ -52,6 +54,7 @@ __all__ = [
     "WhirlModes",
     "attach_loads",
     "critical_speeds",
+    "read_ross",
     "rest_frequencies",
     "shear_coefficient",
     "solve_lateral_modes",
@@ -59,4 +62,5 @@ __all__ = [
     "solve_torsional_modes",
     "solve_whirl",
     "whirl_basis",
+    "write_ross",
 ]
