@@ -61,6 +61,8 @@ def read_ross(path: str | os.PathLike[str]) -> RossModel:
     entries = read_entries(path, remarks)
     file = Path(path).name
     chosen = _sorted_by_kind(entries)
+    if not chosen[SHAFT]:
+        raise RotorError(f"{file}: no {SHAFT}; expected a rotor with a shaft")
     shaft = read_shaft(chosen[SHAFT], remarks)
     on_shaft, on_links = _parted(chosen[POINT_MASS], shaft)
     held, supports = _parted(chosen["bearing"], shaft)

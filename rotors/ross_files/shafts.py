@@ -65,7 +65,7 @@ class ReadShaft:
 
 
 def read_shaft(entries: Sequence[Entry], remarks: Remarks) -> ReadShaft:
-    """Read the shaft's elements and couplings, given in the order of the file.
+    """Read the shaft's elements and couplings, one or more, given in the order of the file.
 
     Raises
     ------
@@ -97,8 +97,6 @@ def read_shaft(entries: Sequence[Entry], remarks: Remarks) -> ReadShaft:
 
 def _in_a_row(entries: Sequence[Entry]) -> list[Entry]:
     """The elements by their left node; where none says so, as they stand."""
-    if not entries:
-        raise RotorError("the file holds no ShaftElement; expected a rotor with a shaft")
     nodes = [entry.node() for entry in entries]
     if all(node is None for node in nodes):
         return list(entries)

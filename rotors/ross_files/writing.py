@@ -71,6 +71,8 @@ def write_ross(
     require(rotor.mass_model == "distributed", f"rotor {rotor.name!r} mass_model", rotor.mass_model, expected)
     longest = rotor.length / DEFAULT_ELEMENTS if element_length is None else element_length
     require_finite("element_length", longest, positive=True)
+    for bearing in bearings:
+        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
     remarks = Remarks()
     nodes, owners = _nodes(rotor, bearings, longest)
     document: Table = {"ross_version": ROSS_VERSION, "parameters": {}}
@@ -78,7 +80,6 @@ def write_ross(
     tables += [_disc(number, station_index(nodes, disc.at), disc) for number, disc in enumerate(rotor.discs)]
     link = nodes.size
     for bearing in bearings:
-        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
         node = station_index(nodes, bearing.at)
         if bearing.pedestal is None:
             tables.append(_bearing(bearing, node, remarks))
