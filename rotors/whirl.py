@@ -20,9 +20,9 @@ from scipy import linalg
 
 from .attachment import attach_loads
 from .bearing import Bearing
-from .chain import bending_chain
 from .errors import require, require_count, require_finite
 from .lateral import LateralModes, solve_lateral_modes
+from .rotor_lines import bending_line
 from .shaft import Rotor
 
 FloatArray = npt.NDArray[np.float64]
@@ -109,7 +109,7 @@ def whirl_basis(
     both = (frequency_limit, count)
     require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
     supports = tuple(bearing.mean_support for bearing in bearings)
-    available = bending_chain(rotor, supports, 1.0).available_modes
+    available = bending_line(rotor, supports).available_modes
     if frequency_limit is None:
         wanted = (count or DEFAULT_COUNT) + 4
         modes = solve_lateral_modes(rotor, supports, count=int(min(max(wanted, LEAST_MODES), available)))
