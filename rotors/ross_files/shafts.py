@@ -8,7 +8,8 @@ import numpy as np
 
 from rotors.errors import RotorError
 from rotors.material import ShaftMaterial, ShearFormula
-from rotors.shaft import Disc, Segment
+from rotors.segment import Segment
+from rotors.shaft import Disc
 from rotors.shaft_coupling import Coupling
 
 from .remarks import Remarks

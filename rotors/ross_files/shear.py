@@ -13,7 +13,7 @@ rigid in shear to ten digits.
 from typing import Final
 
 from rotors.section import Section
-from rotors.shaft import Segment
+from rotors.segment import Segment
 
 RIGID_IN_SHEAR: Final = 1e9
 """Shear coefficient of an element without shear deflection."""

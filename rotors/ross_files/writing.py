@@ -13,7 +13,8 @@ import tomli_w
 from rotors.bearing import Bearing, Pedestal
 from rotors.errors import require, require_finite
 from rotors.material import ShaftMaterial
-from rotors.shaft import STATION_TOLERANCE, Disc, Rotor, Segment, merged_positions, station_index
+from rotors.segment import Segment
+from rotors.shaft import STATION_TOLERANCE, Disc, Rotor, merged_positions, station_index
 from rotors.shaft_coupling import Coupling
 
 from .bearings import PLACES
