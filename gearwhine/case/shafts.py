@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+from pydantic import (
+    Discriminator,
+    Field,
+    PrivateAttr,
+    SerializerFunctionWrapHandler,
+    Tag,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     Angle,
+    CaseFile,
     Damping,
     DampingFromZero,
     DampingRatio,
@@ -30,6 +40,9 @@ from gearwhine.case.fields import (
     wrong,
 )
 from gearwhine.case.units import Dimension
+
+if TYPE_CHECKING:
+    from rotors import RossModel
 
 
 class Segment(Table):
@@ -75,24 +88,60 @@ class Bow(Table):
 class Rotor(Table):
     """`[[rotor]]`: a shaft along z at `axis` (x, y), its left end at z = `start`, all in m.
 
-    `damping_ratio` is that of the shaft's own modes; `shear_coefficient` names a formula.
+    `damping_ratio` is that of the shaft's own modes; `shear_coefficient` names a formula. Where a `file` of ROSS
+    holds the shaft, with its discs and grounded bearings, there are no `segments` here.
     """
 
     name: Name
     axis: tuple[Length, Length] = (0.0, 0.0)
     start: Length = 0.0
-    material: Name
+    file: CaseFile | None = None
+    material: Name | None = None
     mass: Literal["distributed", "lumped"] = "distributed"
     damping_ratio: DampingRatio = 0.005
     shear_coefficient: Literal["cowper", "hutchinson"] = "cowper"
-    segments: tuple[Segment, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
+    segments: tuple[Segment, ...] = Field(default=(), min_length=1, max_length=MOST_ENTRIES)
     discs: tuple[Disc, ...] = Field(default=(), max_length=MOST_ENTRIES)
     unbalance: tuple[Unbalance, ...] = Field(default=(), max_length=MOST_ENTRIES)
     bow: tuple[Bow, ...] = Field(default=(), max_length=MOST_ENTRIES)
 
+    _saved: RossModel | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _described(self) -> Rotor:
+        if self.file is None:
+            for key, what in (("material", "the name of a material"), ("segments", "a list")):
+                if not getattr(self, key):
+                    raise wrong(f"{what}, or a rotor's file instead", key)
+            return self
+        for key in ("segments", "shear_coefficient"):
+            if key in self.model_fields_set:
+                raise wrong("no such key beside file, which holds the shaft", key)
+        from rotors import RotorError, read_ross
+
+        try:
+            self._saved = read_ross(self.file)
+        except RotorError as error:
+            raise wrong(f"a rotor saved by ROSS ({error})", "file") from None
+        return self
+
+    @model_serializer(mode="wrap")
+    def _without_what_the_file_holds(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        written: dict[str, Any] = write(self)
+        if self.file is not None:
+            del written["segments"], written["shear_coefficient"]
+        return written
+
+    @property
+    def saved(self) -> RossModel | None:
+        """What the file holds; None where the shaft is described here."""
+        return self._saved
+
     @property
     def length(self) -> float:
         """Length of the shaft [m]."""
+        if self._saved is not None:
+            return self._saved.rotor.length
         return sum(segment.length for segment in self.segments)
 
 

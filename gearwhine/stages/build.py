@@ -58,9 +58,14 @@ def build_rotor(case: Case, given: GivenRotor) -> rotor_room.Rotor:
             mass, polar, diametral = gear_inertia(case, gear)
             if mass or polar or diametral:
                 discs.append(rotor_room.Disc(gear.at, mass, polar, diametral))
+    if given.saved is not None:
+        of_file = given.saved.rotor
+        return rotor_room.Rotor(given.name, of_file.segments, [*of_file.discs, *discs], given.mass)
     segments = []
     for segment in given.segments:
-        steel = case.material[segment.material or given.material]
+        name = segment.material or given.material
+        assert name is not None
+        steel = case.material[name]
         material = rotor_room.ShaftMaterial(steel.youngs_modulus, steel.shear_modulus, steel.density)
         segments.append(
             rotor_room.Segment(segment.length, segment.diameter, segment.bore, material, given.shear_coefficient)
@@ -69,14 +74,18 @@ def build_rotor(case: Case, given: GivenRotor) -> rotor_room.Rotor:
 
 
 def build_bearings(case: Case, rotor: str) -> tuple[rotor_room.Bearing, ...]:
-    """The bearings of one rotor, in the order of the file.
+    """The bearings of one rotor, in the order of the file; first those of the rotor's own file.
+
+    A bearing of the case takes the place of one of the same name in the rotor's file.
 
     Raises
     ------
     CaseError
         For stiffness given in a form that comes in a later version.
     """
-    bearings = []
+    saved = case.rotor_named(rotor).saved
+    replaced = {given.name for given in case.bearing if given.rotor == rotor}
+    bearings = [bearing for bearing in (saved.bearings if saved else ()) if bearing.name not in replaced]
     for index, given in enumerate(case.bearing):
         if given.rotor != rotor:
             continue

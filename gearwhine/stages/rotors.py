@@ -1,6 +1,7 @@
 """The rotors of a case: modes at rest, whirl at speed, critical speeds."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -100,6 +101,14 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
             for one in solved
         ]
     }
+
+
+def write_ross_files(folder: Path, solved: tuple[SolvedRotor, ...]) -> tuple[str, ...]:
+    """Write every rotor as ``<name>.ross.toml``, and return what ROSS has no place for."""
+    remarks: list[str] = []
+    for one in solved:
+        remarks += room.write_ross(folder / f"{one.rotor.name}.ross.toml", one.rotor, one.bearings)
+    return tuple(remarks)
 
 
 def _certificate(one: SolvedRotor) -> dict[str, Any]:

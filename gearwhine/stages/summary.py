@@ -22,10 +22,8 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
         document["warnings"] = warnings
     if case.rotor:
         document["rotors"] = _rotors(case)
-    if case.bearing:
-        document["bearings"] = [
-            {"name": bearing.name, "rotor": bearing.rotor, "seat": bearing.seat} for bearing in case.bearing
-        ]
+    if bearings := _bearings(case):
+        document["bearings"] = bearings
     if case.gear_pair:
         document["gear_pairs"] = _pairs(case)
     if case.operation is not None:
@@ -89,6 +87,15 @@ def _bushing(given: Mount | Joint) -> dict[str, Any]:
                 turning = motion in ("rx", "ry", "rz", "tilting", "torsional")
                 document.setdefault(f"{key}_{turning_unit if turning else unit}", {})[motion] = amount
     return document
+
+
+def _bearings(case: Case) -> list[dict[str, Any]]:
+    """Every bearing and where it stands, those of the rotors' own files on the ground."""
+    seats = {(bearing.rotor, bearing.name): bearing.seat for bearing in case.bearing}
+    for rotor in case.rotor:
+        for bearing in rotor.saved.bearings if rotor.saved else ():
+            seats.setdefault((rotor.name, bearing.name), "ground")
+    return [{"name": name, "rotor": rotor, "seat": seat} for (rotor, name), seat in seats.items()]
 
 
 def _rotors(case: Case) -> list[dict[str, Any]]:

@@ -2,12 +2,13 @@
 
 ROSS solves finite elements after Genta (1988) and Friswell et al. (2010): cubic shape functions of the static
 Timoshenko beam, a consistent mass. Within an element the shear strain is constant and no inertia bends the shape, so
-that an eigenvalue carries an error of h² a + h⁴ b + … in the element's length h. Each rotor is solved by ROSS on three
-meshes, each of half the elements' length of the one before. Against ours, which has no mesh,
+that an eigenvalue carries an error of h² a + h⁴ b + … in the element's length h; a cone's begins to fall so once its
+elements are shorter than a third of their diameter. Each rotor is solved by ROSS on three meshes, each of half the
+elements' length of the one before. Against ours, which has no mesh,
 
 - the difference falls at least with h² (by more than 3.3 for each halving),
 - on the finest mesh it is less than ROSS's own last change, which for h² is three times its error,
-- the three values extrapolated to h = 0, (64 λ₃ − 20 λ₂ + λ₁)/45 without a and b, come at least four times nearer again.
+- the three values extrapolated to h = 0, (64 λ₃ − 20 λ₂ + λ₁)/45 without a and b, come at least four times nearer.
 
 Shear coefficients are Cowper's in both. The matrices are those that ``run_modal`` takes to its eigensolver; its results
 object compiles for half a minute before it shows the first of them.
