@@ -30,6 +30,7 @@ from .lateral import LateralModes, solve_lateral_modes
 from .material import ShaftMaterial, shear_coefficient
 from .modal import ModalRotor, modal_rotor
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .ross_files import RossModel, read_ross, write_ross
 from .section import Section
 from .segment import Segment
 from .shaft import Disc, Rotor
@@ -51,6 +52,7 @@ __all__ = [
     "Pedestal",
     "RadialSupport",
     "RestFrequencies",
+    "RossModel",
     "Rotor",
     "RotorError",
     "Section",
@@ -63,6 +65,7 @@ __all__ = [
     "buckling_factor",
     "critical_speeds",
     "modal_rotor",
+    "read_ross",
     "rest_frequencies",
     "shear_coefficient",
     "solve_axial_modes",
@@ -71,4 +74,5 @@ __all__ = [
     "solve_torsional_modes",
     "solve_whirl",
     "whirl_basis",
+    "write_ross",
 ]

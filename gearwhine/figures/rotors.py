@@ -1,6 +1,5 @@
 """The pictures of a case's rotors: which there are, and the files they go to."""
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -10,13 +9,14 @@ from matplotlib.figure import Figure
 from scipy.optimize import linear_sum_assignment
 
 import rotors as room
-from gearwhine.case import Case, RollingStiffness
+from gearwhine.case import Case, RollingStiffness, Segment
 from gearwhine.figures.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
 from gearwhine.figures.campbell import draw_campbell
 from gearwhine.figures.mode_shapes import draw_lateral_modes, draw_torsional_modes
 from gearwhine.figures.shaft import draw_shaft
 from gearwhine.figures.style import save, shortened
 from gearwhine.figures.whirl_shapes import draw_whirl_modes
+from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import gear_inertia
 from gearwhine.stages.rotors import SolvedRotor
@@ -25,7 +25,6 @@ FloatArray = npt.NDArray[np.float64]
 
 _MODES = 6  # drawn of each kind
 _ADDENDUM, _DEDENDUM, _WIDTH = 1.0, 1.25, 10.0  # of a drawn tooth and of a gear without a face width, in modules
-_LONGEST = 60  # of a rotor's name in a file's [characters]
 
 
 def draw_rotors(folder: Path, case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> list[str]:
@@ -50,23 +49,11 @@ def draw_rotors(folder: Path, case: Case, solved: Sequence[SolvedRotor], progres
         The files' names.
     """
     files = []
-    for stem, one in zip(file_stems([one.rotor.name for one in solved]), solved, strict=True):
+    stems = file_stems([one.rotor.name for one in solved], "rotor-")
+    for stem, one in zip(stems, solved, strict=True):
         progress(f"drawing rotor {one.rotor.name}")
         files += [save(figure, folder / f"{stem}-{kind}.png") for kind, figure in _figures(case, one)]
     return files
-
-
-def file_stems(names: Sequence[str]) -> list[str]:
-    """A stem ``rotor-NAME`` for each name, of letters that any file system takes, and no two alike."""
-    stems: list[str] = []
-    for number, name in enumerate(names, start=1):
-        plain = re.sub(r"[^A-Za-z0-9._+-]+", "-", name).strip("-.")[:_LONGEST]
-        stem = f"rotor-{plain or number}"
-        # Some file systems take capitals and small letters for the same.
-        if stem.lower() in (other.lower() for other in stems):
-            stem = f"{stem}-{number}"
-        stems.append(stem)
-    return stems
 
 
 def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
@@ -91,7 +78,8 @@ def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
             )
         )
     on_it = [bearing for bearing in case.bearing if bearing.rotor == name]
-    parts: Sequence[room.Segment | room.Coupling] = one.rotor.segments
+    # The materials of a rotor's own file have no names in the case.
+    rows = zip(one.rotor.segments, given.segments, strict=True) if given.saved is None else ()
     return RotorAssembly(
         rotor=one.rotor,
         bearings=one.bearings,
@@ -100,9 +88,9 @@ def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
         rolling={bearing.name for bearing in on_it if isinstance(bearing.stiffness, RollingStiffness)},
         seats={bearing.name: bearing.seat for bearing in on_it if not bearing.grounded},
         materials={
-            part.material: segment.material or given.material
-            for part, segment in zip(parts, given.segments, strict=True)
-            if isinstance(part, room.Segment)
+            part.material: segment.material or given.material or ""
+            for part, segment in rows
+            if isinstance(part, room.Segment) and isinstance(segment, Segment)
         },
     )
 

@@ -57,8 +57,9 @@ def build_machine(
                 damping_ratio=given.damping_ratio,
             )
         )
-        seats = {entry.name: None if entry.grounded else entry.seat for entry in case.bearing}
-        bearings += [room.MountedBearing(bearing, given.name, seats[bearing.name]) for bearing in held]
+        # Those of the rotor's own file stand on the ground.
+        seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
+        bearings += [room.MountedBearing(bearing, given.name, seats.get(bearing.name)) for bearing in held]
     return room.couple(
         components,
         None if housing is None else _housing_component(case, housing),

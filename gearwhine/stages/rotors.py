@@ -2,9 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import rotors as room
 from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
+from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import build_bearings, build_rotor
 
@@ -104,3 +106,11 @@ def _whirl(
         room.solve_whirl(rotor, [bearing.at_speed(speed) for bearing in bearings], speed, count=count, basis=basis)
         for speed in speeds
     )
+
+
+def write_ross_files(folder: Path, solved: tuple[SolvedRotor, ...]) -> tuple[str, ...]:
+    """Write every rotor as ``<name>.ross.toml``, and return what ROSS has no place for."""
+    remarks: list[str] = []
+    for one, stem in zip(solved, file_stems([one.rotor.name for one in solved]), strict=True):
+        remarks += room.write_ross(folder / f"{stem}.ross.toml", one.rotor, one.bearings)
+    return tuple(remarks)

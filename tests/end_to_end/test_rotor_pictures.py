@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from gearwhine.figures.rotors import file_stems
+from gearwhine.output import file_stems
 
 KINDS = {"shaft", "modes", "torsion", "whirl", "campbell"}
 
@@ -40,7 +40,7 @@ def test_gears_seats_and_odd_names(gearwhine) -> None:
 
 
 def test_names_of_files_are_plain_short_and_unlike() -> None:
-    stems = file_stems(["input", "Input", "轴", "轴 2", "..", "a" * 98, "a" * 99, "x*y", "x?y"])
+    stems = file_stems(["input", "Input", "轴", "轴 2", "..", "a" * 98, "a" * 99, "x*y", "x?y"], "rotor-")
     assert len({stem.lower() for stem in stems}) == len(stems)
     assert stems[0] == "rotor-input"
     assert all(stem.isascii() and len(stem) < 80 and not set(stem) & set('/\\:*?"<>| ') for stem in stems)
