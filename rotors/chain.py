@@ -23,7 +23,7 @@ from .bearing import RadialSupport
 from .errors import RotorError
 from .lumped import station_inertias
 from .shaft import Rotor, merged_positions, station_index
-from .timoshenko import transfer_matrices
+from .timoshenko import NumberArray, transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -94,10 +94,16 @@ class Chain:
             return np.inf
         return int(np.count_nonzero((self.node_inertia > 0.0) & ~self.constrained))
 
-    def transfers(self, frequency_squared: FloatArray) -> FloatArray:
-        """Transfer matrices of all pieces at every ω² of a (b,) array, (p, b, 2n, 2n)."""
+    def transfers(self, translation: NumberArray, rotation: NumberArray | None = None) -> NumberArray:
+        """Transfer matrices of all pieces at every ω² of a (b,) array, real or complex, (p, b, 2n, 2n).
+
+        ``rotation`` takes the place of ω² at the rotary inertia, where gyroscopic terms make it another.
+        """
         lengths = np.ascontiguousarray(self.lengths)[:, None]
-        return transfer_matrices(self.flexibility[:, None], self.inertia[:, None], lengths, frequency_squared[None, :])
+        turning = None if rotation is None else rotation[None, :]
+        return transfer_matrices(
+            self.flexibility[:, None], self.inertia[:, None], lengths, translation[None, :], turning
+        )
 
     def node_at(self, position: float) -> int:
         """Index of the node at a position (m), which must be one of the nodes."""

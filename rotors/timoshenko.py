@@ -27,18 +27,24 @@ Torsion is the same with y = (θ, τ): θ' = τ/GJ, τ' = −ω² ρJ θ.
 """
 
 from math import factorial
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+NumberArray = npt.NDArray[Any]
 
 SERIES_TERMS = 14
 
 
 def transfer_matrices(
-    flexibility: FloatArray, inertia: FloatArray, length: FloatArray, frequency_squared: FloatArray
-) -> FloatArray:
+    flexibility: FloatArray,
+    inertia: FloatArray,
+    length: FloatArray,
+    frequency_squared: NumberArray,
+    rotation_squared: NumberArray | None = None,
+) -> NumberArray:
     """Transfer matrices T of uniform pieces, right state = T · left state.
 
     All arguments broadcast against each other over their leading axes.
@@ -52,7 +58,9 @@ def transfer_matrices(
     length
         (...): length h of the piece.
     frequency_squared
-        (...): ω²; may be zero or negative.
+        (...): ω²; may be zero, negative or complex.
+    rotation_squared
+        (...): what takes the place of ω² at the rotary inertia, where that is something else.
 
     Returns
     -------
@@ -62,19 +70,24 @@ def transfer_matrices(
     """
     if flexibility.shape[-1] == 1:
         return _rod(flexibility[..., 0], inertia[..., 0], length, frequency_squared)
-    return _beam(flexibility, inertia, length, frequency_squared)
+    rotation = frequency_squared if rotation_squared is None else rotation_squared
+    return _beam(flexibility, inertia, length, frequency_squared, rotation)
 
 
 def _beam(
-    flexibility: FloatArray, inertia: FloatArray, length: FloatArray, frequency_squared: FloatArray
-) -> FloatArray:
+    flexibility: FloatArray,
+    inertia: FloatArray,
+    length: FloatArray,
+    translation: NumberArray,
+    rotation: NumberArray,
+) -> NumberArray:
     h = length
     a, b = flexibility[..., 0] * h, flexibility[..., 1] * h
-    m, j = frequency_squared * inertia[..., 0] * h, frequency_squared * inertia[..., 1] * h
+    m, j = translation * inertia[..., 0] * h, rotation * inertia[..., 1] * h
     am, bj, bh, hm = a * m, b * j, b * h, h * m
     c0, c1, c2, c3 = _reduced_exponential(-(am + bj), b * m * (a * j - h * h))
 
-    transfer = np.zeros((*c0.shape, 4, 4))
+    transfer = np.zeros((*c0.shape, 4, 4), dtype=c0.dtype)
     # The powers of A h, written out; A h = [[0, h, a, 0], [0, 0, 0, b], [-m, 0, 0, 0], [0, -j, -h, 0]].
     transfer[..., 0, 0] = transfer[..., 2, 2] = c0 - c2 * am
     transfer[..., 1, 1] = transfer[..., 3, 3] = c0 - c2 * bj
@@ -93,7 +106,9 @@ def _beam(
     return transfer
 
 
-def _rod(flexibility: FloatArray, inertia: FloatArray, length: FloatArray, frequency_squared: FloatArray) -> FloatArray:
+def _rod(
+    flexibility: FloatArray, inertia: FloatArray, length: FloatArray, frequency_squared: NumberArray
+) -> NumberArray:
     twist, swing = flexibility * length, frequency_squared * inertia * length
     root = -twist * swing
     cosine, sine = np.ones_like(root), np.ones_like(root)
@@ -102,16 +117,16 @@ def _rod(flexibility: FloatArray, inertia: FloatArray, length: FloatArray, frequ
         power = power * root
         cosine = cosine + power / factorial(2 * k)
         sine = sine + power / factorial(2 * k + 1)
-    transfer = np.zeros((*root.shape, 2, 2))
+    transfer = np.zeros((*root.shape, 2, 2), dtype=root.dtype)
     transfer[..., 0, 0] = transfer[..., 1, 1] = cosine
     transfer[..., 0, 1] = sine * twist
     transfer[..., 1, 0] = -sine * swing
     return transfer
 
 
-def _reduced_exponential(e1: FloatArray, e2: FloatArray) -> tuple[FloatArray, ...]:
+def _reduced_exponential(e1: NumberArray, e2: NumberArray) -> tuple[NumberArray, ...]:
     """C₀ … C₃ of the module's docstring, each of the arguments' broadcast shape."""
-    older = np.zeros(np.broadcast_shapes(e1.shape, e2.shape))
+    older = np.zeros(np.broadcast_shapes(e1.shape, e2.shape), dtype=np.result_type(e1, e2))
     newer = np.ones_like(older)
     even_low, odd_low = older, older
     even_high, odd_high = newer / 2.0, newer / 6.0
