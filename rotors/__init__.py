@@ -26,11 +26,13 @@ from .errors import IncompleteModesError, RotorError
 from .lateral import LateralModes, solve_lateral_modes
 from .material import ShaftMaterial, shear_coefficient
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .projection import whirl_basis
 from .section import Section
 from .shaft import Disc, Rotor, Segment
 from .shaft_coupling import Coupling
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
-from .whirl import WhirlModes, solve_whirl, whirl_basis
+from .whirl import WhirlModes, solve_whirl
+from .whirl_certificate import WhirlCertificate
 
 __all__ = [
     "Bearing",
@@ -49,6 +51,7 @@ __all__ = [
     "Segment",
     "ShaftMaterial",
     "TorsionalModes",
+    "WhirlCertificate",
     "WhirlModes",
     "attach_loads",
     "critical_speeds",

@@ -147,43 +147,60 @@ class SpatialChain:
     def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Entries of the equations at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
         chain, batch = self.bending, eigenvalues.size
-        squared = eigenvalues**2
-        parts = []
-        for block in self.blocks:
-            transfer = self._transfers(block, eigenvalues, speeds)
-            half = transfer.shape[-1] // 2
-            transfer[..., :half, half:] *= scale[:, None, None]
-            transfer[..., half:, :half] /= scale[:, None, None]
-            parts.append(-np.moveaxis(transfer, 1, 0).reshape(batch, -1))
+        parts = [
+            -np.moveaxis(self._transfers(block, eigenvalues, speeds, scale), 1, 0).reshape(batch, -1)
+            for block in self.blocks
+        ]
         nodes, n = chain.nodes.size, self.size
         parts += [np.ones((batch, (nodes - 1) * n)), np.ones((batch, nodes * n))]
-        terms = np.empty((batch, nodes, n), dtype=np.complex128)
-        first = 0
-        for block in self.blocks:
-            terms[:, :, first] = squared[:, None] * chain.node_inertia[:, 0]
-            if block:
-                gyroscopic = (block * 1j * speeds * eigenvalues)[:, None] * chain.node_polar
-                terms[:, :, first + 1] = squared[:, None] * chain.node_inertia[:, 1] - gyroscopic
-            first += len(MEMBERS[block])
-        parts.append(-(terms / scale[:, None, None]).reshape(batch, -1))
+        parts.append(-(self.node_terms(eigenvalues, speeds) / scale[:, None, None]).reshape(batch, -1))
         for tie in self.ties:
-            bearing = (tie.stiffness + eigenvalues[:, None, None] * tie.damping) / scale[:, None, None]
+            bearing, ground = (matrix / scale[:, None, None] for matrix in tie.dynamic_stiffness(eigenvalues))
             foot = list(tie.foot)
             parts += [-bearing.reshape(batch, -1), bearing[:, :, foot].reshape(batch, -1)]
-            ground = tie.foot_stiffness + eigenvalues[:, None, None] * tie.foot_damping
-            ground = (ground + squared[:, None, None] * tie.foot_mass) / scale[:, None, None]
             whole = ground + bearing[:, foot][:, :, foot]
             parts += [-bearing[:, foot].reshape(batch, -1), whole.reshape(batch, -1)]
         parts.append(np.ones((batch, n)))
         return np.ascontiguousarray(np.concatenate(parts, axis=1), dtype=np.complex128)
 
-    def _transfers(self, block: int, eigenvalues: ComplexArray, speeds: ComplexArray) -> ComplexArray:
+    def node_terms(self, eigenvalues: ComplexArray, speeds: ComplexArray) -> ComplexArray:
+        """λ²M ∓ iΩλ I_p of the nodes' own inertias, (b, p + 1, n)."""
+        chain = self.bending
+        squared = eigenvalues[:, None] ** 2
+        columns = []
+        for block in self.blocks:
+            columns.append(squared * chain.node_inertia[:, 0])
+            if block:
+                gyroscopic = (block * 1j * speeds * eigenvalues)[:, None] * chain.node_polar
+                columns.append(squared * chain.node_inertia[:, 1] - gyroscopic)
+        return np.stack(columns, axis=-1)
+
+    def dense_transfers(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
+        """Transfer matrices of all blocks together, (p, b, 2n, 2n), displacements before forces."""
+        n = self.size
+        dense = np.zeros((self.bending.lengths.size, eigenvalues.size, 2 * n, 2 * n), dtype=np.complex128)
+        first = 0
+        for block in self.blocks:
+            local = first + np.arange(len(MEMBERS[block]))
+            both = np.concatenate([local, n + local])
+            dense[:, :, both[:, None], both] = self._transfers(block, eigenvalues, speeds, scale)
+            first += local.size
+        return dense
+
+    def _transfers(
+        self, block: int, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
+    ) -> ComplexArray:
         translation = -(eigenvalues**2)
         if block == 0:
             lengths = np.ascontiguousarray(self.bending.lengths)[:, None]
             flexibility, inertia = self.axial_flexibility[:, None, None], self.axial_inertia[:, None, None]
-            return transfer_matrices(flexibility, inertia, lengths, translation[None, :])
-        return self.bending.transfers(translation, translation + block * 2j * speeds * eigenvalues)
+            transfer = transfer_matrices(flexibility, inertia, lengths, translation[None, :])
+        else:
+            transfer = self.bending.transfers(translation, translation + block * 2j * speeds * eigenvalues)
+        half = transfer.shape[-1] // 2
+        transfer[..., :half, half:] *= scale[:, None, None]
+        transfer[..., half:, :half] /= scale[:, None, None]
+        return transfer
 
     def states(self, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Node states (b, p + 1, 2n) in scaled units of solutions (b, order) of the equations."""

@@ -60,6 +60,12 @@ class Tie:
     foot_damping: ComplexArray
     foot_mass: ComplexArray
 
+    def dynamic_stiffness(self, eigenvalues: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """K + λC of the bearing, (b, n, n), and K + λC + λ²M of its pedestal, (b, f, f), at every λ (b,)."""
+        at = eigenvalues[:, None, None]
+        bearing = self.stiffness + at * self.damping
+        return bearing, self.foot_stiffness + at * self.foot_damping + at**2 * self.foot_mass
+
 
 def block_sets(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
     """Which motions the bearings tie to each other: sets of 1 (forward), −1 (backward) and 0 (axial).
