@@ -8,12 +8,12 @@ import numpy.typing as npt
 
 from .bearing import Bearing
 from .certificate import ModeCertificate
-from .chain import bending_chain
 from .errors import require, require_count
 from .exact_roots import synchronous_speed
 from .lateral import LateralModes, solve_lateral_modes
 from .projection import DEFAULT_COUNT, Projection, basis_for
 from .root_count import count_below
+from .rotor_lines import bending_chain, bending_line
 from .shaft import Rotor
 from .shapes import SAME_ROOT
 from .spatial_ties import block_sets
@@ -190,7 +190,7 @@ def _is_planar(bearing: Bearing) -> bool:
 def _counted(rotor: Rotor, bearings: Sequence[Bearing], plane: int, limit: float) -> int:
     """How many frequencies of one plane lie below a limit (rad/s), by a count of its own."""
     chain = bending_chain(rotor, tuple(bearing.plane_support(plane) for bearing in bearings), limit)
-    return int(count_below(chain, np.array([limit]))[0])
+    return int(count_below(chain, limit)[0])
 
 
 def _plane_modes(
@@ -199,5 +199,5 @@ def _plane_modes(
     supports = tuple(bearing.plane_support(plane) for bearing in bearings)
     if count is not None:
         # One plane of a lumped rotor may have fewer modes than are asked for over both.
-        count = int(min(count, bending_chain(rotor, supports, 1.0).available_modes))
+        count = int(min(count, bending_line(rotor, supports).available_modes))
     return solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)

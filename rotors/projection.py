@@ -20,13 +20,12 @@ import numpy.typing as npt
 from scipy import linalg
 
 from .attachment import attach_loads
+from .axial import solve_axial_modes
 from .bearing import Bearing, RadialSupport
-from .chain import Chain, bending_chain
 from .errors import require, require_count, require_finite
 from .lateral import LateralModes, solve_lateral_modes
-from .search import find_modes
+from .rotor_lines import bending_line, rod_line
 from .shaft import Rotor
-from .spatial_chain import block_units, spatial_chain
 from .spatial_ties import make_tie
 
 FloatArray = npt.NDArray[np.float64]
@@ -72,7 +71,7 @@ def whirl_basis(
     both = (frequency_limit, count)
     require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
     supports = mean_supports(bearings)
-    available = bending_chain(rotor, supports, 1.0).available_modes
+    available = bending_line(rotor, supports).available_modes
     if frequency_limit is None:
         wanted = (count or DEFAULT_COUNT) + 4
         modes = solve_lateral_modes(rotor, supports, count=int(min(max(wanted, LEAST_MODES), available)))
@@ -252,24 +251,6 @@ class Projection:
 def _axial_modes(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[FloatArray, FloatArray]:
     """Frequencies (a,) and shapes at the bearings (a, bearings) of the shaft free along its axis."""
 
-    def build(highest: float) -> Chain:
-        whole = spatial_chain(rotor, bearings, (0,), highest)
-        chain = whole.bending
-        return Chain(
-            nodes=chain.nodes,
-            flexibility=whole.axial_flexibility[:, None],
-            inertia=whole.axial_inertia[:, None],
-            node_inertia=chain.node_inertia[:, :1],
-            node_stiffness=np.zeros((chain.nodes.size, 1)),
-            node_polar=np.zeros(chain.nodes.size),
-            length_unit=chain.length_unit,
-            displacement_unit=block_units(chain, (0,)),
-            highest=highest,
-            is_station=chain.is_station,
-        )
-
-    found = find_modes(build, None, int(min(AXIAL_MODES, build(1.0).available_modes)))
-    states = found.fields.at(np.array([bearing.at for bearing in bearings]))[:, :, 0]
-    return found.frequencies, np.asarray(found.mixture @ states * found.fields.chain.displacement_unit[0])
-
-
+    available = rod_line(rotor, (), "axial").available_modes
+    modes = solve_axial_modes(rotor, count=int(min(AXIAL_MODES, available)))
+    return modes.frequencies, modes.evaluate([bearing.at for bearing in bearings])

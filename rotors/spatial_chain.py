@@ -38,10 +38,10 @@ import numpy.typing as npt
 
 from .banded import BandPattern
 from .bearing import Bearing, RadialSupport
-from .chain import Chain, bending_chain
+from .chain import Chain
+from .rotor_lines import axial_chain_on, bending_chain
 from .shaft import Rotor
 from .spatial_ties import MEMBERS, Tie, make_tie
-from .timoshenko import transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -60,8 +60,8 @@ class SpatialChain:
     ----------
     bending
         Pieces and node inertias of one plane, without springs.
-    axial_flexibility, axial_inertia
-        (p,): 1/EA and ρA in scaled units; node masses are those of bending.
+    axial
+        The same shaft as a rod, on the same nodes and in the same units.
     blocks
         1 for r+, −1 for r−, 0 for z, in the order of the unknowns.
     ties
@@ -69,8 +69,7 @@ class SpatialChain:
     """
 
     bending: Chain
-    axial_flexibility: FloatArray
-    axial_inertia: FloatArray
+    axial: Chain
     blocks: tuple[int, ...]
     ties: tuple[Tie, ...]
 
@@ -86,9 +85,10 @@ class SpatialChain:
 
     @cached_property
     def total_mass(self) -> float:
-        """Mass in scaled units."""
+        """About the mass, in scaled units."""
         chain = self.bending
-        return float(chain.inertia[:, 0] @ chain.lengths + chain.node_inertia[:, 0].sum())
+        along = chain.coefficients_at(np.arange(chain.element.size), np.full(chain.element.size, 0.5))[:, 2]
+        return float(along @ chain.lengths + chain.node_inertia[:, 0].sum())
 
     @cached_property
     def starts(self) -> IntArray:
@@ -192,9 +192,7 @@ class SpatialChain:
     ) -> ComplexArray:
         translation = -(eigenvalues**2)
         if block == 0:
-            lengths = np.ascontiguousarray(self.bending.lengths)[:, None]
-            flexibility, inertia = self.axial_flexibility[:, None, None], self.axial_inertia[:, None, None]
-            transfer = transfer_matrices(flexibility, inertia, lengths, translation[None, :])
+            transfer = self.axial.transfers(translation)
         else:
             transfer = self.bending.transfers(translation, translation + block * 2j * speeds * eigenvalues)
         half = transfer.shape[-1] // 2
@@ -245,17 +243,6 @@ def spatial_chain(
     """
     supports = [RadialSupport(at, 0.0) for at in (*(bearing.at for bearing in bearings), *places)]
     chain = bending_chain(rotor, tuple(supports), highest)
-    flexibility, inertia = _axial_pieces(rotor, chain)
     units = block_units(chain, blocks)
     ties = tuple(make_tie(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
-    return SpatialChain(chain, flexibility, inertia, blocks, ties)
-
-
-def _axial_pieces(rotor: Rotor, chain: Chain) -> tuple[FloatArray, FloatArray]:
-    """1/EA and ρA of every piece in the chain's units, (p,) each."""
-    middles = 0.5 * (chain.nodes[1:] + chain.nodes[:-1])
-    owner = np.clip(np.searchsorted(rotor.joints, middles) - 1, 0, len(rotor.segments) - 1)
-    stiffness = np.array([segment.section(0.5).axial_stiffness for segment in rotor.segments])[owner]
-    unit = chain.displacement_unit[0]
-    # A rod has the mass per length of the beam.
-    return chain.length_unit / (unit**2 * stiffness), chain.inertia[:, 0].copy()
+    return SpatialChain(chain, axial_chain_on(rotor, chain), blocks, ties)

@@ -12,6 +12,9 @@ from .spatial_ties import MEMBERS
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+GAUSS_POINTS = 6
 
 
 @dataclass(frozen=True)
@@ -40,9 +43,7 @@ class SpatialMotion:
     ) -> "SpatialMotion":
         """Motions from solutions (w, order) of a chain's equations; blocks that it lacks are at rest."""
         states = chain.states(solutions, chain.force_scale(eigenvalues))
-        parts = {
-            block: np.zeros((*states.shape[:2], 4), dtype=np.complex128) for block in (1, -1)
-        }
+        parts = {block: np.zeros((*states.shape[:2], 4), dtype=np.complex128) for block in (1, -1)}
         first = 0
         for block in chain.blocks:
             local = first + np.arange(len(MEMBERS[block]))
@@ -82,20 +83,20 @@ class SpatialMotion:
         by = factors[:, None, None]
         return replace(self, forward=by * self.forward, backward=by * self.backward)
 
-    def nodal_weights(self) -> FloatArray:
-        """Inertias of the nodes, half of every piece's at either end included, (p + 1, 2), scaled units."""
-        chain = self.chain
-        weights = chain.node_inertia.copy()
-        halves = 0.5 * chain.inertia * chain.lengths[:, None]
-        weights[:-1] += halves
-        weights[1:] += halves
-        return np.asarray(weights)
-
     def shares(self) -> FloatArray:
-        """Kinetic weight of the forward and of the backward part of every motion, (w, 2)."""
-        weights = self.nodal_weights()
-        parts = [(np.abs(part[:, :, :2]) ** 2 * weights).sum(axis=(1, 2)) for part in (self.forward, self.backward)]
-        return np.stack(parts, axis=-1)
+        """∫ ρA |r±|² + ρI |β±|² dz with the nodes' own, of the forward and the backward part, (w, 2), kg·m²."""
+        chain = self.chain
+        points, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+        pieces = np.repeat(np.arange(chain.element.size), GAUSS_POINTS)
+        fractions = np.tile(0.5 * (points + 1.0), chain.element.size)
+        along = chain.coefficients_at(pieces, fractions)[:, chain.inertia_rows]
+        along *= (0.5 * chain.lengths[:, None] * weights).reshape(-1, 1)
+        shares = []
+        for block, states in ((1, self.forward), (-1, self.backward)):
+            inside = self._inside(block, states, pieces, fractions)[:, :, :2]
+            nodal = states[:, :, :2]
+            shares.append(_weighted(inside, along) + _weighted(nodal, chain.node_inertia))
+        return np.stack(shares, axis=-1)
 
     def at(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Forward and backward states (w, len(z), 4) at positions z (m), in scaled units, by the exact transfer.
@@ -106,23 +107,11 @@ class SpatialMotion:
             A position is not on the shaft.
         """
         positions = require_positions(self.chain.nodes, z)
-        finer = self.chain.with_nodes(positions)
-        where = np.array([finer.node_at(position) for position in positions], dtype=np.intp)
-        known = np.searchsorted(self.chain.nodes, finer.nodes, side="right") - 1
-        is_known = np.isclose(finer.nodes, self.chain.nodes[known], rtol=0.0, atol=0.0)
-        parts = []
-        for block, states in ((1, self.forward), (-1, self.backward)):
-            translation = -(self.eigenvalues**2)
-            rotation = translation + block * 2j * self.speeds * self.eigenvalues
-            transfers = finer.transfers(translation, rotation)
-            filled = np.empty((self.count, finer.nodes.size, 4), dtype=np.complex128)
-            for node in range(finer.nodes.size):
-                if is_known[node]:
-                    filled[:, node] = states[:, known[node]]
-                else:
-                    filled[:, node] = np.einsum("wij,wj->wi", transfers[node - 1], filled[:, node - 1])
-            parts.append(filled[:, where])
-        return parts[0], parts[1]
+        pieces, fractions = self.chain.places(positions)
+        return (
+            self._inside(1, self.forward, pieces, fractions),
+            self._inside(-1, self.backward, pieces, fractions),
+        )
 
     def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Complex x and y at positions z (m), both (w, len(z)), m."""
@@ -136,8 +125,18 @@ class SpatialMotion:
         unit = self.chain.displacement_unit[1]
         return planes(forward[:, :, 1] * unit, backward[:, :, 1] * unit)
 
+    def _inside(self, block: int, states: ComplexArray, pieces: IntArray, fractions: FloatArray) -> ComplexArray:
+        translation = -(self.eigenvalues**2)
+        rotation = translation + block * 2j * self.speeds * self.eigenvalues
+        transfers = self.chain.transfers_to(pieces, fractions, translation, rotation)
+        return np.asarray(np.einsum("zwij,wzj->wzi", transfers, states[:, pieces]))
+
 
 def planes(forward: ComplexArray, backward: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """x and y of circular coordinates r± = (x ± i y)/√2."""
     root = np.sqrt(0.5)
     return np.asarray(root * (forward + backward)), np.asarray(-1j * root * (forward - backward))
+
+
+def _weighted(values: ComplexArray, weights: FloatArray) -> FloatArray:
+    return np.asarray((np.abs(values) ** 2 * weights).sum(axis=(1, 2)))

@@ -174,8 +174,7 @@ def certified_whirl(
     highest = whirl_reach(highest, highest if turning is None else turning)
     chains = [spatial_chain(rotor, bearings, blocks, highest) for blocks, _ in starts]
     refined = [
-        refine_roots(chain, values[np.abs(values) <= reach], speed)
-        for chain, values in zip(chains, kept, strict=True)
+        refine_roots(chain, values[np.abs(values) <= reach], speed) for chain, values in zip(chains, kept, strict=True)
     ]
     if limit is None:
         assert count is not None
@@ -184,8 +183,7 @@ def certified_whirl(
         sector = oscillating(least, limit)
     conservative = is_conservative(bearings)
     parts = [
-        certified_roots(chain, roots, speed, sector, conservative)
-        for chain, roots in zip(chains, refined, strict=True)
+        certified_roots(chain, roots, speed, sector, conservative) for chain, roots in zip(chains, refined, strict=True)
     ]
     motion = _joined(chains, [roots for roots, _ in parts], speed)
     order = np.lexsort((motion.eigenvalues.imag, np.abs(motion.eigenvalues)))[:count]

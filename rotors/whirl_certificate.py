@@ -72,13 +72,11 @@ def certified_roots(
     if held.eigenvalues.size < expected:
         held = search(chain, roots, speed, sector)
     found = held.eigenvalues.size
-    certificate = WhirlCertificate(
-        sector.most, expected, found, float(held.residuals.max(initial=0.0)), method
-    )
+    certificate = WhirlCertificate(sector.most, expected, found, float(held.residuals.max(initial=0.0)), method)
     if not certificate.complete:
         raise IncompleteModesError(
-            f"{found} whirl modes are found below {sector.most:g} rad/s, but the exact equations have {expected} by their "
-            f"{method} count; choose a limit a little apart, or check the model for parts that differ by many "
+            f"{found} whirl modes are found below {sector.most:g} rad/s, but the exact equations have {expected} "
+            f"by their {method} count; choose a limit a little apart, or check the model for parts that differ by many "
             "orders of magnitude in stiffness or damping"
         )
     return held, certificate
@@ -125,5 +123,6 @@ def _cut(chain: SpatialChain, sector: Sector, speed: Speed) -> list[Sector]:
             continue
         return list(halves)
     raise RootOnContourError(
-        f"whirl modes about |λ| = {sector.most:g} rad/s lie too close to each other to be told apart; choose a lower limit"
+        f"whirl modes about |λ| = {sector.most:g} rad/s lie too close to each other to be told apart; "
+        "choose a lower limit"
     )

@@ -6,9 +6,9 @@ proportional to the speed Ω, or to ω where the speed follows the frequency. At
 
     vᴴ D' v = −2ω vᴴMv + vᴴGv = −ω vᴴMv − vᴴKv / ω < 0,
 
-because vᴴGv = ω vᴴMv − vᴴKv / ω there. (For Ω = ω, D = K − ω²(M − G') and vᴴD'v = −2 vᴴKv / ω.) Each eigenvalue of D that
-passes zero as ω grows passes downwards, so the roots between two frequencies number exactly the difference of
-s(D), the negative eigenvalues: Wittrick and Williams' count, carried over to any speed. Roots that move no
+because vᴴGv = ω vᴴMv − vᴴKv / ω there. (For Ω = ω, D = K − ω²(M − G') and vᴴD'v = −2 vᴴKv / ω.) Each eigenvalue
+of D that passes zero as ω grows passes downwards, so the roots between two frequencies number exactly the
+difference of s(D), the negative eigenvalues: Wittrick and Williams' count, carried over to any speed. Roots that move no
 stiffness, the free rotor's at zero, lie below both.
 
 Eliminating nodes from the left, with (U, F) the n states that the left part admits, S = F U⁻¹, and K₁₁ = T₁₂⁻¹T₁₁
@@ -112,4 +112,3 @@ def _negatives(matrices: ComplexArray) -> IntArray:
 
 def _adjoint(matrices: ComplexArray) -> ComplexArray:
     return np.asarray(np.swapaxes(matrices, -1, -2).conj())
-

@@ -2,8 +2,8 @@
 
 The determinant f(λ) of `rotors.spatial_chain` is entire, so that the number of its zeros inside a closed contour
 is the number of turns that f makes about zero along it. The contour here bounds a rectangle in the plane of
-w = ln λ: an annular sector r₁ < |λ| < r₂, θ₁ < arg λ < θ₂. All oscillating motions, stable or not, lie in one such sector
-just inside 0 < arg λ < π.
+w = ln λ: an annular sector r₁ < |λ| < r₂, θ₁ < arg λ < θ₂. All oscillating motions, stable or not, lie in one such
+sector just inside 0 < arg λ < π.
 
 Sampling is adaptive. With g = d ln f/dw measured at every sample by a short second step, an interval of
 length h is safe when |h g| < 1.5 at both its ends and its own change of ln f is that of the mean slope. A
@@ -151,7 +151,7 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
         misfit = np.abs(change - 0.5 * h * (slopes[1:] + slopes[:-1])) > MISFIT
         unsafe = np.flatnonzero(steep | misfit)
         if unsafe.size == 0:
-            count = int(round(float(change.imag.sum()) / (2.0 * np.pi)))
+            count = round(float(change.imag.sum()) / (2.0 * np.pi))
             continued = logs[0] + np.concatenate([[0.0], np.cumsum(change)])
             return Winding(count, samples, points, continued, slopes)
         middles = 0.5 * (points[unsafe] + points[unsafe + 1])
@@ -160,8 +160,8 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
         points = np.insert(points, unsafe + 1, middles)
         logs, slopes = np.insert(logs, unsafe + 1, new_logs), np.insert(slopes, unsafe + 1, new_slopes)
     raise RootOnContourError(
-        f"the count of whirl modes with {sector.least:g} < |λ| < {sector.most:g} rad/s does not settle, as one lies on the "
-        "edge of the region; choose a limit a little apart from it"
+        f"the count of whirl modes with {sector.least:g} < |λ| < {sector.most:g} rad/s does not settle, as one lies "
+        "on the edge of the region; choose a limit a little apart from it"
     )
 
 
