@@ -1,15 +1,16 @@
 """No root is missed, and none invented: the modes of rotors drawn to be hard, against the reference's own count.
 
-The reference is the finite-element model of `finite_element_rotor`, in thirty-one digits, counted by Sylvester's law of
-inertia. It is counted just below and just above every frequency found, and at the limit: so each frequency is a root to
-`CLOSE` of itself, with its multiplicity, and there are no others. Its own error is 1e-13 (its own tests), and frequencies
-nearer to each other than `CLOSE` are held together, as one root of their number.
+The reference is the finite-element model of `finite_element_rotor`, in thirty-one digits, counted by Sylvester's law
+of inertia. It is counted just below and just above every frequency found, and at the limit: so each frequency is a
+root to `CLOSE` of itself, with its multiplicity, and there are no others. Its own error is 1e-13 (its own tests).
+Frequencies nearer to each other than `CLOSE` are held together, as one root of their number.
 
-Drawn are shafts of lengths, diameters and materials many decades apart, discs that are points or huge, supports from none
-to rigid, mirrored and nearly mirrored shafts, twins tied by a hair or by pins, free shafts, tiny segments. The number of
-examples is `EXAMPLES`, or that of the environment's NO_MISSED_ROOTS_EXAMPLES.
+Drawn are shafts of lengths, diameters and materials many decades apart, discs that are points or huge, supports from
+none to rigid, mirrored and nearly mirrored shafts, twins tied by a hair or by pins, free shafts, tiny segments. The
+number of examples is `EXAMPLES`, or that of the environment's NO_MISSED_ROOTS_EXAMPLES.
 """
 
+import itertools
 import math
 import os
 from collections.abc import Sequence
@@ -132,7 +133,7 @@ def assert_these_are_all(
     breaks = np.flatnonzero(np.diff(elastic) > 4.0 * CLOSE * elastic[1:]) + 1
     edges = [0, *breaks.tolist(), elastic.size] if elastic.size else [0]
     probes, expected = [limit], [frequencies.size]
-    for first, after in zip(edges[:-1], edges[1:], strict=True):
+    for first, after in itertools.pairwise(edges):
         probes += [elastic[first] * (1.0 - CLOSE), elastic[after - 1] * (1.0 + CLOSE)]
         expected += [zeros + first, zeros + after]
     counted = sum(model.count_below(probes) for model in models)

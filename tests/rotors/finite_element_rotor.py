@@ -6,10 +6,11 @@ arithmetic, and found from that count alone. `assembled` gives the same matrices
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from double_double import DoubleDouble
 from inertia_count import negative_pivots
 from lobatto_elements import DEGREE, REACH, Elements, Matrices, bending_matrices, cut, rod_matrices
 from scipy import linalg
@@ -164,3 +165,21 @@ def node_inertias(rotor: Rotor, elements: Elements) -> FloatArray:
             for node in (int(own[0]), int(own[-1]) + 1):
                 inertias[node] += 0.5 * np.array([part.mass, part.diametral_inertia, part.polar_inertia])
     return inertias
+
+
+def condensed(model: PlaneModel) -> PlaneModel:
+    """The same elements with their bubbles carried along statically (Guyan), in doubles.
+
+    Of uniform segments this is the two-node element of the textbooks: shape functions that are the static deflections
+    of a Timoshenko beam, with mass and gyroscopic matrices consistent with them (Przemieniecki 1968; Nelson 1980).
+    """
+    matrices = model.matrices
+    kept = 2 * matrices.size
+    stiffness = matrices.stiffness.high
+    bubbles = -np.linalg.solve(stiffness[:, kept:, kept:], stiffness[:, kept:, :kept])
+    shapes = np.concatenate([np.broadcast_to(np.eye(kept), (stiffness.shape[0], kept, kept)), bubbles], axis=1)
+    small = (
+        DoubleDouble.of(shapes.transpose(0, 2, 1) @ matrix.high @ shapes)
+        for matrix in (matrices.stiffness, matrices.mass, matrices.polar)
+    )
+    return replace(model, matrices=Matrices(matrices.size, *small))

@@ -14,6 +14,7 @@ and materials. A rigid motion has no strain at any Gauss point, to thirty-one di
 change each stiffness a little but none's kernel.
 """
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -80,7 +81,7 @@ def cut(rotor: Rotor, places: Sequence[float], highest: float, reach: float = RE
             if left + slack < place < right - slack and (place - left) / part.length > stops[-1] + slack / part.length:
                 stops.append((place - left) / part.length)
         stops.append(1.0)
-        for start, stop in zip(stops[:-1], stops[1:], strict=True):
+        for start, stop in itertools.pairwise(stops):
             count = _count(part, start, stop, highest, reach)
             edges = start + (stop - start) * np.arange(count + 1) / count
             edges[-1] = stop
