@@ -23,9 +23,6 @@ COUNT = 8
 SOME = settings(
     max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), phases=[Phase.explicit, Phase.generate]
 )
-PROJECTED = (
-    "solve_whirl projects on planar modes, without tilting terms and pedestals; drop this mark where it is exact"
-)
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 SPRING = ShaftMaterial(211e9, 81.2e9, 0.0)
 
@@ -87,12 +84,7 @@ def assert_same(found: npt.NDArray[np.complex128], reference: npt.NDArray[np.com
     assert set(np.flatnonzero(lower)) <= set(columns), f"{found} leave out some of {reference[lower]}"
 
 
-def projected(kind: str) -> object:
-    """A kind of bearing of which whirl is found on a projection so far, not on the exact equations."""
-    return pytest.param(kind, marks=pytest.mark.xfail(strict=True, raises=AssertionError, reason=PROJECTED))
-
-
-@pytest.mark.parametrize("kind", [projected(kind) for kind in ("undamped", "crossed", "tilting", "pedestals")])
+@pytest.mark.parametrize("kind", ["undamped", "crossed", "tilting", "pedestals"])
 def test_every_eigenvalue_at_speed(kind: str) -> None:
     @SOME
     @given(st.data(), numbers(-1500.0, 1500.0))
