@@ -81,4 +81,4 @@ def _has_buckled(rotor: Rotor, supports: Sequence[RadialSupport], factor: float)
     line = bending_line(replace(rotor, segments=parts), supports)
     # Every chain of this line has the same scale; the pieces of a standstill are the longest.
     chain = line.cut(STANDSTILL * line.likely_frequency(1))
-    return bool(count_below(chain, chain.highest)[0] > chain.rigid_shapes.shape[0])
+    return count_below(chain, chain.highest) > int(chain.rigid_shapes.shape[0])

@@ -62,18 +62,16 @@ def _with_term(first: State, second: State, row: int, term: float) -> tuple[Stat
     if size > 0.0:
         c, s = first[row] / size, second[row] / size
         first, second = _combined(c, first, s, second), _combined(c, second, -s, first)
+    elif abs(second[2 + row]) > abs(first[2 + row]):
+        # At a root to the last digit nothing moves here: the state that is nearer to the reaction makes way for it.
+        first, second = second, _combined(-1.0, first, 0.0, first)
+    held = math.isinf(term)
     if row == 0:
         second = (0.0, second[1], second[2], second[3])
-        if math.isinf(term):
-            first = (0.0, 0.0, 1.0, 0.0)
-        else:
-            first = (first[0], first[1], first[2] + term * first[0], first[3])
+        first = (0.0, 0.0, 1.0, 0.0) if held else (first[0], first[1], first[2] + term * first[0], first[3])
     else:
         second = (second[0], 0.0, second[2], second[3])
-        if math.isinf(term):
-            first = (0.0, 0.0, 0.0, 1.0)
-        else:
-            first = (first[0], first[1], first[2], first[3] + term * first[1])
+        first = (0.0, 0.0, 0.0, 1.0) if held else (first[0], first[1], first[2], first[3] + term * first[1])
     first, second = _orthonormal(first, second)
     return first, second, size
 
@@ -135,7 +133,8 @@ def _rod_count(
         if math.isinf(stiffness[node, 0]):
             if scale > 1e-200:
                 scale *= abs(u)
-            u, f = 0.0, 1.0
+            # A lone state cannot be turned: the reaction keeps the sign that its displacement had.
+            u, f = 0.0, sign
         else:
             f += (stiffness[node, 0] - squared * inertia[node, 0]) * u
         if node == element.size:
@@ -173,21 +172,18 @@ def count_at(
 
 
 @njit(cache=True, nogil=True)
-def counts_below(
-    frequencies: FloatArray,
+def count_of(
+    frequency: float,
     lengths: FloatArray,
     given: FloatArray,
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
-) -> IntArray:
-    """Number of roots below each frequency (b,)."""
+) -> int:
+    """Number of roots below a frequency."""
     size = 2 * stiffness.shape[1]
     transfers = np.empty((1, lengths.size, 1, size, size))
-    found = np.empty(frequencies.size, np.intp)
-    for b in range(frequencies.size):
-        found[b] = count_at(frequencies[b], lengths, given, element, stiffness, inertia, transfers)[0]
-    return found
+    return count_at(frequency, lengths, given, element, stiffness, inertia, transfers)[0]
 
 
 @njit(cache=True, nogil=True)
@@ -201,8 +197,8 @@ def lowest_roots(
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
-) -> FloatArray:
-    """The roots numbered ``zeros`` to ``wanted`` between two frequencies whose counts enclose them, ascending.
+) -> tuple[int, int, FloatArray]:
+    """Counts at two frequencies and, if they enclose them, the roots numbered ``zeros`` to ``wanted``, ascending.
 
     Every root keeps a bracket of its own, low counts on one side and high ones on the other, which each
     evaluation narrows for all. A bracket that holds one root alone has determinants of both signs at its
@@ -212,15 +208,13 @@ def lowest_roots(
     size = 2 * stiffness.shape[1]
     transfers = np.empty((1, lengths.size, 1, size, size))
     number = wanted - zeros
+    first, first_value = count_at(lowest, lengths, given, element, stiffness, inertia, transfers)
+    last, last_value = count_at(limit, lengths, given, element, stiffness, inertia, transfers)
+    if first > zeros or last < wanted:
+        return first, last, np.empty(0)
     low, high = np.full(number, lowest), np.full(number, limit)
-    low_count, high_count = np.full(number, zeros), np.full(number, wanted + 1)
-    value_low, value_high = np.zeros(number), np.zeros(number)
-    for end in (lowest, limit):
-        count, value = count_at(end, lengths, given, element, stiffness, inertia, transfers)
-        if end == lowest:
-            low_count[:], value_low[:] = count, value
-        else:
-            high_count[:], value_high[:] = count, value
+    low_count, high_count = np.full(number, first), np.full(number, last)
+    value_low, value_high = np.full(number, first_value), np.full(number, last_value)
     roots = np.empty(number)
     for root in range(number):
         order = zeros + root
@@ -263,4 +257,4 @@ def lowest_roots(
             if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi and f1 != f2 and f3 != f1:
                 share = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
             share = min(max(share, least), 1.0 - least)
-    return roots
+    return first, last, roots

@@ -126,11 +126,14 @@ def lateral_modes(
     """Assemble the result from fields in the chain's units and the mixture that makes modes of them."""
     chain = fields.chain
     is_station = chain.is_station
-    nodal = np.tensordot(mixture, fields.states[:, is_station, :2], axes=1)
+    at_stations = fields.states[:, is_station, :2]
+    nodal = (mixture @ at_stations.reshape(mixture.shape[1], -1)).reshape(-1, at_stations.shape[1], 2)
     # The largest displacement is positive, so that a shape does not depend on the solver's start.
-    largest = np.take_along_axis(nodal[:, :, 0], np.abs(nodal[:, :, 0]).argmax(axis=1)[:, None], axis=1)
-    mixture = np.where(largest < 0.0, -1.0, 1.0) * mixture
-    nodal = np.tensordot(mixture, fields.states[:, is_station, :2], axes=1) * chain.displacement_unit
+    shapes = nodal[:, :, 0]
+    largest = np.abs(shapes).argmax(axis=1)
+    sign = np.where(shapes[np.arange(largest.size), largest] < 0.0, -1.0, 1.0)
+    mixture = sign[:, None] * mixture
+    nodal = sign[:, None, None] * nodal * chain.displacement_unit
     # Polar inertia and rotary mass share one unit, so that the unit modal mass carries it over unchanged.
     polar = fields.polar_matrix(mixture)
     return LateralModes(

@@ -66,7 +66,7 @@ def test_axial_modes_of_a_solid_cone(right: float) -> None:
 
 
 def test_torsion_of_a_clamped_solid_cone() -> None:
-    """With J ∝ r⁴, θ = r^(−3/2) Z(kr) with Bessel functions of order 3/2; here clamped at one end, free at the other."""
+    """With J ∝ r⁴, θ = r^(−3/2) Z(kr) with Bessel functions of order 3/2; held at one end, free at the other."""
     cone = Segment(0.6, 0.1, 0.0, STEEL, right_outer_diameter=0.03)
     modes = solve_torsional_modes(Rotor("cone", [cone]), [AxisSpring(0.0, math.inf)], count=40)
     slope = 0.07 / 0.6
@@ -85,7 +85,7 @@ def test_torsion_of_a_clamped_solid_cone() -> None:
 
 
 def test_thin_cone_is_that_of_bernoulli_and_kirchhoff() -> None:
-    """A cantilever cone clamped at its base: x = (C₁ J₂(y) + C₂ I₂(y)) / r, y = 2 p √r, p⁴ = ρA ω² / EI · r² (Kirchhoff).
+    """A cone clamped at its base: x = (C₁ J₂(y) + C₂ I₂(y)) / r, y = 2 p √r, p⁴ = ρA ω² / EI · r² (Kirchhoff).
 
     A full cone to its tip: J₂(y) I₃(y) + I₂(y) J₃(y) = 0 at the base, first root y = 5.906 (textbook ω = 8.719 …).
     """
@@ -158,7 +158,8 @@ def test_lumped_cone_keeps_mass_centre_and_polar_inertia() -> None:
     cone = Segment(0.3, 0.1, 0.0, STEEL, right_outer_diameter=0.04)
     rotor = Rotor("cone", [cone], mass_model="lumped")
     table = station_inertias(rotor, rotor.stations)
-    # Frustum: mass ρ π h (R² + R r + r²)/3, centre h (R² + 2 R r + 3 r²) / 4(R² + R r + r²), I_p 3/10 m (R⁵ − r⁵)/(R³ − r³).
+    # Frustum: mass ρ π h (R² + R r + r²)/3, centre h (R² + 2 R r + 3 r²) / 4(R² + R r + r²),
+    # I_p = 3/10 m (R⁵ − r⁵)/(R³ − r³).
     R, r, h = 0.05, 0.02, 0.3
     total = R * R + R * r + r * r
     mass = 7850 * math.pi * h * total / 3
