@@ -31,7 +31,7 @@ from .campbell import Campbell, Crossing, campbell
 from .certificate import ModeCertificate
 from .critical_map import CriticalSpeedMap, critical_speed_map
 from .errors import IncompleteModesError, RotorError
-from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response
+from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response, orbit_of
 from .lateral import LateralModes, solve_lateral_modes
 from .loads import Bow, HarmonicForce, Unbalance
 from .material import ShaftMaterial, shear_coefficient
@@ -100,6 +100,7 @@ __all__ = [
     "frequency_response",
     "harmonic_response",
     "modal_rotor",
+    "orbit_of",
     "read_ross",
     "rest_frequencies",
     "shear_coefficient",

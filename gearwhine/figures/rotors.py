@@ -4,34 +4,34 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.figure import Figure
-from scipy.optimize import linear_sum_assignment
 
 import rotors as room
 from gearwhine.case import Case, RollingStiffness, Segment
 from gearwhine.figures.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
 from gearwhine.figures.campbell import draw_campbell
+from gearwhine.figures.critical_map import draw_critical_map
 from gearwhine.figures.mode_shapes import draw_lateral_modes, draw_torsional_modes
 from gearwhine.figures.shaft import draw_shaft
+from gearwhine.figures.static_deflection import draw_static_deflection
 from gearwhine.figures.style import save, shortened
+from gearwhine.figures.unbalance import ProbeResponse, draw_unbalance_response
 from gearwhine.figures.whirl_shapes import draw_whirl_modes
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import gear_inertia
+from gearwhine.stages.rotor_documents import STATIC_PLACES
 from gearwhine.stages.rotors import SolvedRotor
-
-FloatArray = npt.NDArray[np.float64]
 
 _MODES = 6  # drawn of each kind
 _ADDENDUM, _DEDENDUM, _WIDTH = 1.0, 1.25, 10.0  # of a drawn tooth and of a gear without a face width, in modules
 
 
 def draw_rotors(folder: Path, case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> list[str]:
-    """Draw each rotor: the shaft, its lateral and torsional modes, its whirl at speed, its Campbell diagram.
+    """Draw each rotor: the shaft, its modes, its whirl at speed, and what its analyses gave.
 
-    Whirl is drawn where the case has an operation, the Campbell diagram where operation and sweep hold two speeds
-    or more.
+    These are the Campbell diagram, the critical-speed map, the response to unbalance and bow, and the static
+    deflection, each where the case has what it takes.
 
     Parameters
     ----------
@@ -102,41 +102,46 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
         ("modes", draw_lateral_modes(assembly, one.lateral, most=_MODES)),
         ("torsion", draw_torsional_modes(assembly, one.torsional, most=_MODES)),
     ]
-    operation = None
-    if case.operation is not None and one.whirl[0].frequencies.size:
-        operation = one.whirl[0].speed
+    operation = one.operation
+    if operation is not None and one.whirl[0].frequencies.size:
         figures.append(("whirl", draw_whirl_modes(assembly, one.whirl[0], most=_MODES)))
-    whirl = list({modes.speed: modes for modes in sorted(one.whirl, key=lambda modes: abs(modes.speed))}.values())
-    if len(whirl) > 1 and min(modes.frequencies.size for modes in whirl):
-        frequencies, directions, ratios = whirl_branches(whirl)
+    name = f"Rotor {shortened(one.rotor.name, 20)}"
+    if one.campbell is not None and one.campbell.eigenvalues.size:
+        eigenvalues = one.campbell.eigenvalues
         campbell = draw_campbell(
-            f"Rotor {shortened(one.rotor.name, 20)}: Campbell diagram",
-            [modes.speed for modes in whirl],
-            frequencies,
-            directions,
-            ratios,
+            f"{name}: Campbell diagram",
+            one.campbell.speeds,
+            one.campbell.frequencies,
+            one.campbell.direction,
+            -eigenvalues.real / np.abs(eigenvalues),
             critical_speeds=one.critical.speeds,
             critical_directions=one.critical.direction,
             operating_speed=operation,
         )
         figures.append(("campbell", campbell))
+    if one.critical_map is not None:
+        sheet = draw_critical_map(
+            f"{name}: undamped critical-speed map",
+            one.critical_map.stiffnesses,
+            one.critical_map.speeds,
+            bearings=one.bearings,
+            operating_speed=operation,
+        )
+        figures.append(("critical-map", sheet))
+    if one.response is not None and one.response.speeds.size > 1:
+        readings = [ProbeResponse(read.name, read.amplitude, read.major_axis) for read in one.response.readings]
+        running = None if operation is None else (abs(operation), abs(operation))
+        response = draw_unbalance_response(
+            f"{name}: response to unbalance" + (" and bow" if case.rotor_named(one.rotor.name).bow else ""),
+            one.response.speeds,
+            readings,
+            critical_speeds=one.critical.forward,
+            operating_range=running,
+        )
+        figures.append(("unbalance", response))
+    if one.static is not None:
+        z = np.linspace(0.0, one.rotor.length, STATIC_PLACES)
+        # What the bearings carry presses on them; the arrows show what holds the rotor.
+        holding = -one.static.bearing_loads[:, :2]
+        figures.append(("static", draw_static_deflection(assembly, z, one.static.evaluate(z)[:2].T, holding)))
     return figures
-
-
-def whirl_branches(whirl: Sequence[room.WhirlModes]) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Frequencies, directions and damping ratios, each (s, w), of modes that stay themselves from speed to speed.
-
-    Neighbours belong together whose modal coordinates overlap most in sum. It goes down from the highest speed,
-    because at rest the shapes of double roots are any.
-    """
-    count = min(modes.frequencies.size for modes in whirl)
-    order = [np.arange(count)]
-    for above, below in zip(whirl[:0:-1], whirl[-2::-1], strict=True):
-        overlap = np.abs(above.coordinates[order[0]].conj() @ below.coordinates.T)
-        order.insert(0, linear_sum_assignment(-overlap)[1])
-    picked = list(zip(whirl, order, strict=True))
-    return (
-        np.array([modes.frequencies[kept] for modes, kept in picked]),
-        np.array([modes.direction[kept] for modes, kept in picked]),
-        np.array([modes.damping_ratios[kept] for modes, kept in picked]),
-    )

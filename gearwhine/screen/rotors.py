@@ -30,6 +30,8 @@ def show_rotors(document: dict[str, Any]) -> None:
         _critical_speeds(console, rotor)
         if rotor["campbell"]:
             console.print(f"  {_stability(rotor['campbell'])}")
+        _response(console, rotor["unbalance_response"])
+        _static(console, rotor)
         console.print(f"  {_proof(rotor['certificate'])}")
     show_written(console, document)
 
@@ -125,9 +127,34 @@ def _stability(campbell: dict[str, Any]) -> str:
     return f"Stable at {span}" if onset is None else f"UNSTABLE from {onset:.6g} rpm on, of {span}"
 
 
+def _response(console: Console, response: dict[str, Any] | None) -> None:
+    """Where each probe reads most."""
+    if response is None:
+        return
+    rows = [
+        (probe["name"], f"{1e6 * probe['highest']['peak_to_peak_m']:.4g}", f"{probe['highest']['speed_rpm']:.5g}")
+        for probe in response["probes"]
+    ]
+    speeds = response["speed_rpm"]
+    title = f"Response to unbalance and bow, {min(speeds):.6g} to {max(speeds):.6g} rpm"
+    _show(console, title, ("probe", "highest, peak to peak [µm]", "at [rpm]"), rows[:_MOST])
+
+
+def _static(console: Console, rotor: dict[str, Any]) -> None:
+    """What the bearings carry of the rotor's weight."""
+    static = rotor["static"]
+    if static is None:
+        if rotor["unheld"]:
+            console.print(f"  No static deflection: {rotor['unheld']}")
+        return
+    loads = ", ".join(f"{one['bearing']} {math.hypot(*one['force_n']):.5g} N" for one in static["bearing_loads"])
+    console.print(
+        f"  Its weight bends it by up to {1e6 * static['largest_deflection_m']:.4g} µm, "
+        f"{1e3 * static['at_m']:.5g} mm from its left end; bearings carry {loads}"
+    )
+
+
 def _proof(certificate: dict[str, Any]) -> str:
-    if certificate["expected"] is None:
-        return "No count: the bearings' stiffness couples the planes"
     found, expected = certificate["found"], certificate["expected"]
     return f"Bending at rest complete below {certificate['limit_hz']:.5g} Hz: {found} found, {expected} counted"
 

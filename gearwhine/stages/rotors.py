@@ -9,6 +9,7 @@ from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import build_bearings, build_rotor
+from gearwhine.stages.rotor_loads import SolvedResponse, solve_response, solve_static
 
 Bearings = tuple[room.Bearing, ...]
 
@@ -31,12 +32,20 @@ class SolvedRotor:
     torsional : rotors.TorsionalModes
     whirl : tuple of rotors.WhirlModes
         At the speed of operation, then at those of the sweep.
-    campbell : tuple of rotors.WhirlModes
-        At the speeds of the Campbell diagram.
+    campbell : rotors.Campbell or None
+        Whirl followed over two speeds or more; None without them.
     critical : rotors.CriticalSpeeds
         With the bearings' coefficients at one speed.
     critical_speed : float or None
         That speed: of operation, or of rest where there is none [rad/s]; None without tables.
+    critical_map : rotors.CriticalSpeedMap or None
+        Forward critical speeds over bearing stiffness, where the case asks for them.
+    response : SolvedResponse or None
+        To unbalance and bow, where there are any.
+    static : rotors.StaticDeflection or None
+        By the rotor's weight, with the bearings' coefficients of ``critical_speed``.
+    unheld : str or None
+        Why there is none.
     operation : float or None
         Speed of operation [rad/s].
     """
@@ -49,9 +58,13 @@ class SolvedRotor:
     lateral: room.LateralModes
     torsional: room.TorsionalModes
     whirl: tuple[room.WhirlModes, ...]
-    campbell: tuple[room.WhirlModes, ...]
+    campbell: room.Campbell | None
     critical: room.CriticalSpeeds
     critical_speed: float | None
+    critical_map: room.CriticalSpeedMap | None
+    response: SolvedResponse | None
+    static: room.StaticDeflection | None
+    unheld: str | None
     operation: float | None
 
 
@@ -75,6 +88,9 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         operation = speeds[0] if case.operation is not None else None
         reference = lowest if operation is None else operation
         tabled = any(bearing.speeds is not None for bearing in bearings)
+        running = [bearing.at_speed(reference) for bearing in bearings]
+        static, unheld = solve_static(case, rotor, running)
+        progress(f"rotor {given.name}: whirl over speed")
         solved.append(
             SolvedRotor(
                 rotor=rotor,
@@ -85,11 +101,13 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
                 torsional=room.solve_torsional_modes(rotor),
                 whirl=_whirl(rotor, bearings, speeds, analysis.modes),
-                campbell=_whirl(rotor, bearings, campbell_speeds(case, given.name), analysis.modes),
-                critical=room.critical_speeds(
-                    rotor, [bearing.at_speed(reference) for bearing in bearings], count=analysis.modes
-                ),
+                campbell=_campbell(rotor, bearings, campbell_speeds(case, given.name), analysis.modes),
+                critical=room.critical_speeds(rotor, running, count=analysis.modes),
                 critical_speed=reference if tabled else None,
+                critical_map=_critical_map(rotor, bearings, analysis),
+                response=solve_response(case, given, rotor, bearings),
+                static=static,
+                unheld=unheld,
                 operation=operation,
             )
         )
@@ -106,6 +124,19 @@ def _whirl(
         room.solve_whirl(rotor, [bearing.at_speed(speed) for bearing in bearings], speed, count=count, basis=basis)
         for speed in speeds
     )
+
+
+def _campbell(
+    rotor: room.Rotor, bearings: Bearings, speeds: Sequence[float], count: int | None
+) -> room.Campbell | None:
+    distinct = sorted(set(speeds))
+    return room.campbell(rotor, bearings, distinct, count=count) if len(distinct) > 1 else None
+
+
+def _critical_map(rotor: room.Rotor, bearings: Bearings, analysis: RotorAnalysis) -> room.CriticalSpeedMap | None:
+    if analysis.stiffness_map is None or not bearings:
+        return None
+    return room.critical_speed_map(rotor, bearings, analysis.stiffness_map.stiffnesses)
 
 
 def write_ross_files(folder: Path, solved: tuple[SolvedRotor, ...]) -> tuple[str, ...]:
