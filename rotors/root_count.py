@@ -81,7 +81,7 @@ def isolate(chain: Chain, wanted: int, limit: float) -> FloatArray:
     IncompleteModesError
         The count does not reach ``wanted`` at the limit, or exceeds the rigid motions even at 1e-16 of it.
     """
-    from .count_kernels import lowest_roots
+    from .root_kernels import lowest_roots
 
     zeros = chain.rigid_shapes.shape[0]
     if wanted <= zeros:

@@ -71,6 +71,20 @@ def test_torsional_chain_between_springs_to_ground_is_the_textbook_band() -> Non
     np.testing.assert_allclose(modes.frequencies, expected, rtol=1e-12)
 
 
+@pytest.mark.parametrize("held", [(0, 10), (0,), (10,), (4,), (0, 4, 10)])
+def test_torsional_chain_held_anywhere_is_its_matrices(held: tuple[int, ...]) -> None:
+    # Held inertias drop out of the tridiagonal stiffness matrix of the rest.
+    n, k, inertia = 11, 500.0, 0.3
+    ground = [math.inf if i in held else 0.0 for i in range(n)]
+    stiffness = k * (2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+    stiffness[0, 0] = stiffness[-1, -1] = k
+    free = [i for i in range(n) if i not in held]
+    expected = np.sqrt(np.linalg.eigvalsh(stiffness[np.ix_(free, free)]) / inertia)
+    modes = solve_torsional_chain([inertia] * n, [k] * (n - 1), ground=ground)
+    np.testing.assert_allclose(modes.frequencies, expected, rtol=1e-10)
+    np.testing.assert_allclose(modes.angle[:, list(held)], 0.0, atol=1e-12)
+
+
 @pytest.mark.parametrize("pieces", [1, 7, 400])
 def test_axial_rod_on_a_spring(pieces: int) -> None:
     # Spring k at the left, free at the right: (EA λ/L) tan λ = k with λ = ω L/c.
