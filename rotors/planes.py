@@ -5,25 +5,26 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
 
 from .bearing import Bearing
+from .campbell import campbell
 from .certificate import ModeCertificate
 from .errors import require, require_count
+from .exact_roots import ACCEPTED, synchronous_speed
 from .lateral import LateralModes, solve_lateral_modes
+from .projection import DEFAULT_COUNT, Projection, basis_for, slowest
 from .root_count import count_below
 from .rotor_lines import bending_chain, bending_line
 from .shaft import Rotor
 from .shapes import SAME_ROOT
-from .whirl import (
-    DEFAULT_COUNT,
-    NO_OSCILLATION,
-    basis_for,
-    frequency_weight,
-    plane_matrices,
-    solve_whirl,
-    whirl_direction,
-)
+from .spatial_field import SpatialMotion
+from .spatial_ties import block_sets
+from .whirl import certified_whirl, solve_whirl
+from .whirl_certificate import NO_OSCILLATION, WhirlCertificate
+
+# Speeds at which tables are looked at for critical ones, and how far beyond them branches are followed.
+TABLE_SPEEDS = 60
+TABLE_REACH = 1.2
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -37,12 +38,11 @@ class RestFrequencies:
     frequencies
         (m,): ascending, rad/s; an isotropic root stands twice.
     certificate
-        Proof of completeness over both planes. With cross-coupled stiffness there is no count, and it is
-        that of the planar modal basis.
+        Proof of completeness over both planes.
     """
 
     frequencies: FloatArray
-    certificate: ModeCertificate
+    certificate: ModeCertificate | WhirlCertificate
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,13 @@ class CriticalSpeeds:
         (c,): ascending, rad/s.
     direction
         (c,): 1 circular forward, −1 circular backward, 0 planar, as in `rotors.WhirlModes`.
+    certificate
+        Proof that none is missing.
     """
 
     speeds: FloatArray
     direction: FloatArray
+    certificate: WhirlCertificate
 
     @property
     def forward(self) -> FloatArray:
@@ -81,7 +84,7 @@ def rest_frequencies(
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; no bearings leave it free.
+        The rotor and what holds it; no bearings leave it free. Of tables the lowest speed is taken.
     frequency_limit
         rad/s: all frequencies strictly below.
     count
@@ -92,11 +95,11 @@ def rest_frequencies(
     RotorError, IncompleteModesError
         As `rotors.solve_lateral_modes`.
     """
-    if any(bearing.has_cross_stiffness for bearing in bearings):
-        undamped = [replace(bearing, damping=np.zeros((2, 2))) for bearing in bearings]
+    bearings = [bearing.at_speed(slowest(bearing)) for bearing in bearings]
+    if not all(_is_planar(bearing) for bearing in bearings):
+        undamped = [_undamped(bearing) for bearing in bearings]
         modes = solve_whirl(rotor, undamped, 0.0, frequency_limit=frequency_limit, count=count)
-        # The planes' basis is proved complete; how many coupled roots it should have, no count says.
-        return RestFrequencies(modes.damped_frequencies, modes.basis.certificate)
+        return RestFrequencies(modes.damped_frequencies, modes.certificate)
 
     wanted = count
     if frequency_limit is None and count is None:
@@ -138,7 +141,8 @@ def critical_speeds(
         K q = ω² [[M, −i G], [i G, M]] q
 
     over both planes; a disc whose polar inertia exceeds its diametral one takes its forward root away.
-    With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying whirl),
+    Where bearings have tables over speed, these are the crossings of a diagram of 60 speeds in the range that the
+    tables share. With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying whirl),
     and the real part of ω is given. Damping is left out, which is the usual definition; the damped whirl
     frequency crosses a little lower.
 
@@ -159,21 +163,62 @@ def critical_speeds(
         As `rotors.solve_whirl`.
     """
     chosen = basis_for(rotor, bearings, speed_limit, count, basis)
-    weight = frequency_weight(chosen)
-    scale = np.outer(weight, weight)
-    stiffness = plane_matrices(chosen, bearings)[0] / scale
-    polar = chosen.polar_inertia_matrix
-    unit = np.eye(chosen.count)
-    mass = np.block([[unit, -1j * polar], [1j * polar, unit]]) / scale
-    values, vectors = linalg.eig(stiffness, mass)
-    speeds = np.emath.sqrt(np.where(np.isfinite(values), values, -1.0)).astype(np.complex128)
-    # Roots of ω² that are not near the positive real axis are no vibration at this speed.
-    kept = np.flatnonzero((speeds.real > NO_OSCILLATION * weight.min()) & (np.abs(speeds.imag) < speeds.real))
-    kept = kept[np.argsort(speeds[kept].real)]
-    wanted = kept.size if speed_limit is not None else count or DEFAULT_COUNT
-    kept = kept[speeds[kept].real < (speed_limit or np.inf)][:wanted]
-    coordinates = (vectors[:, kept] / weight[:, None]).T
-    return CriticalSpeeds(np.asarray(speeds[kept].real), whirl_direction(coordinates))
+    undamped = [_undamped(bearing) for bearing in bearings]
+    if any(bearing.speeds is not None for bearing in undamped):
+        return _tabled_critical_speeds(rotor, undamped, speed_limit, count, chosen)
+    sets = [Projection.of(rotor, undamped, blocks, chosen) for blocks in block_sets(undamped)]
+    motion, certificate = certified_criticals(rotor, undamped, sets, speed_limit, count)
+    shares = motion.shares()
+    order = np.argsort(motion.eigenvalues.imag)
+    direction = (shares[:, 0] - shares[:, 1]) / shares.sum(axis=1)
+    return CriticalSpeeds(motion.eigenvalues.imag[order], direction[order], certificate)
+
+
+def _tabled_critical_speeds(
+    rotor: Rotor, bearings: Sequence[Bearing], limit: float | None, count: int | None, basis: LateralModes
+) -> CriticalSpeeds:
+    """Crossings of a Campbell diagram whose stiffness follows the speed, within all tables."""
+    tables = [bearing.speeds for bearing in bearings if bearing.speeds is not None]
+    low, high = max(float(table[0]) for table in tables), min(float(table[-1]) for table in tables)
+    high = min(high, limit or np.inf)
+    require(low < high, "speeds of the bearings' tables", (low, high), "a range of speeds that they share")
+    diagram = campbell(
+        rotor, bearings, np.linspace(low, high, TABLE_SPEEDS), frequency_limit=TABLE_REACH * high, basis=basis
+    )
+    found = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
+    speeds = np.array([crossing.speed for crossing in found])
+    proof = WhirlCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
+    return CriticalSpeeds(speeds, np.array([crossing.direction for crossing in found]), proof)
+
+
+def certified_criticals(
+    rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[Projection], limit: float | None, count: int | None
+) -> tuple[SpatialMotion, WhirlCertificate]:
+    """Synchronous whirl of undamped bearings below a limit, or the lowest few, for some sets of tied motions."""
+    return certified_whirl(
+        rotor,
+        bearings,
+        [(one.blocks, one.critical(bearings)) for one in sets],
+        synchronous_speed,
+        None,
+        NO_OSCILLATION * sets[0].floor,
+        limit,
+        None if limit is not None else count or DEFAULT_COUNT,
+    )
+
+
+def _undamped(bearing: Bearing) -> Bearing:
+    """The bearing and its pedestal without damping."""
+    pedestal = bearing.pedestal
+    if pedestal is not None:
+        pedestal = replace(pedestal, damping=np.zeros((2, 2)))
+    return replace(bearing, damping=np.zeros_like(bearing.damping), pedestal=pedestal)
+
+
+def _is_planar(bearing: Bearing) -> bool:
+    """Whether each plane has its own springs, and the ground behind them."""
+    stiffness = bearing.spatial_stiffness
+    return bearing.pedestal is None and bool((stiffness[~np.eye(5, dtype=np.bool_)] == 0.0).all())
 
 
 def _counted(rotor: Rotor, bearings: Sequence[Bearing], plane: int, limit: float) -> int:

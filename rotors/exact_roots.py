@@ -1,0 +1,242 @@
+"""Eigenvalues refined on the exact equations, with their vectors; clusters together, duplicates recognised.
+
+With the equations N(λ) x = 0 of `rotors.spatial_chain`, let X and Y span the right and left singular vectors of the
+k smallest singular values of N(σ), k the number of roots near σ. Projected on them the equations are
+Y^H [N(σ) + (λ − σ) N'(σ)] X q = 0 up to second order in λ − σ, a small eigenproblem that gives all k roots at once,
+double ones and nearly double ones with all their digits: a determinant would keep only half. For k = 1 this is
+Newton's method on the two-sided Rayleigh functional,
+
+    λ ← λ − (yᴴ N x) / (yᴴ N' x),
+
+whose error is squared at every step (Schwetlick and Schreiber, Linear Algebra Appl. 436, 2012). Roots of a cluster
+that turn out to lie apart are then refined one by one; those that do not, and would blur each other's vectors,
+stay together, where what is left out, the square of their distance, is below rounding.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from .spatial_chain import SLOPE_STEP, SpatialChain
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+Speed = Callable[[ComplexArray], ComplexArray]
+
+# Starting values nearer than this are refined together first, as their errors may be as large.
+NEAR = 1e-3
+# Refined roots nearer than this stay together: the square of it is below rounding.
+TIED = 1e-7
+# Refined roots nearer than this with parallel vectors are one root found twice.
+SAME = 1e-9
+PARALLEL = 1e-3
+SETTLED = 2e-14
+ACCEPTED = 1e-11
+MOST_STEPS = 14
+# A step larger than this part of the root starts from nowhere near it, and is shortened.
+LONGEST_STEP = 0.3
+
+
+@dataclass(frozen=True)
+class ExactRoots:
+    """Roots of the exact equations of one chain.
+
+    Attributes
+    ----------
+    eigenvalues
+        (w,) complex, rad/s.
+    solutions
+        (w, order) complex: right null vectors, of unit norm in the scaled unknowns.
+    residuals
+        (w,): the last correction, as a part of the root.
+    scales
+        (w,): the unit of forces in each solution.
+    """
+
+    eigenvalues: ComplexArray
+    solutions: ComplexArray
+    residuals: FloatArray
+    scales: FloatArray
+
+    def take(self, index: npt.NDArray[np.intp] | npt.NDArray[np.bool_]) -> "ExactRoots":
+        """Some of the roots."""
+        return ExactRoots(self.eigenvalues[index], self.solutions[index], self.residuals[index], self.scales[index])
+
+    def joined(self, other: "ExactRoots") -> "ExactRoots":
+        """These roots and then those."""
+        return ExactRoots(
+            np.concatenate([self.eigenvalues, other.eigenvalues]),
+            np.concatenate([self.solutions, other.solutions]),
+            np.concatenate([self.residuals, other.residuals]),
+            np.concatenate([self.scales, other.scales]),
+        )
+
+
+def constant_speed(speed: float) -> Speed:
+    """Speed of rotation that does not follow the root."""
+    return lambda eigenvalues: np.full(eigenvalues.shape, complex(speed))
+
+
+def synchronous_speed(eigenvalues: ComplexArray) -> ComplexArray:
+    """Speed of rotation at which a root is synchronous, Ω = −iλ: the frequency itself where λ = iω."""
+    return -1j * eigenvalues
+
+
+def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> ExactRoots:
+    """Exact roots near starting values; fewer than those where several lead to one root, or one to none.
+
+    Parameters
+    ----------
+    chain
+        The exact equations.
+    starts
+        (w,) complex, rad/s.
+    speed
+        Speed of rotation as an analytic function of λ.
+    """
+    order = chain.pattern.order
+    first = random_vectors(starts.size, order)
+    alone: list[tuple[complex, ComplexArray]] = []
+    settled: list[ExactRoots] = []
+    for members in clusters(starts, NEAR):
+        if members.size == 1:
+            alone.append((starts[members[0]], first[members[0]]))
+            continue
+        near = _together(chain, starts[members], first[members], speed, steps=3)
+        for nearer in clusters(near.eigenvalues, TIED):
+            values, vectors = near.eigenvalues[nearer], near.solutions[nearer]
+            if nearer.size == 1:
+                alone.append((values[0], vectors[0]))
+            else:
+                settled.append(_together(chain, values, vectors, speed, steps=MOST_STEPS))
+    if alone:
+        values, vectors = np.array([one[0] for one in alone]), np.array([one[1] for one in alone])
+        settled.append(_singly(chain, values, vectors, lambda _, at: speed(at)))
+    if not settled:
+        return ExactRoots(np.zeros(0, complex), np.zeros((0, order), complex), np.zeros(0), np.zeros(0))
+    roots = settled[0]
+    for more in settled[1:]:
+        roots = roots.joined(more)
+    return distinct(roots.take(roots.residuals <= ACCEPTED))
+
+
+def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp]]:
+    """Indices of values that chains of distances below ``tolerance`` of their modulus connect."""
+    label = np.arange(values.size)
+    near = np.abs(values[:, None] - values) <= tolerance * np.abs(values)[:, None]
+    for i, j in np.argwhere(near & ~np.eye(values.size, dtype=np.bool_)):
+        label[label == label[j]] = label[i]
+    order = np.argsort(label, kind="stable")
+    edges = np.flatnonzero(np.diff(label[order])) + 1
+    return np.split(order, edges) if values.size else []
+
+
+def distinct(roots: ExactRoots) -> ExactRoots:
+    """Each root once: equal values are several roots only where their vectors are independent."""
+    kept: list[int] = []
+    for cluster in clusters(roots.eigenvalues, SAME):
+        first = len(kept)
+        for i in cluster.tolist():
+            if len(kept) > first:
+                basis = np.linalg.qr(roots.solutions[kept[first:]].T)[0]
+                rest = roots.solutions[i] - basis @ (basis.conj().T @ roots.solutions[i])
+                if np.linalg.norm(rest) < PARALLEL:
+                    continue
+            kept.append(i)
+    return roots.take(np.array(sorted(kept), dtype=np.intp))
+
+
+def equations_at(
+    chain: SpatialChain, eigenvalues: ComplexArray, speed: Speed, scale: FloatArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Entries of N and of dN/dλ at every λ, (b, nnz) both."""
+    step = SLOPE_STEP * np.abs(eigenvalues)
+    ahead, behind = (
+        chain.values(shifted, speed(shifted), scale) for shifted in (eigenvalues + step, eigenvalues - step)
+    )
+    return chain.values(eigenvalues, speed(eigenvalues), scale), (ahead - behind) / (2.0 * step[:, None])
+
+
+def refine_each(
+    chain: SpatialChain, starts: ComplexArray, speeds: FloatArray, vectors: ComplexArray | None = None
+) -> ExactRoots:
+    """Exact roots from starting values, each alone and at its own speed, (w,) both; none is dropped.
+
+    ``vectors`` (w, order), where there are any, spare the first steps. A root that does not settle has a residual
+    above `ACCEPTED`.
+    """
+    if vectors is None:
+        vectors = random_vectors(starts.size, chain.pattern.order)
+    return _singly(chain, starts, vectors, lambda index, _: speeds[index].astype(np.complex128))
+
+
+def random_vectors(count: int, order: int) -> ComplexArray:
+    """Complex vectors to start iterations from, the same every time, (count, order)."""
+    random = np.random.default_rng(1991)
+    return np.asarray(random.standard_normal((count, order)) + 1j * random.standard_normal((count, order)))
+
+
+def _singly(
+    chain: SpatialChain,
+    values: ComplexArray,
+    vectors: ComplexArray,
+    speed: Callable[[IntArray, ComplexArray], ComplexArray],
+) -> ExactRoots:
+    """Newton's method for each; ``speed`` takes the indices of roots and their values."""
+    values, vectors = values.copy(), vectors.copy()
+    residuals, scales = np.full(values.size, np.inf), np.ones(values.size)
+    active = np.arange(values.size)
+    for step in range(MOST_STEPS):
+        if active.size == 0:
+            break
+        at = values[active]
+        scale = chain.force_scale(at)
+        entries, slopes = equations_at(chain, at, partial(speed, active), scale)
+        right, left = chain.pattern.null_vectors(entries, vectors[active][:, None], 2 if step == 0 else 1)
+        top = chain.pattern.forms(entries, left, right)[:, 0, 0]
+        bottom = chain.pattern.forms(slopes, left, right)[:, 0, 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            change = np.where(bottom != 0.0, -top / bottom, np.inf)
+        share = np.abs(change) / np.abs(at)
+        long = share > LONGEST_STEP
+        change = np.where(long, LONGEST_STEP * np.abs(at) * np.exp(1j * np.angle(change)), change)
+        change = np.where(np.isfinite(change), change, 0.0)
+        vectors[active], scales[active] = right[:, 0], scale
+        # Rounding alone moves a settled root: it stays where its last good step brought it.
+        rounding = (share < ACCEPTED) & (share >= 0.5 * residuals[active])
+        values[active] = np.where(rounding, at, at + change)
+        residuals[active] = share
+        done = rounding | (share <= SETTLED)
+        active = active[~done]
+    return ExactRoots(values, vectors, residuals, scales)
+
+
+def _together(chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, speed: Speed, steps: int) -> ExactRoots:
+    """All roots of one cluster by the small eigenproblem about their mean."""
+    basis, mixture = vectors[None], np.eye(values.size, dtype=np.complex128)
+    change = np.full(values.size, np.inf)
+    scale = np.ones(1)
+    for step in range(steps):
+        centre = np.array([values.mean()])
+        scale = chain.force_scale(centre)
+        entries, slopes = equations_at(chain, centre, speed, scale)
+        right, left = chain.pattern.null_vectors(entries, basis, 3 if step == 0 else 1)
+        top, bottom = (chain.pattern.forms(matrix, left, right)[0] for matrix in (entries, slopes))
+        offsets, mixing = linalg.eig(top, -bottom)
+        if not np.isfinite(offsets).all():
+            return ExactRoots(values, basis[0], np.full(values.size, np.inf), np.full(values.size, scale[0]))
+        found = centre[0] + offsets
+        moved = np.abs(np.sort_complex(found) - np.sort_complex(values)).max() / np.abs(found)
+        # What the small problem leaves out is of the order of the square of the distances.
+        change = np.maximum(moved, np.abs(offsets / found) ** 2)
+        values, basis, mixture = found, right, mixing
+        if step > 0 and moved.max() <= 5.0 * SETTLED:
+            break
+    mixed = mixture.T @ basis[0]
+    mixed /= np.linalg.norm(mixed, axis=1, keepdims=True)
+    return ExactRoots(values, mixed, change, np.full(values.size, scale[0]))
