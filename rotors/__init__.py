@@ -92,12 +92,9 @@ __all__ = [
     "campbell",
     "critical_speed_map",
     "critical_speeds",
-<<<<<<< HEAD
-    "read_ross",
-=======
     "frequency_response",
     "harmonic_response",
->>>>>>> rotor-spatial
+    "read_ross",
     "rest_frequencies",
     "shear_coefficient",
     "solve_axial_modes",
