@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from timing import arguments, machine, timed
 
 from rotors import (
@@ -28,10 +27,10 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
+    campbell,
     read_ross,
     rest_frequencies,
     solve_whirl,
-    whirl_basis,
     write_ross,
 )
 
@@ -72,11 +71,6 @@ def rows(ross: Any, elements: int, modes: int, repeats: int, folder: Path) -> li
     (rotor, undamped, _), (_, damped, _) = map(read_ross, files)
     at_rest, turning = map(ross.Rotor.load, files)
 
-    def campbell(speed: float) -> npt.NDArray[np.float64]:
-        basis = whirl_basis(rotor, damped, count=modes)
-        speeds = np.linspace(0.0, speed, CAMPBELL_SPEEDS)
-        return np.array([solve_whirl(rotor, damped, at, count=modes, basis=basis).frequencies for at in speeds])
-
     return [
         Row(
             "modes at rest",
@@ -93,7 +87,7 @@ def rows(ross: Any, elements: int, modes: int, repeats: int, folder: Path) -> li
         ),
         Row(
             f"Campbell, {CAMPBELL_SPEEDS} speeds",
-            campbell,
+            lambda speed: campbell(rotor, damped, np.linspace(0.0, speed, CAMPBELL_SPEEDS), count=modes),
             lambda speed: turning.run_campbell(np.linspace(1e-6, 1.0, CAMPBELL_SPEEDS) * speed, frequencies=modes),
             1,
         ),

@@ -33,15 +33,18 @@ from rotors import (
     Bearing,
     Coupling,
     Disc,
+    Pedestal,
     Rotor,
     Segment,
     ShaftMaterial,
+    Unbalance,
     critical_speeds,
     read_ross,
     rest_frequencies,
     solve_axial_modes,
     solve_torsional_modes,
     solve_whirl,
+    unbalance_response,
     write_ross,
 )
 
@@ -78,12 +81,12 @@ def tube(length: float, outer: float, inner: float = 0.0, **more: Any) -> Segmen
     return Segment(length, outer, inner, STEEL, **more)
 
 
-def held(at: float, stiffness: npt.ArrayLike, damping: npt.ArrayLike = 0.0) -> Bearing:
+def held(at: float, stiffness: npt.ArrayLike, damping: npt.ArrayLike = 0.0, **more: Any) -> Bearing:
     """Of numbers for every direction, of pairs for x and y, or of whole matrices."""
     matrices = []
     for given in (np.asarray(stiffness, dtype=float), np.asarray(damping, dtype=float)):
         matrices.append(given if given.ndim == 2 else np.diag(np.broadcast_to(given, 2)))
-    return Bearing(f"bearing at {at:g} m", at, *matrices)
+    return Bearing(f"bearing at {at:g} m", at, *matrices, **more)
 
 
 FRISWELL = [tube(0.5, 0.05)] * 3
@@ -166,6 +169,16 @@ CASES = {
         0.1,
         500.0,
     ),
+    "on pedestals": Case(
+        FRISWELL,
+        FRISWELL_DISCS,
+        [
+            held(0.0, (2e6, 1.5e6), 300.0, pedestal=Pedestal(np.diag([4e6, 8e6]), np.diag([200.0, 400.0]), 10.0)),
+            held(1.5, (1e6, 2e6), 200.0, pedestal=Pedestal([[5e6, 1e6], [1e6, 6e6]], np.zeros((2, 2)), 25.0)),
+        ],
+        0.25,
+        RPM_4000,
+    ),
     "thrust bearing": Case(
         [tube(0.6, 0.06, 0.02), tube(0.6, 0.05)],
         [Disc(0.6, 15.0, 0.15, 0.1)],
@@ -226,7 +239,9 @@ def matrices(model: Any, speed: float, components: Sequence[int]) -> Matrices:
         warnings.simplefilter("ignore")
         mass, stiffness = model.M(speed), model.K(speed)
         damping = model.C(speed) + model.G() * speed
-    chosen = [n for n in range(len(mass)) if n % model.number_dof in components]
+    # Nodes of the shaft have six degrees of freedom, those of supports, which come last, three.
+    on_shaft = 6 * len(model.nodes)
+    chosen = [n for n in range(len(mass)) if (n % 6 if n < on_shaft else (n - on_shaft) % 3) in components]
     return Matrices(*(matrix[np.ix_(chosen, chosen)] for matrix in (mass, damping, stiffness)))
 
 
@@ -315,6 +330,30 @@ def test_critical_speeds_are_what_ross_approaches(name: str, meshes: Meshes) -> 
         return np.sort(np.sqrt(squared[squared > 1.0]))
 
     assert_approached(found, meshes(name), critical_speeds(case.rotor, case.bearings, count=4).speeds)
+
+
+UNBALANCE = Unbalance(0.5, 2e-4, 0.7)
+
+
+@pytest.mark.parametrize("name", ["damped", "cross-coupled", "on pedestals"])
+def test_unbalance_moves_the_discs_as_ross_approaches(name: str, meshes: Meshes) -> None:
+    case, places, speeds = CASES[name], [0.5, 1.0], [60.0, 240.0, 500.0]
+    ours = unbalance_response(case.rotor, case.bearings, [UNBALANCE], speeds).evaluate(places)
+
+    def found(model: Any) -> Array:
+        nodes = [int(np.argmin(np.abs(np.array(model.nodes_pos) - place))) for place in places]
+        amplitudes = []
+        for speed in speeds:
+            of_ross = matrices(model, speed, LATERAL)
+            force = np.zeros(len(of_ross.mass), dtype=complex)
+            # Turning from x to y it is real in x and a quarter turn later in y.
+            force[4 * nodes[0] : 4 * nodes[0] + 2] = UNBALANCE.vector * speed**2 * np.array([1.0, -1j])
+            dynamic = of_ross.stiffness + 1j * speed * of_ross.damping - speed**2 * of_ross.mass
+            amplitudes.append(linalg.solve(dynamic, force))
+        rows = np.array(amplitudes)
+        return np.stack([rows[:, [4 * node + plane for node in nodes]] for plane in (0, 1)]).ravel()
+
+    assert_approached(found, meshes(name), np.stack(ours).ravel())
 
 
 def test_a_rotor_that_ross_saved_has_the_frequencies_that_ross_finds(ross: Any, tmp_path: Path) -> None:
