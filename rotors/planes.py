@@ -142,9 +142,9 @@ def critical_speeds(
 
     over both planes; a disc whose polar inertia exceeds its diametral one takes its forward root away.
     Where bearings have tables over speed, these are the crossings of a diagram of 60 speeds in the range that the
-    tables share. With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying whirl),
-    and the real part of ω is given. Damping is left out, which is the usual definition; the damped whirl
-    frequency crosses a little lower.
+    tables share. With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying
+    whirl), and the real part of ω is given. Damping is left out, which is the usual definition; the damped whirl
+    frequency crosses a little elsewhere, where `rotors.Campbell.crossings` has it.
 
     Parameters
     ----------
