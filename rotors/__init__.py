@@ -26,15 +26,17 @@ from .attachment import attach_loads
 from .axial import AxialModes, solve_axial_modes
 from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
+from .buckling import buckling_factor
 from .campbell import Campbell, Crossing, campbell
 from .certificate import ModeCertificate
+from .critical import CriticalSpeeds, critical_speeds
 from .critical_map import CriticalSpeedMap, critical_speed_map
 from .errors import IncompleteModesError, RotorError
 from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response
 from .lateral import LateralModes, solve_lateral_modes
 from .loads import Bow, HarmonicForce, Unbalance
 from .material import ShaftMaterial, shear_coefficient
-from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .planes import RestFrequencies, rest_frequencies
 from .projection import whirl_basis
 from .section import Section
 from .segment import Segment
@@ -87,6 +89,7 @@ __all__ = [
     "WhirlModes",
     "attach_loads",
     "bow_shape",
+    "buckling_factor",
     "campbell",
     "critical_speed_map",
     "critical_speeds",
