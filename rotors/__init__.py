@@ -29,6 +29,7 @@ from .bearing import Bearing, Pedestal, RadialSupport
 from .buckling import buckling_factor
 from .campbell import Campbell, Crossing, campbell
 from .certificate import ModeCertificate
+from .critical import CriticalSpeeds, critical_speeds
 from .critical_map import CriticalSpeedMap, critical_speed_map
 from .errors import IncompleteModesError, RotorError
 from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response, orbit_of
@@ -36,7 +37,7 @@ from .lateral import LateralModes, solve_lateral_modes
 from .loads import Bow, HarmonicForce, Unbalance
 from .material import ShaftMaterial, shear_coefficient
 from .modal import ModalRotor, modal_rotor
-from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .planes import RestFrequencies, rest_frequencies
 from .projection import whirl_basis
 from .ross_files import RossModel, read_ross, write_ross
 from .section import Section
