@@ -13,23 +13,18 @@ in series, and the approach is δ = |v| − A:
 
     φ = ⅖ K δ^{5/2},  ∂φ/∂v = K δ^{3/2} n,  ∂²φ/∂v² = 3/2 K δ^{1/2} n nᵀ + (K δ^{3/2} / |v|) (I − n nᵀ),  n = v / |v|
 
-for δ > 0 and nothing otherwise. A turning ball is thrown outwards by F_c and its contacts stand at two angles (Jones 1960).
-Its own place b from the outer centre joins the unknowns, with A = A_i + A_o:
-
-    φ = ⅖ K_o (|b| − A_o)^{5/2} + ⅖ K_i (|v − b| − A_i)^{5/2} − F_c b_r
-
-The length of a vector is convex, and so is an increasing convex function of it: both energies are convex in (q, b) together.
-The balls' gyroscopic moment, and friction, are left out.
+for δ > 0 and nothing otherwise. The length of a vector is convex, and so is an increasing convex function of it: the energy
+is convex in q. Friction is left out.
 """
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from .energy import ElementLoads, RowEnergy
-from .hertz import PointContact
 from .rows import BallRow
 
 FloatArray = npt.NDArray[np.float64]
@@ -59,32 +54,25 @@ class BallsAtRest:
 
     row: BallRow
     azimuths: FloatArray
-    unknowns: int = 0
 
-    def start(self) -> FloatArray:
-        """No unknowns of its own."""
-        return np.zeros(0)
-
-    def energy(self, q: FloatArray, own: FloatArray) -> RowEnergy:
+    def energy(self, q: FloatArray) -> RowEnergy:
         """Energy and its derivatives over q."""
         v, motion, approach = self._state(q)
         distance = np.linalg.norm(v, axis=1)
-        value, force, hessian = _spring(self.row.stiffness, v / distance[:, None], approach, distance)
-        return RowEnergy(
-            value=float(value.sum()),
-            gradient=np.einsum("bi,bij->j", force, motion),
-            hessian=np.einsum("bik,bij,bjl->kl", motion, hessian, motion),
-            force=float(np.linalg.norm(force, axis=1).sum()),
-        )
+        return row_energy(motion, *_spring(self.row.stiffness, v, approach, distance))
 
-    def loads(self, q: FloatArray, own: FloatArray) -> ElementLoads:
+    def loads(self, q: FloatArray) -> ElementLoads:
         """What every ball carries."""
         v, _, approach = self._state(q)
         load = self.row.stiffness * np.maximum(approach, 0.0) ** 1.5
-        return _loads(self.row, self.azimuths, (load, load), (v, v), approach)
+        return ball_loads(self.row, self.azimuths, (load, load), (v, v), approach)
+
+    @cached_property
+    def _kinematics(self) -> tuple[FloatArray, FloatArray]:
+        return ball_kinematics(self.row, self.azimuths)
 
     def _state(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        start, motion = ball_kinematics(self.row, self.azimuths)
+        start, motion = self._kinematics
         moved = motion @ q
         v, nominal = start + moved, self.row.groove_distance
         # |v₀|² − A² by its terms: |v| − A itself would lose the digits that A has and δ has not.
@@ -95,89 +83,30 @@ class BallsAtRest:
         return v, motion, excess / (np.linalg.norm(v, axis=1) + nominal)
 
 
-@dataclass(frozen=True)
-class BallsInMotion:
-    """A row whose balls are thrown outwards by a force each (N): two unknowns a ball, radial before axial."""
-
-    row: BallRow
-    azimuths: FloatArray
-    thrown: float
-
-    @property
-    def unknowns(self) -> int:
-        """Two for each ball."""
-        return 2 * self.row.count
-
-    def start(self) -> FloatArray:
-        """Every ball where the outer groove alone holds it."""
-        sunk = (self.thrown / self.row.outer_contact.stiffness) ** (2.0 / 3.0)
-        return np.tile([_arm(self.row.outer_groove, self.row) + sunk, 0.0], self.row.count)
-
-    def energy(self, q: FloatArray, own: FloatArray) -> RowEnergy:
-        """Energy and its derivatives over q and the balls' places."""
-        outer, inner, motion = self._state(q, own)
-        values, forces, hessians = zip(
-            *(
-                _spring(contact.stiffness, vector / np.linalg.norm(vector, axis=1)[:, None], approach, length)
-                for contact, vector, approach, length in (
-                    (self.row.outer_contact, *self._approach(outer, self.row.outer_groove)),
-                    (self.row.inner_contact, *self._approach(inner, self.row.inner_groove)),
-                )
-            ),
-            strict=True,
-        )
-        count = self.row.count
-        hessian = np.zeros((5 + 2 * count, 5 + 2 * count))
-        hessian[:5, :5] = np.einsum("bik,bij,bjl->kl", motion, hessians[1], motion)
-        for ball in range(count):
-            own_rows = slice(5 + 2 * ball, 7 + 2 * ball)
-            hessian[own_rows, own_rows] = hessians[0][ball] + hessians[1][ball]
-            hessian[own_rows, :5] = -hessians[1][ball] @ motion[ball]
-            hessian[:5, own_rows] = hessian[own_rows, :5].T
-        on_balls = forces[0] - forces[1] - np.array([self.thrown, 0.0])
-        return RowEnergy(
-            value=float(values[0].sum() + values[1].sum() - self.thrown * own[::2].sum()),
-            gradient=np.concatenate([np.einsum("bi,bij->j", forces[1], motion), on_balls.ravel()]),
-            hessian=hessian,
-            force=float(np.linalg.norm(forces[0], axis=1).sum()),
-        )
-
-    def loads(self, q: FloatArray, own: FloatArray) -> ElementLoads:
-        """What every ball carries, inside and outside."""
-        outer, inner, _ = self._state(q, own)
-        deep = self._approach(outer, self.row.outer_groove)[1], self._approach(inner, self.row.inner_groove)[1]
-        stiffness = self.row.outer_contact.stiffness, self.row.inner_contact.stiffness
-        outside, inside = (k * np.maximum(d, 0.0) ** 1.5 for k, d in zip(stiffness, deep, strict=True))
-        return _loads(self.row, self.azimuths, (inside, outside), (inner, outer), deep[0] + np.maximum(deep[1], 0.0))
-
-    def _state(self, q: FloatArray, own: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        start, motion = ball_kinematics(self.row, self.azimuths)
-        balls = own.reshape(self.row.count, 2)
-        return balls, start + motion @ q - balls, motion
-
-    def _approach(self, vector: FloatArray, groove: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        length = np.linalg.norm(vector, axis=1)
-        return vector, length - _arm(groove, self.row), length
-
-
-def _arm(groove: float, row: BallRow) -> float:
-    """From a ball's centre to that of a groove's curvature when they just touch, m."""
-    return (groove - 0.5) * row.ball_diameter
-
-
 def _spring(
-    stiffness: float, normal: FloatArray, approach: FloatArray, distance: FloatArray
+    stiffness: float, vectors: FloatArray, approach: FloatArray, length: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """⅖ K δ^{5/2} of every ball, (n,), and its first and second derivatives by the vector, (n, 2) and (n, 2, 2)."""
-    deep = np.maximum(approach, 0.0)
+    """⅖ K δ^{5/2} of every contact, (n,), and its first and second derivatives by the vector, (n, 2) and (n, 2, 2)."""
+    safe = np.where(approach > 0.0, length, 1.0)
+    normal, deep = vectors / safe[:, None], np.maximum(approach, 0.0)
     load = stiffness * deep**1.5
     along = normal[:, :, None] * normal[:, None, :]
     hessian = (1.5 * stiffness * np.sqrt(deep))[:, None, None] * along
-    hessian = hessian + (load / distance)[:, None, None] * (np.eye(2) - along)
+    hessian = hessian + (load / safe)[:, None, None] * (np.eye(2) - along)
     return 0.4 * load * deep, load[:, None] * normal, hessian
 
 
-def _loads(
+def row_energy(motion: FloatArray, value: FloatArray, force: FloatArray, hessian: FloatArray) -> RowEnergy:
+    """From every ball's plane to the ring's coordinates."""
+    return RowEnergy(
+        value=float(value.sum()),
+        gradient=np.einsum("bi,bij->j", force, motion),
+        hessian=np.einsum("bik,bij,bjl->kl", motion, hessian, motion),
+        force=float(np.linalg.norm(force, axis=1).sum()),
+    )
+
+
+def ball_loads(
     row: BallRow,
     azimuths: FloatArray,
     loads: tuple[FloatArray, FloatArray],
@@ -185,7 +114,7 @@ def _loads(
     approach: FloatArray,
 ) -> ElementLoads:
     """The result of a row from the inner and outer loads and their lines of action."""
-    contacts: tuple[PointContact, PointContact] = (row.inner_contact, row.outer_contact)
+    contacts = (row.inner_contact, row.outer_contact)
     angles = [np.arctan2(row.direction * vector[:, 1], vector[:, 0]) for vector in vectors]
     roots = [np.cbrt(load) for load in loads]
     pressures = [contact.unit_pressure * root for contact, root in zip(contacts, roots, strict=True)]

@@ -11,7 +11,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RowEnergy:
-    """Energy (J), gradient (5 + u,) and Hessian (5 + u, 5 + u) over q and the row's u unknowns.
+    """Energy (J), its gradient (5,) and Hessian (5, 5) over the inner ring's displacement q.
 
     ``force`` is the sum of the elements' loads, N, of which the gradient's rounding is a part.
     """
@@ -69,17 +69,10 @@ class ElementLoads:
 
 
 class RowContacts(Protocol):
-    """A row at given azimuths, with as many unknowns of its own as its elements' places need."""
+    """A row with its elements at given azimuths."""
 
-    @property
-    def unknowns(self) -> int:
-        """How many."""
+    def energy(self, q: FloatArray) -> RowEnergy:
+        """Energy and its derivatives at the inner ring's displacement q, (5,)."""
 
-    def start(self) -> FloatArray:
-        """Where they may begin, (unknowns,)."""
-
-    def energy(self, q: FloatArray, own: FloatArray) -> RowEnergy:
-        """Energy and derivatives at the inner ring's displacement q, (5,), and the unknowns."""
-
-    def loads(self, q: FloatArray, own: FloatArray) -> ElementLoads:
+    def loads(self, q: FloatArray) -> ElementLoads:
         """What the elements carry there."""

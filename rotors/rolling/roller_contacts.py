@@ -29,13 +29,8 @@ class RollerSlices:
 
     row: RollerRow
     azimuths: FloatArray
-    unknowns: int = 0
 
-    def start(self) -> FloatArray:
-        """No unknowns of its own."""
-        return np.zeros(0)
-
-    def energy(self, q: FloatArray, own: FloatArray) -> RowEnergy:
+    def energy(self, q: FloatArray) -> RowEnergy:
         """Energy and its derivatives over q."""
         motion, deep = self._state(q)
         load = self._slice_stiffness * deep**_POWER
@@ -48,7 +43,7 @@ class RollerSlices:
             force=float(load.sum()),
         )
 
-    def loads(self, q: FloatArray, own: FloatArray) -> ElementLoads:
+    def loads(self, q: FloatArray) -> ElementLoads:
         """What every roller and slice carries; pressures of the worst slice by Hertz's line contact.
 
         p = (w E* Σρ / π)^{1/2} and half the width b = 2 w / (π p), w the load per length.

@@ -7,6 +7,7 @@ centre. A row's own direction is +1 where pushing the inner ring towards +z load
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -88,6 +89,11 @@ class BallRow:
         require(ordered, "groove limits", self.groove_limits, "two angles within right angles, around the contact angle")
 
     @property
+    def element_diameter(self) -> float:
+        """Of the balls, m."""
+        return self.ball_diameter
+
+    @property
     def groove_distance(self) -> float:
         """A: between the centres of the grooves' curvature with a ball that just touches both, m."""
         return (self.inner_groove + self.outer_groove - 1.0) * self.ball_diameter
@@ -98,17 +104,17 @@ class BallRow:
         radial = math.cos(self.contact_angle) - 0.5 * self.clearance / self.groove_distance
         return math.acos(min(radial, 1.0))
 
-    @property
+    @cached_property
     def inner_contact(self) -> PointContact:
         """A ball in the inner groove: curvatures 2/D and γ/(1 − γ) · 2/D along, 2/D and −1/(f D) across."""
         return self._contact(self.inner_groove, self._gamma / (1.0 - self._gamma))
 
-    @property
+    @cached_property
     def outer_contact(self) -> PointContact:
         """A ball in the outer groove: curvatures 2/D and −γ/(1 + γ) · 2/D along, 2/D and −1/(f D) across."""
         return self._contact(self.outer_groove, -self._gamma / (1.0 + self._gamma))
 
-    @property
+    @cached_property
     def stiffness(self) -> float:
         """Of one ball between both grooves, Q = K δ^{3/2}, N/m^{3/2}."""
         return in_series(self.inner_contact, self.outer_contact)
@@ -186,6 +192,11 @@ class RollerRow:
             require_finite(what, getattr(self, what))
 
     @property
+    def element_diameter(self) -> float:
+        """Of the rollers, m."""
+        return self.roller_diameter
+
+    @property
     def stiffness(self) -> float:
         """c of one straight roller between both raceways, Q = c δ^{10/9}, N/m^{10/9}.
 
@@ -247,6 +258,11 @@ class RollingBearing:
         require_finite(f"axial preload of {self.name}", self.axial_preload)
         held = self.axial_preload == 0.0 or self.has_axial_stiffness
         require(held, f"axial preload of {self.name}", self.axial_preload, "none: cylindrical rollers carry no axial load")
+
+    @property
+    def force_scale(self) -> float:
+        """E* D² of the smallest element: far more than it can carry, N."""
+        return min(row.elasticity.contact_modulus * row.element_diameter**2 for row in self.rows)
 
     @property
     def has_axial_stiffness(self) -> bool:
