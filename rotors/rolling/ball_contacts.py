@@ -1,8 +1,8 @@
 """The elastic energy of a row of balls and its derivatives.
 
 At the azimuth ψ the centre of the inner groove's curvature stands from that of the outer one by the vector v in the
-ball's own plane (radial, axial), v = v₀ + B q, with σ the row's direction, A the distance of the centres when a ball just
-touches both grooves, s the clearance, e the axial offset and (R, z) the radius and place of the inner centres:
+ball's own plane (radial, axial), v = v₀ + B q, with σ the row's direction, A the distance of the centres when a ball
+just touches both grooves, s the clearance, e the axial offset and (R, z) the radius and place of the inner centres:
 
     v₀ = (A cos α − s/2,  σ (A sin α + e))
     B  = [[cos ψ, sin ψ, 0, −z sin ψ,  z cos ψ],
@@ -13,8 +13,8 @@ in series, and the approach is δ = |v| − A:
 
     φ = ⅖ K δ^{5/2},  ∂φ/∂v = K δ^{3/2} n,  ∂²φ/∂v² = 3/2 K δ^{1/2} n nᵀ + (K δ^{3/2} / |v|) (I − n nᵀ),  n = v / |v|
 
-for δ > 0 and nothing otherwise. The length of a vector is convex, and so is an increasing convex function of it: the energy
-is convex in q. Friction is left out.
+for δ > 0 and nothing otherwise. The length of a vector is convex, and so is an increasing convex function of it: the
+energy is convex in q. Friction is left out.
 """
 
 import math

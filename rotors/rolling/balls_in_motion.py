@@ -1,8 +1,9 @@
 """Balls thrown outwards by their turning about the bearing.
 
-A turning ball is thrown outwards by F_c, and its two contacts stand at two angles (Jones 1960; Harris and Kotzalas 2006).
-With f the force of the inner contact, the outer one carries f + F_c r, r the radial direction. A contact under the force g
-reaches by A + c |g|^{2/3} from the ball to its groove's centre, c = K^{−2/3}, and both together reach from centre to centre:
+A turning ball is thrown outwards by F_c, and its two contacts stand at two angles (Jones 1960; Harris and Kotzalas
+2006). With f the force of the inner contact, the outer one carries f + F_c r, r the radial direction. A contact under
+the force g reaches by A + c |g|^{2/3} from the ball to its groove's centre, c = K^{−2/3}, and both together reach from
+centre to centre:
 
     (A_i + c_i |f|^{2/3}) f/|f| + (A_o + c_o |f + F_c r|^{2/3}) (f + F_c r)/|f + F_c r| = v
 
@@ -14,9 +15,9 @@ so f minimises ψ(f) − f·v, the ball's energy is φ(v) = max over f of f·v �
 
     ∂φ/∂v = f,   ∂²φ/∂v² = [∂²ψ/∂f²]⁻¹.
 
-The ball leaves the inner ring, f = 0, where the outer groove alone can hold it within the inner one's reach; far beyond any
-groove, as a search may try, the outer ring likewise, f = −F_c r. In terms of the
-ball's place instead the same problem is a narrow curved valley, along which Newton's method creeps for slow balls.
+The ball leaves the inner ring, f = 0, where the outer groove alone can hold it within the inner one's reach; far
+beyond any groove, as a search may try, the outer ring likewise, f = −F_c r. In terms of the ball's place instead the
+same problem is a narrow curved valley, along which Newton's method creeps for slow balls.
 The gyroscopic moment, and with it friction, is left out; the ball orbits at the speed of its nominal contact angle.
 """
 
@@ -27,7 +28,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import EquilibriumError
+from rotors.errors import EquilibriumError
+
 from .ball_contacts import ball_kinematics, ball_loads, row_energy
 from .energy import ElementLoads, RowEnergy
 from .hertz import PointContact
@@ -110,11 +112,12 @@ class BallsInMotion:
         return scale * found.place
 
     def _outer_rise(self, force: FloatArray) -> float:
-        """Complementary energy of the outer contact under f + F_c r less that under F_c r, to the digits of a small f."""
+        """Complementary energy of the outer contact under f + F_c r less that under F_c r, with a small f's digits."""
         total = float(np.linalg.norm(force + self._outwards))
         rise = (2.0 * self.thrown * force[0] + float(force @ force)) / (total + self.thrown)
         work = 0.6 * self.thrown * (self.thrown / self.row.outer_contact.stiffness) ** (2.0 / 3.0)
-        grown = math.expm1(5.0 / 3.0 * math.log1p(rise / self.thrown)) if total > 0.0 else -1.0
+        part = rise / self.thrown
+        grown = math.expm1(5.0 / 3.0 * math.log1p(part)) if part > -0.5 else (total / self.thrown) ** (5.0 / 3.0) - 1.0
         return self._outer_arm * rise + work * grown
 
     @cached_property

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..errors import require, require_finite
+from rotors.errors import require, require_finite
 
 
 @dataclass(frozen=True)

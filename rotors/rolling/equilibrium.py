@@ -15,7 +15,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import EquilibriumError, RotorError, require, require_finite
+from rotors.errors import EquilibriumError, RotorError, require, require_finite
+
 from .ball_contacts import BallsAtRest
 from .balls_in_motion import BallsInMotion
 from .energy import ElementLoads, RowContacts, RowEnergy
@@ -51,11 +52,11 @@ def rolling_equilibrium(
     bearing
         By its geometry.
     load
-        (5,): force x, y, z (N) and moment about x and y (N·m) on the inner ring at the bearing's centre. What falls on a
-        held coordinate is carried by what holds it.
+        (5,): force x, y, z (N) and moment about x and y (N·m) on the inner ring at the bearing's centre. What falls on
+        a held coordinate is carried by what holds it.
     held
-        Displacement of the coordinates that are not free, by their names in `COORDINATES`, m and rad. The rotations held
-        at zero are a stiff shaft in line with its seat.
+        Displacement of the coordinates that are not free, by their names in `COORDINATES`, m and rad. The rotations
+        held at zero are a stiff shaft in line with its seat.
     speed
         Of the inner ring, rad/s, the outer at rest: balls are thrown outwards.
     cage_angle
@@ -177,19 +178,22 @@ def _require_proof(state: RollingState) -> None:
         deepest = float(loads.approach.max()) / row.element_diameter
         if deepest > LARGEST_APPROACH:
             raise EquilibriumError(
-                f"{name}: the elements of row {number} are pressed by {100 * deepest:.3g} % of their diameter; expected "
-                f"at most {100 * LARGEST_APPROACH:g} %: less load, preload, interference or tilt, or a larger bearing"
+                f"{name}: the elements of row {number} are pressed by {100 * deepest:.3g} % of their diameter; "
+                f"expected at most {100 * LARGEST_APPROACH:g} %: less load, preload, interference or tilt, or a larger "
+                "bearing"
             )
         if isinstance(row, BallRow):
             _require_grooves(name, number, row, loads)
     if state.residual > _ACCEPTED:
         raise EquilibriumError(
-            f"{name}: no equilibrium after {state.iterations} steps, {state.residual:.3g} of the loads is left; expected "
-            f"{_ACCEPTED:g}: check that load and geometry are in N, N·m and m"
+            f"{name}: no equilibrium after {state.iterations} steps, {state.residual:.3g} of the loads is left; "
+            f"expected {_ACCEPTED:g}: check that load and geometry are in N, N·m and m"
         )
     values = np.linalg.eigvalsh(state.stiffness / np.outer(*(2 * [[1.0, 1.0, 1.0] + 2 * [state.bearing.reach]])))
     if values[0] < -1e-9 * max(values[-1], 1.0):
-        raise EquilibriumError(f"{name}: its tangent stiffness has the eigenvalue {values[0]:.3g}; expected none below 0")
+        raise EquilibriumError(
+            f"{name}: its tangent stiffness has the eigenvalue {values[0]:.3g}; expected none below 0"
+        )
 
 
 def _require_grooves(name: str, number: int, row: BallRow, loads: ElementLoads) -> None:
@@ -203,8 +207,7 @@ def _require_grooves(name: str, number: int, row: BallRow, loads: ElementLoads) 
         if outside.any():
             worst = math.degrees(float(angle[np.argmax(np.where(outside, load, -1.0))]))
             raise EquilibriumError(
-                f"{name}: balls of row {number} touch the {ring} ring at {worst:.4g}°, beyond its groove; expected contact "
-                f"angles of {math.degrees(low):.4g}° to {math.degrees(high):.4g}°: more axial load or preload along the "
-                "row's direction keeps them there, or less of it where they climb the shoulder"
+                f"{name}: balls of row {number} touch the {ring} ring at {worst:.4g}°, beyond its groove; "
+                f"expected contact angles of {math.degrees(low):.4g}° to {math.degrees(high):.4g}°: more axial load or "
+                "preload along the row's direction keeps them there, or less of it where they climb the shoulder"
             )
-

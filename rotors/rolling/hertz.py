@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1, elliprd
 
-from ..errors import require_finite
+from rotors.errors import require_finite
 
 # log κ of the longest ellipse looked for: far beyond any groove, and R_D still has all its digits there.
 _LONGEST = 30.0

@@ -13,7 +13,8 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import RotorError, require, require_count, require_finite
+from rotors.errors import RotorError, require, require_count, require_finite
+
 from .elasticity import STEEL, ContactElasticity
 from .hertz import PointContact, in_series, point_contact
 
@@ -82,11 +83,15 @@ class BallRow:
         for what in ("clearance", "axial_offset", "position"):
             require_finite(what.replace("_", " "), getattr(self, what))
         widest = 2.0 * self.groove_distance * math.cos(self.contact_angle)
-        require(self.clearance < widest, "clearance", self.clearance, f"less than {widest:g} m, which its grooves leave")
+        require(
+            self.clearance < widest, "clearance", self.clearance, f"less than {widest:g} m, which its grooves leave"
+        )
         require(self.direction in (1, -1), "direction of a row", self.direction, "1 or -1")
         low, high = self.groove_limits
         ordered = -RIGHT_ANGLE <= low <= self.contact_angle <= high <= RIGHT_ANGLE
-        require(ordered, "groove limits", self.groove_limits, "two angles within right angles, around the contact angle")
+        require(
+            ordered, "groove limits", self.groove_limits, "two angles within right angles, around the contact angle"
+        )
 
     @property
     def element_diameter(self) -> float:
@@ -257,7 +262,9 @@ class RollingBearing:
             raise RotorError(f"{self.name} has no rows; expected at least one")
         require_finite(f"axial preload of {self.name}", self.axial_preload)
         held = self.axial_preload == 0.0 or self.has_axial_stiffness
-        require(held, f"axial preload of {self.name}", self.axial_preload, "none: cylindrical rollers carry no axial load")
+        require(
+            held, f"axial preload of {self.name}", self.axial_preload, "none: cylindrical rollers carry no axial load"
+        )
 
     @property
     def force_scale(self) -> float:

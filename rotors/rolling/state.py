@@ -15,6 +15,8 @@ COORDINATES = ("x", "y", "z", "rx", "ry")
 
 # Stiffness below this part of the largest, rotations taken at the pitch circle, is none.
 _NO_STIFFNESS = 1e-9
+# Share of a coordinate in such a motion above which it is not held.
+_TAKES_PART = 1e-6
 
 
 @dataclass(frozen=True)
@@ -65,10 +67,10 @@ class RollingState:
 
     @property
     def loose(self) -> tuple[str, ...]:
-        """Names of the coordinates along which the ring is not held at all, because of play or by the bearing's kind."""
+        """Coordinates that take part in motions which nothing resists, because of play or by the bearing's kind."""
         size = np.array([1.0, 1.0, 1.0, self.bearing.reach, self.bearing.reach])
         scaled = self.stiffness / np.outer(size, size)
         values, vectors = np.linalg.eigh(scaled)
         free = vectors[:, values <= _NO_STIFFNESS * max(values[-1], 1.0)]
         weight = (free**2).sum(axis=1)
-        return tuple(name for name, part in zip(COORDINATES, weight.tolist(), strict=True) if part > 0.5)
+        return tuple(name for name, part in zip(COORDINATES, weight.tolist(), strict=True) if part > _TAKES_PART)

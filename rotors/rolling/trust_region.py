@@ -51,8 +51,8 @@ def minimise(function: Callable[[FloatArray], Local], start: FloatArray, radius:
     """Newton's method within a trust region (Conn, Gould and Toint 2000, algorithms 6.1.1 and 7.3.4).
 
     On a convex function every step is the exact minimiser of the local quadratic within the radius, so the iteration
-    converges from any start if the function is bounded below, quadratically where its Hessian is positive definite at the
-    minimum. Steps along directions without any stiffness or force are not taken.
+    converges from any start if the function is bounded below, quadratically where its Hessian is positive definite at
+    the minimum. Steps along directions without any stiffness or force are not taken.
 
     Parameters
     ----------
