@@ -15,14 +15,14 @@ and answered for by frozen results, each with the certificate that no mode is mi
     solve_whirl(shaft, bearings, speed=418.9, count=8)
     critical_speeds(shaft, bearings, speed_limit=1e3)
 
-Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z along the shaft; slopes and
-the gyroscopic sign are those of `rotors.whirl`.
+`rotors.rolling` makes bearings from the geometry of rolling ones. Lengths are m, frequencies and speeds rad/s. The
+frame is right-handed with z along the shaft; slopes and the gyroscopic sign are those of `rotors.whirl`.
 """
 
 from .attachment import attach_loads
 from .bearing import Bearing, Pedestal, RadialSupport
 from .certificate import ModeCertificate
-from .errors import IncompleteModesError, RotorError
+from .errors import EquilibriumError, IncompleteModesError, RotorError
 from .lateral import LateralModes, solve_lateral_modes
 from .material import ShaftMaterial, shear_coefficient
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
@@ -37,6 +37,7 @@ __all__ = [
     "Coupling",
     "CriticalSpeeds",
     "Disc",
+    "EquilibriumError",
     "IncompleteModesError",
     "LateralModes",
     "ModeCertificate",

@@ -109,7 +109,7 @@ class BallsInMotion:
                 f"a ball's contacts miss their grooves by {found.residual:.3g} of the distance of their centres after "
                 f"{found.iterations} steps; expected {_OPEN:g}: check that geometry and speed are in m and rad/s"
             )
-        return scale * found.place
+        return np.asarray(scale * found.place)
 
     def _outer_rise(self, force: FloatArray) -> float:
         """Complementary energy of the outer contact under f + F_c r less that under F_c r, with a small f's digits."""
@@ -118,7 +118,7 @@ class BallsInMotion:
         work = 0.6 * self.thrown * (self.thrown / self.row.outer_contact.stiffness) ** (2.0 / 3.0)
         part = rise / self.thrown
         grown = math.expm1(5.0 / 3.0 * math.log1p(part)) if part > -0.5 else (total / self.thrown) ** (5.0 / 3.0) - 1.0
-        return self._outer_arm * rise + work * grown
+        return float(self._outer_arm * rise + work * grown)
 
     @cached_property
     def _kinematics(self) -> tuple[FloatArray, FloatArray]:

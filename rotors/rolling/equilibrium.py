@@ -84,7 +84,12 @@ def rolling_equilibrium(
     require_finite("speed", speed)
     require_finite("cage angle", cage_angle)
     pushed = applied[2] != 0.0 and "z" not in fixed and not bearing.has_axial_stiffness
-    require(not pushed, f"axial load on {bearing.name}", applied[2], "none, or z held: cylindrical rollers carry none")
+    require(
+        not pushed,
+        f"axial load on {bearing.name}",
+        float(applied[2]),
+        "none, or z held: cylindrical rollers carry none",
+    )
 
     contacts = [_contacts(row, speed, cage_angle) for row in bearing.rows]
     # Rotations as motions of the pitch circle, so that all five are lengths.
@@ -189,7 +194,7 @@ def _require_proof(state: RollingState) -> None:
             f"{name}: no equilibrium after {state.iterations} steps, {state.residual:.3g} of the loads is left; "
             f"expected {_ACCEPTED:g}: check that load and geometry are in N, N·m and m"
         )
-    values = np.linalg.eigvalsh(state.stiffness / np.outer(*(2 * [[1.0, 1.0, 1.0] + 2 * [state.bearing.reach]])))
+    values = np.linalg.eigvalsh(state.even_stiffness)
     if values[0] < -1e-9 * max(values[-1], 1.0):
         raise EquilibriumError(
             f"{name}: its tangent stiffness has the eigenvalue {values[0]:.3g}; expected none below 0"

@@ -139,7 +139,7 @@ class BallRow:
         axial = self.groove_distance * math.sin(angle) + axial_offset
         distance = math.hypot(radial, axial)
         approach = max(distance - self.groove_distance, 0.0)
-        return self.count * self.stiffness * approach**1.5 * axial / distance
+        return float(self.count * self.stiffness * approach**1.5 * axial / distance)
 
     @property
     def _gamma(self) -> float:

@@ -66,11 +66,15 @@ class RollingState:
         return max(row.peak_pressure for row in self.rows)
 
     @property
+    def even_stiffness(self) -> FloatArray:
+        """The stiffness with rotations as motions of the pitch circle and moments as forces there, (5, 5), N/m."""
+        size = np.array([1.0, 1.0, 1.0, self.bearing.reach, self.bearing.reach])
+        return np.asarray(self.stiffness / np.outer(size, size))
+
+    @property
     def loose(self) -> tuple[str, ...]:
         """Coordinates that take part in motions which nothing resists, because of play or by the bearing's kind."""
-        size = np.array([1.0, 1.0, 1.0, self.bearing.reach, self.bearing.reach])
-        scaled = self.stiffness / np.outer(size, size)
-        values, vectors = np.linalg.eigh(scaled)
+        values, vectors = np.linalg.eigh(self.even_stiffness)
         free = vectors[:, values <= _NO_STIFFNESS * max(values[-1], 1.0)]
         weight = (free**2).sum(axis=1)
         return tuple(name for name, part in zip(COORDINATES, weight.tolist(), strict=True) if part > _TAKES_PART)
