@@ -7,7 +7,7 @@ from PIL import Image
 
 from gearwhine.output import file_stems
 
-KINDS = {"shaft", "modes", "torsion", "whirl", "campbell"}
+KINDS = {"shaft", "modes", "torsion", "whirl", "campbell", "unbalance", "static"}
 
 
 def test_rotors_are_drawn_into_the_folder(gearwhine, tmp_path: Path) -> None:
@@ -25,7 +25,7 @@ def test_without_a_speed_there_is_no_whirl_to_draw(gearwhine) -> None:
     still = ("--set", "operation=", "--set", "sweep=")
     document = gearwhine("rotors", "friswell-rotor", "--json", "-q", "-o", "out", *still).document
     pictures = {name for name in document["files"] if name.endswith(".png")}
-    assert pictures == {f"rotor-shaft-{kind}.png" for kind in ("shaft", "modes", "torsion")}
+    assert pictures == {f"rotor-shaft-{kind}.png" for kind in ("shaft", "modes", "torsion", "static")}
 
 
 def test_gears_seats_and_odd_names(gearwhine) -> None:
@@ -35,8 +35,7 @@ def test_gears_seats_and_odd_names(gearwhine) -> None:
     outcome = gearwhine("rotors", "nasa-gear-noise-rig", "--json", "-q", "-o", "out", "--set", "sweep=", *renamed)
     assert outcome.code == 0, outcome.err
     pictures = {name for name in outcome.document["files"] if name.endswith(".png")}
-    kinds = KINDS - {"campbell"}
-    assert pictures == {f"rotor-{stem}-{kind}.png" for stem in ("Welle-1", "output") for kind in kinds}
+    assert pictures == {f"rotor-{stem}-{kind}.png" for stem in ("Welle-1", "output") for kind in KINDS}
 
 
 def test_names_of_files_are_plain_short_and_unlike() -> None:

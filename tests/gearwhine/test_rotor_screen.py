@@ -34,6 +34,10 @@ def rotor(**more: Any) -> Document:
         "critical_directions": [1.0, 0.4, -1.0, 1.0, 1.0],
         "critical_margins": [-0.4, -0.1, 0.08, 1.5, 8.0],
         "campbell": {"speed_rpm": [0.0, -1500.0], "unstable_from_rpm": None},
+        "critical_map": None,
+        "unbalance_response": None,
+        "static": None,
+        "unheld": None,
         "certificate": certificate,
     } | more
 
