@@ -21,7 +21,10 @@ from .root_count import chain_arrays
 
 FloatArray = npt.NDArray[np.float64]
 
-# Roots closer than this share one null space; the frequencies themselves are good to 1e-12.
+# Roots closer than this share one null space, at their mean: the frequencies themselves are good to 1e-12. Shapes
+# err by as much, which beside a heavy disc counts many times.
+ONE_NULL_SPACE = 2e-12
+# Roots closer than this are twins, of which a count of modes takes in both or none.
 SAME_ROOT = 1e-10
 # Shapes of roots closer than this mix in rounding, and are separated again by their energies.
 NEAR_ROOT = 1e-4
@@ -92,7 +95,7 @@ def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArr
     shared, elastic = frequencies.copy(), frequencies[zeros:]
     # Most roots have no neighbours.
     near = groups(elastic, NEAR_ROOT) if (elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]).any() else []
-    for group in groups(elastic, SAME_ROOT) if near else []:
+    for group in groups(elastic, ONE_NULL_SPACE) if near else []:
         shared[zeros:][group] = elastic[group].mean()
     states = null_states(shared[zeros:] ** 2, *chain_arrays(chain))
     if zeros:
