@@ -160,8 +160,9 @@ def axial_chain_on(rotor: "Rotor", bending: Chain) -> Chain:
     It has no springs, and no other mass at its nodes than the bending chain has.
     """
     free = rotor.free_lines.axial.with_nodes(bending.nodes)
-    ratio = float(free.displacement_unit[0] ** 2 * bending.length_unit / bending.displacement_unit[0] ** 2)
-    # Compliance is scaled by the unit of force, inertia by its reciprocal (times length, which both share).
+    # A displacement unit squared is the reciprocal of a unit of stiffness, by which compliance is scaled, and inertia
+    # by its reciprocal; the unit of length is the rotor's in both.
+    ratio = float(free.displacement_unit[0] ** 2 / bending.displacement_unit[0] ** 2)
     line = replace(
         free,
         coefficients=free.coefficients * np.array([ratio, 1.0 / ratio])[:, None],
