@@ -20,19 +20,26 @@ the gyroscopic sign are those of `rotors.whirl`.
 """
 
 from .attachment import attach_loads
+from .axial import AxialModes, solve_axial_modes
+from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
 from .certificate import ModeCertificate
 from .errors import IncompleteModesError, RotorError
 from .lateral import LateralModes, solve_lateral_modes
 from .material import ShaftMaterial, shear_coefficient
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .projection import whirl_basis
 from .section import Section
-from .shaft import Disc, Rotor, Segment
+from .segment import Segment
+from .shaft import Disc, Rotor
 from .shaft_coupling import Coupling
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
-from .whirl import WhirlModes, solve_whirl, whirl_basis
+from .whirl import WhirlModes, solve_whirl
+from .whirl_certificate import WhirlCertificate
 
 __all__ = [
+    "AxialModes",
+    "AxisSpring",
     "Bearing",
     "Coupling",
     "CriticalSpeeds",
@@ -49,11 +56,13 @@ __all__ = [
     "Segment",
     "ShaftMaterial",
     "TorsionalModes",
+    "WhirlCertificate",
     "WhirlModes",
     "attach_loads",
     "critical_speeds",
     "rest_frequencies",
     "shear_coefficient",
+    "solve_axial_modes",
     "solve_lateral_modes",
     "solve_torsional_chain",
     "solve_torsional_modes",

@@ -5,13 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg
-from scipy.sparse.linalg import splu
 
-from .chain import Chain
 from .fields import Fields
 from .lateral import LateralModes, lateral_modes
 from .search import require_positions
-from .shapes import ritz_vectors, shooting_matrix
+from .shapes import responses, ritz_vectors
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -51,10 +49,11 @@ def attach_loads(
     if not loads:
         return modes
     elastic = modes.frequencies[modes.frequencies > 0.0]
-    is_free = chain.rigid_shapes().shape[0] > 0
+    is_free = chain.rigid_shapes.shape[0] > 0
     reference = elastic[0] if elastic.size else 1.0
-    responses = _responses(chain, loads, -((FREE_SHIFT * reference) ** 2) if is_free else 0.0)
-    fields = modes.fields.on(chain).joined(responses)
+    squared_shift = -((FREE_SHIFT * reference) ** 2) if is_free else 0.0
+    static = Fields(chain, np.full(len(loads), squared_shift), responses(chain, loads, squared_shift))
+    fields = modes.fields.on(chain).joined(static)
     mixture = _residuals(fields, modes.mixture, len(loads))
     if mixture.shape[0] == 0:
         return modes
@@ -67,17 +66,6 @@ def attach_loads(
         modes.supports,
         modes.certificate,
     )
-
-
-def _responses(chain: Chain, loads: list[tuple[int, int]], frequency_squared: float) -> Fields:
-    """Fields of the responses to unit loads, each a node and a component, at one ω²."""
-    order = 2 * chain.size * chain.nodes.size
-    sides = np.zeros((order, len(loads)))
-    for load, (node, component) in enumerate(loads):
-        sides[2 * chain.size * node + component, load] = -1.0
-    solved = splu(shooting_matrix(chain, frequency_squared)).solve(sides)
-    states = solved.T.reshape(len(loads), chain.nodes.size, 2 * chain.size)
-    return Fields(chain, np.full(len(loads), frequency_squared), states)
 
 
 def _residuals(fields: Fields, modes: FloatArray, count: int) -> FloatArray:

@@ -1,47 +1,37 @@
-"""A shaft cut into uniform pieces between nodes: the one form that bending and torsion share.
+"""Pieces of shaft between nodes: the one form that bending, torsion and axial motion share.
 
 Every node may carry inertia and a spring to ground; every piece has an exact transfer matrix
 (`rotors.timoshenko`). The chain is kept in units of its own (a length, a force or moment) in which
-displacements and forces are of one size, so that a state vector can be normalised as a whole.
-
-Pieces are short enough for the highest frequency asked that no piece, clamped at both ends, has a
-natural frequency of its own below it. For a Timoshenko piece of length h, clamped ends give by
-Wirtinger's inequality ‖β'‖ ≥ (π/h)‖β‖ and (π/h)‖x‖ ≤ ‖x' − β‖ + (h/π)‖β'‖, so that its strain energy
-exceeds its kinetic energy for every field when
-
-    2 ρA ω² (h/π)² < κGA    and    2 ρA ω² (h/π)⁴ + ρI ω² (h/π)² < EI.
-
-This removes the term J₀ from the Wittrick–Williams count and bounds the growth of any transfer matrix.
+displacements and forces are of one size, so that a state vector can be normalised as a whole. `rotors.lines`
+makes chains of rotors.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from .bearing import RadialSupport
-from .errors import RotorError
-from .lumped import station_inertias
-from .shaft import Rotor, merged_positions, station_index
-from .timoshenko import transfer_matrices
+from .profile import restricted
+from .shaft import merged_positions, station_index
+from .timoshenko import NumberArray, PieceTable
 
 FloatArray = npt.NDArray[np.float64]
-
-# Pieces are this many times shorter than the inequalities demand: the series then stay below |λ²| = 5.
-PIECE_MARGIN = 2.0
-MOST_PIECES = 50_000
+IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Uniform pieces between nodes, in scaled units; n is 2 for bending and 1 for torsion.
+    """Pieces between nodes, in scaled units; n is 2 for bending and 1 for a rod.
 
     Attributes
     ----------
     nodes
         (p + 1,): ascending positions, m (the only field not in scaled units).
-    flexibility, inertia
-        (p, n): per unit length, as in `rotors.timoshenko.transfer_matrices`.
+    table
+        The pieces that differ from each other, in scaled units.
+    element
+        (p,): which of them each piece is.
     node_inertia, node_stiffness
         (p + 1, n): at the nodes; an infinite stiffness is a constraint.
     node_polar
@@ -57,8 +47,8 @@ class Chain:
     """
 
     nodes: FloatArray
-    flexibility: FloatArray
-    inertia: FloatArray
+    table: PieceTable
+    element: IntArray
     node_inertia: FloatArray
     node_stiffness: FloatArray
     node_polar: FloatArray
@@ -69,35 +59,59 @@ class Chain:
 
     @property
     def size(self) -> int:
-        """Displacements at a node: 2 in bending, 1 in torsion."""
-        return int(self.flexibility.shape[1])
+        """Displacements at a node: 2 in bending, 1 of a rod."""
+        return self.table.size
 
-    @property
+    @cached_property
     def lengths(self) -> FloatArray:
         """Lengths of the pieces in scaled units, (p,)."""
-        return np.diff(self.nodes) / self.length_unit
+        return self.table.lengths[self.element]
 
-    @property
+    @cached_property
     def constrained(self) -> npt.NDArray[np.bool_]:
         """Which node displacements are held, (p + 1, n)."""
         return np.isinf(self.node_stiffness)
 
-    @property
+    @cached_property
     def finite_stiffness(self) -> FloatArray:
         """Node stiffness with constraints, which store no energy, as zero, (p + 1, n)."""
         return np.where(self.constrained, 0.0, self.node_stiffness)
 
     @property
-    def available_modes(self) -> float:
-        """How many modes there are: infinite with distributed mass, else the inertias that can move."""
-        if bool((self.inertia > 0.0).any()):
-            return np.inf
-        return int(np.count_nonzero((self.node_inertia > 0.0) & ~self.constrained))
+    def inertia_rows(self) -> slice:
+        """Columns of `coefficients_at` that hold inertia per length, n of them."""
+        return slice(2, 4) if self.size == 2 else slice(1, 2)
 
-    def transfers(self, frequency_squared: FloatArray) -> FloatArray:
-        """Transfer matrices of all pieces at every ω² of a (b,) array, (p, b, 2n, 2n)."""
-        lengths = np.ascontiguousarray(self.lengths)[:, None]
-        return transfer_matrices(self.flexibility[:, None], self.inertia[:, None], lengths, frequency_squared[None, :])
+    def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:
+        """Coefficients of `rotors.timoshenko.PieceTable` at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""
+        return self.table.coefficients_at(self.element[piece], fraction)
+
+    def transfers(self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None) -> NumberArray:
+        """Transfer matrices of all pieces at every ω² of a (b,) array, (p, b, 2n, 2n).
+
+        Parameters
+        ----------
+        translation, rotation
+            (b,): ω² that multiplies the mass and the rotary inertia, real or complex; without the second, both
+            are the first. For e^{λt} in circular coordinates they are −λ² and −λ² ± 2iΩλ.
+        """
+        return np.moveaxis(self.table.transfers(translation, rotation)[:, :, 0], 0, 1)[self.element]
+
+    def transfers_to(
+        self,
+        piece: IntArray,
+        fraction: FloatArray,
+        translation: npt.ArrayLike,
+        rotation: npt.ArrayLike | None = None,
+    ) -> NumberArray:
+        """Transfer matrices from the left ends of pieces (z,) to fractions (z,) of them, (z, b, 2n, 2n)."""
+        return self.table.transfers_to(self.element[piece], fraction, translation, rotation)
+
+    def places(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Piece that holds each position (z,) in m, and the fraction of it that lies to the left, both (z,)."""
+        piece = np.clip(np.searchsorted(self.nodes, positions, side="right") - 1, 0, self.element.size - 1)
+        fraction = (positions - self.nodes[piece]) / (self.nodes[piece + 1] - self.nodes[piece])
+        return piece, np.clip(fraction, 0.0, 1.0)
 
     def node_at(self, position: float) -> int:
         """Index of the node at a position (m), which must be one of the nodes."""
@@ -106,29 +120,40 @@ class Chain:
     def with_nodes(self, positions: FloatArray) -> "Chain":
         """The same chain with nodes, bare ones where there were none, at positions (k,) in m as well."""
         nodes = merged_positions(self.nodes, positions.tolist())
-        piece = np.searchsorted(self.nodes, 0.5 * (nodes[1:] + nodes[:-1])) - 1
+        if nodes.size == self.nodes.size:
+            return self
+        piece, start = self.places(nodes[:-1])
+        end = np.where(piece[1:] == piece[:-1], start[1:], 1.0) if piece.size > 1 else np.ones(0)
+        part = np.append(end, 1.0) - start
+        element = self.element[piece]
+        coefficients = restricted(self.table.coefficients[element], 2.0 * start + part - 1.0, part)
         return replace(
             self,
             nodes=nodes,
-            flexibility=self.flexibility[piece],
-            inertia=self.inertia[piece],
-            node_inertia=_spread(nodes, self.nodes, self.node_inertia),
-            node_stiffness=_spread(nodes, self.nodes, self.node_stiffness),
-            node_polar=_spread(nodes, self.nodes, self.node_polar),
-            is_station=_spread(nodes, self.nodes, self.is_station.astype(np.float64)) > 0.0,
+            table=PieceTable(self.table.lengths[element] * part, coefficients),
+            element=np.arange(piece.size),
+            node_inertia=spread(nodes, self.nodes, self.node_inertia),
+            node_stiffness=spread(nodes, self.nodes, self.node_stiffness),
+            node_polar=spread(nodes, self.nodes, self.node_polar),
+            is_station=spread(nodes, self.nodes, self.is_station.astype(np.float64)) > 0.0,
         )
 
+    @cached_property
     def rigid_shapes(self) -> FloatArray:
-        """Independent motions that strain nothing, as node displacements, (zero modes, p + 1, n)."""
+        """Independent motions that strain nothing, as node displacements, (zero modes, p + 1, n).
+
+        An axial force works on a shaft that tilts, so that no tilt is free where there is one.
+        """
         place = (self.nodes - self.nodes[0]) / self.length_unit
         if self.size == 1:
             free = not bool((self.node_stiffness > 0.0).any())
             return np.ones((1, place.size, 1))[: int(free)]
         slope, constant = np.ones_like(place), np.zeros_like(place)
-        shift = np.stack([slope, constant], axis=-1)
         held = place[self.node_stiffness[:, 0] > 0.0]
-        tilt_held = bool((self.node_stiffness[:, 1] > 0.0).any())
+        loaded = bool(self.table.coefficients[:, 5].any())
+        tilt_held = loaded or bool((self.node_stiffness[:, 1] > 0.0).any())
         if held.size == 0:
+            shift = np.stack([slope, constant], axis=-1)
             tilt = np.stack([place - place.mean(), slope], axis=-1)
             return np.stack([shift] if tilt_held else [shift, tilt])
         if held.size == 1 and not tilt_held:
@@ -136,111 +161,10 @@ class Chain:
         return np.zeros((0, place.size, 2))
 
 
-def bending_chain(rotor: Rotor, supports: tuple[RadialSupport, ...], highest: float) -> Chain:
-    """Chain of a rotor's bending in one plane, good up to ``highest`` rad/s."""
-    for support in supports:
-        rotor.require_on_shaft(f"rotor {rotor.name!r} support", support.at)
-    places = [*(disc.at for disc in rotor.discs), *(support.at for support in supports)]
-    stations = merged_positions(rotor.joints, places)
-    distributed = rotor.mass_model == "distributed"
-    sections = np.array(
-        [
-            (1.0 / s.shear_stiffness, 1.0 / s.bending_stiffness, s.mass_per_length, s.polar_inertia_per_length)
-            for s in (segment.section(0.5) for segment in rotor.segments)
-        ]
-    )
-    per_length = sections[_segment_of_span(rotor, stations)]
-    flexibility = per_length[:, :2]
-    inertia = per_length[:, 2:] * np.array([1.0, 0.5]) * float(distributed)
-
-    squared = highest**2
-    mass, rotary = squared * inertia[:, 0], squared * inertia[:, 1]
-    shear, bending = 1.0 / flexibility[:, 0], 1.0 / flexibility[:, 1]
-    with np.errstate(divide="ignore"):
-        longest_squared = np.minimum(
-            shear / (2.0 * mass), 2.0 * bending / (rotary + np.sqrt(rotary**2 + 8.0 * mass * bending))
-        )
-    nodes, span_of_piece = _cut(rotor, stations, np.pi * np.sqrt(longest_squared), highest)
-
-    at_nodes = station_inertias(rotor, stations)
-    stiffness = np.zeros((stations.size, 2))
-    for support in supports:
-        stiffness[station_index(stations, support.at)] += support.stiffness, support.tilt_stiffness
-    length = rotor.length
-    force = float(np.exp(np.log(bending).mean())) / length**2
-    per_node = np.array([length / force, 1.0 / (force * length)])
-    return Chain(
-        nodes=nodes,
-        flexibility=flexibility[span_of_piece] * np.array([force, force * length**2]),
-        inertia=inertia[span_of_piece] * np.array([length**2 / force, 1.0 / force]),
-        node_inertia=_spread(nodes, stations, at_nodes[:, :2] * per_node),
-        node_stiffness=_spread(nodes, stations, stiffness * per_node),
-        node_polar=_spread(nodes, stations, at_nodes[:, 2] * per_node[1]),
-        length_unit=length,
-        displacement_unit=np.array([length, 1.0]) / np.sqrt(force * length),
-        highest=highest,
-        is_station=_spread(nodes, stations, np.ones(stations.size)) > 0.0,
-    )
-
-
-def torsion_chain(rotor: Rotor, highest: float) -> Chain:
-    """Chain of a rotor's free torsion, good up to ``highest`` rad/s."""
-    stations = merged_positions(rotor.joints, [*(disc.at for disc in rotor.discs)])
-    sections = np.array(
-        [
-            (1.0 / s.torsional_stiffness, s.polar_inertia_per_length)
-            for s in (segment.section(0.5) for segment in rotor.segments)
-        ]
-    )
-    per_length = sections[_segment_of_span(rotor, stations)]
-    distributed = float(rotor.mass_model == "distributed")
-    flexibility, inertia = per_length[:, :1], per_length[:, 1:] * distributed
-    with np.errstate(divide="ignore"):
-        longest = np.pi / (highest * np.sqrt(flexibility[:, 0] * inertia[:, 0]))
-    nodes, span_of_piece = _cut(rotor, stations, longest, highest)
-    polar = station_inertias(rotor, stations)[:, 2:]
-    moment = float(np.exp(-np.log(flexibility).mean())) / rotor.length
-    return Chain(
-        nodes=nodes,
-        flexibility=flexibility[span_of_piece] * (moment * rotor.length),
-        inertia=inertia[span_of_piece] * (rotor.length / moment),
-        node_inertia=_spread(nodes, stations, polar / moment),
-        node_stiffness=np.zeros((nodes.size, 1)),
-        node_polar=np.zeros(nodes.size),
-        length_unit=rotor.length,
-        displacement_unit=np.array([1.0 / np.sqrt(moment)]),
-        highest=highest,
-        is_station=_spread(nodes, stations, np.ones(stations.size)) > 0.0,
-    )
-
-
-def _segment_of_span(rotor: Rotor, stations: FloatArray) -> npt.NDArray[np.intp]:
-    """Index of the segment that holds each span between neighbouring stations, (s - 1,)."""
-    middles = 0.5 * (stations[1:] + stations[:-1])
-    return np.clip(np.searchsorted(rotor.joints, middles) - 1, 0, len(rotor.segments) - 1)
-
-
-def _cut(
-    rotor: Rotor, stations: FloatArray, longest: FloatArray, highest: float
-) -> tuple[FloatArray, npt.NDArray[np.intp]]:
-    """Nodes (p + 1,) that cut each span into equal pieces no longer than allowed, and each piece's span."""
-    pieces = np.maximum(np.ceil(PIECE_MARGIN * np.diff(stations) / longest), 1.0)
-    if pieces.sum() > MOST_PIECES:
-        raise RotorError(
-            f"rotor {rotor.name!r}: a limit of {highest:g} rad/s needs {pieces.sum():.0f} pieces of shaft, "
-            f"more than {MOST_PIECES}; expected a lower frequency limit or fewer modes"
-        )
-    counts = pieces.astype(np.intp)
-    inner = [
-        np.linspace(left, right, count, endpoint=False)
-        for left, right, count in zip(stations[:-1], stations[1:], counts, strict=True)
-    ]
-    nodes = np.concatenate([*inner, stations[-1:]])
-    return nodes, np.repeat(np.arange(counts.size), counts)
-
-
-def _spread(nodes: FloatArray, stations: FloatArray, values: FloatArray) -> FloatArray:
+def spread(nodes: FloatArray, stations: FloatArray, values: FloatArray) -> FloatArray:
     """Values at the stations, put at the nodes that are those stations; zero at the others."""
-    spread = np.zeros((nodes.size, *values.shape[1:]))
-    spread[np.searchsorted(nodes, stations)] = values
-    return spread
+    if nodes.size == stations.size:
+        return values
+    whole = np.zeros((nodes.size, *values.shape[1:]))
+    whole[np.searchsorted(nodes, stations)] = values
+    return whole

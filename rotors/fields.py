@@ -6,16 +6,17 @@ products of two such fields on pieces this short to rounding.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from .chain import Chain
-from .timoshenko import transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]
 
-GAUSS_POINTS = 12
+GAUSS_POINTS = 10
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 
 
 @dataclass(frozen=True)
@@ -38,21 +39,22 @@ class Fields:
 
     def at(self, positions: FloatArray) -> FloatArray:
         """States at positions (z,) in m on the shaft, (k, z, 2n)."""
-        chain = self.chain
-        piece = np.clip(np.searchsorted(chain.nodes, positions, side="right") - 1, 0, chain.lengths.size - 1)
-        offset = (positions - chain.nodes[piece]) / chain.length_unit
-        return self._inside(piece, offset)
+        piece, fraction = self.chain.places(positions)
+        transfers = self.chain.transfers_to(piece, fraction, self.frequency_squared)
+        return np.asarray(np.einsum("zkij,kzj->kzi", transfers, self.states[:, piece]))
 
-    def energies(self, mixture: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def energies(self, mixture: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
         """Mass and stiffness matrices of combinations of the fields, in the chain's units.
 
-        Kinetic energy is ½ q̇ᵀ M q̇ and strain energy, springs to ground included, ½ qᵀ K q. The
-        fields are combined before they are squared: a combination that cancels keeps its digits.
+        Kinetic energy is ½ q̇ᵀ M q̇ and strain energy, springs to ground and the work of an axial force
+        included, ½ qᵀ K q. In bending the energies per length are ½ (ρA x² + ρI β²) ω² and
+        ½ [f_x²/(κGA + P) + f_β²/EI + g P β²]. The fields are combined before they are squared: a combination
+        that cancels keeps its digits.
 
         Parameters
         ----------
         mixture
-            (m, k): rows are the combinations.
+            (m, k): rows are the combinations; without it, the fields themselves.
 
         Returns
         -------
@@ -60,20 +62,21 @@ class Fields:
             Both (m, m).
         """
         chain, n = self.chain, self.chain.size
-        piece, weight, inside = self._quadrature(mixture)
-        nodal = np.tensordot(mixture, self.states[:, :, :n], axes=1)
-        mass = _gram(inside[:, :, :n], weight * chain.inertia[piece]) + _gram(nodal, chain.node_inertia)
-        strain = _gram(inside[:, :, n:], weight * chain.flexibility[piece])
+        inside, nodal = self._combined(mixture)
+        weighted = self._weighted_coefficients
+        mass = _gram(inside[:, :, :n], weighted[:, chain.inertia_rows]) + _gram(nodal, chain.node_inertia)
+        if n == 1:
+            strain = _gram(inside[:, :, 1:], weighted[:, :1])
+        else:
+            strain = _gram(inside[:, :, 1:], weighted[:, [5, 0, 1]])
         return mass, strain + _gram(nodal, chain.finite_stiffness)
 
     def polar_matrix(self, mixture: FloatArray) -> FloatArray:
         """∫ ρI_p βᵢ βⱼ dz plus the nodes' polar inertias, of combinations of bending fields, (m, m)."""
-        chain = self.chain
-        piece, weight, inside = self._quadrature(mixture)
-        slopes = np.tensordot(mixture, self.states[:, :, 1:2], axes=1)
+        inside, nodal = self._combined(mixture)
         # A round section's polar moment of area is twice its diametral one.
-        along = _gram(inside[:, :, 1:2], 2.0 * weight * chain.inertia[piece, 1:2])
-        return along + _gram(slopes, chain.node_polar[:, None])
+        along = _gram(inside[:, :, 1:2], 2.0 * self._weighted_coefficients[:, 3:4])
+        return along + _gram(nodal[:, :, 1:2], self.chain.node_polar[:, None])
 
     def joined(self, other: "Fields") -> "Fields":
         """These fields followed by those of ``other``, on the same chain."""
@@ -87,24 +90,37 @@ class Fields:
         """The same fields on a chain that differs by further nodes only."""
         return Fields(chain, self.frequency_squared, self.at(chain.nodes))
 
-    def _quadrature(self, mixture: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray, FloatArray]:
-        """Piece (z,) and weight (z, 1) of every Gauss point, and the combined states there (m, z, 2n)."""
-        points, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-        lengths = self.chain.lengths
-        piece = np.repeat(np.arange(lengths.size), GAUSS_POINTS)
-        inside = self._inside(piece, (0.5 * lengths[:, None] * (points + 1.0)).ravel())
-        weight = (0.5 * lengths[:, None] * weights).ravel()[:, None]
-        return piece, weight, np.tensordot(mixture, inside, axes=1)
+    @cached_property
+    def _inside(self) -> FloatArray:
+        """States at the Gauss points of every piece, (k, z, 2n)."""
+        from .shape_kernels import inside_states
 
-    def _inside(self, piece: npt.NDArray[np.intp], offset: FloatArray) -> FloatArray:
-        chain = self.chain
-        flexibility, inertia = chain.flexibility[piece], chain.inertia[piece]
-        inside = np.empty((self.frequency_squared.size, piece.size, 2 * chain.size))
-        # One field at a time: the transfer matrices of all at once would be the largest array by far.
-        for field, squared in enumerate(self.frequency_squared):
-            transfer = transfer_matrices(flexibility, inertia, offset, np.full(piece.size, squared))
-            inside[field] = np.einsum("zij,zj->zi", transfer, self.states[field, piece])
-        return inside
+        table, states = self.chain.table, self.states
+        inside = inside_states(
+            self.frequency_squared,
+            states,
+            0.5 * (_POINTS + 1.0),
+            table.lengths,
+            table.coefficients,
+            self.chain.element,
+        )
+        return np.asarray(inside.reshape(states.shape[0], -1, states.shape[2]))
+
+    @cached_property
+    def _weighted_coefficients(self) -> FloatArray:
+        """Coefficients of the chain's pieces at the Gauss points, times the weights, (z, 6) or (z, 2)."""
+        table = self.chain.table
+        element = np.repeat(np.arange(table.lengths.size), GAUSS_POINTS)
+        values = table.coefficients_at(element, np.tile(0.5 * (_POINTS + 1.0), table.lengths.size))
+        values = values * (0.5 * table.lengths[:, None] * _WEIGHTS).reshape(-1, 1)
+        return values.reshape(table.lengths.size, GAUSS_POINTS, -1)[self.chain.element].reshape(-1, values.shape[1])
+
+    def _combined(self, mixture: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        """States at the Gauss points (m, z, 2n) and displacements at the nodes (m, p + 1, n)."""
+        nodal = self.states[:, :, : self.chain.size]
+        if mixture is None:
+            return self._inside, nodal
+        return np.tensordot(mixture, self._inside, axes=1), np.tensordot(mixture, nodal, axes=1)
 
 
 def _gram(values: FloatArray, weights: FloatArray) -> FloatArray:

@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from .bearing import RadialSupport
 from .certificate import ModeCertificate
-from .chain import bending_chain
 from .fields import Fields
+from .rotor_lines import bending_line
 from .search import find_modes, require_positions
 from .shaft import Rotor
 
@@ -109,7 +109,7 @@ def solve_lateral_modes(
         The modes fail their own proof.
     """
     held = tuple(supports)
-    found = find_modes(lambda highest: bending_chain(rotor, held, highest), frequency_limit, count)
+    found = find_modes(bending_line(rotor, held), frequency_limit, count)
     return lateral_modes(found.frequencies, found.fields, found.mixture, held, found.certificate)
 
 

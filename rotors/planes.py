@@ -5,25 +5,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
 
 from .bearing import Bearing
 from .certificate import ModeCertificate
-from .chain import bending_chain
 from .errors import require, require_count
+from .exact_roots import synchronous_speed
 from .lateral import LateralModes, solve_lateral_modes
+from .projection import DEFAULT_COUNT, Projection, basis_for
 from .root_count import count_below
+from .rotor_lines import bending_chain, bending_line
 from .shaft import Rotor
 from .shapes import SAME_ROOT
-from .whirl import (
-    DEFAULT_COUNT,
-    NO_OSCILLATION,
-    basis_for,
-    frequency_weight,
-    plane_matrices,
-    solve_whirl,
-    whirl_direction,
-)
+from .spatial_ties import block_sets
+from .whirl import certified_whirl, solve_whirl
+from .whirl_certificate import NO_OSCILLATION, WhirlCertificate
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -37,12 +32,11 @@ class RestFrequencies:
     frequencies
         (m,): ascending, rad/s; an isotropic root stands twice.
     certificate
-        Proof of completeness over both planes. With cross-coupled stiffness there is no count, and it is
-        that of the planar modal basis.
+        Proof of completeness over both planes.
     """
 
     frequencies: FloatArray
-    certificate: ModeCertificate
+    certificate: ModeCertificate | WhirlCertificate
 
 
 @dataclass(frozen=True)
@@ -55,10 +49,13 @@ class CriticalSpeeds:
         (c,): ascending, rad/s.
     direction
         (c,): 1 circular forward, −1 circular backward, 0 planar, as in `rotors.WhirlModes`.
+    certificate
+        Proof that none is missing.
     """
 
     speeds: FloatArray
     direction: FloatArray
+    certificate: WhirlCertificate
 
     @property
     def forward(self) -> FloatArray:
@@ -92,11 +89,10 @@ def rest_frequencies(
     RotorError, IncompleteModesError
         As `rotors.solve_lateral_modes`.
     """
-    if any(bearing.has_cross_stiffness for bearing in bearings):
-        undamped = [replace(bearing, damping=np.zeros((2, 2))) for bearing in bearings]
+    if not all(_is_planar(bearing) for bearing in bearings):
+        undamped = [_undamped(bearing) for bearing in bearings]
         modes = solve_whirl(rotor, undamped, 0.0, frequency_limit=frequency_limit, count=count)
-        # The planes' basis is proved complete; how many coupled roots it should have, no count says.
-        return RestFrequencies(modes.damped_frequencies, modes.basis.certificate)
+        return RestFrequencies(modes.damped_frequencies, modes.certificate)
 
     wanted = count
     if frequency_limit is None and count is None:
@@ -159,27 +155,42 @@ def critical_speeds(
         As `rotors.solve_whirl`.
     """
     chosen = basis_for(rotor, bearings, speed_limit, count, basis)
-    weight = frequency_weight(chosen)
-    scale = np.outer(weight, weight)
-    stiffness = plane_matrices(chosen, bearings)[0] / scale
-    polar = chosen.polar_inertia_matrix
-    unit = np.eye(chosen.count)
-    mass = np.block([[unit, -1j * polar], [1j * polar, unit]]) / scale
-    values, vectors = linalg.eig(stiffness, mass)
-    speeds = np.emath.sqrt(np.where(np.isfinite(values), values, -1.0)).astype(np.complex128)
-    # Roots of ω² that are not near the positive real axis are no vibration at this speed.
-    kept = np.flatnonzero((speeds.real > NO_OSCILLATION * weight.min()) & (np.abs(speeds.imag) < speeds.real))
-    kept = kept[np.argsort(speeds[kept].real)]
-    wanted = kept.size if speed_limit is not None else count or DEFAULT_COUNT
-    kept = kept[speeds[kept].real < (speed_limit or np.inf)][:wanted]
-    coordinates = (vectors[:, kept] / weight[:, None]).T
-    return CriticalSpeeds(np.asarray(speeds[kept].real), whirl_direction(coordinates))
+    undamped = [_undamped(bearing) for bearing in bearings]
+    sets = [Projection.of(rotor, undamped, blocks, chosen) for blocks in block_sets(undamped)]
+    motion, certificate = certified_whirl(
+        rotor,
+        undamped,
+        [(one.blocks, one.critical(undamped)) for one in sets],
+        synchronous_speed,
+        None,
+        NO_OSCILLATION * sets[0].floor,
+        speed_limit,
+        None if speed_limit is not None else count or DEFAULT_COUNT,
+    )
+    shares = motion.shares()
+    order = np.argsort(motion.eigenvalues.imag)
+    direction = (shares[:, 0] - shares[:, 1]) / shares.sum(axis=1)
+    return CriticalSpeeds(motion.eigenvalues.imag[order], direction[order], certificate)
+
+
+def _undamped(bearing: Bearing) -> Bearing:
+    """The bearing and its pedestal without damping."""
+    pedestal = bearing.pedestal
+    if pedestal is not None:
+        pedestal = replace(pedestal, damping=np.zeros((2, 2)))
+    return replace(bearing, damping=np.zeros_like(bearing.damping), pedestal=pedestal)
+
+
+def _is_planar(bearing: Bearing) -> bool:
+    """Whether each plane has its own springs, and the ground behind them."""
+    stiffness = bearing.spatial_stiffness
+    return bearing.pedestal is None and bool((stiffness[~np.eye(5, dtype=np.bool_)] == 0.0).all())
 
 
 def _counted(rotor: Rotor, bearings: Sequence[Bearing], plane: int, limit: float) -> int:
     """How many frequencies of one plane lie below a limit (rad/s), by a count of its own."""
     chain = bending_chain(rotor, tuple(bearing.plane_support(plane) for bearing in bearings), limit)
-    return int(count_below(chain, np.array([limit]))[0])
+    return int(count_below(chain, limit)[0])
 
 
 def _plane_modes(
@@ -188,5 +199,5 @@ def _plane_modes(
     supports = tuple(bearing.plane_support(plane) for bearing in bearings)
     if count is not None:
         # One plane of a lumped rotor may have fewer modes than are asked for over both.
-        count = int(min(count, bending_chain(rotor, supports, 1.0).available_modes))
+        count = int(min(count, bending_line(rotor, supports).available_modes))
     return solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)

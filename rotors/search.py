@@ -1,6 +1,5 @@
 """From a request, a limit or a count, to certified modes of a chain; shared by bending and torsion."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +9,7 @@ from .certificate import ModeCertificate, certify
 from .chain import Chain
 from .errors import RotorError, require, require_count, require_finite
 from .fields import Fields
+from .lines import Line
 from .root_count import count_below, isolate
 from .shaft import STATION_TOLERANCE
 from .shapes import SAME_ROOT, mode_fields
@@ -31,8 +31,8 @@ class FoundModes:
     certificate: ModeCertificate
 
 
-def find_modes(build: Callable[[float], Chain], frequency_limit: float | None, count: int | None) -> FoundModes:
-    """Every mode below the limit, or the lowest ``count``, of the chain that ``build(highest)`` makes."""
+def find_modes(line: Line, frequency_limit: float | None, count: int | None) -> FoundModes:
+    """Every mode of a line below the limit, or the lowest ``count``."""
     require(
         frequency_limit is None or count is None,
         "frequency_limit and count",
@@ -41,44 +41,35 @@ def find_modes(build: Callable[[float], Chain], frequency_limit: float | None, c
     )
     if frequency_limit is not None:
         require_finite("frequency_limit", frequency_limit, positive=True)
-        chain = build(frequency_limit)
-        wanted = int(count_below(chain, np.array([frequency_limit]))[0])
-        limit, expected = frequency_limit, wanted
-        frequencies = _roots(chain, wanted, limit)
+        chain = line.cut(frequency_limit)
+        limit, expected = frequency_limit, int(count_below(chain, frequency_limit)[0])
+        frequencies = isolate(chain, expected, limit)
     else:
-        chain, wanted = _chain_that_holds(build, count)
-        frequencies = _roots(chain, wanted, chain.highest)
+        chain, wanted = _chain_that_holds(line, count)
+        frequencies = isolate(chain, wanted, chain.highest)
         # Certify a little above the last mode, and take in its twins, if it has any.
         limit = min(max(float(frequencies[-1]) * (1.0 + 2.0 * SAME_ROOT), 1e-12 * chain.highest), chain.highest)
-        expected = int(count_below(chain, np.array([limit]))[0])
+        expected = int(count_below(chain, limit)[0])
         if expected > wanted:
-            frequencies = _roots(chain, expected, chain.highest)
-    fields, mixture = mode_fields(chain, frequencies, min(chain.rigid_shapes().shape[0], frequencies.size))
+            frequencies = isolate(chain, expected, chain.highest)
+    fields, mixture = mode_fields(chain, frequencies)
     certificate = certify(limit, expected, frequencies, *fields.energies(mixture))
     return FoundModes(frequencies, fields, mixture, certificate)
 
 
-def _roots(chain: Chain, wanted: int, limit: float) -> FloatArray:
-    zeros = chain.rigid_shapes().shape[0]
-    return isolate(lambda frequencies: count_below(chain, frequencies), wanted, zeros, limit)
-
-
-def _chain_that_holds(build: Callable[[float], Chain], count: int | None) -> tuple[Chain, int]:
+def _chain_that_holds(line: Line, count: int | None) -> tuple[Chain, int]:
     """A chain whose highest frequency exceeds the wanted modes, and how many modes are wanted."""
-    slowest = build(1.0)
-    available = slowest.available_modes
+    available = line.available_modes
     if count is None:
         wanted = int(min(DEFAULT_COUNT, available))
     else:
         require_count("count of modes", count)
         require(count <= available, "count of modes", count, f"at most {available:g}, all this lumped rotor has")
         wanted = count
-    # In the chain's units stiffness is about one, so that this is the scale of its elastic frequencies.
-    inertia = slowest.inertia[:, 0] @ slowest.lengths + slowest.node_inertia[:, 0].sum()
-    highest = float(np.pi / np.sqrt(inertia)) if inertia > 0.0 else 1.0
+    highest = line.likely_frequency(wanted)
     for _ in range(MOST_DOUBLINGS):
-        chain = build(highest)
-        if count_below(chain, np.array([highest]))[0] >= wanted:
+        chain = line.cut(highest)
+        if count_below(chain, highest)[0] >= wanted:
             return chain, wanted
         highest *= 2.0
     raise RotorError(f"{wanted} modes are not found below {highest:g} rad/s; expected a rotor with fewer")

@@ -1,7 +1,7 @@
 """The rotor as the user describes it: round segments end to end, and rigid discs on them."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import RotorError, require, require_finite
-from .material import ShaftMaterial, ShearFormula
-from .section import Section
+from .material import ShaftMaterial
+from .profile import Profile, profile_of
+from .segment import Segment
+from .shaft_coupling import Coupling
 
 FloatArray = npt.NDArray[np.float64]
 MassModel = Literal["distributed", "lumped"]
@@ -19,110 +21,6 @@ MassModel = Literal["distributed", "lumped"]
 # Two positions closer than this fraction of the rotor's length are one station: sums of printed
 # segment lengths differ from printed positions by rounding alone.
 STATION_TOLERANCE = 1e-9
-
-
-@dataclass(frozen=True)
-class Segment:
-    """A straight round piece of shaft, cylindrical or conical.
-
-    Parameters
-    ----------
-    length, outer_diameter, inner_diameter
-        In m; the bore (inner diameter) may be zero. Of a cone these are the diameters at its left end.
-    material
-        Its material.
-    shear_coefficient
-        ``"cowper"``, ``"hutchinson"``, or the number κ itself.
-    right_outer_diameter, right_inner_diameter
-        At the right end in m, between which the diameters change linearly; None where they do not change.
-    axial_force
-        Static force in N that the piece carries, tension positive.
-
-    Raises
-    ------
-    RotorError
-        A length or outer diameter that is not positive, a bore not inside the section, or a material
-        whose Poisson ratio the shear formula cannot take.
-    """
-
-    length: float
-    outer_diameter: float
-    inner_diameter: float
-    material: ShaftMaterial
-    shear_coefficient: ShearFormula | float = "cowper"
-    right_outer_diameter: float | None = None
-    right_inner_diameter: float | None = None
-    axial_force: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_finite("segment length", self.length, positive=True)
-        require_finite("segment axial_force", self.axial_force)
-        for side, (outer, inner) in zip(("", "right_"), self.end_diameters, strict=True):
-            require_finite(f"segment {side}outer_diameter", outer, positive=True)
-            require_finite(f"segment {side}inner_diameter", inner, minimum=0.0)
-            expected = f"less than the outer diameter {outer:g} m"
-            require(inner < outer, f"segment {side}inner_diameter", inner, expected)
-        if isinstance(self.shear_coefficient, str):
-            _ = self.section(0.0).shear_factor  # raises where the material does not suit the formula
-        else:
-            require_finite("shear coefficient", self.shear_coefficient, positive=True)
-
-    @property
-    def end_diameters(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Outer and inner diameter at the left end, and at the right end, m."""
-        right_outer = self.outer_diameter if self.right_outer_diameter is None else self.right_outer_diameter
-        right_inner = self.inner_diameter if self.right_inner_diameter is None else self.right_inner_diameter
-        return (self.outer_diameter, self.inner_diameter), (right_outer, right_inner)
-
-    @property
-    def is_conical(self) -> bool:
-        """Whether a diameter changes along the piece."""
-        left, right = self.end_diameters
-        return left != right
-
-    def section(self, fraction: float) -> Section:
-        """The section at a fraction of the length from the left end, 0 to 1."""
-        (outer, inner), (right_outer, right_inner) = self.end_diameters
-        return Section(
-            outer + fraction * (right_outer - outer),
-            inner + fraction * (right_inner - inner),
-            self.material,
-            self.shear_coefficient,
-        )
-
-    @property
-    def mass(self) -> float:
-        """Mass in kg."""
-        return self._integral(lambda section, _: section.mass_per_length)
-
-    @property
-    def mass_centre(self) -> float:
-        """Distance of the centre of mass from the left end, m."""
-        return self._integral(lambda section, z: section.mass_per_length * z) / self.mass if self.mass else 0.0
-
-    @property
-    def polar_inertia(self) -> float:
-        """Moment of inertia about the axis, kg·m²."""
-        return self._integral(lambda section, _: section.polar_inertia_per_length)
-
-    @property
-    def diametral_inertia(self) -> float:
-        """Moment of inertia about a diameter through its own centre of mass, kg·m²."""
-        about_left = self._integral(lambda section, z: section.mass_per_length * z**2)
-        return 0.5 * self.polar_inertia + about_left - self.mass * self.mass_centre**2
-
-    def _integral(self, density: Callable[[Section, float], float]) -> float:
-        """Integral along the piece; Gauss's four points are exact for the polynomials of a cone (degree 4)."""
-        points, weights = np.polynomial.legendre.leggauss(4)
-        fractions = 0.5 * (points + 1.0)
-        return (
-            0.5
-            * self.length
-            * math.fsum(
-                weight * density(self.section(fraction), fraction * self.length)
-                for fraction, weight in zip(fractions.tolist(), weights.tolist(), strict=True)
-            )
-        )
 
 
 @dataclass(frozen=True)
@@ -168,12 +66,12 @@ class Rotor:
     name
         What messages call it.
     segments
-        At least one `Segment`, from the left end.
+        At least one `Segment`, from the left end; a `Coupling` may stand between them.
     discs
         Any number of `Disc`; several may share a place.
     mass_model
         ``"distributed"``: every segment is an exact Timoshenko beam and rod with its own mass.
-        ``"lumped"``: every segment is massless and its inertias go to its two ends.
+        ``"lumped"``: every segment is massless and its inertias go to its two ends (`rotors.lumped`).
 
     Raises
     ------
@@ -182,7 +80,7 @@ class Rotor:
     """
 
     name: str
-    segments: Sequence[Segment]
+    segments: Sequence[Segment | Coupling]
     discs: Sequence[Disc] = ()
     mass_model: MassModel = "distributed"
 
@@ -211,6 +109,11 @@ class Rotor:
         lengths = np.array([0.0, *(segment.length for segment in self.segments)], dtype=np.longdouble)
         return np.cumsum(lengths).astype(np.float64)
 
+    @cached_property
+    def profile(self) -> Profile:
+        """Stiffness and inertia along the shaft, as its transfer matrices take them."""
+        return profile_of(self.segments, self.joints)
+
     @property
     def length(self) -> float:
         """Length of the shaft, m."""
@@ -234,8 +137,8 @@ class Rotor:
     @property
     def centre_of_mass(self) -> float:
         """Distance of the centre of mass from the left end, m."""
-        centres = 0.5 * (self.joints[1:] + self.joints[:-1])
-        moments = [segment.mass * centre for segment, centre in zip(self.segments, centres, strict=True)]
+        lefts = self.joints[:-1].tolist()
+        moments = [part.mass * (left + part.mass_centre) for part, left in zip(self.segments, lefts, strict=True)]
         return math.fsum([*moments, *(disc.mass * disc.at for disc in self.discs)]) / self.mass
 
 
@@ -250,11 +153,14 @@ def merged_positions(joints: FloatArray, others: Sequence[float]) -> FloatArray:
         Further positions on the shaft, m.
     """
     slack = STATION_TOLERANCE * float(joints[-1])
-    kept = list(joints)
-    for position in sorted(others):
-        if min(abs(position - other) for other in kept) > slack:
-            kept.append(position)
-    return np.array(sorted(kept))
+    places = np.sort(np.asarray(others, dtype=np.float64))
+    right = np.clip(np.searchsorted(joints, places), 1, joints.size - 1)
+    apart = np.minimum(np.abs(places - joints[right - 1]), np.abs(places - joints[right])) > slack
+    kept: list[float] = []
+    for place in places[apart].tolist():
+        if not kept or place - kept[-1] > slack:
+            kept.append(place)
+    return np.sort(np.concatenate([joints, kept])) if kept else joints
 
 
 def station_index(stations: FloatArray, at: float) -> int:

@@ -43,3 +43,13 @@ class Coupling:
             require_finite(f"coupling {what}", getattr(self, what), positive=True)
         for what in ("mass", "polar_inertia", "diametral_inertia"):
             require_finite(f"coupling {what}", getattr(self, what), minimum=0.0)
+
+    @property
+    def mass_centre(self) -> float:
+        """Distance of the centre of mass from the left end, m."""
+        return 0.5 * self.length
+
+    @property
+    def polar_centre(self) -> float:
+        """Distance of the centre of the polar inertia from the left end, m."""
+        return 0.5 * self.length

@@ -1,13 +1,18 @@
-"""Exact transfer matrices of a uniform piece of shaft: Timoshenko beam in bending, rod in torsion.
+"""Exact transfer matrices of a piece of shaft: Timoshenko beam in bending, rod in torsion or along its axis.
 
-Bending, at circular frequency ω, with the section's displacement x and rotation β, the shear force
-``f_x = κGA (x' − β)`` and the bending moment ``f_β = EI β'``::
+Bending, at circular frequency ω, with the section's displacement x and rotation β, under a static axial
+force P (tension positive). From the energy ½ ∫ κGA (x' − β)² + EI β'² + P x'² dz the transverse force is
+``f_x = κGA (x' − β) + P x'`` and the bending moment ``f_β = EI β'``; with g = κGA / (κGA + P)::
 
-    x'   = β + f_x / κGA            f_x' = −ω² ρA x
-    β'   = f_β / EI                 f_β' = −ω² ρI β − f_x
+    x'   = g β + f_x / (κGA + P)        f_x' = −ω² ρA x
+    β'   = f_β / EI                     f_β' = −(ω² ρI − g P) β − g f_x
 
-or y' = A y with y = (x, β, f_x, f_β); the piece's transfer matrix is T = exp(A h). The
-characteristic polynomial of A h holds only even powers, λ⁴ − e₁ λ² + e₂, so that
+or y' = A(z) y with y = (x, β, f_x, f_β). A rod is the same with y = (u, f): u' = f/EA, f' = −ω² ρA u, and in
+torsion with GJ and ρJ. ω² may differ between translation and rotation, and be complex: this is how a
+turning or damped shaft enters.
+
+**A uniform piece** has T = exp(A h). The characteristic polynomial of A h holds only even powers,
+λ⁴ − e₁ λ² + e₂, so that
 
     T = C₀ I + C₁ (A h) + C₂ (A h)² + C₃ (A h)³
 
@@ -20,105 +25,102 @@ with h_k = e₁ h_{k−1} − e₂ h_{k−2}, h_0 = 1, h_{−1} = 0 (the complet
 two roots λ²). These series are entire: they need no square root, so the cut-off frequency √(κGA/ρI),
 where the second wave number turns real, the massless field of the Myklestad–Prohl chain (ρ = 0),
 the static state (ω = 0) and negative ω² (a shifted, positive definite problem) are no special cases.
-They are used on pieces short enough (`rotors.chain`) that |λ²| stays below 5, where fourteen terms
+They are used on pieces short enough (`rotors.chain`) that |λ²| stays below 5, where thirteen terms
 are exact to rounding and no hyperbolic function can overflow.
 
-Torsion is the same with y = (θ, τ): θ' = τ/GJ, τ' = −ω² ρJ θ.
+**A tapering piece** has coefficients that are polynomials in s, from −1 at its left end to 1 (`rotors.profile`
+makes them, exact to rounding). Its solution is an entire function, whose power series about the middle is
+summed, y(s) = Φ(s) y(0); then T = Φ(1) Φ(−1)⁻¹. Both equations are Hamiltonian (reciprocity), hence Φ
+symplectic, and its inverse is a transposition: T is symplectic to rounding too.
 """
 
-from math import factorial
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+NumberArray = npt.NDArray[Any]
 
-SERIES_TERMS = 14
+WHOLE = np.ones(1)
 
 
-def transfer_matrices(
-    flexibility: FloatArray, inertia: FloatArray, length: FloatArray, frequency_squared: FloatArray
-) -> FloatArray:
-    """Transfer matrices T of uniform pieces, right state = T · left state.
+@dataclass(frozen=True)
+class PieceTable:
+    """Pieces of shaft that differ from each other, in any consistent units.
 
-    All arguments broadcast against each other over their leading axes.
-
-    Parameters
+    Attributes
     ----------
-    flexibility
-        (..., n): 1/κGA and 1/EI for bending (n = 2), 1/GJ for torsion (n = 1).
-    inertia
-        (..., n): ρA and ρI for bending, ρJ for torsion.
-    length
-        (...): length h of the piece.
-    frequency_squared
-        (...): ω²; may be zero or negative.
-
-    Returns
-    -------
-    (..., 2n, 2n)
-        In the order displacement, rotation, force, moment (bending) or angle, torque (torsion). The
-        units are those of the arguments, which need only be consistent.
+    lengths
+        (e,).
+    coefficients
+        (e, 6, j) in bending: 1/(κGA + P), 1/EI, ρA, ρI, g and g P; (e, 2, j) of a rod: 1/EA and ρA, or 1/GJ
+        and ρJ. Over the last axis, the coefficients of 1, s, s², ...; of uniform pieces alone, j is 1.
     """
-    if flexibility.shape[-1] == 1:
-        return _rod(flexibility[..., 0], inertia[..., 0], length, frequency_squared)
-    return _beam(flexibility, inertia, length, frequency_squared)
+
+    lengths: FloatArray
+    coefficients: FloatArray
+
+    @property
+    def size(self) -> int:
+        """Displacements at an end, n: 2 in bending, 1 of a rod."""
+        return 2 if self.coefficients.shape[1] == 6 else 1
+
+    def transfers(
+        self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None, fractions: FloatArray = WHOLE
+    ) -> NumberArray:
+        """Transfer matrices from the left end to fractions of the length: state there = T · state at the left.
+
+        Parameters
+        ----------
+        translation, rotation
+            (b,): ω² at the mass and at the rotary inertia, real or complex; of a rod the first alone counts.
+            Without the second, both are the first.
+        fractions
+            (k,): of every piece's length; the whole of it if not given.
+
+        Returns
+        -------
+        (b, e, k, 2n, 2n)
+            In the order displacement, rotation, force, moment; or angle, torque.
+        """
+        from .piece_kernels import table_transfers
+
+        moving, turning = _pair(translation, rotation)
+        shape = (moving.size, self.lengths.size, fractions.size, 2 * self.size, 2 * self.size)
+        out = np.empty(shape, moving.dtype)
+        table_transfers(self.lengths, self.coefficients, moving, turning, fractions, out)
+        return out
+
+    def transfers_to(
+        self,
+        element: IntArray,
+        fractions: FloatArray,
+        translation: npt.ArrayLike,
+        rotation: npt.ArrayLike | None = None,
+    ) -> NumberArray:
+        """Transfer matrices to one fraction (z,) each of some pieces (z,), at every ω² (b,), (z, b, 2n, 2n)."""
+        from .piece_kernels import place_transfers
+
+        moving, turning = _pair(translation, rotation)
+        out = np.empty((element.size, moving.size, 2 * self.size, 2 * self.size), moving.dtype)
+        place_transfers(self.lengths, self.coefficients, element, fractions, moving, turning, out)
+        return out
+
+    def coefficients_at(self, element: IntArray, fractions: FloatArray) -> FloatArray:
+        """Coefficients at fractions (z,) of some pieces (z,), (z, 6) or (z, 2)."""
+        given = self.coefficients[element]
+        if given.shape[2] == 1:
+            return given[:, :, 0]
+        powers = (2.0 * fractions[:, None] - 1.0) ** np.arange(given.shape[2])
+        return np.asarray(np.einsum("zfj,zj->zf", given, powers))
 
 
-def _beam(
-    flexibility: FloatArray, inertia: FloatArray, length: FloatArray, frequency_squared: FloatArray
-) -> FloatArray:
-    h = length
-    a, b = flexibility[..., 0] * h, flexibility[..., 1] * h
-    m, j = frequency_squared * inertia[..., 0] * h, frequency_squared * inertia[..., 1] * h
-    am, bj, bh, hm = a * m, b * j, b * h, h * m
-    c0, c1, c2, c3 = _reduced_exponential(-(am + bj), b * m * (a * j - h * h))
-
-    transfer = np.zeros((*c0.shape, 4, 4))
-    # The powers of A h, written out; A h = [[0, h, a, 0], [0, 0, 0, b], [-m, 0, 0, 0], [0, -j, -h, 0]].
-    transfer[..., 0, 0] = transfer[..., 2, 2] = c0 - c2 * am
-    transfer[..., 1, 1] = transfer[..., 3, 3] = c0 - c2 * bj
-    transfer[..., 0, 1] = h * (c1 - c3 * (am + bj))
-    transfer[..., 3, 2] = -transfer[..., 0, 1]
-    transfer[..., 0, 2] = c1 * a - c3 * (bh * h + am * a)
-    transfer[..., 0, 3] = c2 * bh
-    transfer[..., 1, 2] = -transfer[..., 0, 3]
-    transfer[..., 1, 0] = c3 * bh * m
-    transfer[..., 2, 3] = -transfer[..., 1, 0]
-    transfer[..., 1, 3] = b * (c1 - c3 * bj)
-    transfer[..., 2, 0] = -m * (c1 - c3 * am)
-    transfer[..., 3, 0] = c2 * hm
-    transfer[..., 2, 1] = -transfer[..., 3, 0]
-    transfer[..., 3, 1] = -c1 * j + c3 * (bj * j + hm * h)
-    return transfer
-
-
-def _rod(flexibility: FloatArray, inertia: FloatArray, length: FloatArray, frequency_squared: FloatArray) -> FloatArray:
-    twist, swing = flexibility * length, frequency_squared * inertia * length
-    root = -twist * swing
-    cosine, sine = np.ones_like(root), np.ones_like(root)
-    power = np.ones_like(root)
-    for k in range(1, SERIES_TERMS):
-        power = power * root
-        cosine = cosine + power / factorial(2 * k)
-        sine = sine + power / factorial(2 * k + 1)
-    transfer = np.zeros((*root.shape, 2, 2))
-    transfer[..., 0, 0] = transfer[..., 1, 1] = cosine
-    transfer[..., 0, 1] = sine * twist
-    transfer[..., 1, 0] = -sine * swing
-    return transfer
-
-
-def _reduced_exponential(e1: FloatArray, e2: FloatArray) -> tuple[FloatArray, ...]:
-    """C₀ … C₃ of the module's docstring, each of the arguments' broadcast shape."""
-    older = np.zeros(np.broadcast_shapes(e1.shape, e2.shape))
-    newer = np.ones_like(older)
-    even_low, odd_low = older, older
-    even_high, odd_high = newer / 2.0, newer / 6.0
-    for k in range(2, SERIES_TERMS):
-        even_low = even_low + newer / factorial(2 * k)
-        odd_low = odd_low + newer / factorial(2 * k + 1)
-        older, newer = newer, e1 * newer - e2 * older
-        even_high = even_high + newer / factorial(2 * k)
-        odd_high = odd_high + newer / factorial(2 * k + 1)
-    return 1.0 - e2 * even_low, 1.0 - e2 * odd_low, even_high, odd_high
+def _pair(translation: npt.ArrayLike, rotation: npt.ArrayLike | None) -> tuple[NumberArray, NumberArray]:
+    moving = np.atleast_1d(np.asarray(translation))
+    turning = moving if rotation is None else np.atleast_1d(np.asarray(rotation))
+    kind = np.result_type(moving, turning, np.float64)
+    moving, turning = np.broadcast_arrays(moving.astype(kind), turning.astype(kind))
+    return np.ascontiguousarray(moving), np.ascontiguousarray(turning)

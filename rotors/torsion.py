@@ -1,87 +1,67 @@
-"""Free torsional modes of a shaft, its rigid rotation kept, and of a chain of inertias and springs."""
+"""Torsional modes of a shaft, and of a chain of inertias and springs."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from .certificate import ModeCertificate
-from .chain import Chain, torsion_chain
+from .axis_spring import AxisSpring
 from .errors import require
-from .fields import Fields
-from .search import FoundModes, find_modes, require_positions
+from .lines import Line
+from .rods import RodModes, rod_modes
+from .rotor_lines import rod_line
+from .search import find_modes
 from .shaft import Rotor
 
 FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class TorsionalModes:
-    """Inertia-orthonormal free torsional modes, Φᵀ J Φ = I and Φᵀ K Φ = diag(ω²).
-
-    Attributes
-    ----------
-    frequencies
-        (m,): ascending, rad/s; the first is the rigid rotation, zero.
-    stations
-        (s,): segment ends and discs, m from the left end; of a plain chain, 0, 1, 2, ...
-    angle
-        (m, s): θ at the stations, rad per unit modal coordinate.
-    certificate
-        Proof of completeness.
-    """
-
-    frequencies: FloatArray
-    stations: FloatArray
-    angle: FloatArray
-    certificate: ModeCertificate
-    fields: Fields = field(repr=False)
-    mixture: FloatArray = field(repr=False)
+class TorsionalModes(RodModes):
+    """Torsional modes, orthonormal in polar inertia; a free shaft's first is its rigid rotation."""
 
     @property
-    def count(self) -> int:
-        """Number of modes m."""
-        return int(self.frequencies.size)
-
-    def evaluate(self, z: npt.ArrayLike) -> FloatArray:
-        """Angle of every mode at positions z (m), (m, len(z)), by the exact field.
-
-        Raises
-        ------
-        RotorError
-            A position is not on the shaft.
-        """
-        states = self.fields.at(require_positions(self.stations, z))[:, :, 0]
-        return np.asarray(self.mixture @ states * self.fields.chain.displacement_unit[0])
+    def angle(self) -> FloatArray:
+        """θ at the stations, rad per unit modal coordinate, (m, s)."""
+        return self.amplitude
 
 
 def solve_torsional_modes(
-    rotor: Rotor, *, frequency_limit: float | None = None, count: int | None = None
+    rotor: Rotor,
+    springs: Sequence[AxisSpring] = (),
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
 ) -> TorsionalModes:
-    """Every free torsional mode below a limit, or the lowest few; the rigid rotation is the first.
+    """Every torsional mode below a limit, or the lowest few.
 
     Parameters
     ----------
     rotor
-        The shaft and its discs.
+        The shaft and its discs; couplings are springs between its parts.
+    springs
+        To ground, N·m/rad; without them the shaft is free, and its rigid rotation is the first mode.
     frequency_limit
         rad/s: all modes strictly below.
     count
-        How many modes, the rigid rotation included; with neither, 10 or all there are.
+        How many modes, a rigid rotation included; with neither, 10 or all there are.
 
     Raises
     ------
     RotorError
-        Both a limit and a count, a rotor without polar inertia, or more modes than a lumped rotor has.
+        A spring off the shaft, both a limit and a count, a rotor without polar inertia, or more modes than a
+        lumped rotor has.
     IncompleteModesError
         The modes fail their own proof.
     """
     require(rotor.polar_inertia > 0.0, f"rotor {rotor.name!r} polar inertia", 0.0, "a positive inertia")
-    return _torsional_modes(find_modes(lambda highest: torsion_chain(rotor, highest), frequency_limit, count))
+    return rod_modes(TorsionalModes, find_modes(rod_line(rotor, springs, "torsion"), frequency_limit, count))
 
 
-def solve_torsional_chain(inertias: Sequence[float], stiffnesses: Sequence[float]) -> TorsionalModes:
+def solve_torsional_chain(
+    inertias: Sequence[float], stiffnesses: Sequence[float], ground: Sequence[float] | None = None
+) -> TorsionalModes:
     """All modes of rigid inertias in a row, joined by massless springs, by the same transfer matrices.
 
     Parameters
@@ -90,6 +70,9 @@ def solve_torsional_chain(inertias: Sequence[float], stiffnesses: Sequence[float
         (s,): polar moments of inertia, kg·m²; zero is allowed, not everywhere.
     stiffnesses
         (s − 1,): of the springs between neighbours, N·m/rad.
+    ground
+        (s,): of springs from each inertia to ground, N·m/rad, zero for none and infinite for held; none at
+        all without it.
 
     Raises
     ------
@@ -104,36 +87,28 @@ def solve_torsional_chain(inertias: Sequence[float], stiffnesses: Sequence[float
     require(positive, "torsional chain inertias", list(inertias), "not negative, and not all zero")
     stiff = bool(np.isfinite(springs).all() and (springs > 0.0).all())
     require(stiff, "torsional chain stiffnesses", list(stiffnesses), "positive numbers")
+    held = np.zeros(masses.size) if ground is None else np.array(ground, dtype=np.float64)
+    fitting = held.shape == masses.shape and bool((held >= 0.0).all())
+    require(fitting, "torsional chain ground", held.tolist(), "one stiffness for each inertia, none negative")
 
     moment = float(np.exp(np.log(springs).mean()))
-
-    def build(highest: float) -> Chain:
-        return Chain(
-            nodes=np.arange(masses.size, dtype=np.float64),
-            flexibility=(moment / springs)[:, None],
-            inertia=np.zeros((springs.size, 1)),
-            node_inertia=masses[:, None] / moment,
-            node_stiffness=np.zeros((masses.size, 1)),
-            node_polar=np.zeros(masses.size),
-            length_unit=1.0,
-            displacement_unit=np.array([1.0 / np.sqrt(moment)]),
-            highest=highest,
-            is_station=np.ones(masses.size, dtype=np.bool_),
-        )
-
-    return _torsional_modes(find_modes(build, None, int(np.count_nonzero(masses))))
-
-
-def _torsional_modes(found: FoundModes) -> TorsionalModes:
-    chain = found.fields.chain
-    nodal = found.mixture @ found.fields.states[:, chain.is_station, 0]
-    largest = np.take_along_axis(nodal, np.abs(nodal).argmax(axis=1)[:, None], axis=1)
-    sign = np.where(largest < 0.0, -1.0, 1.0)
-    return TorsionalModes(
-        frequencies=found.frequencies,
-        stations=chain.nodes[chain.is_station],
-        angle=sign * nodal * chain.displacement_unit[0],
-        certificate=found.certificate,
-        fields=found.fields,
-        mixture=sign * found.mixture,
+    line = Line(
+        label="torsional chain",
+        nodes=np.arange(masses.size, dtype=np.float64),
+        is_station=np.ones(masses.size, dtype=np.bool_),
+        kind=np.arange(springs.size),
+        start=np.zeros(springs.size),
+        end=np.ones(springs.size),
+        lengths=np.ones(springs.size),
+        coefficients=np.stack([moment / springs, np.zeros(springs.size)], axis=1)[:, :, None],
+        uniform=np.ones(springs.size, dtype=np.bool_),
+        stiffness=springs[:, None],
+        inertia=np.zeros((springs.size, 1)),
+        force=np.zeros(springs.size),
+        node_inertia=masses[:, None] / moment,
+        node_stiffness=held[:, None] / moment,
+        node_polar=np.zeros(masses.size),
+        length_unit=1.0,
+        displacement_unit=np.array([1.0 / np.sqrt(moment)]),
     )
+    return rod_modes(TorsionalModes, find_modes(line, None, int(line.available_modes)))

@@ -1,14 +1,9 @@
-"""Damped, gyroscopic whirl of a rotor on grounded bearings, on the planar modal basis.
+"""Damped, gyroscopic whirl of a rotor on its bearings: exact, and complete by proof.
 
-Both planes share the modes at averaged bearing stiffness, X = Φᵀ q_x and Y = Φᵀ q_y. With Λ = diag(ω²),
-G the polar inertia matrix and Φ_b the modes' displacements at bearing b,
-
-    q̈_x + Ω G q̇_y + Σ_b Φ_b Φ_bᵀ (c_xx q̇_x + c_xy q̇_y) + Λ q_x + Σ_b Φ_b Φ_bᵀ [(k_xx − k̄) q_x + k_xy q_y] = 0
-    q̈_y − Ω G q̇_x + Σ_b Φ_b Φ_bᵀ (c_yx q̇_x + c_yy q̇_y) + Λ q_y + Σ_b Φ_b Φ_bᵀ [k_yx q_x + (k_yy − k̄) q_y] = 0
-
-(TM-104434 Eqs. 11–15 with constant speed and grounded bearings). The sums over bearings are its
-compensation matrices. Speed Ω is positive counter-clockwise from +z; motion e^{λt} whirls forward, with
-the rotation for Ω > 0, when y lags x by a quarter turn.
+Speed Ω is positive counter-clockwise from +z; motion e^{λt} whirls forward, with the rotation for Ω > 0, when y
+lags x by a quarter turn. Starting values come from a projection on planar modes (`rotors.projection`); each
+root is then refined on the exact transfer equations of both planes (`rotors.spatial_chain`, `rotors.exact_roots`),
+and their number is proved (`rotors.whirl_certificate`).
 """
 
 from collections.abc import Sequence
@@ -16,24 +11,28 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
 
-from .attachment import attach_loads
 from .bearing import Bearing
-from .chain import bending_chain
-from .errors import require, require_count, require_finite
-from .lateral import LateralModes, solve_lateral_modes
+from .errors import require_finite
+from .exact_roots import ExactRoots, Speed, constant_speed, refine_roots
+from .lateral import LateralModes
+from .projection import DEFAULT_COUNT, Projection, basis_for
 from .shaft import Rotor
+from .spatial_chain import SpatialChain, spatial_chain, whirl_reach
+from .spatial_field import SpatialMotion
+from .spatial_ties import block_sets
+from .whirl_certificate import NO_OSCILLATION, WhirlCertificate, certified_roots, oscillating
+from .whirl_count import is_conservative
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-DEFAULT_COUNT = 12
-LEAST_MODES = 12
-# The basis reaches this many times beyond the highest whirl frequency asked for.
-BASIS_REACH = 4.0
-# Parts of the lowest elastic frequency below which an imaginary part is rounding, not oscillation.
-NO_OSCILLATION = 1e-6
+# How far beyond the limit starting values are still followed: the projection's lie above the roots.
+START_REACH = 1.2
+# Beyond the modes asked for, so that the proof's limit finds a gap behind them.
+SPARE_STARTS = 4
+# A limit in a gap narrower than this would be too near a root to count by.
+LEAST_GAP = 1e-6
 
 
 @dataclass(frozen=True)
@@ -45,82 +44,51 @@ class WhirlModes:
     speed
         Ω, rad/s.
     eigenvalues
-        (w,) complex, rad/s, with positive imaginary part.
-    frequencies
-        (w,): natural frequency |λ|, rad/s.
-    damping_ratios
-        (w,): −Re λ / |λ|; negative is unstable.
+        (w,) complex, rad/s, with positive imaginary part: exact to about 1e-13 of each.
     direction
-        (w,): between −1 and 1, the mass-weighted mean of how circular the whirl is; 1 is circular and
+        (w,): between −1 and 1, the inertia-weighted mean of how circular the whirl is; 1 is circular and
         counter-clockwise (forward for positive speed), −1 circular and clockwise, 0 planar.
-    coordinates
-        (w, 2 b) complex: modal coordinates, those of x before those of y, of norm one.
-    basis
-        The planar modes and attachment vectors, b of them.
+    certificate
+        Proof that none is missing.
+    motion
+        The exact shapes, of unit norm in the inertias of the nodes, m per √kg.
     """
 
     speed: float
     eigenvalues: ComplexArray
-    frequencies: FloatArray
-    damping_ratios: FloatArray
     direction: FloatArray
-    coordinates: ComplexArray = field(repr=False)
-    basis: LateralModes = field(repr=False)
+    certificate: WhirlCertificate
+    motion: SpatialMotion = field(repr=False)
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Natural frequency |λ|, rad/s, (w,)."""
+        return np.asarray(np.abs(self.eigenvalues))
 
     @property
     def damped_frequencies(self) -> FloatArray:
         """Im λ, rad/s, (w,)."""
         return np.asarray(self.eigenvalues.imag)
 
+    @property
+    def damping_ratios(self) -> FloatArray:
+        """−Re λ / |λ|, (w,); negative is unstable."""
+        return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
+
+    @property
+    def log_decrements(self) -> FloatArray:
+        """Logarithmic decrement −2π Re λ / Im λ, (w,)."""
+        return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
+
     def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Complex x and y of every mode at positions z (m), both (w, len(z))."""
-        displacement = self.basis.evaluate(z)[0]
-        planes = self.coordinates.reshape(self.eigenvalues.size, 2, self.basis.count)
-        return planes[:, 0] @ displacement, planes[:, 1] @ displacement
+        """Complex x and y of every mode at positions z (m), both (w, len(z)), by the exact field."""
+        return self.motion.evaluate(z)
 
-
-def whirl_basis(
-    rotor: Rotor,
-    bearings: Sequence[Bearing],
-    *,
-    frequency_limit: float | None = None,
-    count: int | None = None,
-) -> LateralModes:
-    """Planar basis for whirl: modes at averaged stiffness, well beyond the need, and attachment vectors.
-
-    It holds every mode below four times ``frequency_limit``, or four more than ``count``, and at least
-    twelve; behind them the static responses to a force at each bearing and to a moment at each disc, where
-    the compensation and gyroscopic terms act. Build it once to sweep the speed.
-
-    Parameters
-    ----------
-    rotor, bearings
-        The rotor and what holds it.
-    frequency_limit
-        Highest whirl frequency of interest, rad/s.
-    count
-        How many whirl modes are of interest, instead.
-
-    Raises
-    ------
-    RotorError, IncompleteModesError
-        As `rotors.solve_lateral_modes`.
-    """
-    both = (frequency_limit, count)
-    require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
-    supports = tuple(bearing.mean_support for bearing in bearings)
-    available = bending_chain(rotor, supports, 1.0).available_modes
-    if frequency_limit is None:
-        wanted = (count or DEFAULT_COUNT) + 4
-        modes = solve_lateral_modes(rotor, supports, count=int(min(max(wanted, LEAST_MODES), available)))
-    else:
-        require_finite("frequency_limit", frequency_limit, positive=True)
-        modes = solve_lateral_modes(rotor, supports, frequency_limit=BASIS_REACH * frequency_limit)
-        if modes.count < min(LEAST_MODES, available):
-            modes = solve_lateral_modes(rotor, supports, count=int(min(LEAST_MODES, available)))
-    forces = [bearing.at for bearing in bearings]
-    moments = [disc.at for disc in rotor.discs if disc.polar_inertia > 0.0]
-    return attach_loads(modes, forces_at=forces, moments_at=moments)
+    def direction_at(self, z: npt.ArrayLike) -> FloatArray:
+        """Whirl at positions z (m), (w, len(z)): 1 circular counter-clockwise, 0 planar, −1 circular clockwise."""
+        forward, backward = (np.abs(part[:, :, 0]) ** 2 for part in self.motion.at(z))
+        total = forward + backward
+        return np.divide(forward - backward, total, out=np.zeros_like(total), where=total > 0.0)
 
 
 def solve_whirl(
@@ -132,100 +100,123 @@ def solve_whirl(
     count: int | None = None,
     basis: LateralModes | None = None,
 ) -> WhirlModes:
-    """Complex modes of the turning rotor on grounded bearings.
+    """Complex modes of the turning rotor on grounded bearings or pedestals, certified complete.
 
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it.
+        The rotor and what holds it; tables over speed are read at ``speed``.
     speed
         Ω, rad/s; negative is clockwise.
     frequency_limit
-        rad/s: modes whose natural frequency is below it. The default basis reaches four times as far.
+        rad/s: modes whose natural frequency |λ| is below it.
     count
-        How many modes, instead of a limit; with neither, 12.
+        How many modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with less has less.
     basis
-        From `whirl_basis`, of the same rotor and bearings, to spare building it at every speed.
+        From `rotors.whirl_basis`, of the same rotor and bearings, to spare building it at every speed.
 
     Raises
     ------
     RotorError
         Wrong arguments, or a basis with other supports.
     IncompleteModesError
-        The basis fails its own proof.
+        The modes fail their own proof, or the basis does.
     """
     require_finite("speed", speed)
     chosen = basis_for(rotor, bearings, frequency_limit, count, basis)
-    stiffness, damping = plane_matrices(chosen, bearings)
-    b = chosen.count
-    gyroscopic = damping.copy()
-    gyroscopic[:b, b:] += speed * chosen.polar_inertia_matrix
-    gyroscopic[b:, :b] -= speed * chosen.polar_inertia_matrix
-    # States W q and q̇ make the undamped system matrix nearly skew, so that high members of the basis
-    # do not cost the low eigenvalues their digits.
-    weight = frequency_weight(chosen)
-    system = np.block([[np.zeros((2 * b, 2 * b)), np.diag(weight)], [-stiffness / weight, -gyroscopic]])
-    values, vectors = linalg.eig(system)
-    keep = np.flatnonzero(values.imag > NO_OSCILLATION * weight.min())
-    keep = keep[np.lexsort((values[keep].imag, np.abs(values[keep])))]
-    if frequency_limit is not None:
-        keep = keep[np.abs(values[keep]) < frequency_limit]
-    else:
-        keep = keep[: count or DEFAULT_COUNT]
-    values, coordinates = values[keep], (vectors[: 2 * b, keep] / weight[:, None]).T
-    coordinates = coordinates / np.linalg.norm(coordinates, axis=1, keepdims=True)
+    constant = [bearing.at_speed(speed) for bearing in bearings]
+    sets = [Projection.of(rotor, constant, blocks, chosen) for blocks in block_sets(constant)]
+    starts = [one.eigenvalues(constant, np.array([speed]))[0] for one in sets]
+    wanted = None if frequency_limit is not None else count or DEFAULT_COUNT
+    modes = certified_whirl(
+        rotor,
+        constant,
+        [(one.blocks, values) for one, values in zip(sets, starts, strict=True)],
+        constant_speed(speed),
+        speed,
+        NO_OSCILLATION * sets[0].floor,
+        frequency_limit,
+        wanted,
+    )
+    motion, certificate = modes
+    shares = motion.shares()
     return WhirlModes(
         speed=speed,
-        eigenvalues=values,
-        frequencies=np.abs(values),
-        damping_ratios=-values.real / np.abs(values),
-        direction=whirl_direction(coordinates),
-        coordinates=coordinates,
-        basis=chosen,
+        eigenvalues=motion.eigenvalues,
+        direction=(shares[:, 0] - shares[:, 1]) / shares.sum(axis=1),
+        certificate=certificate,
+        motion=motion.scaled(1.0 / np.sqrt(shares.sum(axis=1)).astype(np.complex128)),
     )
 
 
-def basis_for(
+def certified_whirl(
     rotor: Rotor,
     bearings: Sequence[Bearing],
-    frequency_limit: float | None,
+    starts: Sequence[tuple[tuple[int, ...], ComplexArray]],
+    speed: Speed,
+    turning: float | None,
+    least: float,
+    limit: float | None,
     count: int | None,
-    basis: LateralModes | None,
-) -> LateralModes:
-    """The given basis if it fits the bearings, or a new one; checks the limit and the count."""
-    for bearing in bearings:
-        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
-    require_count("count of modes", count)
-    if basis is None:
-        return whirl_basis(rotor, bearings, frequency_limit=frequency_limit, count=count)
-    expected = tuple(bearing.mean_support for bearing in bearings)
-    require(basis.supports == expected, "supports of the basis", basis.supports, f"{expected}, the bearings'")
-    return basis
+) -> tuple[SpatialMotion, WhirlCertificate]:
+    """Every motion below a limit, or the lowest ``count``, from starting values for every set of tied motions.
+
+    ``turning`` is the speed at which pieces must be short enough, rad/s; None where it follows the frequency.
+    """
+    kept = [values[(values.imag > NO_OSCILLATION * np.abs(values)) & (np.abs(values) > least)] for _, values in starts]
+    sizes = np.sort(np.abs(np.concatenate(kept)))
+    if limit is None:
+        assert count is not None
+        reach = float(sizes[min(count + SPARE_STARTS, sizes.size) - 1]) * (1.0 + LEAST_GAP) if sizes.size else 1.0
+    else:
+        reach = START_REACH * limit
+    highest = max(START_REACH * reach, 10.0 * least)
+    highest = whirl_reach(highest, highest if turning is None else turning)
+    chains = [spatial_chain(rotor, bearings, blocks, highest) for blocks, _ in starts]
+    refined = [
+        refine_roots(chain, values[np.abs(values) <= reach], speed) for chain, values in zip(chains, kept, strict=True)
+    ]
+    if limit is None:
+        assert count is not None
+        sector = oscillating(least, _limit_behind(refined, least, count))
+    else:
+        sector = oscillating(least, limit)
+    conservative = is_conservative(bearings)
+    parts = [
+        certified_roots(chain, roots, speed, sector, conservative) for chain, roots in zip(chains, refined, strict=True)
+    ]
+    motion = _joined(chains, [roots for roots, _ in parts], speed)
+    order = np.lexsort((motion.eigenvalues.imag, np.abs(motion.eigenvalues)))[:count]
+    proofs = [proof for _, proof in parts]
+    certificate = WhirlCertificate(
+        sector.most,
+        sum(proof.expected for proof in proofs),
+        sum(proof.found for proof in proofs),
+        max(proof.max_residual for proof in proofs),
+        proofs[0].method,
+    )
+    return motion.take(order), certificate
 
 
-def plane_matrices(basis: LateralModes, bearings: Sequence[Bearing]) -> tuple[FloatArray, FloatArray]:
-    """Stiffness and damping over both planes' coordinates, each (2 b, 2 b), x before y."""
-    stiffness: FloatArray = np.kron(np.eye(2), np.diag(basis.frequencies**2)).astype(np.float64)
-    damping: FloatArray = np.zeros_like(stiffness)
-    for bearing in bearings:
-        shape = basis.evaluate([bearing.at])[0]
-        outer = shape @ shape.T
-        # Compensation: the basis already holds the averaged stiffness.
-        stiffness += np.kron(bearing.radial_stiffness - bearing.mean_stiffness * np.eye(2), outer)
-        damping += np.kron(bearing.radial_damping, outer)
-    return stiffness, damping
+def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
+    """A frequency in a gap behind the lowest ``count`` roots, or behind all there are."""
+    sector = oscillating(least, np.inf)
+    sizes = [np.abs(roots.eigenvalues[sector.holds(roots.eigenvalues)]) for roots in refined]
+    ascending = np.sort(np.concatenate(sizes))
+    if ascending.size == 0:
+        return 10.0 * least
+    for last in range(count, ascending.size):
+        if ascending[last] > ascending[last - 1] * (1.0 + LEAST_GAP):
+            return float(np.sqrt(ascending[last] * ascending[last - 1]))
+    return float(ascending[-1]) * (1.0 + 0.01)
 
 
-def frequency_weight(basis: LateralModes) -> FloatArray:
-    """The basis's frequencies for both planes, (2 b,), rigid motions' zeros raised to the lowest other."""
-    moving = basis.frequencies[basis.frequencies > 0.0]
-    lowest = float(moving.min()) if moving.size else 1.0
-    return np.tile(np.maximum(basis.frequencies, lowest), 2)
-
-
-def whirl_direction(coordinates: ComplexArray) -> FloatArray:
-    """2 Im(q_x · conj q_y) / (|q_x|² + |q_y|²) of every row (w, 2 b): 1 counter-clockwise, −1 clockwise."""
-    half = coordinates.shape[1] // 2
-    x, y = coordinates[:, :half], coordinates[:, half:]
-    size = (np.abs(coordinates) ** 2).sum(axis=1)
-    return np.asarray(2.0 * (x * y.conj()).sum(axis=1).imag / size)
+def _joined(chains: Sequence[SpatialChain], roots: Sequence[ExactRoots], speed: Speed) -> SpatialMotion:
+    motions = [
+        SpatialMotion.of(chain, one.eigenvalues, speed(one.eigenvalues), one.solutions)
+        for chain, one in zip(chains, roots, strict=True)
+    ]
+    motion = motions[0]
+    for more in motions[1:]:
+        motion = motion.joined(more)
+    return motion

@@ -101,7 +101,7 @@ class SpectralModel:
         for span in range(len(self.ends) - 1):
             left, right = self.ends[span], self.ends[span + 1]
             index = min(int(np.searchsorted(rotor.joints, (left + right) / 2)) - 1, len(rotor.segments) - 1)
-            part, half = rotor.segments[index], (right - left) / 2
+            part, half = rotor.segments[index].section(0.5), (right - left) / 2
             x = np.arange(DEGREE + 1) + span * DEGREE
             b = x + self.size
             self._add(self.mass, x, x, value, value, half * weight * part.material.density * part.area)
@@ -169,7 +169,7 @@ def test_shapes_are_orthonormal_and_continue_between_stations(case: tuple[Rotor,
     for left, right in zip(modes.stations[:-1], modes.stations[1:], strict=True):
         z = (left + right) / 2 + (right - left) / 2 * gauss
         index = min(int(np.searchsorted(rotor.joints, (left + right) / 2)) - 1, len(rotor.segments) - 1)
-        part = rotor.segments[index]
+        part = rotor.segments[index].section(0.5)
         x, b = modes.evaluate(z)
         density = part.material.density * weight * (right - left) / 2
         mass += (x * density * part.area) @ x.T + (b * density * part.second_moment) @ b.T

@@ -1,43 +1,70 @@
-"""The transfer matrix of a piece against scipy's matrix exponential of its differential equation."""
+"""The transfer matrix of a piece against scipy's matrix exponential of its differential equation, and its integration."""
 
 import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from rotors.timoshenko import transfer_matrices
+from rotors.material import ShaftMaterial
+from rotors.profile import BENDING, profile_of, restricted
+from rotors.segment import Segment
+from rotors.timoshenko import PieceTable
 
 # 1/κGA, 1/EI, ρA, ρI of a short fat steel bar in units of its own length and stiffness.
-FLEXIBILITY, INERTIA = np.array([0.4, 1.3]), np.array([0.9, 0.2])
-CUT_OFF = 1.0 / math.sqrt(0.4 * 0.2)
+SHEAR, BEND, MASS, ROTARY = 0.4, 1.3, 0.9, 0.2
+CUT_OFF = 1.0 / math.sqrt(SHEAR * ROTARY)
+PAIRING = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
 
 
-def bending_equation(squared: float) -> np.ndarray:
-    (shear, bend), (mass, rotary) = FLEXIBILITY, INERTIA
-    return np.array([[0, 1, shear, 0], [0, 0, 0, bend], [-squared * mass, 0, 0, 0], [0, -squared * rotary, -1, 0]])
+def coefficients(force: float = 0.0) -> np.ndarray:
+    stiffness = 1.0 / SHEAR
+    share = stiffness / (stiffness + force)
+    return np.array([1.0 / (stiffness + force), BEND, MASS, ROTARY, share, share * force])
+
+
+def bending_equation(squared: complex, force: float = 0.0, rotation: complex | None = None) -> np.ndarray:
+    """The first-order form of κGA (x' − β)' + P x'' + ω² ρA x = 0 and EI β'' + κGA (x' − β) + ω² ρI β = 0.
+
+    With f = κGA (x' − β) + P x' the slope is x' = (f + κGA β) / (κGA + P).
+    """
+    shear, turning = 1.0 / SHEAR, squared if rotation is None else rotation
+    slope = np.array([0.0, shear, 1.0, 0.0]) / (shear + force)
+    strain = shear * (slope - np.array([0.0, 1.0, 0.0, 0.0]))
+    return np.array(
+        [slope, [0, 0, 0, BEND], [-squared * MASS, 0, 0, 0], -strain - np.array([0, turning * ROTARY, 0, 0])]
+    )
+
+
+def transfer_of(length: float, force: float, squared: complex, rotation: complex | None = None) -> np.ndarray:
+    table = PieceTable(np.array([length]), coefficients(force)[None, :, None])
+    return table.transfers(squared, rotation)[0, 0, 0]
 
 
 @pytest.mark.parametrize("frequency", [0.0, 0.3, 1.0, CUT_OFF, 1.2 * CUT_OFF, 1.5 * CUT_OFF])
 @pytest.mark.parametrize("length", [1e-4, 0.1, 0.8])
-def test_beam_is_the_exponential_also_at_and_above_the_cut_off(frequency: float, length: float) -> None:
-    squared = frequency**2
-    transfer = transfer_matrices(FLEXIBILITY, INERTIA, np.array(length), np.array(squared))
-    np.testing.assert_allclose(transfer, expm(bending_equation(squared) * length), rtol=1e-12, atol=1e-15)
+@pytest.mark.parametrize("force", [0.0, 0.8, -0.3])
+def test_beam_is_the_exponential_also_at_and_above_the_cut_off(frequency: float, length: float, force: float) -> None:
+    exact = expm(bending_equation(frequency**2, force) * length)
+    np.testing.assert_allclose(transfer_of(length, force, frequency**2), exact, rtol=1e-12, atol=1e-15)
 
 
-def test_beam_at_negative_frequency_squared() -> None:
-    transfer = transfer_matrices(FLEXIBILITY, INERTIA, np.array(0.7), np.array(-2.0))
-    np.testing.assert_allclose(transfer, expm(bending_equation(-2.0) * 0.7), rtol=1e-13)
+def test_beam_at_negative_and_complex_frequency_squared() -> None:
+    np.testing.assert_allclose(transfer_of(0.7, 0.0, -2.0), expm(bending_equation(-2.0) * 0.7), rtol=1e-13)
+    squared, rotation = 1.3 + 0.4j, 2.1 - 0.9j
+    exact = expm(bending_equation(squared, 0.2, rotation) * 0.7)
+    np.testing.assert_allclose(transfer_of(0.7, 0.2, squared, rotation), exact, rtol=1e-13, atol=1e-15)
 
 
 def test_massless_beam_is_the_myklestad_field() -> None:
     # Closed form: cantilever deflection under end force and moment, with shear.
-    h, (shear, bend) = 0.6, FLEXIBILITY
+    h = 0.6
     field = np.eye(4)
-    field[0, 1], field[0, 2], field[0, 3] = h, shear * h - bend * h**3 / 6, bend * h**2 / 2
-    field[1, 2], field[1, 3], field[3, 2] = -bend * h**2 / 2, bend * h, -h
-    transfer = transfer_matrices(FLEXIBILITY, np.zeros(2), np.array(h), np.array(9.0))
+    field[0, 1], field[0, 2], field[0, 3] = h, SHEAR * h - BEND * h**3 / 6, BEND * h**2 / 2
+    field[1, 2], field[1, 3], field[3, 2] = -BEND * h**2 / 2, BEND * h, -h
+    massless = coefficients() * [1, 1, 0, 0, 1, 1]
+    transfer = PieceTable(np.array([h]), massless[None, :, None]).transfers(9.0)[0, 0, 0]
     np.testing.assert_allclose(transfer, field, rtol=1e-15, atol=1e-16)
 
 
@@ -48,12 +75,90 @@ def test_rod_is_trigonometric() -> None:
         [math.cos(wave * h), flexibility * math.sin(wave * h) / wave],
         [-squared * inertia * math.sin(wave * h) / wave, math.cos(wave * h)],
     ]
-    transfer = transfer_matrices(np.array([flexibility]), np.array([inertia]), np.array(h), np.array(squared))
-    np.testing.assert_allclose(transfer, expected, rtol=1e-14)
+    table = PieceTable(np.array([h]), np.array([[[flexibility], [inertia]]]))
+    np.testing.assert_allclose(table.transfers(squared)[0, 0, 0], expected, rtol=1e-14)
 
 
-def test_reciprocity() -> None:
+STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
+CONES = [
+    Segment(0.3, 0.05, 0.0, STEEL, "cowper", 0.08),
+    Segment(0.2, 0.10, 0.02, STEEL, "hutchinson", 0.03, 0.025),
+    Segment(0.2, 0.06, 0.0, STEEL, "cowper", 0.06, 0.055, axial_force=2e5),
+]
+
+
+def cone_coefficients(cone: Segment, fraction: float) -> np.ndarray:
+    """The six of bending at a place, written out here; κ by Cowper or Hutchinson."""
+    outer = cone.outer_diameter + fraction * (cone.end_diameters[1][0] - cone.outer_diameter)
+    inner = cone.inner_diameter + fraction * (cone.end_diameters[1][1] - cone.inner_diameter)
+    nu, m2 = 207 / (2 * 79.6) - 1, (inner / outer) ** 2
+    if cone.shear_coefficient == "cowper":
+        kappa = 6 * (1 + nu) * (1 + m2) ** 2 / ((7 + 6 * nu) * (1 + m2) ** 2 + (20 + 12 * nu) * m2)
+    else:
+        below = 7 + 34 * m2 + 7 * m2**2 + (12 * nu + 4 * nu**2) * (1 + 4 * m2 + m2**2)
+        kappa = 6 * (1 + nu) ** 2 * (1 + m2) ** 2 / below
+    area, moment = math.pi * (outer**2 - inner**2) / 4, math.pi * (outer**4 - inner**4) / 64
+    shear, force = kappa * 79.6e9 * area, cone.axial_force
+    share = shear / (shear + force)
+    return np.array([1 / (shear + force), 1 / (207e9 * moment), 7850 * area, 7850 * moment, share, share * force])
+
+
+@pytest.mark.parametrize("cone", CONES)
+def test_cone_is_the_integral_of_its_equation(cone: Segment) -> None:
+    profile = profile_of([cone], np.array([0.0, cone.length]))
+    # Units in which the states are of one size: EI and length of the cone's left end.
+    force = 207e9 * cone.section(0.0).second_moment / cone.length**2
+    units = np.array([force, force * cone.length**2, cone.length**2 / force, 1 / force, 1.0, 1 / force])
+    given = profile.coefficients[:, BENDING] * units[:, None]
+    table = PieceTable(profile.lengths / cone.length, given)
+    squared = 9.0 / (7850 * cone.section(0.0).area * cone.length**2 / force)
+    product = np.eye(4)
+    for transfer in table.transfers(squared)[0, :, 0]:
+        product = transfer @ product
+
+    def equation(z: float, y: np.ndarray) -> np.ndarray:
+        c, b, m, j, g, q = cone_coefficients(cone, z) * units
+        matrix = [[0, g, c, 0], [0, 0, 0, b], [-squared * m, 0, 0, 0], [0, q - squared * j, -g, 0]]
+        return (np.array(matrix) @ y.reshape(4, 4)).ravel()
+
+    exact = solve_ivp(equation, (0, 1), np.eye(4).ravel(), method="DOP853", rtol=3e-14, atol=1e-15).y[:, -1]
+    np.testing.assert_allclose(product, exact.reshape(4, 4), rtol=1e-11, atol=1e-11 * np.abs(product).max())
+    np.testing.assert_allclose(product.T @ PAIRING @ product, PAIRING, atol=2e-13 * np.abs(product).max() ** 2)
+
+
+@pytest.mark.parametrize("cone", CONES)
+def test_profile_of_a_cone_is_its_sections(cone: Segment) -> None:
+    profile = profile_of([cone], np.array([0.0, cone.length]))
+    for span, (left, right) in enumerate(zip(profile.edges[:-1], profile.edges[1:], strict=True)):
+        for fraction in (0.0, 0.21, 0.5, 0.93, 1.0):
+            found = np.polynomial.polynomial.polyval(2 * fraction - 1, profile.coefficients[profile.kind[span]].T)
+            place = (left + fraction * (right - left)) / cone.length
+            np.testing.assert_allclose(found[:6], cone_coefficients(cone, place), rtol=2e-14)
+    # A part of a span is the same polynomial seen closer.
+    part = restricted(profile.coefficients[:1], np.array([0.3]), np.array([0.2]))[0]
+    whole = profile.coefficients[0]
+    s = np.linspace(-1, 1, 7)
+    polyval = np.polynomial.polynomial.polyval
+    np.testing.assert_allclose(polyval(s, part.T), polyval(0.3 + 0.2 * s, whole.T), rtol=1e-14)
+
+
+def test_transfer_to_a_fraction_of_a_piece_leads_on_to_its_end() -> None:
+    # T(1) = T of the rest · T(f), the rest being a piece of its own.
+    cone = profile_of([CONES[0]], np.array([0.0, CONES[0].length]))
+    given = cone.coefficients[:1, BENDING]
+    table = PieceTable(np.ones(1), given)
+    rest = PieceTable(np.array([0.6]), restricted(given, np.array([0.4]), np.array([0.6])))
+    table, rest = (
+        PieceTable(t.lengths, t.coefficients * 1e-6 * np.array([1, 1, 1, 1, 1e6, 1])[:, None]) for t in (table, rest)
+    )
+    at = table.transfers(4.0, fractions=np.array([0.4, 1.0]))[0, 0]
+    np.testing.assert_allclose(rest.transfers(4.0)[0, 0, 0] @ at[0], at[1], rtol=1e-12, atol=1e-12)
+    alone = table.transfers_to(np.zeros(2, dtype=np.intp), np.array([0.4, 1.0]), [4.0])
+    np.testing.assert_allclose(alone[:, 0], at, rtol=1e-14)
+
+
+@pytest.mark.parametrize("force", [0.0, 0.8, -0.3])
+def test_reciprocity(force: float) -> None:
     # Maxwell–Betti makes T symplectic: Tᵀ J T = J with J pairing displacements and forces.
-    transfer = transfer_matrices(FLEXIBILITY, INERTIA, np.array(0.8), np.array(3.0))
-    pairing = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
-    np.testing.assert_allclose(transfer.T @ pairing @ transfer, pairing, atol=1e-14)
+    transfer = transfer_of(0.8, force, 3.0)
+    np.testing.assert_allclose(transfer.T @ PAIRING @ transfer, PAIRING, atol=1e-14)

@@ -130,7 +130,7 @@ def test_attached_loads_make_static_compliance_exact() -> None:
     bar = Segment(0.5, 0.08, 0.0, STEEL)
     pins = [RadialSupport(0.0, math.inf), RadialSupport(1.0, math.inf)]
     modes = solve_lateral_modes(Rotor("bar", [bar] * 2), pins, count=3)
-    exact = 1.0 / (48 * bar.bending_stiffness) + 1.0 / (4 * bar.shear_stiffness)
+    exact = 1.0 / (48 * bar.section(0.5).bending_stiffness) + 1.0 / (4 * bar.section(0.5).shear_stiffness)
 
     def compliance(set_of_modes: object) -> float:
         shape = set_of_modes.evaluate([0.5])[0][:, 0]  # type: ignore[attr-defined]

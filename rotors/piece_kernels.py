@@ -1,0 +1,198 @@
+"""Compiled transfer matrices of pieces of shaft; the equations are those of `rotors.timoshenko`.
+
+Importing this module imports numba. All functions take real or complex ω².
+"""
+
+from math import factorial
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+NumberArray = npt.NDArray[Any]
+
+# |λ²| of a piece stays below 5 (`rotors.chain`): 5¹³ / 26! is below rounding.
+CLOSED_TERMS = 13
+EVEN = np.array([1.0 / factorial(2 * k) for k in range(CLOSED_TERMS)])
+ODD = np.array([1.0 / factorial(2 * k + 1) for k in range(CLOSED_TERMS)])
+# Terms of the power series along a cone; pieces of such lengths and tapers need about 25.
+MOST_TERMS = 80
+NEGLIGIBLE = 1e-18
+
+
+@njit(cache=True, nogil=True)
+def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, out: NumberArray) -> None:
+    """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `rotors.timoshenko.PieceTable`."""
+    a, b, k = given[0] * h, given[1] * h, given[4] * h
+    m, j = translation * given[2] * h, (rotation * given[3] - given[5]) * h
+    am, bj, bk, km = a * m, b * j, b * k, k * m
+    e1, e2 = -(am + bj), b * m * (a * j - k * k)
+    older, newer = 0.0 * e1, 0.0 * e1 + 1.0
+    even_low, odd_low = older, older
+    c2, c3 = newer * EVEN[1], newer * ODD[1]
+    for n in range(2, CLOSED_TERMS):
+        even_low += newer * EVEN[n]
+        odd_low += newer * ODD[n]
+        older, newer = newer, e1 * newer - e2 * older
+        c2 += newer * EVEN[n]
+        c3 += newer * ODD[n]
+    c0, c1 = 1.0 - e2 * even_low, 1.0 - e2 * odd_low
+    # The powers of A h, written out; A h = [[0, k, a, 0], [0, 0, 0, b], [-m, 0, 0, 0], [0, -j, -k, 0]].
+    out[0, 0] = out[2, 2] = c0 - c2 * am
+    out[1, 1] = out[3, 3] = c0 - c2 * bj
+    out[0, 1] = k * (c1 - c3 * (am + bj))
+    out[3, 2] = -out[0, 1]
+    out[0, 2] = c1 * a - c3 * (bk * k + am * a)
+    out[0, 3] = c2 * bk
+    out[1, 2] = -out[0, 3]
+    out[1, 0] = c3 * bk * m
+    out[2, 3] = -out[1, 0]
+    out[1, 3] = b * (c1 - c3 * bj)
+    out[2, 0] = -m * (c1 - c3 * am)
+    out[3, 0] = c2 * km
+    out[2, 1] = -out[3, 0]
+    out[3, 1] = -c1 * j + c3 * (bj * j + km * k)
+
+
+@njit(cache=True, nogil=True)
+def uniform_rod(h: float, given: FloatArray, translation: Any, out: NumberArray) -> None:
+    """T of a uniform rod of length h: cos and sin, as their series."""
+    twist, swing = given[0] * h, translation * given[1] * h
+    root = -twist * swing
+    cosine, sine, power = 0.0 * root + 1.0, 0.0 * root + 1.0, 0.0 * root + 1.0
+    for n in range(1, CLOSED_TERMS):
+        power = power * root
+        cosine += power * EVEN[n]
+        sine += power * ODD[n]
+    out[0, 0] = out[1, 1] = cosine
+    out[0, 1] = sine * twist
+    out[1, 0] = -sine * swing
+
+
+@njit(cache=True, nogil=True)
+def taper_series(h: float, given: FloatArray, translation: Any, rotation: Any, series: NumberArray) -> int:
+    """Power series of the fundamental matrix about the middle of a tapering piece; returns its number of terms.
+
+    With s from −1 to 1, y(s) = Σ Y_k s^k · y(0) and Y_{k+1} = h/2 Σ_j A_j Y_{k−j} / (k + 1).
+    """
+    beam, order, size = given.shape[0] == 6, given.shape[1], series.shape[1]
+    for row in range(size):
+        for column in range(size):
+            series[0, row, column] = 1.0 if row == column else 0.0
+    quiet = 0
+    for k in range(MOST_TERMS - 1):
+        factor, largest = 0.5 * h / (k + 1), 0.0
+        for column in range(size):
+            rows = (0.0 * (translation + rotation), 0.0 * (translation + rotation))
+            y0, y1 = rows
+            y2, y3 = rows
+            for j in range(min(k + 1, order)):
+                older = series[k - j]
+                if beam:
+                    y0 += given[4, j] * older[1, column] + given[0, j] * older[2, column]
+                    y1 += given[1, j] * older[3, column]
+                    y2 -= translation * given[2, j] * older[0, column]
+                    y3 -= (rotation * given[3, j] - given[5, j]) * older[1, column] + given[4, j] * older[2, column]
+                else:
+                    y0 += given[0, j] * older[1, column]
+                    y1 -= translation * given[1, j] * older[0, column]
+            series[k + 1, 0, column] = factor * y0
+            series[k + 1, 1, column] = factor * y1
+            if beam:
+                series[k + 1, 2, column] = factor * y2
+                series[k + 1, 3, column] = factor * y3
+            for row in range(size):
+                largest = max(largest, abs(series[k + 1, row, column]))
+        # Two in a row: a term may vanish by symmetry.
+        quiet = quiet + 1 if largest < NEGLIGIBLE else 0
+        if quiet == 2:
+            return k + 2
+    return MOST_TERMS
+
+
+@njit(cache=True, nogil=True)
+def series_at(series: NumberArray, terms: int, place: float, out: NumberArray) -> None:
+    """Value of the power series of a fundamental matrix at s."""
+    size = out.shape[0]
+    for row in range(size):
+        for column in range(size):
+            value = series[terms - 1, row, column]
+            for k in range(terms - 2, -1, -1):
+                value = value * place + series[k, row, column]
+            out[row, column] = value
+
+
+@njit(cache=True, nogil=True)
+def symplectic_inverse(matrix: NumberArray, out: NumberArray) -> None:
+    """Inverse of a fundamental matrix, which reciprocity makes symplectic: −J Mᵀ J."""
+    n = matrix.shape[0] // 2
+    for row in range(n):
+        for column in range(n):
+            out[row, column] = matrix[n + column, n + row]
+            out[row, n + column] = -matrix[column, n + row]
+            out[n + row, column] = -matrix[n + column, row]
+            out[n + row, n + column] = matrix[column, row]
+
+
+@njit(cache=True, nogil=True)
+def piece_transfers(
+    h: float, given: FloatArray, translation: Any, rotation: Any, fractions: FloatArray, out: NumberArray
+) -> None:
+    """T from a piece's left end to fractions (k,) of its length h, into ``out`` (k, 2n, 2n)."""
+    if given.shape[1] == 1:
+        out[:] = 0.0
+        for k in range(fractions.size):
+            if given.shape[0] == 6:
+                uniform_beam(fractions[k] * h, given[:, 0], translation, rotation, out[k])
+            else:
+                uniform_rod(fractions[k] * h, given[:, 0], translation, out[k])
+        return
+    size = out.shape[1]
+    series = np.empty((MOST_TERMS, size, size), out.dtype)
+    value, inverse = np.empty((size, size), out.dtype), np.empty((size, size), out.dtype)
+    terms = taper_series(h, given, translation, rotation, series)
+    series_at(series, terms, -1.0, value)
+    symplectic_inverse(value, inverse)
+    for k in range(fractions.size):
+        series_at(series, terms, 2.0 * fractions[k] - 1.0, value)
+        for row in range(size):
+            for column in range(size):
+                total = value[row, 0] * inverse[0, column]
+                for inner in range(1, size):
+                    total += value[row, inner] * inverse[inner, column]
+                out[k, row, column] = total
+
+
+@njit(cache=True, nogil=True)
+def table_transfers(
+    lengths: FloatArray,
+    given: FloatArray,
+    translation: NumberArray,
+    rotation: NumberArray,
+    fractions: FloatArray,
+    out: NumberArray,
+) -> None:
+    """T of every piece of a table at every pair of ω² (b,), into ``out`` (b, e, k, 2n, 2n)."""
+    for b in range(translation.size):
+        for e in range(lengths.size):
+            piece_transfers(lengths[e], given[e], translation[b], rotation[b], fractions, out[b, e])
+
+
+@njit(cache=True, nogil=True)
+def place_transfers(
+    lengths: FloatArray,
+    given: FloatArray,
+    element: IntArray,
+    fractions: FloatArray,
+    translation: NumberArray,
+    rotation: NumberArray,
+    out: NumberArray,
+) -> None:
+    """T to one fraction each of some pieces (z,), at every pair of ω² (b,), into ``out`` (z, b, 2n, 2n)."""
+    for z in range(element.size):
+        e = element[z]
+        for b in range(translation.size):
+            piece_transfers(lengths[e], given[e], translation[b], rotation[b], fractions[z : z + 1], out[z, b : b + 1])

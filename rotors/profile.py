@@ -1,0 +1,165 @@
+"""Stiffness and inertia along a row of segments, as polynomials that transfer matrices can take.
+
+A cylinder or a coupling has constants. Along a cone 1/EI, 1/κGA and their like are rational functions; each is
+interpolated at Chebyshev points, and the cone halved until the last coefficients of every interpolant are
+rounding. The interpolants converge geometrically, at a rate set by how far beyond the piece the nearest
+pole lies (the apex of a cone, or the place where a bore would meet the surface), so this takes a
+piece for every change of a diameter by about a third.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import RotorError, require
+from .segment import Segment
+from .shaft_coupling import Coupling
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+DEGREE = 16
+TAIL = 2e-15
+MOST_HALVINGS = 40
+
+_ANGLES = np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)
+_FRACTIONS = 0.5 * (1.0 + np.cos(_ANGLES))
+# Values at the Chebyshev points to coefficients of T_0, T_1, ...; and from these to those of 1, s, s², ...
+_TO_CHEBYSHEV = 2.0 / (DEGREE + 1) * np.cos(np.outer(np.arange(DEGREE + 1), _ANGLES))
+_TO_CHEBYSHEV[0] *= 0.5
+_TO_POWERS = np.zeros((DEGREE + 1, DEGREE + 1))
+for _row in range(DEGREE + 1):
+    _TO_POWERS[_row, : _row + 1] = np.polynomial.chebyshev.cheb2poly(np.eye(DEGREE + 1)[_row, : _row + 1])
+
+# Rows of a table of coefficients: six of bending, two of torsion, two of the axial rod.
+BENDING, TORSION, AXIAL = slice(0, 6), slice(6, 8), slice(8, 10)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Spans of a shaft, each of one kind: uniform, or tapering mildly.
+
+    Attributes
+    ----------
+    edges
+        (s + 1,): ends of the spans, m from the left end; all joints are among them.
+    lengths
+        (s,): m, of whole segments exactly as given, so that equal segments are equal here.
+    kind
+        (s,): which of the kinds each span is.
+    coefficients
+        (k, 10, j): of every kind, SI, the coefficients of 1, s, s², ... with s from −1 to 1 along the span: in
+        bending 1/(κGA + P), 1/EI, ρA, ρI, g, g P (`rotors.timoshenko`); 1/GJ, ρJ; 1/EA, ρA.
+    extremes
+        (k, 5): least κGA and EI, largest ρA and ρI, axial force P.
+    uniform
+        (k,).
+    """
+
+    edges: FloatArray
+    lengths: FloatArray
+    kind: IntArray
+    coefficients: FloatArray
+    extremes: FloatArray
+    uniform: npt.NDArray[np.bool_]
+
+
+def profile_of(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Profile:
+    """Profile of segments and couplings between the given joints (parts + 1,), m."""
+    kinds: dict[tuple[object, ...], int] = {}
+    tables: list[tuple[FloatArray, FloatArray]] = []
+    edges, lengths, kind = [float(joints[0])], [], []
+    for part, left, right in zip(parts, joints[:-1].tolist(), joints[1:].tolist(), strict=True):
+        if isinstance(part, Segment) and part.is_conical:
+            pieces = _taper(part, 0.0, 1.0, 0)
+        else:
+            key = _identity(part)
+            if key not in kinds:
+                kinds[key] = len(tables)
+                values = _coupling_values(part) if isinstance(part, Coupling) else _segment_values(part, 0.5)
+                tables.append((values[0][:, None], values[1]))
+            edges.append(right)
+            lengths.append(part.length)
+            kind.append(kinds[key])
+            continue
+        for start, end, powers, extremes in pieces:
+            kind.append(len(tables))
+            tables.append((powers, extremes))
+            edges.append(left + end * (right - left) if end < 1.0 else right)
+            lengths.append((end - start) * part.length)
+    order = max(powers.shape[1] for powers, _ in tables)
+    coefficients = np.zeros((len(tables), 10, order))
+    for row, (powers, _) in enumerate(tables):
+        coefficients[row, :, : powers.shape[1]] = powers
+    return Profile(
+        edges=np.array(edges),
+        lengths=np.array(lengths),
+        kind=np.array(kind, dtype=np.intp),
+        coefficients=coefficients,
+        extremes=np.array([extremes for _, extremes in tables]),
+        uniform=np.array([powers.shape[1] == 1 for powers, _ in tables]),
+    )
+
+
+def restricted(coefficients: FloatArray, centre: FloatArray, half: FloatArray) -> FloatArray:
+    """Polynomials over parts of their spans: p(centre + half · s), for (e, f, j) and (e,) each."""
+    order = coefficients.shape[2]
+    if order == 1:
+        return coefficients
+    # Horner's rule on polynomials: the result grows by one factor (centre + half s) at a time.
+    result = np.zeros_like(coefficients)
+    middle, reach = centre[:, None, None], half[:, None, None]
+    for k in range(order - 1, -1, -1):
+        raised = middle * result
+        raised[:, :, 1:] += reach * result[:, :, :-1]
+        raised[:, :, 0] += coefficients[:, :, k]
+        result = raised
+    return result
+
+
+def _identity(part: Segment | Coupling) -> tuple[object, ...]:
+    """What makes two uniform parts of different lengths alike."""
+    if isinstance(part, Coupling):
+        stiffnesses = (part.lateral_stiffness, part.tilt_stiffness, part.torsional_stiffness, part.axial_stiffness)
+        return (part.length, *stiffnesses)
+    return (part.outer_diameter, part.inner_diameter, part.material, part.shear_coefficient, part.axial_force)
+
+
+def _segment_values(part: Segment, fraction: float) -> tuple[FloatArray, FloatArray]:
+    """The ten coefficients of a section, and its κGA, EI, ρA, ρI and axial force."""
+    section, force = part.section(fraction), part.axial_force
+    shear, bending = section.shear_stiffness, section.bending_stiffness
+    mass, polar = section.mass_per_length, section.polar_inertia_per_length
+    expected = f"a compression below half of its shear stiffness, {0.5 * shear:g} N"
+    require(-2.0 * force < shear, "segment axial_force", force, expected)
+    share = shear / (shear + force)
+    bent = [1.0 / (shear + force), 1.0 / bending, mass, 0.5 * polar, share, share * force]
+    rods = [1.0 / section.torsional_stiffness, polar, 1.0 / section.axial_stiffness, mass]
+    return np.array(bent + rods), np.array([shear, bending, mass, 0.5 * polar, force])
+
+
+def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
+    """The same of a coupling: massless, its compliances spread over its length."""
+    shear, bending = part.lateral_stiffness * part.length, part.tilt_stiffness * part.length
+    twist, stretch = part.torsional_stiffness * part.length, part.axial_stiffness * part.length
+    values = [1.0 / shear, 1.0 / bending, 0.0, 0.0, 1.0, 0.0, 1.0 / twist, 0.0, 1.0 / stretch, 0.0]
+    return np.array(values), np.array([shear, bending, 0.0, 0.0, 0.0])
+
+
+def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:
+    """Start and end (fractions of the cone), coefficients and extremes of pieces mild enough."""
+    samples = [_segment_values(part, start + fraction * (end - start)) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
+    values, rows = np.array([value for value, _ in samples[:-2]]), np.array([row for _, row in samples])
+    chebyshev = _TO_CHEBYSHEV @ values
+    size = np.abs(chebyshev).max(axis=0)
+    if not bool((np.abs(chebyshev[-2:]) <= TAIL * size).all()):
+        if halvings == MOST_HALVINGS:
+            raise RotorError(f"segment {part!r} tapers too sharply; expected diameters further from zero")
+        middle = 0.5 * (start + end)
+        return _taper(part, start, middle, halvings + 1) + _taper(part, middle, end, halvings + 1)
+    # Rounding in the high coefficients would be all that is left of them.
+    chebyshev[np.abs(chebyshev) < 0.1 * TAIL * size] = 0.0
+    extremes = np.array([*rows[:, :2].min(axis=0), *rows[:, 2:4].max(axis=0), part.axial_force])
+    return [(start, end, (chebyshev.T @ _TO_POWERS), extremes)]

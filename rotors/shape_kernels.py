@@ -1,0 +1,225 @@
+"""Compiled multiple shooting on a chain: its banded equations, their null vectors, and states inside the pieces.
+
+Importing this module imports numba. The equations are those of `rotors.shapes`; the arrays of a chain come in
+the order of `rotors.count_kernels`.
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from .piece_kernels import piece_transfers, table_transfers
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+INVERSE_ITERATIONS = 2
+# Stands for a pivot that vanishes, which at a root met to the last digit it may.
+LEAST_PIVOT = 1e-30
+
+
+@njit(cache=True, nogil=True)
+def shooting_band(
+    squared: float,
+    transfers: FloatArray,
+    element: IntArray,
+    stiffness: FloatArray,
+    inertia: FloatArray,
+    band: FloatArray,
+    scale: FloatArray,
+) -> None:
+    """Fill the equations into ``band`` (order, 3 b + 1), row i holding columns i − b to i + 2 b, b = 3 n − 1.
+
+    Every row is divided by its ``scale`` (order,), of a force balance the size of its spring or inertia.
+    """
+    n, nodes = stiffness.shape[1], stiffness.shape[0]
+    width = 3 * n - 1
+    band[:], scale[:] = 0.0, 1.0
+    for node in range(nodes):
+        for i in range(2 * n):
+            # The first node has no piece to its left, hence no equations for its displacements.
+            row = 2 * n * node - n + i
+            if row < 0:
+                continue
+            if i < n:
+                band[row, 2 * n * node + i - row + width] = 1.0
+            else:
+                component = i - n
+                own = 2 * n * node + component - row + width
+                if math.isinf(stiffness[node, component]):
+                    band[row, own] = 1.0
+                    continue
+                term = stiffness[node, component] - squared * inertia[node, component]
+                scale[row] = max(1.0, abs(term))
+                band[row, own] = -term / scale[row]
+                band[row, own + n] = 1.0 / scale[row]
+            if node > 0:
+                transfer = transfers[element[node - 1]]
+                for j in range(2 * n):
+                    band[row, 2 * n * (node - 1) + j - row + width] = -transfer[i, j] / scale[row]
+    for i in range(n):
+        band[2 * n * nodes - n + i, width] = 1.0
+
+
+@njit(cache=True, nogil=True)
+def factor_band(band: FloatArray, pivots: IntArray) -> None:
+    """LU factors in place, with row interchanges."""
+    order, width = band.shape[0], (band.shape[1] - 1) // 3
+    for k in range(order):
+        last, pivot = min(k + width, order - 1), k
+        for i in range(k + 1, last + 1):
+            if abs(band[i, k - i + width]) > abs(band[pivot, k - pivot + width]):
+                pivot = i
+        pivots[k] = pivot
+        end = min(k + 2 * width, order - 1)
+        if pivot != k:
+            for j in range(k, end + 1):
+                own, other = j - k + width, j - pivot + width
+                band[k, own], band[pivot, other] = band[pivot, other], band[k, own]
+        if abs(band[k, width]) < LEAST_PIVOT:
+            band[k, width] = LEAST_PIVOT
+        for i in range(k + 1, last + 1):
+            factor = band[i, k - i + width] / band[k, width]
+            band[i, k - i + width] = factor
+            if factor != 0.0:
+                for j in range(k + 1, end + 1):
+                    band[i, j - i + width] -= factor * band[k, j - k + width]
+
+
+@njit(cache=True, nogil=True)
+def solve_band(band: FloatArray, pivots: IntArray, x: FloatArray) -> None:
+    """Solve with the factors in place, for one right-hand side (order,)."""
+    order, width = band.shape[0], (band.shape[1] - 1) // 3
+    for k in range(order):
+        x[k], x[pivots[k]] = x[pivots[k]], x[k]
+        for i in range(k + 1, min(k + width, order - 1) + 1):
+            x[i] -= band[i, k - i + width] * x[k]
+    for k in range(order - 1, -1, -1):
+        value = x[k]
+        for j in range(k + 1, min(k + 2 * width, order - 1) + 1):
+            value -= band[k, j - k + width] * x[j]
+        x[k] = value / band[k, width]
+
+
+@njit(cache=True, nogil=True)
+def solve_band_transposed(band: FloatArray, pivots: IntArray, x: FloatArray) -> None:
+    """The same with the transposed equations."""
+    order, width = band.shape[0], (band.shape[1] - 1) // 3
+    for k in range(order):
+        value = x[k]
+        for i in range(max(0, k - 2 * width), k):
+            value -= band[i, k - i + width] * x[i]
+        x[k] = value / band[k, width]
+    for k in range(order - 1, -1, -1):
+        for i in range(k + 1, min(k + width, order - 1) + 1):
+            x[k] -= band[i, k - i + width] * x[i]
+        x[k], x[pivots[k]] = x[pivots[k]], x[k]
+
+
+@njit(cache=True, nogil=True)
+def _orthonormalise(vectors: FloatArray) -> None:
+    """Rows made orthonormal in place; twice, because nearly parallel ones leave rounding of their size."""
+    for k in range(vectors.shape[0]):
+        vectors[k] /= np.abs(vectors[k]).max()
+        for _ in range(2):
+            for other in range(k):
+                vectors[k] -= np.dot(vectors[other], vectors[k]) * vectors[other]
+            vectors[k] /= math.sqrt(np.dot(vectors[k], vectors[k]))
+
+
+@njit(cache=True, nogil=True)
+def null_states(
+    squared: FloatArray,
+    lengths: FloatArray,
+    given: FloatArray,
+    element: IntArray,
+    stiffness: FloatArray,
+    inertia: FloatArray,
+) -> FloatArray:
+    """Node states of the shapes at natural ω² (k,), equal ones side by side, (k, p + 1, 2n).
+
+    Equal members share one null space, found by inverse iteration with the equations and their transpose.
+    """
+    n, nodes, number = stiffness.shape[1], stiffness.shape[0], squared.size
+    order, width = 2 * n * nodes, 3 * n - 1
+    states = np.empty((number, order))
+    band, scale, pivots = np.empty((order, 3 * width + 1)), np.empty(order), np.empty(order, np.intp)
+    transfers = np.empty((1, lengths.size, 1, 2 * n, 2 * n))
+    first = 0
+    while first < number:
+        end = first + 1
+        while end < number and squared[end] == squared[first]:
+            end += 1
+        at = squared[first : first + 1]
+        table_transfers(lengths, given, at, at, np.ones(1), transfers)
+        shooting_band(squared[first], transfers[0, :, 0], element, stiffness, inertia, band, scale)
+        factor_band(band, pivots)
+        group = states[first:end]
+        for k in range(end - first):
+            for i in range(order):
+                # Any start that is no eigenvector's neighbour will do; this one is the same on every machine.
+                group[k, i] = ((i * 7919 + (k + 1) * 104729) % 1009) / 504.5 - 1.0
+        for _ in range(INVERSE_ITERATIONS):
+            for k in range(end - first):
+                solve_band_transposed(band, pivots, group[k])
+            _orthonormalise(group)
+            for k in range(end - first):
+                solve_band(band, pivots, group[k])
+            _orthonormalise(group)
+        first = end
+    return states.reshape(number, nodes, 2 * n)
+
+
+@njit(cache=True, nogil=True)
+def shooting_responses(
+    squared: float,
+    loads: FloatArray,
+    lengths: FloatArray,
+    given: FloatArray,
+    element: IntArray,
+    stiffness: FloatArray,
+    inertia: FloatArray,
+) -> FloatArray:
+    """Node states under right-hand sides (k, order) of the equations at ω² off the roots, (k, p + 1, 2n)."""
+    n, nodes = stiffness.shape[1], stiffness.shape[0]
+    order, width = 2 * n * nodes, 3 * n - 1
+    band, scale, pivots = np.empty((order, 3 * width + 1)), np.empty(order), np.empty(order, np.intp)
+    transfers = np.empty((1, lengths.size, 1, 2 * n, 2 * n))
+    at = np.full(1, squared)
+    table_transfers(lengths, given, at, at, np.ones(1), transfers)
+    shooting_band(squared, transfers[0, :, 0], element, stiffness, inertia, band, scale)
+    factor_band(band, pivots)
+    states = loads / scale
+    for k in range(loads.shape[0]):
+        solve_band(band, pivots, states[k])
+    return states.reshape(loads.shape[0], nodes, 2 * n)
+
+
+@njit(cache=True, nogil=True)
+def inside_states(
+    squared: FloatArray,
+    states: FloatArray,
+    fractions: FloatArray,
+    lengths: FloatArray,
+    given: FloatArray,
+    element: IntArray,
+) -> FloatArray:
+    """States at fractions (g,) of every piece, of fields with node states (k, p + 1, 2n), (k, p, g, 2n)."""
+    size, pieces = states.shape[2], element.size
+    inside = np.empty((squared.size, pieces, fractions.size, size))
+    transfers = np.empty((lengths.size, fractions.size, size, size))
+    for k in range(squared.size):
+        if k == 0 or squared[k] != squared[k - 1]:
+            for e in range(lengths.size):
+                piece_transfers(lengths[e], given[e], squared[k], squared[k], fractions, transfers[e])
+        for piece in range(pieces):
+            for g in range(fractions.size):
+                transfer = transfers[element[piece], g]
+                for row in range(size):
+                    total = 0.0
+                    for column in range(size):
+                        total += transfer[row, column] * states[k, piece, column]
+                    inside[k, piece, g, row] = total
+    return inside

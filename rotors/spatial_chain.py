@@ -1,0 +1,248 @@
+"""Both planes of a turning shaft together, exactly: the transfer equations for any complex frequency.
+
+A motion e^{λt} of a disc turning at Ω obeys I_d λ²β_x + Ω I_p λ β_y = M_x and I_d λ²β_y − Ω I_p λ β_x = M_y
+(`rotors.whirl`). In the circular coordinates of `rotors.spatial_ties` these part into
+
+    (I_d λ² ∓ iΩ I_p λ) β± = M± ,
+
+and since a round section's polar inertia is twice its diametral one, every piece of shaft obeys the planar
+equations of `rotors.timoshenko` with
+
+    ω² → −λ² for translation,     ω² → −λ² ± 2iΩλ for rotation.
+
+So the exact transfer matrices of both senses are at hand for any λ, with no modal truncation; the bearings alone
+tie them, and tie the shaft's axial motion where their five-by-five matrices do. At λ = iω forward whirl is r+.
+
+The unknowns are the states (displacements u, forces f to the right) at all nodes, and the displacements p of
+pedestals; the equations are those of multiple shooting,
+
+    u_{i+1} = T₁₁ u_i + T₁₂ f_i
+    f_{i+1} = T₂₁ u_i + T₂₂ f_i + (λ² M + λ G + Z_b) u_{i+1} − Z_b p
+    0 = (Z_p + Z_b) p − Z_b u,          Z_b = K_b + λ C_b,   Z_p = K_p + λ C_p + λ² M_p
+
+and no force beyond the right end. Every entry is an entire function of λ, the pedestals' resonances included, and
+so is the determinant; its zeros are the eigenvalues, each with its multiplicity. (Elimination of the states shows
+it: the equations of the pieces have unit diagonal, and what is left is the map from the displacements of the
+left end and of the pedestals to the forces on the right end and the pedestals.)
+
+Forces are scaled by the inertia forces of the frequency at hand, so that a nearly rigid shaft on soft
+bearings loses no digits to its own stiffness.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from .banded import BandPattern
+from .bearing import Bearing, RadialSupport
+from .chain import Chain
+from .rotor_lines import axial_chain_on, bending_chain
+from .shaft import Rotor
+from .spatial_ties import MEMBERS, Tie, make_tie
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+# Relative step of the central difference that gives slopes of the entries: good to about 1e-10, which costs
+# the refined roots nothing, as their residual is exact.
+SLOPE_STEP = 1e-5
+
+
+@dataclass(frozen=True)
+class SpatialChain:
+    """The pieces, the nodes' inertias and the ties of a rotor, for one set of tied motions.
+
+    Attributes
+    ----------
+    bending
+        Pieces and node inertias of one plane, without springs.
+    axial
+        The same shaft as a rod, on the same nodes and in the same units.
+    blocks
+        1 for r+, −1 for r−, 0 for z, in the order of the unknowns.
+    ties
+        Bearings with constant coefficients.
+    """
+
+    bending: Chain
+    axial: Chain
+    blocks: tuple[int, ...]
+    ties: tuple[Tie, ...]
+
+    @property
+    def size(self) -> int:
+        """Displacements at a node, n."""
+        return sum(len(MEMBERS[block]) for block in self.blocks)
+
+    @property
+    def units(self) -> FloatArray:
+        """SI value of each of a node's displacements; forces have its reciprocal. (n,)."""
+        return block_units(self.bending, self.blocks)
+
+    @cached_property
+    def total_mass(self) -> float:
+        """About the mass, in scaled units."""
+        chain = self.bending
+        along = chain.coefficients_at(np.arange(chain.element.size), np.full(chain.element.size, 0.5))[:, 2]
+        return float(along @ chain.lengths + chain.node_inertia[:, 0].sum())
+
+    @cached_property
+    def starts(self) -> IntArray:
+        """Index of every node's first unknown, (p + 1,); pedestals of a node follow its states."""
+        sizes = np.full(self.bending.nodes.size, 2 * self.size)
+        for tie in self.ties:
+            sizes[tie.node] += len(tie.foot)
+        return np.concatenate([[0], np.cumsum(sizes)[:-1]])
+
+    @cached_property
+    def feet(self) -> tuple[IntArray, ...]:
+        """Unknowns of every tie's pedestal."""
+        used = self.starts + 2 * self.size
+        feet = []
+        for tie in self.ties:
+            feet.append(used[tie.node] + np.arange(len(tie.foot)))
+            used[tie.node] += len(tie.foot)
+        return tuple(feet)
+
+    @cached_property
+    def pattern(self) -> BandPattern:
+        """Places of the entries that `values` gives."""
+        n, starts = self.size, self.starts
+        order = int(starts[-1]) + 2 * n + sum(len(t.foot) for t in self.ties if t.node == starts.size - 1)
+        rows, columns = [], []
+        # Equations stand n above the unknowns: the first node has no piece to its left.
+        first = 0
+        for block in self.blocks:
+            width = len(MEMBERS[block])
+            local = np.concatenate([first + np.arange(width), n + first + np.arange(width)])
+            row = starts[1:, None, None] - n + local[:, None]
+            column = starts[:-1, None, None] + local[None, :]
+            rows.append(np.broadcast_to(row, (starts.size - 1, 2 * width, 2 * width)).ravel())
+            columns.append(np.broadcast_to(column, (starts.size - 1, 2 * width, 2 * width)).ravel())
+            first += width
+        across = np.arange(n)
+        rows += [(starts[1:, None] - n + across).ravel(), (starts[:, None] + across).ravel()]
+        columns += [(starts[1:, None] + across).ravel(), (starts[:, None] + n + across).ravel()]
+        rows.append((starts[:, None] + across).ravel())
+        columns.append(rows[-1])
+        for tie, foot in zip(self.ties, self.feet, strict=True):
+            own = starts[tie.node] + across
+            # A pedestal's equations follow the force balance of its node: n above its unknowns.
+            for row, column in ((own, own), (own, foot), (foot - n, own), (foot - n, foot)):
+                rows.append(np.repeat(row, column.size))
+                columns.append(np.tile(column, row.size))
+        last = order - n + across
+        rows.append(last)
+        columns.append(starts[-1] + n + across)
+        return BandPattern.of(np.concatenate(rows), np.concatenate(columns), order)
+
+    def force_scale(self, eigenvalues: ComplexArray) -> FloatArray:
+        """Unit of forces at each λ: those of inertia, or of the shaft's stiffness where that is smaller."""
+        return np.asarray(np.clip(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30, 1.0))
+
+    def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
+        """Entries of the equations at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
+        chain, batch = self.bending, eigenvalues.size
+        parts = [
+            -np.moveaxis(self._transfers(block, eigenvalues, speeds, scale), 1, 0).reshape(batch, -1)
+            for block in self.blocks
+        ]
+        nodes, n = chain.nodes.size, self.size
+        parts += [np.ones((batch, (nodes - 1) * n)), np.ones((batch, nodes * n))]
+        parts.append(-(self.node_terms(eigenvalues, speeds) / scale[:, None, None]).reshape(batch, -1))
+        for tie in self.ties:
+            bearing, ground = (matrix / scale[:, None, None] for matrix in tie.dynamic_stiffness(eigenvalues))
+            foot = list(tie.foot)
+            parts += [-bearing.reshape(batch, -1), bearing[:, :, foot].reshape(batch, -1)]
+            whole = ground + bearing[:, foot][:, :, foot]
+            parts += [-bearing[:, foot].reshape(batch, -1), whole.reshape(batch, -1)]
+        parts.append(np.ones((batch, n)))
+        return np.ascontiguousarray(np.concatenate(parts, axis=1), dtype=np.complex128)
+
+    def node_terms(self, eigenvalues: ComplexArray, speeds: ComplexArray) -> ComplexArray:
+        """λ²M ∓ iΩλ I_p of the nodes' own inertias, (b, p + 1, n)."""
+        chain = self.bending
+        squared = eigenvalues[:, None] ** 2
+        columns = []
+        for block in self.blocks:
+            columns.append(squared * chain.node_inertia[:, 0])
+            if block:
+                gyroscopic = (block * 1j * speeds * eigenvalues)[:, None] * chain.node_polar
+                columns.append(squared * chain.node_inertia[:, 1] - gyroscopic)
+        return np.stack(columns, axis=-1)
+
+    def dense_transfers(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
+        """Transfer matrices of all blocks together, (p, b, 2n, 2n), displacements before forces."""
+        n = self.size
+        dense = np.zeros((self.bending.lengths.size, eigenvalues.size, 2 * n, 2 * n), dtype=np.complex128)
+        first = 0
+        for block in self.blocks:
+            local = first + np.arange(len(MEMBERS[block]))
+            both = np.concatenate([local, n + local])
+            dense[:, :, both[:, None], both] = self._transfers(block, eigenvalues, speeds, scale)
+            first += local.size
+        return dense
+
+    def _transfers(
+        self, block: int, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
+    ) -> ComplexArray:
+        translation = -(eigenvalues**2)
+        if block == 0:
+            transfer = self.axial.transfers(translation)
+        else:
+            transfer = self.bending.transfers(translation, translation + block * 2j * speeds * eigenvalues)
+        half = transfer.shape[-1] // 2
+        transfer[..., :half, half:] *= scale[:, None, None]
+        transfer[..., half:, :half] /= scale[:, None, None]
+        return transfer
+
+    def states(self, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
+        """Node states (b, p + 1, 2n) in scaled units of solutions (b, order) of the equations."""
+        n = self.size
+        states = solutions[:, self.starts[:, None] + np.arange(2 * n)].copy()
+        states[:, :, n:] *= scale[:, None, None]
+        return np.asarray(states)
+
+
+def block_units(chain: Chain, blocks: tuple[int, ...]) -> FloatArray:
+    """Units of a node's displacements, (n,)."""
+    return np.concatenate([chain.displacement_unit if block else chain.displacement_unit[:1] for block in blocks])
+
+
+def whirl_reach(limit: float, speed: float) -> float:
+    """The planar frequency up to which pieces must be short, for whirl up to ``limit`` at ``speed``, rad/s.
+
+    The rotary inertia's ω² ± 2Ωω is largest in magnitude at ω(ω + 2|Ω|).
+    """
+    return float(np.sqrt(limit * (limit + 2.0 * abs(speed))))
+
+
+def spatial_chain(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    blocks: tuple[int, ...],
+    highest: float,
+    places: Sequence[float] = (),
+) -> SpatialChain:
+    """Exact equations of some tied motions of a rotor on bearings of constant coefficients.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and what holds it.
+    blocks
+        One of `rotors.spatial_ties.block_sets`.
+    highest
+        Planar frequency up to which pieces are short enough, rad/s: see `whirl_reach`.
+    places
+        Further places to be nodes, m.
+    """
+    supports = [RadialSupport(at, 0.0) for at in (*(bearing.at for bearing in bearings), *places)]
+    chain = bending_chain(rotor, tuple(supports), highest)
+    units = block_units(chain, blocks)
+    ties = tuple(make_tie(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
+    return SpatialChain(chain, axial_chain_on(rotor, chain), blocks, ties)

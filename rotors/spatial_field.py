@@ -1,0 +1,142 @@
+"""Exact motion of a whole shaft in both planes at a complex frequency, from the states at its nodes to any place."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from .chain import Chain
+from .search import require_positions
+from .spatial_chain import SpatialChain
+from .spatial_ties import MEMBERS
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+GAUSS_POINTS = 6
+
+
+@dataclass(frozen=True)
+class SpatialMotion:
+    """Motions e^{λt} of a shaft, each with its own λ and speed of rotation.
+
+    Attributes
+    ----------
+    chain
+        Pieces and nodes of one plane.
+    eigenvalues, speeds
+        (w,) complex: λ and Ω, rad/s.
+    forward, backward
+        (w, p + 1, 4) complex: r±, β± and the forces that belong to them, right of every node, in scaled units.
+    """
+
+    chain: Chain
+    eigenvalues: ComplexArray
+    speeds: ComplexArray
+    forward: ComplexArray
+    backward: ComplexArray
+
+    @classmethod
+    def of(
+        cls, chain: SpatialChain, eigenvalues: ComplexArray, speeds: ComplexArray, solutions: ComplexArray
+    ) -> "SpatialMotion":
+        """Motions from solutions (w, order) of a chain's equations; blocks that it lacks are at rest."""
+        states = chain.states(solutions, chain.force_scale(eigenvalues))
+        parts = {block: np.zeros((*states.shape[:2], 4), dtype=np.complex128) for block in (1, -1)}
+        first = 0
+        for block in chain.blocks:
+            local = first + np.arange(len(MEMBERS[block]))
+            if block:
+                parts[block] = states[:, :, np.concatenate([local, chain.size + local])]
+            first += local.size
+        return cls(chain.bending, eigenvalues, speeds, parts[1], parts[-1])
+
+    @property
+    def count(self) -> int:
+        """Number of motions w."""
+        return int(self.eigenvalues.size)
+
+    def take(self, index: npt.ArrayLike) -> "SpatialMotion":
+        """Some of the motions, or their order changed."""
+        chosen = np.asarray(index)
+        return replace(
+            self,
+            eigenvalues=self.eigenvalues[chosen],
+            speeds=self.speeds[chosen],
+            forward=self.forward[chosen],
+            backward=self.backward[chosen],
+        )
+
+    def joined(self, other: "SpatialMotion") -> "SpatialMotion":
+        """These motions and then those, of the same shaft."""
+        return replace(
+            self,
+            eigenvalues=np.concatenate([self.eigenvalues, other.eigenvalues]),
+            speeds=np.concatenate([self.speeds, other.speeds]),
+            forward=np.concatenate([self.forward, other.forward]),
+            backward=np.concatenate([self.backward, other.backward]),
+        )
+
+    def scaled(self, factors: ComplexArray) -> "SpatialMotion":
+        """Every motion times a number, (w,)."""
+        by = factors[:, None, None]
+        return replace(self, forward=by * self.forward, backward=by * self.backward)
+
+    def shares(self) -> FloatArray:
+        """∫ ρA |r±|² + ρI |β±|² dz with the nodes' own, of the forward and the backward part, (w, 2), kg·m²."""
+        chain = self.chain
+        points, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+        pieces = np.repeat(np.arange(chain.element.size), GAUSS_POINTS)
+        fractions = np.tile(0.5 * (points + 1.0), chain.element.size)
+        along = chain.coefficients_at(pieces, fractions)[:, chain.inertia_rows]
+        along *= (0.5 * chain.lengths[:, None] * weights).reshape(-1, 1)
+        shares = []
+        for block, states in ((1, self.forward), (-1, self.backward)):
+            inside = self._inside(block, states, pieces, fractions)[:, :, :2]
+            nodal = states[:, :, :2]
+            shares.append(_weighted(inside, along) + _weighted(nodal, chain.node_inertia))
+        return np.stack(shares, axis=-1)
+
+    def at(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
+        """Forward and backward states (w, len(z), 4) at positions z (m), in scaled units, by the exact transfer.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        positions = require_positions(self.chain.nodes, z)
+        pieces, fractions = self.chain.places(positions)
+        return (
+            self._inside(1, self.forward, pieces, fractions),
+            self._inside(-1, self.backward, pieces, fractions),
+        )
+
+    def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
+        """Complex x and y at positions z (m), both (w, len(z)), m."""
+        forward, backward = self.at(z)
+        unit = self.chain.displacement_unit[0]
+        return planes(forward[:, :, 0] * unit, backward[:, :, 0] * unit)
+
+    def evaluate_slopes(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
+        """Complex slopes of the section in x and in y at positions z (m), both (w, len(z)), rad."""
+        forward, backward = self.at(z)
+        unit = self.chain.displacement_unit[1]
+        return planes(forward[:, :, 1] * unit, backward[:, :, 1] * unit)
+
+    def _inside(self, block: int, states: ComplexArray, pieces: IntArray, fractions: FloatArray) -> ComplexArray:
+        translation = -(self.eigenvalues**2)
+        rotation = translation + block * 2j * self.speeds * self.eigenvalues
+        transfers = self.chain.transfers_to(pieces, fractions, translation, rotation)
+        return np.asarray(np.einsum("zwij,wzj->wzi", transfers, states[:, pieces]))
+
+
+def planes(forward: ComplexArray, backward: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """x and y of circular coordinates r± = (x ± i y)/√2."""
+    root = np.sqrt(0.5)
+    return np.asarray(root * (forward + backward)), np.asarray(-1j * root * (forward - backward))
+
+
+def _weighted(values: ComplexArray, weights: FloatArray) -> FloatArray:
+    return np.asarray((np.abs(values) ** 2 * weights).sum(axis=(1, 2)))

@@ -1,0 +1,128 @@
+"""Whirl modes of one chain, complete by proof: refined, counted, and searched for again where one is missing."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import IncompleteModesError
+from .exact_roots import ExactRoots, Speed, distinct, refine_roots
+from .spatial_chain import SpatialChain
+from .whirl_count import negative_count
+from .winding import RootOnContourError, Sector, wind
+
+ComplexArray = npt.NDArray[np.complex128]
+
+# The sector of oscillating motions begins this far from the real axis, rad, and at this part of the lowest frequency.
+NO_OSCILLATION = 1e-6
+MOST_MISSING = 3
+MOST_CUTS = 24
+MOST_NUDGES = 6
+
+
+@dataclass(frozen=True)
+class WhirlCertificate:
+    """Proof that a set of whirl modes is complete.
+
+    Attributes
+    ----------
+    limit
+        rad/s: every oscillating motion with |λ| below it is claimed.
+    expected
+        How many there are by the count.
+    found
+        How many independent roots of the exact equations are held there.
+    max_residual
+        The largest last correction of a root, as a part of it.
+    method
+        ``"inertia"``: negative eigenvalues of the Hermitian dynamic stiffness (`rotors.whirl_count`), or
+        ``"winding"``: turns of the determinant round the region (`rotors.winding`).
+    """
+
+    limit: float
+    expected: int
+    found: int
+    max_residual: float
+    method: str
+
+    @property
+    def complete(self) -> bool:
+        """Whether every motion below the limit is held."""
+        return self.found == self.expected
+
+
+def oscillating(least: float, most: float) -> Sector:
+    """The sector of motions that oscillate, stable or not."""
+    return Sector(least, most, NO_OSCILLATION, np.pi - NO_OSCILLATION)
+
+
+def certified_roots(
+    chain: SpatialChain, roots: ExactRoots, speed: Speed, sector: Sector, conservative: bool
+) -> tuple[ExactRoots, WhirlCertificate]:
+    """All roots in a sector, starting from those known, and the proof.
+
+    Raises
+    ------
+    IncompleteModesError
+        The count and the roots do not agree even after a search of their own.
+    """
+    method = "inertia" if conservative else "winding"
+    held = roots.take(sector.holds(roots.eigenvalues))
+    expected = count_roots(chain, speed, sector, conservative)
+    if held.eigenvalues.size < expected:
+        held = search(chain, roots, speed, sector)
+    found = held.eigenvalues.size
+    certificate = WhirlCertificate(sector.most, expected, found, float(held.residuals.max(initial=0.0)), method)
+    if not certificate.complete:
+        raise IncompleteModesError(
+            f"{found} whirl modes are found below {sector.most:g} rad/s, but the exact equations have {expected} "
+            f"by their {method} count; choose a limit a little apart, or check the model for parts that differ by many "
+            "orders of magnitude in stiffness or damping"
+        )
+    return held, certificate
+
+
+def count_roots(chain: SpatialChain, speed: Speed, sector: Sector, conservative: bool) -> int:
+    """Roots in a sector: by inertia where all lie on the imaginary axis, else by winding."""
+    if conservative:
+        edges = np.array([sector.least, sector.most])
+        low, high = negative_count(chain, edges, speed).tolist()
+        return int(high - low)
+    return wind(chain, sector, speed).count
+
+
+def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
+    """All roots in a sector: those known, and by winding and power sums those that are not."""
+    roots, waiting, cuts = known, [sector], 0
+    while waiting:
+        part = waiting.pop()
+        winding = wind(chain, part, speed)
+        inside = roots.eigenvalues[part.holds(roots.eigenvalues)]
+        missing = winding.count - inside.size
+        if missing <= 0:
+            continue
+        if missing <= MOST_MISSING:
+            starts = winding.missing(inside)
+            roots = distinct(roots.joined(refine_roots(chain, starts, speed)))
+            if int(part.holds(roots.eigenvalues).sum()) == winding.count:
+                continue
+        if cuts >= MOST_CUTS:
+            break
+        cuts += 1
+        waiting += _cut(chain, part, speed)
+    return roots.take(sector.holds(roots.eigenvalues))
+
+
+def _cut(chain: SpatialChain, sector: Sector, speed: Speed) -> list[Sector]:
+    """Two parts of a sector with no root on the cut."""
+    for nudge in range(MOST_NUDGES):
+        halves = sector.halves(0.5 + 0.037 * nudge)
+        try:
+            wind(chain, halves[0], speed)
+        except RootOnContourError:
+            continue
+        return list(halves)
+    raise RootOnContourError(
+        f"whirl modes about |λ| = {sector.most:g} rad/s lie too close to each other to be told apart; "
+        "choose a lower limit"
+    )

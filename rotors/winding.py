@@ -1,0 +1,171 @@
+"""How many roots of the exact equations lie in a region, by the argument principle; and where a missing one is.
+
+The determinant f(λ) of `rotors.spatial_chain` is entire, so that the number of its zeros inside a closed contour
+is the number of turns that f makes about zero along it. The contour here bounds a rectangle in the plane of
+w = ln λ: an annular sector r₁ < |λ| < r₂, θ₁ < arg λ < θ₂. All oscillating motions, stable or not, lie in one such
+sector just inside 0 < arg λ < π.
+
+Sampling is adaptive. With g = d ln f/dw measured at every sample by a short second step, an interval of
+length h is safe when |h g| < 1.5 at both its ends and its own change of ln f is that of the mean slope. A
+root of any multiplicity k at a distance d < h/2 from the interval gives |g| > k/h at both ends, so that even
+a double root's whole turn, invisible in the phase, is seen in the slopes, and the interval halved.
+
+Where a root is missing from those known, the power sums of all roots,
+
+    Σ w_k^m = (1/2πi) ∮ w^m d ln f = (1/2πi) { [w^m ln f] − m ∮ w^{m−1} ln f dw },
+
+less those of the known ones, give the polynomial of the missing (Delves and Lyness, Math. Comp. 21, 1967).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import IncompleteModesError
+from .exact_roots import Speed
+from .spatial_chain import SpatialChain
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+STEEPEST = 1.5
+MISFIT = 0.3
+SIDE_SAMPLES = 13
+MOST_ROUNDS = 48
+# The second step of a sample, as a part of the interval it was put into.
+SLOPE_PART = 1e-3
+BATCH = 512
+
+
+class RootOnContourError(IncompleteModesError):
+    """A root lies on the contour itself, so that it is neither inside nor outside."""
+
+
+@dataclass(frozen=True)
+class Sector:
+    """The annular sector of all λ with least < |λ| < most, rad/s, and first < arg λ < last, rad."""
+
+    least: float
+    most: float
+    first: float
+    last: float
+
+    @property
+    def corners(self) -> ComplexArray:
+        """ln λ at the corners, counter-clockwise."""
+        low, high = np.log(self.least), np.log(self.most)
+        return np.array([low + 1j * self.first, high + 1j * self.first, high + 1j * self.last, low + 1j * self.last])
+
+    def holds(self, eigenvalues: ComplexArray) -> npt.NDArray[np.bool_]:
+        """Which of the values lie inside."""
+        size, angle = np.abs(eigenvalues), np.angle(eigenvalues)
+        return np.asarray((size > self.least) & (size < self.most) & (angle > self.first) & (angle < self.last))
+
+    def halves(self, part: float) -> tuple["Sector", "Sector"]:
+        """Two sectors, cut across the longer side at a part of it."""
+        if np.log(self.most / self.least) > self.last - self.first:
+            middle = self.least * (self.most / self.least) ** part
+            return Sector(self.least, middle, self.first, self.last), Sector(middle, self.most, self.first, self.last)
+        middle = self.first + part * (self.last - self.first)
+        return Sector(self.least, self.most, self.first, middle), Sector(self.least, self.most, middle, self.last)
+
+
+@dataclass(frozen=True)
+class Winding:
+    """What one contour tells.
+
+    Attributes
+    ----------
+    count
+        Roots inside, with multiplicity.
+    samples
+        How many determinants it took.
+    points, logarithms, slopes
+        Along the contour, the last the first again: w, ln f continued along it, d ln f/dw, (s + 1,).
+    """
+
+    count: int
+    samples: int
+    points: ComplexArray
+    logarithms: ComplexArray
+    slopes: ComplexArray
+
+    def missing(self, known: ComplexArray) -> ComplexArray:
+        """Estimates of the roots inside that are not among the known ones, by the power sums."""
+        wanted = self.count - known.size
+        # About the middle of the contour and in its size, the powers stay of one order.
+        middle = self.points[:-1].mean()
+        size = float(np.abs(self.points - middle).max())
+        w, logs = (self.points - middle) / size, self.logarithms
+        slopes, h = self.slopes * size, np.diff(w)
+        rest = (np.log(known) - middle) / size
+        sums = np.empty(wanted, dtype=np.complex128)
+        for m in range(1, wanted + 1):
+            values = m * w ** (m - 1) * logs
+            rates = m * w ** (m - 1) * slopes + m * (m - 1) * w ** max(m - 2, 0) * logs
+            integral = (h * (values[1:] + values[:-1]) / 2.0 + h**2 * (rates[:-1] - rates[1:]) / 12.0).sum()
+            whole = w[-1] ** m * logs[-1] - w[0] ** m * logs[0] - integral
+            sums[m - 1] = whole / 2j / np.pi - (rest**m).sum()
+        coefficients = np.zeros(wanted + 1, dtype=np.complex128)
+        coefficients[0] = 1.0
+        for m in range(1, wanted + 1):  # Newton's identities
+            coefficients[m] = -(coefficients[:m][::-1] @ sums[:m]) / m
+        return np.asarray(np.exp(np.roots(coefficients) * size + middle))
+
+
+def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
+    """The turns of the determinant along the edge of a sector.
+
+    Raises
+    ------
+    RootOnContourError
+        The phase does not settle however finely an edge is sampled.
+    """
+    scale = float(chain.force_scale(np.array([sector.most]))[0])
+    corners = sector.corners
+
+    def logarithm(w: ComplexArray) -> ComplexArray:
+        parts = []
+        for first in range(0, w.size, BATCH):
+            at = np.exp(w[first : first + BATCH])
+            size, phase = chain.pattern.determinants(chain.values(at, speed(at), np.full(at.size, scale)))
+            parts.append(size + 1j * np.angle(phase))
+        return np.concatenate(parts)
+
+    def sampled(w: ComplexArray, step: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        both = logarithm(np.concatenate([w, w + step]))
+        logs, ahead = both[: w.size], both[w.size :]
+        return logs, _principal(ahead - logs) / step
+
+    edges = [np.linspace(a, b, SIDE_SAMPLES)[:-1] for a, b in zip(corners, np.roll(corners, -1), strict=True)]
+    points = np.concatenate([*edges, corners[:1]])
+    logs, slopes = sampled(points[:-1], SLOPE_PART * np.diff(points))
+    logs, slopes = np.append(logs, logs[0]), np.append(slopes, slopes[0])
+    samples = 2 * (points.size - 1)
+    # The slope along one edge serves the next one too: it is the derivative of an analytic function.
+    for _ in range(MOST_ROUNDS):
+        h = np.diff(points)
+        change = _principal(np.diff(logs))
+        steep = np.maximum(np.abs(h * slopes[1:]), np.abs(h * slopes[:-1])) > STEEPEST
+        misfit = np.abs(change - 0.5 * h * (slopes[1:] + slopes[:-1])) > MISFIT
+        unsafe = np.flatnonzero(steep | misfit)
+        if unsafe.size == 0:
+            count = round(float(change.imag.sum()) / (2.0 * np.pi))
+            continued = logs[0] + np.concatenate([[0.0], np.cumsum(change)])
+            return Winding(count, samples, points, continued, slopes)
+        middles = 0.5 * (points[unsafe] + points[unsafe + 1])
+        new_logs, new_slopes = sampled(middles, 0.5 * SLOPE_PART * h[unsafe])
+        samples += 2 * unsafe.size
+        points = np.insert(points, unsafe + 1, middles)
+        logs, slopes = np.insert(logs, unsafe + 1, new_logs), np.insert(slopes, unsafe + 1, new_slopes)
+    raise RootOnContourError(
+        f"the count of whirl modes with {sector.least:g} < |λ| < {sector.most:g} rad/s does not settle, as one lies "
+        "on the edge of the region; choose a limit a little apart from it"
+    )
+
+
+def _principal(difference: ComplexArray) -> ComplexArray:
+    """Differences of logarithms with the imaginary part brought into (−π, π]."""
+    turns = np.round(difference.imag / (2.0 * np.pi))
+    return np.asarray(difference - 2j * np.pi * turns)
