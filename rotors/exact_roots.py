@@ -15,6 +15,7 @@ stay together, where what is left out, the square of their distance, is below ro
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +25,7 @@ from .spatial_chain import SLOPE_STEP, SpatialChain
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
 Speed = Callable[[ComplexArray], ComplexArray]
 
 # Starting values nearer than this are refined together first, as their errors may be as large.
@@ -51,15 +53,18 @@ class ExactRoots:
         (w, order) complex: right null vectors, of unit norm in the scaled unknowns.
     residuals
         (w,): the last correction, as a part of the root.
+    scales
+        (w,): the unit of forces in each solution.
     """
 
     eigenvalues: ComplexArray
     solutions: ComplexArray
     residuals: FloatArray
+    scales: FloatArray
 
     def take(self, index: npt.NDArray[np.intp] | npt.NDArray[np.bool_]) -> "ExactRoots":
         """Some of the roots."""
-        return ExactRoots(self.eigenvalues[index], self.solutions[index], self.residuals[index])
+        return ExactRoots(self.eigenvalues[index], self.solutions[index], self.residuals[index], self.scales[index])
 
     def joined(self, other: "ExactRoots") -> "ExactRoots":
         """These roots and then those."""
@@ -67,6 +72,7 @@ class ExactRoots:
             np.concatenate([self.eigenvalues, other.eigenvalues]),
             np.concatenate([self.solutions, other.solutions]),
             np.concatenate([self.residuals, other.residuals]),
+            np.concatenate([self.scales, other.scales]),
         )
 
 
@@ -93,25 +99,25 @@ def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> Exa
         Speed of rotation as an analytic function of λ.
     """
     order = chain.pattern.order
-    random = np.random.default_rng(1991)
-    first = random.standard_normal((starts.size, order)) + 1j * random.standard_normal((starts.size, order))
+    first = random_vectors(starts.size, order)
     alone: list[tuple[complex, ComplexArray]] = []
     settled: list[ExactRoots] = []
     for members in clusters(starts, NEAR):
         if members.size == 1:
             alone.append((starts[members[0]], first[members[0]]))
             continue
-        values, vectors, _ = _together(chain, starts[members], first[members], speed, steps=3)
-        for nearer in clusters(values, TIED):
+        near = _together(chain, starts[members], first[members], speed, steps=3)
+        for nearer in clusters(near.eigenvalues, TIED):
+            values, vectors = near.eigenvalues[nearer], near.solutions[nearer]
             if nearer.size == 1:
-                alone.append((values[nearer[0]], vectors[nearer[0]]))
+                alone.append((values[0], vectors[0]))
             else:
-                tied = _together(chain, values[nearer], vectors[nearer], speed, steps=MOST_STEPS)
-                settled.append(ExactRoots(*tied))
+                settled.append(_together(chain, values, vectors, speed, steps=MOST_STEPS))
     if alone:
-        settled.append(_singly(chain, np.array([a[0] for a in alone]), np.array([a[1] for a in alone]), speed))
+        values, vectors = np.array([one[0] for one in alone]), np.array([one[1] for one in alone])
+        settled.append(_singly(chain, values, vectors, lambda _, at: speed(at)))
     if not settled:
-        return ExactRoots(np.zeros(0, complex), np.zeros((0, order), complex), np.zeros(0))
+        return ExactRoots(np.zeros(0, complex), np.zeros((0, order), complex), np.zeros(0), np.zeros(0))
     roots = settled[0]
     for more in settled[1:]:
         roots = roots.joined(more)
@@ -153,16 +159,41 @@ def equations_at(
     return chain.values(eigenvalues, speed(eigenvalues), scale), (ahead - behind) / (2.0 * step[:, None])
 
 
-def _singly(chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, speed: Speed) -> ExactRoots:
+def refine_each(
+    chain: SpatialChain, starts: ComplexArray, speeds: FloatArray, vectors: ComplexArray | None = None
+) -> ExactRoots:
+    """Exact roots from starting values, each alone and at its own speed, (w,) both; none is dropped.
+
+    ``vectors`` (w, order), where there are any, spare the first steps. A root that does not settle has a residual
+    above `ACCEPTED`.
+    """
+    if vectors is None:
+        vectors = random_vectors(starts.size, chain.pattern.order)
+    return _singly(chain, starts, vectors, lambda index, _: speeds[index].astype(np.complex128))
+
+
+def random_vectors(count: int, order: int) -> ComplexArray:
+    """Complex vectors to start iterations from, the same every time, (count, order)."""
+    random = np.random.default_rng(1991)
+    return np.asarray(random.standard_normal((count, order)) + 1j * random.standard_normal((count, order)))
+
+
+def _singly(
+    chain: SpatialChain,
+    values: ComplexArray,
+    vectors: ComplexArray,
+    speed: Callable[[IntArray, ComplexArray], ComplexArray],
+) -> ExactRoots:
+    """Newton's method for each; ``speed`` takes the indices of roots and their values."""
     values, vectors = values.copy(), vectors.copy()
-    residuals = np.full(values.size, np.inf)
+    residuals, scales = np.full(values.size, np.inf), np.ones(values.size)
     active = np.arange(values.size)
     for step in range(MOST_STEPS):
         if active.size == 0:
             break
         at = values[active]
         scale = chain.force_scale(at)
-        entries, slopes = equations_at(chain, at, speed, scale)
+        entries, slopes = equations_at(chain, at, partial(speed, active), scale)
         right, left = chain.pattern.null_vectors(entries, vectors[active][:, None], 2 if step == 0 else 1)
         top = chain.pattern.forms(entries, left, right)[:, 0, 0]
         bottom = chain.pattern.forms(slopes, left, right)[:, 0, 0]
@@ -172,38 +203,37 @@ def _singly(chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, sp
         long = share > LONGEST_STEP
         change = np.where(long, LONGEST_STEP * np.abs(at) * np.exp(1j * np.angle(change)), change)
         change = np.where(np.isfinite(change), change, 0.0)
-        vectors[active] = right[:, 0]
+        vectors[active], scales[active] = right[:, 0], scale
         # Rounding alone moves a settled root: it stays where its last good step brought it.
         rounding = (share < ACCEPTED) & (share >= 0.5 * residuals[active])
         values[active] = np.where(rounding, at, at + change)
         residuals[active] = share
         done = rounding | (share <= SETTLED)
         active = active[~done]
-    return ExactRoots(values, vectors, residuals)
+    return ExactRoots(values, vectors, residuals, scales)
 
 
-def _together(
-    chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, speed: Speed, steps: int
-) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """All roots of one cluster by the small eigenproblem about their mean; values, vectors and residuals."""
-    basis = vectors[None]
+def _together(chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, speed: Speed, steps: int) -> ExactRoots:
+    """All roots of one cluster by the small eigenproblem about their mean."""
+    basis, mixture = vectors[None], np.eye(values.size, dtype=np.complex128)
     change = np.full(values.size, np.inf)
+    scale = np.ones(1)
     for step in range(steps):
         centre = np.array([values.mean()])
         scale = chain.force_scale(centre)
         entries, slopes = equations_at(chain, centre, speed, scale)
         right, left = chain.pattern.null_vectors(entries, basis, 3 if step == 0 else 1)
         top, bottom = (chain.pattern.forms(matrix, left, right)[0] for matrix in (entries, slopes))
-        offsets, mixture = linalg.eig(top, -bottom)
+        offsets, mixing = linalg.eig(top, -bottom)
         if not np.isfinite(offsets).all():
-            break
+            return ExactRoots(values, basis[0], np.full(values.size, np.inf), np.full(values.size, scale[0]))
         found = centre[0] + offsets
-        change = np.abs(np.sort_complex(found) - np.sort_complex(values)) / np.abs(found)
-        values, basis = found, right
-        if change.max() <= SETTLED * 5.0 and step > 0:
+        moved = np.abs(np.sort_complex(found) - np.sort_complex(values)).max() / np.abs(found)
+        # What the small problem leaves out is of the order of the square of the distances.
+        change = np.maximum(moved, np.abs(offsets / found) ** 2)
+        values, basis, mixture = found, right, mixing
+        if step > 0 and moved.max() <= 5.0 * SETTLED:
             break
-    if not np.isfinite(offsets).all():
-        return values, basis[0], np.full(values.size, np.inf)
     mixed = mixture.T @ basis[0]
     mixed /= np.linalg.norm(mixed, axis=1, keepdims=True)
-    return values, mixed, np.maximum(change, np.abs(offsets / values) ** 2)
+    return ExactRoots(values, mixed, change, np.full(values.size, scale[0]))

@@ -50,6 +50,8 @@ IntArray = npt.NDArray[np.intp]
 # Relative step of the central difference that gives slopes of the entries: good to about 1e-10, which costs
 # the refined roots nothing, as their residual is exact.
 SLOPE_STEP = 1e-5
+# The least unit of force, as a part of what the stiffest bearing takes per unit displacement.
+STATIC_FORCE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -141,8 +143,10 @@ class SpatialChain:
         return BandPattern.of(np.concatenate(rows), np.concatenate(columns), order)
 
     def force_scale(self, eigenvalues: ComplexArray) -> FloatArray:
-        """Unit of forces at each λ: those of inertia, or of the shaft's stiffness where that is smaller."""
-        return np.asarray(np.clip(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30, 1.0))
+        """Unit of forces at each λ: those of inertia, within what the bearings and the shaft have to offer."""
+        held = max((float(np.abs(tie.stiffness).max()) for tie in self.ties), default=1.0)
+        least = min(max(STATIC_FORCE * held, 1e-30), 1.0)
+        return np.asarray(np.clip(np.abs(eigenvalues) ** 2 * self.total_mass, least, 1.0))
 
     def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Entries of the equations at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""

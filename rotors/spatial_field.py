@@ -39,10 +39,15 @@ class SpatialMotion:
 
     @classmethod
     def of(
-        cls, chain: SpatialChain, eigenvalues: ComplexArray, speeds: ComplexArray, solutions: ComplexArray
+        cls,
+        chain: SpatialChain,
+        eigenvalues: ComplexArray,
+        speeds: ComplexArray,
+        solutions: ComplexArray,
+        scale: FloatArray,
     ) -> "SpatialMotion":
-        """Motions from solutions (w, order) of a chain's equations; blocks that it lacks are at rest."""
-        states = chain.states(solutions, chain.force_scale(eigenvalues))
+        """Motions from solutions (w, order) and their unit of force (w,); blocks that the chain lacks are at rest."""
+        states = chain.states(solutions, scale)
         parts = {block: np.zeros((*states.shape[:2], 4), dtype=np.complex128) for block in (1, -1)}
         first = 0
         for block in chain.blocks:
@@ -77,6 +82,10 @@ class SpatialMotion:
             forward=np.concatenate([self.forward, other.forward]),
             backward=np.concatenate([self.backward, other.backward]),
         )
+
+    def plus(self, other: "SpatialMotion") -> "SpatialMotion":
+        """The sum of two answers to the same frequencies."""
+        return replace(self, forward=self.forward + other.forward, backward=self.backward + other.backward)
 
     def scaled(self, factors: ComplexArray) -> "SpatialMotion":
         """Every motion times a number, (w,)."""

@@ -17,6 +17,7 @@ from .errors import require_finite
 from .exact_roots import ExactRoots, Speed, constant_speed, refine_roots
 from .lateral import LateralModes
 from .projection import DEFAULT_COUNT, Projection, basis_for
+from .segment import Segment
 from .shaft import Rotor
 from .spatial_chain import SpatialChain, spatial_chain, whirl_reach
 from .spatial_field import SpatialMotion
@@ -181,7 +182,9 @@ def certified_whirl(
         sector = oscillating(least, _limit_behind(refined, least, count))
     else:
         sector = oscillating(least, limit)
-    conservative = is_conservative(bearings)
+    # Under compression the shaft's own stiffness may fail to be positive, on which that count rests.
+    compressed = any(isinstance(part, Segment) and part.axial_force < 0.0 for part in rotor.segments)
+    conservative = is_conservative(bearings) and not compressed
     parts = [
         certified_roots(chain, roots, speed, sector, conservative) for chain, roots in zip(chains, refined, strict=True)
     ]
@@ -213,7 +216,7 @@ def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> fl
 
 def _joined(chains: Sequence[SpatialChain], roots: Sequence[ExactRoots], speed: Speed) -> SpatialMotion:
     motions = [
-        SpatialMotion.of(chain, one.eigenvalues, speed(one.eigenvalues), one.solutions)
+        SpatialMotion.of(chain, one.eigenvalues, speed(one.eigenvalues), one.solutions, one.scales)
         for chain, one in zip(chains, roots, strict=True)
     ]
     motion = motions[0]

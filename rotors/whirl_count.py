@@ -8,8 +8,8 @@ proportional to the speed Ω, or to ω where the speed follows the frequency. At
 
 because vᴴGv = ω vᴴMv − vᴴKv / ω there. (For Ω = ω, D = K − ω²(M − G') and vᴴD'v = −2 vᴴKv / ω.) Each eigenvalue
 of D that passes zero as ω grows passes downwards, so the roots between two frequencies number exactly the
-difference of s(D), the negative eigenvalues: Wittrick and Williams' count, carried over to any speed. Roots that move no
-stiffness, the free rotor's at zero, lie below both.
+difference of s(D), the negative eigenvalues: Wittrick and Williams' count, carried over to any speed. Roots that move
+no stiffness, the free rotor's at zero, lie below both.
 
 Eliminating nodes from the left, with (U, F) the n states that the left part admits, S = F U⁻¹, and K₁₁ = T₁₂⁻¹T₁₁
 of the next piece, s(D) = Σ s(S + K₁₁) + s(S_last), as in `rotors.root_count`. Congruence with U spares the inverse:

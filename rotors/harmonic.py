@@ -1,0 +1,244 @@
+"""Steady response of a turning rotor to harmonic loads, by the exact equations of both planes.
+
+A load Re[F e^{iωt}] at a node stands on the right of the equations of `rotors.spatial_chain` at λ = iω, with a
+negative sign in the node's force balance. No modes are summed, so nothing is truncated.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from .bearing import Bearing
+from .errors import require, require_finite
+from .loads import HarmonicForce
+from .shaft import Rotor
+from .spatial_chain import SpatialChain, block_units, spatial_chain, whirl_reach
+from .spatial_field import SpatialMotion
+from .spatial_ties import CIRCULAR, MEMBERS, block_sets, make_tie
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+# Circular loads over r+, β+, r−, β−, z at some places and frequencies, (b, places, 5), N and N·m.
+Loads = ComplexArray
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """Ellipses that points of the shaft run through.
+
+    Attributes
+    ----------
+    major, minor
+        Half axes, m; the minor one is positive where the orbit runs counter-clockwise, negative where clockwise.
+    inclination
+        Of the major axis from x, rad, between −π/2 and π/2.
+    """
+
+    major: FloatArray
+    minor: FloatArray
+    inclination: FloatArray
+
+
+@dataclass(frozen=True)
+class HarmonicResponse:
+    """Steady motion Re[X e^{iωt}] of a rotor, one for each frequency.
+
+    Attributes
+    ----------
+    frequencies, speeds
+        (b,): ω and the speed of rotation Ω, rad/s.
+    motion
+        The shaft's exact motion.
+    bearings
+        Their names.
+    bearing_forces
+        (b, bearings, 5) complex: on what carries each bearing, over x, y, z (N) and about x and about y (N·m).
+    """
+
+    frequencies: FloatArray
+    speeds: FloatArray
+    motion: SpatialMotion = field(repr=False)
+    bearings: tuple[str, ...]
+    bearing_forces: ComplexArray = field(repr=False)
+
+    def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
+        """Complex x and y at positions z (m), both (b, len(z)), m."""
+        return self.motion.evaluate(z)
+
+    def probe(self, z: float, angle: float) -> ComplexArray:
+        """Complex amplitude along a direction at ``angle`` (rad) from x, (b,), m: abs is it, −angle its phase lag."""
+        x, y = self.motion.evaluate([z])
+        return np.asarray(x[:, 0] * np.cos(angle) + y[:, 0] * np.sin(angle))
+
+    def orbit(self, z: npt.ArrayLike) -> Orbit:
+        """Orbits at positions z (m), axes (b, len(z))."""
+        x, y = self.motion.evaluate(z)
+        return orbit_of(x, y, self.frequencies[:, None])
+
+
+def orbit_of(x: ComplexArray, y: ComplexArray, frequencies: FloatArray) -> Orbit:
+    """Ellipse of Re[X e^{iωt}], Re[Y e^{iωt}]: r = x + i y = R₊e^{iωt} + conj(R₋)e^{−iωt}, axes |R₊| ± |R₋|."""
+    plus, minus = 0.5 * (x + 1j * y), 0.5 * (x - 1j * y)
+    sense = np.where(frequencies < 0.0, -1.0, 1.0)
+    inclination = 0.5 * (np.angle(plus) - np.angle(minus))
+    turns = np.round(inclination / np.pi)
+    return Orbit(
+        np.abs(plus) + np.abs(minus), sense * (np.abs(plus) - np.abs(minus)), np.asarray(inclination - np.pi * turns)
+    )
+
+
+def harmonic_response(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    forces: Sequence[HarmonicForce],
+    frequencies: npt.ArrayLike,
+    speed: float = 0.0,
+) -> HarmonicResponse:
+    """Response to harmonic forces that do not turn with the rotor.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and what holds it; tables are read at ``speed``.
+    forces
+        Their places and complex amplitudes.
+    frequencies
+        (b,): ω, rad/s.
+    speed
+        Ω, rad/s.
+
+    Raises
+    ------
+    RotorError
+        A place off the shaft, or a number that is not finite.
+    """
+    omega = finite_values("frequencies", frequencies)
+    loads = np.broadcast_to(
+        np.array([force.circular for force in forces]).reshape(1, -1, 5), (omega.size, len(forces), 5)
+    )
+    return solve_harmonic(rotor, bearings, [f.at for f in forces], loads, omega, np.full(omega.size, float(speed)))
+
+
+def frequency_response(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    loaded: Sequence[tuple[float, str]],
+    read: Sequence[tuple[float, str]],
+    frequencies: npt.ArrayLike,
+    speed: float = 0.0,
+) -> ComplexArray:
+    """Receptance between places: displacement at each read place per unit force at each loaded one.
+
+    Parameters
+    ----------
+    loaded, read
+        Place in m and direction, "x" or "y".
+    frequencies, speed
+        ω (b,) and Ω, rad/s.
+
+    Returns
+    -------
+    (b, read, loaded) complex, m/N.
+
+    Raises
+    ------
+    RotorError
+        As `harmonic_response`, or another direction.
+    """
+    for _, direction in (*loaded, *read):
+        require(direction in ("x", "y"), "direction", direction, "'x' or 'y'")
+    columns = []
+    for at, direction in loaded:
+        force = HarmonicForce(at, x=1.0) if direction == "x" else HarmonicForce(at, y=1.0)
+        x, y = harmonic_response(rotor, bearings, [force], frequencies, speed).evaluate([place for place, _ in read])
+        chosen = [x[:, k] if way == "x" else y[:, k] for k, (_, way) in enumerate(read)]
+        columns.append(np.stack(chosen, axis=1))
+    return np.stack(columns, axis=2)
+
+
+def solve_harmonic(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    places: Sequence[float],
+    loads: Loads,
+    frequencies: FloatArray,
+    speeds: FloatArray,
+) -> HarmonicResponse:
+    """Response to loads (b, places, 5) over the circular coordinates, at every ω and Ω, (b,) each."""
+    for bearing in bearings:
+        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
+    for place in places:
+        rotor.require_on_shaft("load", place)
+    tabled = any(bearing.speeds is not None for bearing in bearings)
+    constant = [bearing.at_speed(float(speeds[0])) if tabled else bearing for bearing in bearings]
+    # Tables may tie motions at one speed and not at another: then all go together.
+    sets = block_sets([b.at_speed(float(s)) for s in speeds for b in bearings] if tabled else constant)
+    highest = max(
+        (whirl_reach(float(w), float(s)) for w, s in zip(np.abs(frequencies), speeds, strict=True)), default=0.0
+    )
+    eigenvalues = 1j * frequencies
+    forces = np.zeros((frequencies.size, len(constant), 5), dtype=np.complex128)
+    motion: SpatialMotion | None = None
+    for blocks in sets:
+        chain = spatial_chain(rotor, constant, blocks, max(highest, 1e-6), places)
+        scale = chain.force_scale(eigenvalues)
+        sides = _sides(chain, places, loads) / scale[:, None]
+        solutions = np.empty((frequencies.size, chain.pattern.order), dtype=np.complex128)
+        runs = (
+            [(slice(k, k + 1), _retied(chain, bearings, s)) for k, s in enumerate(speeds)]
+            if tabled
+            else [(slice(None), chain)]
+        )
+        for run, tied in runs:
+            values = tied.values(eigenvalues[run], speeds[run].astype(np.complex128), scale[run])
+            solutions[run] = chain.pattern.solve(values, sides[run, None])[:, 0]
+            forces[run] += bearing_forces(tied, solutions[run], eigenvalues[run])
+        part = SpatialMotion.of(chain, eigenvalues, speeds.astype(np.complex128), solutions, scale)
+        motion = part if motion is None else motion.plus(part)
+    assert motion is not None
+    return HarmonicResponse(frequencies, speeds, motion, tuple(bearing.name for bearing in bearings), forces)
+
+
+def bearing_forces(chain: SpatialChain, solutions: ComplexArray, eigenvalues: ComplexArray) -> ComplexArray:
+    """Forces on the bearings' carriers (b, ties, 5) over x, y, z and about x and y, in SI."""
+    members = [member for block in chain.blocks for member in MEMBERS[block]]
+    forces = np.zeros((solutions.shape[0], len(chain.ties), 5), dtype=np.complex128)
+    for index, (tie, foot) in enumerate(zip(chain.ties, chain.feet, strict=True)):
+        relative = solutions[:, chain.starts[tie.node] + np.arange(chain.size)].copy()
+        relative[:, list(tie.foot)] -= solutions[:, foot]
+        stiffness, _ = tie.dynamic_stiffness(eigenvalues)
+        circular = np.zeros((solutions.shape[0], 5), dtype=np.complex128)
+        circular[:, members] = np.einsum("bij,bj->bi", stiffness, relative) / chain.units
+        # The change of coordinates is unitary: its inverse is its adjoint.
+        forces[:, index] = circular @ CIRCULAR.conj()
+    return forces
+
+
+def _sides(chain: SpatialChain, places: Sequence[float], loads: Loads) -> ComplexArray:
+    """Right-hand sides (b, order) of loads, before the scale of forces."""
+    members = [member for block in chain.blocks for member in MEMBERS[block]]
+    sides = np.zeros((loads.shape[0], chain.pattern.order), dtype=np.complex128)
+    for index, place in enumerate(places):
+        row = chain.starts[chain.bending.node_at(place)] + np.arange(chain.size)
+        sides[:, row] -= loads[:, index][:, members] * chain.units
+    return sides
+
+
+def _retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:
+    """The same chain with the bearings' coefficients at another speed."""
+    units = block_units(chain.bending, chain.blocks)
+    ties = [
+        make_tie(b.at_speed(float(speed)), tie.node, chain.blocks, units)
+        for b, tie in zip(bearings, chain.ties, strict=True)
+    ]
+    return replace(chain, ties=tuple(ties))
+
+
+def finite_values(what: str, values: npt.ArrayLike) -> FloatArray:
+    array = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    require(array.ndim == 1 and array.size > 0, f"{what} shape", array.shape, "one dimension and at least one value")
+    for value in array.tolist():
+        require_finite(what, value)
+    return array
