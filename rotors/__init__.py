@@ -29,11 +29,14 @@ from .lateral import LateralModes, solve_lateral_modes
 from .material import ShaftMaterial, shear_coefficient
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
 from .projection import whirl_basis
+from .loads import Bow, Unbalance
 from .section import Section
 from .segment import Segment
 from .shaft import Disc, Rotor
 from .shaft_coupling import Coupling
+from .statics import StaticDeflection, static_deflection
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
+from .unbalance import SynchronousResponse, unbalance_response
 from .whirl import WhirlModes, solve_whirl
 from .whirl_certificate import WhirlCertificate
 
@@ -41,6 +44,7 @@ __all__ = [
     "AxialModes",
     "AxisSpring",
     "Bearing",
+    "Bow",
     "Coupling",
     "CriticalSpeeds",
     "Disc",
@@ -55,7 +59,10 @@ __all__ = [
     "Section",
     "Segment",
     "ShaftMaterial",
+    "StaticDeflection",
+    "SynchronousResponse",
     "TorsionalModes",
+    "Unbalance",
     "WhirlCertificate",
     "WhirlModes",
     "attach_loads",
@@ -67,5 +74,7 @@ __all__ = [
     "solve_torsional_chain",
     "solve_torsional_modes",
     "solve_whirl",
+    "static_deflection",
+    "unbalance_response",
     "whirl_basis",
 ]

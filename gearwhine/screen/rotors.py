@@ -28,6 +28,9 @@ def show_rotors(document: dict[str, Any]) -> None:
         _at_rest(console, rotor)
         _whirl(console, rotor)
         _critical_speeds(console, rotor)
+        _weight(console, rotor["static"])
+        if rotor["unbalance_response"] is not None:
+            _response(console, rotor["unbalance_response"])
         if rotor["campbell"]:
             console.print(f"  {_stability(rotor['campbell'])}")
         console.print(f"  {_proof(rotor['certificate'])}")
@@ -102,6 +105,39 @@ def _critical_speeds(console: Console, rotor: dict[str, Any]) -> None:
     if excited:
         _, speed, margin = min(excited)
         console.print(f"  Of those that unbalance excites, {speed:.5g} rpm is nearest: {_beside(margin)} operation")
+
+
+def _weight(console: Console, static: dict[str, Any]) -> None:
+    """What the bearings carry of the rotor's weight, and how far it sags."""
+    if static["bearings"] is None:
+        console.print(f"  No static deflection: {static['why_not']}")
+        return
+    rows = [(bearing["name"], *(f"{load:z.5g}" for load in bearing["load_n"][:2])) for bearing in static["bearings"]]
+    title = f"Under its weight{_with_bearings_at(static['bearings_at_rpm'])}"
+    _show(console, title, ("bearing carries", "x [N]", "y [N]"), rows)
+    sag, place = 1e6 * static["largest_deflection_m"], 1e3 * static["largest_deflection_at_m"]
+    console.print(f"  It sags most at {place:.5g} mm, by {sag:.3g} µm")
+
+
+def _response(console: Console, response: dict[str, Any]) -> None:
+    """What each probe reads of unbalance and bow, at operation and at its largest."""
+    rows = []
+    for probe in response["probes"][:_MOST]:
+        at_operation = ("", "")
+        if probe["operation_amplitude_m"] is not None:
+            at_operation = (
+                f"{1e6 * probe['operation_amplitude_m']:.3g}",
+                f"{probe['operation_phase_lag_deg']:.0f}°",
+            )
+        largest = f"{1e6 * probe['largest_amplitude_m']:.3g} at {probe['largest_at_rpm']:.5g} rpm"
+        place = f"{probe['name']}, {1e3 * probe['at_m']:.5g} mm, {probe['angle_deg']:.0f}°"
+        rows.append((place, *at_operation, largest))
+    _show(
+        console,
+        "Response to unbalance and bow",
+        ("probe", "at operation [µm, peak]", "lag", "largest [µm, peak]"),
+        rows,
+    )
 
 
 def _beside(margin: float) -> str:

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 import rotors as room
+from gearwhine.stages.rotor_loads import SolvedResponse
 from gearwhine.stages.rotors import SolvedRotor
 
 FloatArray = npt.NDArray[np.float64]
@@ -35,6 +36,8 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "critical_directions": one.critical.direction.round(6).tolist(),
                 "critical_margins": _margins(one),
                 "campbell": _campbell(one.campbell),
+                "static": _static(one),
+                "unbalance_response": None if one.response is None else _response(one.response),
                 "damping": "of the bearings; the shaft's own acts in the coupled system",
                 "certificate": _certificate(one),
             }
@@ -77,6 +80,61 @@ def _campbell(campbell: tuple[room.WhirlModes, ...]) -> dict[str, Any] | None:
         "speed_rpm": [whirl.speed * _RPM for whirl in campbell],
         **{key: [row[key] for row in rows] for key in ("frequency_hz", "log_decrement", "direction")},
         "unstable_from_rpm": min(unstable, default=None),
+    }
+
+
+def _static(one: SolvedRotor) -> dict[str, Any]:
+    """Bearing loads under gravity and the shaft's sag; or why there are none."""
+    if isinstance(one.weight, str):
+        return {"bearings": None, "why_not": one.weight}
+    deflection = one.weight.deflection
+    sag = np.hypot(*one.weight.displacement)
+    lowest = int(sag.argmax())
+    return {
+        "gravity_m_per_s2": deflection.gravity.tolist(),
+        "bearings_at_rpm": _in_rpm(one.critical_speed),
+        "bearings": [
+            {"name": name, "load_n": load[:3].tolist(), "moment_n_m": load[3:].tolist()}
+            for name, load in zip(deflection.bearings, deflection.bearing_loads, strict=True)
+        ],
+        "largest_deflection_m": float(sag[lowest]),
+        "largest_deflection_at_m": float(one.weight.places[lowest]),
+        "place_m": one.weight.places.tolist(),
+        "deflection_m": one.weight.displacement.tolist(),
+    }
+
+
+def _response(solved: SolvedResponse) -> dict[str, Any]:
+    """What each probe reads over speed, at its largest and at operation; forces on the bearings over x and y."""
+    response = solved.response
+    rows = []
+    for place, reading in enumerate(solved.readings):
+        largest = int(reading.amplitude.argmax())
+        at_operation = solved.at_operation[place] if solved.at_operation else None
+        rows.append(
+            {
+                "name": reading.probe.name,
+                "at_m": reading.probe.at,
+                "angle_deg": float(np.degrees(reading.probe.angle)),
+                "amplitude_m": reading.amplitude.tolist(),
+                "phase_lag_deg": np.degrees(reading.phase_lag).tolist(),
+                "major_axis_m": reading.major_axis.tolist(),
+                "largest_amplitude_m": float(reading.amplitude[largest]),
+                "largest_at_rpm": float(response.speeds[largest]) * _RPM,
+                "operation_amplitude_m": None if at_operation is None else float(at_operation.amplitude[0]),
+                "operation_phase_lag_deg": None
+                if at_operation is None
+                else float(np.degrees(at_operation.phase_lag[0])),
+            }
+        )
+    forces = np.abs(response.bearing_forces[:, :, :2])
+    return {
+        "speed_rpm": (response.speeds * _RPM).tolist(),
+        "amplitude_convention": "zero to peak",
+        "probes": rows,
+        "bearings": [
+            {"name": name, "force_n": forces[:, place].T.tolist()} for place, name in enumerate(response.bearings)
+        ],
     }
 
 

@@ -1,4 +1,4 @@
-"""The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds."""
+"""The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, weight, unbalance and bow."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ import rotors as room
 from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import build_bearings, build_rotor
+from gearwhine.stages.rotor_loads import SolvedResponse, SolvedWeight, solve_response, solve_weight
 
 Bearings = tuple[room.Bearing, ...]
 
@@ -37,6 +38,10 @@ class SolvedRotor:
         That speed: of operation, or of rest where there is none [rad/s]; None without tables.
     operation : float or None
         Speed of operation [rad/s].
+    weight : SolvedWeight or str
+        Deflection under gravity at operation, else at rest; or why there is none.
+    response : SolvedResponse or None
+        To unbalance and bow; None where there is neither.
     """
 
     rotor: room.Rotor
@@ -51,6 +56,8 @@ class SolvedRotor:
     critical: room.CriticalSpeeds
     critical_speed: float | None
     operation: float | None
+    weight: SolvedWeight | str
+    response: SolvedResponse | None
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
@@ -73,6 +80,8 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         operation = speeds[0] if case.operation is not None else None
         reference = lowest if operation is None else operation
         tabled = any(bearing.speeds is not None for bearing in bearings)
+        weight = solve_weight(analysis, rotor, bearings, reference)
+        held = not isinstance(weight, str)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
@@ -89,6 +98,8 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 ),
                 critical_speed=reference if tabled else None,
                 operation=operation,
+                weight=weight,
+                response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
             )
         )
     return tuple(solved)
