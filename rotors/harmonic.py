@@ -5,7 +5,7 @@ negative sign in the node's force balance. No modes are summed, so nothing is tr
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -14,9 +14,9 @@ from .bearing import Bearing
 from .errors import require, require_finite
 from .loads import HarmonicForce
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, block_units, spatial_chain, whirl_reach
+from .spatial_chain import SpatialChain, retied, spatial_chain, whirl_reach
 from .spatial_field import SpatialMotion
-from .spatial_ties import CIRCULAR, MEMBERS, block_sets, make_tie
+from .spatial_ties import CIRCULAR, MEMBERS, block_sets
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -187,7 +187,7 @@ def solve_harmonic(
         sides = _sides(chain, places, loads) / scale[:, None]
         solutions = np.empty((frequencies.size, chain.pattern.order), dtype=np.complex128)
         runs = (
-            [(slice(k, k + 1), _retied(chain, bearings, s)) for k, s in enumerate(speeds)]
+            [(slice(k, k + 1), retied(chain, bearings, float(s))) for k, s in enumerate(speeds)]
             if tabled
             else [(slice(None), chain)]
         )
@@ -224,16 +224,6 @@ def _sides(chain: SpatialChain, places: Sequence[float], loads: Loads) -> Comple
         row = chain.starts[chain.bending.node_at(place)] + np.arange(chain.size)
         sides[:, row] -= loads[:, index][:, members] * chain.units
     return sides
-
-
-def _retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:
-    """The same chain with the bearings' coefficients at another speed."""
-    units = block_units(chain.bending, chain.blocks)
-    ties = [
-        make_tie(b.at_speed(float(speed)), tie.node, chain.blocks, units)
-        for b, tie in zip(bearings, chain.ties, strict=True)
-    ]
-    return replace(chain, ties=tuple(ties))
 
 
 def finite_values(what: str, values: npt.ArrayLike) -> FloatArray:

@@ -30,7 +30,7 @@ bearings loses no digits to its own stiffness.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -250,3 +250,13 @@ def spatial_chain(
     units = block_units(chain, blocks)
     ties = tuple(make_tie(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
     return SpatialChain(chain, axial_chain_on(rotor, chain), blocks, ties)
+
+
+def retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:
+    """The same chain with the coefficients that its bearings' tables hold at another speed (rad/s)."""
+    units = block_units(chain.bending, chain.blocks)
+    ties = tuple(
+        make_tie(bearing.at_speed(speed), tie.node, chain.blocks, units)
+        for bearing, tie in zip(bearings, chain.ties, strict=True)
+    )
+    return replace(chain, ties=ties)

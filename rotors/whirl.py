@@ -182,9 +182,7 @@ def certified_whirl(
         sector = oscillating(least, _limit_behind(refined, least, count))
     else:
         sector = oscillating(least, limit)
-    # Under compression the shaft's own stiffness may fail to be positive, on which that count rests.
-    compressed = any(isinstance(part, Segment) and part.axial_force < 0.0 for part in rotor.segments)
-    conservative = is_conservative(bearings) and not compressed
+    conservative = is_undriven(rotor, bearings)
     parts = [
         certified_roots(chain, roots, speed, sector, conservative) for chain, roots in zip(chains, refined, strict=True)
     ]
@@ -199,6 +197,13 @@ def certified_whirl(
         proofs[0].method,
     )
     return motion.take(order), certificate
+
+
+def is_undriven(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
+    """Whether roots may be counted by inertia: nothing damps or drives, and all stiffness is positive."""
+    # Under compression the shaft's own stiffness may fail to be.
+    compressed = any(isinstance(part, Segment) and part.axial_force < 0.0 for part in rotor.segments)
+    return is_conservative(bearings) and not compressed
 
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:

@@ -1,0 +1,339 @@
+"""Campbell diagram: whirl over a range of speeds, followed through its crossings.
+
+Starting values at every speed come from one projection on planar modes, reduced once; the roots are then refined
+on the exact equations, all speeds in one batch. Branches are followed from speed to speed by the eigenvalue that
+continues them and the shape that resembles theirs; motions that the bearings do not tie to each other, as forward and
+backward whirl in isotropic ones, are followed apart, so that they cannot be confused where they cross.
+
+Where nothing damps, the number of roots is proved at every speed (`rotors.whirl_count`). Elsewhere a proof costs a
+contour at each speed: it is made at a few, and at all where asked.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from .bearing import Bearing
+from .branches import Branch, directions, followed
+from .errors import IncompleteModesError, require, require_finite
+from .exact_roots import ACCEPTED, NEAR, ExactRoots, clusters, constant_speed, distinct, refine_each, refine_roots
+from .harmonic import finite_values
+from .lateral import LateralModes
+from .projection import DEFAULT_COUNT, Projection, basis_for
+from .shaft import Rotor
+from .spatial_chain import SpatialChain, retied, spatial_chain, whirl_reach
+from .spatial_ties import block_sets
+from .whirl import START_REACH, is_undriven
+from .whirl_certificate import NO_OSCILLATION, certified_roots, oscillating
+from .whirl_count import negative_count
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+BoolArray = npt.NDArray[np.bool_]
+
+# Damped sets are proved at this many speeds, spread over the range.
+PROOFS = 3
+# A crossing whose root lies further off than this, as a part of it, belongs to another branch.
+LONGEST_JUMP = 0.1
+# Branches are followed this far beyond the limit at every speed.
+WINDOW = 1.1
+# Gaps between starting values narrower than this may not be any.
+WIDE_GAP = 1e-3
+CROSSING_STEPS = 30
+CROSSING_TOLERANCE = 1e-11
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A speed at which a damped whirl frequency is a multiple of the speed of rotation.
+
+    Attributes
+    ----------
+    speed
+        Ω, rad/s.
+    eigenvalue
+        λ there, with Im λ = order · Ω; exact.
+    order
+        The multiple.
+    direction
+        Of the whirl, as in `rotors.WhirlModes`.
+    branch
+        Index in the diagram.
+    """
+
+    speed: float
+    eigenvalue: complex
+    order: float
+    direction: float
+    branch: int
+
+    @property
+    def log_decrement(self) -> float:
+        """−2π Re λ / Im λ."""
+        return float(-2.0 * np.pi * self.eigenvalue.real / self.eigenvalue.imag)
+
+
+@dataclass(frozen=True)
+class Campbell:
+    """Whirl over speed, one column for each branch; NaN where a branch does not oscillate or is out of range.
+
+    Attributes
+    ----------
+    speeds
+        (s,): Ω, rad/s.
+    eigenvalues
+        (s, m) complex, rad/s.
+    direction
+        (s, m), as in `rotors.WhirlModes`.
+    proved
+        (s,): speeds at which the number of roots was proved.
+    """
+
+    speeds: FloatArray
+    eigenvalues: ComplexArray
+    direction: FloatArray
+    proved: BoolArray
+    rotor: Rotor = field(repr=False)
+    bearings: tuple[Bearing, ...] = field(repr=False)
+    blocks: tuple[tuple[int, ...], ...] = field(repr=False)
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Natural frequency |λ|, rad/s, (s, m)."""
+        return np.asarray(np.abs(self.eigenvalues))
+
+    @property
+    def damped_frequencies(self) -> FloatArray:
+        """Im λ, rad/s, (s, m)."""
+        return np.asarray(self.eigenvalues.imag)
+
+    @property
+    def log_decrements(self) -> FloatArray:
+        """−2π Re λ / Im λ, (s, m)."""
+        return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
+
+    def crossings(self, order: float = 1.0) -> tuple[Crossing, ...]:
+        """Where branches cross Im λ = order · |Ω| within the range, each refined on the exact equations.
+
+        Raises
+        ------
+        IncompleteModesError
+            A crossing seen between two speeds cannot be refined; more speeds would separate it.
+        """
+        require_finite("order", order, positive=True)
+        found = []
+        for branch in range(self.eigenvalues.shape[1]):
+            gap = self.eigenvalues[:, branch].imag - order * np.abs(self.speeds)
+            for left in np.flatnonzero((gap[:-1] > 0.0) != (gap[1:] > 0.0)):
+                if np.isfinite(gap[left]) and np.isfinite(gap[left + 1]) and gap[left] != gap[left + 1]:
+                    found.append(self._crossing(branch, int(left), order))
+        return tuple(sorted(found, key=lambda crossing: abs(crossing.speed)))
+
+    def _crossing(self, branch: int, left: int, order: float) -> Crossing:
+        """Regula falsi with Illinois' halving, each λ refined exactly from between its neighbours."""
+        low, high = (float(speed) for speed in self.speeds[left : left + 2])
+        ends = self.eigenvalues[left : left + 2, branch]
+        gaps = ends.imag - order * np.abs(self.speeds[left : left + 2])
+        below, above = complex(ends[0]), complex(ends[1])
+        weight = [float(gaps[0]), float(gaps[1])]
+        chain = self._chain(branch, float(np.abs(ends).max()), max(abs(low), abs(high)))
+        direction = float(self.direction[left, branch])
+        for _ in range(CROSSING_STEPS):
+            part = weight[0] / (weight[0] - weight[1])
+            speed = low + part * (high - low)
+            tied = retied(chain, self.bearings, speed)
+            start = np.array([below + part * (above - below)])
+            root = refine_each(tied, start, np.array([speed]))
+            value = complex(root.eigenvalues[0])
+            if root.residuals[0] > ACCEPTED or abs(value - start[0]) > LONGEST_JUMP * abs(value):
+                break
+            direction = float(directions(tied, root, np.array([speed]))[0])
+            gap = value.imag - order * abs(speed)
+            if abs(gap) <= CROSSING_TOLERANCE * abs(value):
+                return Crossing(speed, value, order, direction, branch)
+            if (gap > 0.0) == (weight[0] > 0.0):
+                low, below, weight = speed, value, [gap, 0.5 * weight[1]]
+            else:
+                high, above, weight = speed, value, [0.5 * weight[0], gap]
+        raise IncompleteModesError(
+            f"the crossing of order {order:g} between {self.speeds[left]:g} and {self.speeds[left + 1]:g} rad/s does "
+            "not settle; ask for more speeds about there"
+        )
+
+    def _chain(self, branch: int, highest: float, speed: float) -> SpatialChain:
+        sets = self.blocks[branch]
+        constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.bearings]
+        return spatial_chain(self.rotor, constant, sets, whirl_reach(START_REACH * highest, speed))
+
+
+def campbell(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    speeds: npt.ArrayLike,
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+    basis: LateralModes | None = None,
+    prove_all: bool = False,
+) -> Campbell:
+    """Exact whirl modes over a range of speeds.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and what holds it; tables are read at each speed.
+    speeds
+        (s,): Ω, rad/s, ascending.
+    frequency_limit
+        rad/s: branches below it at some speed.
+    count
+        How many, the lowest at every speed, instead of a limit; with neither, 12.
+    basis
+        From `rotors.whirl_basis`, to spare building it.
+    prove_all
+        Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
+
+    Raises
+    ------
+    RotorError
+        Wrong arguments, or a speed beyond a table.
+    IncompleteModesError
+        A proof fails.
+    """
+    turning = finite_values("speeds", speeds)
+    require(bool((np.diff(turning) > 0.0).all()), "speeds", turning.tolist(), "ascending speeds")
+    chosen = basis_for(rotor, bearings, frequency_limit, count, basis)
+    tabled = any(bearing.speeds is not None for bearing in bearings)
+    at_speeds = [[b.at_speed(float(s)) for b in bearings] for s in turning] if tabled else [list(bearings)]
+    sets = block_sets([bearing for row in at_speeds for bearing in row])
+    wanted = None if frequency_limit is not None else count or DEFAULT_COUNT
+    starts = []
+    for blocks in sets:
+        one = Projection.of(rotor, at_speeds[0], blocks, chosen)
+        if tabled:
+            values = np.concatenate([one.eigenvalues(b, turning[k : k + 1]) for k, b in enumerate(at_speeds)])
+        else:
+            values = one.eigenvalues(at_speeds[0], turning)
+        oscillates = (values.imag > NO_OSCILLATION * np.abs(values)) & (np.abs(values) > NO_OSCILLATION * one.floor)
+        starts.append(np.where(oscillates, values, np.nan))
+    limits = _limits(starts, frequency_limit, wanted)
+    least = NO_OSCILLATION * Projection.of(rotor, [], (1,), chosen).floor
+    undriven = is_undriven(rotor, [bearing for row in at_speeds for bearing in row])
+    highest = max(whirl_reach(START_REACH * r, float(s)) for r, s in zip(limits, turning, strict=True))
+    branches: list[Branch] = []
+    owners: list[tuple[int, ...]] = []
+    proved = np.ones(turning.size, dtype=np.bool_)
+    for blocks, values in zip(sets, starts, strict=True):
+        chain = spatial_chain(rotor, at_speeds[0], blocks, highest)
+        chains = [retied(chain, row, 0.0) for row in at_speeds] if tabled else [chain] * turning.size
+        roots = _refined(chains, values, turning, limits)
+        proved &= _prove(chains, roots, turning, least, limits, undriven, prove_all)
+        for branch in followed(chain, roots, turning):
+            if bool((np.abs(branch.eigenvalues) < limits).any()):
+                branches.append(branch)
+                owners.append(blocks)
+    order = sorted(range(len(branches)), key=lambda k: branches[k].first_frequency)
+    empty = np.zeros((turning.size, 0))
+    return Campbell(
+        speeds=turning,
+        eigenvalues=np.stack([branches[k].eigenvalues for k in order], axis=1) if order else empty.astype(complex),
+        direction=np.stack([branches[k].direction for k in order], axis=1) if order else empty,
+        proved=proved,
+        rotor=rotor,
+        bearings=tuple(bearings),
+        blocks=tuple(owners[k] for k in order),
+    )
+
+
+def _limits(starts: Sequence[ComplexArray], frequency_limit: float | None, count: int | None) -> FloatArray:
+    """At every speed a frequency in a gap behind the wanted branches, (s,)."""
+    sizes = np.sort(np.abs(np.concatenate(starts, axis=1)), axis=1)
+    if count is None:
+        assert frequency_limit is not None
+        return np.full(sizes.shape[0], frequency_limit)
+    limits = np.empty(sizes.shape[0])
+    for k, row in enumerate(sizes):
+        ascending = row[np.isfinite(row)]
+        last = min(count, ascending.size)
+        # Starting values are not exact: a gap must be wide enough to be one.
+        while last < ascending.size and ascending[last] < ascending[last - 1] * (1.0 + WIDE_GAP):
+            last += 1
+        beyond = ascending[last] if last < ascending.size else 1.01 * ascending[-1]
+        limits[k] = np.sqrt(ascending[last - 1] * beyond)
+    return limits
+
+
+def _refined(
+    chains: Sequence[SpatialChain], values: ComplexArray, speeds: FloatArray, limits: FloatArray
+) -> list[ExactRoots]:
+    """Exact roots at every speed: those that lie apart in one batch, near ones together at their speed."""
+    chosen = [row[np.abs(row) < WINDOW * limit] for row, limit in zip(values, limits, strict=True)]
+    same = all(chain is chains[0] for chain in chains)
+    near = [not same or any(c.size > 1 for c in clusters(row, NEAR)) for row in chosen]
+    owner = np.concatenate([np.full(row.size, k) for k, row in enumerate(chosen)])
+    alone = ~np.array(near)[owner]
+    batch = refine_each(chains[0], np.concatenate(chosen)[alone], speeds[owner[alone]])
+    batch_owner = owner[alone]
+    roots = []
+    for k, row in enumerate(chosen):
+        if near[k]:
+            roots.append(refine_roots(chains[k], row, constant_speed(float(speeds[k]))))
+        else:
+            own = batch.take(batch_owner == k)
+            roots.append(distinct(own.take(own.residuals <= ACCEPTED)))
+    return roots
+
+
+def _prove(
+    chains: Sequence[SpatialChain],
+    roots: list[ExactRoots],
+    speeds: FloatArray,
+    least: float,
+    limits: FloatArray,
+    undriven: bool,
+    prove_all: bool,
+) -> BoolArray:
+    """Count the roots at every speed, or at a few; a set that lacks one is replaced by the result of a search."""
+    if undriven:
+        chosen = np.arange(speeds.size)
+        expected = _expected(chains, speeds, least, limits)
+        found = [
+            int(oscillating(least, float(limit)).holds(one.eigenvalues).sum())
+            for one, limit in zip(roots, limits, strict=True)
+        ]
+        doubtful = np.flatnonzero(expected != np.array(found))
+    else:
+        chosen = np.arange(speeds.size) if prove_all else np.linspace(0, speeds.size - 1, PROOFS).round().astype(int)
+        doubtful = np.unique(chosen)
+    for k in doubtful:
+        sector = oscillating(least, float(limits[k]))
+        inside, _ = certified_roots(chains[k], roots[k], constant_speed(float(speeds[k])), sector, undriven)
+        beyond = roots[k].take(~sector.holds(roots[k].eigenvalues))
+        roots[k] = inside.joined(beyond)
+    proved = np.zeros(speeds.size, dtype=np.bool_)
+    proved[chosen] = True
+    return proved
+
+
+def _expected(
+    chains: Sequence[SpatialChain], speeds: FloatArray, least: float, limits: FloatArray
+) -> npt.NDArray[np.intp]:
+    """Roots below the limits by inertia, (s,)."""
+    if all(chain is chains[0] for chain in chains):
+        twice = np.tile(speeds, 2).astype(np.complex128)
+        counts = negative_count(chains[0], np.concatenate([limits, np.full(speeds.size, least)]), lambda _: twice)
+        return np.asarray(counts[: speeds.size] - counts[speeds.size :])
+    rows = [
+        negative_count(chain, np.array([limit, least]), constant_speed(float(speed)))
+        for chain, limit, speed in zip(chains, limits, speeds, strict=True)
+    ]
+    return np.array([row[0] - row[1] for row in rows])
+
+
+def _inside(bearing: Bearing, speed: float) -> float:
+    """The speed, or the nearest one in a bearing's table."""
+    if bearing.speeds is None:
+        return speed
+    return float(np.clip(abs(speed), bearing.speeds[0], bearing.speeds[-1]))
