@@ -23,6 +23,7 @@ from .attachment import attach_loads
 from .axial import AxialModes, solve_axial_modes
 from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
+from .campbell import Campbell, Crossing, campbell
 from .certificate import ModeCertificate
 from .errors import IncompleteModesError, RotorError
 from .lateral import LateralModes, solve_lateral_modes
@@ -45,8 +46,10 @@ __all__ = [
     "AxisSpring",
     "Bearing",
     "Bow",
+    "Campbell",
     "Coupling",
     "CriticalSpeeds",
+    "Crossing",
     "Disc",
     "IncompleteModesError",
     "LateralModes",
@@ -66,6 +69,7 @@ __all__ = [
     "WhirlCertificate",
     "WhirlModes",
     "attach_loads",
+    "campbell",
     "critical_speeds",
     "rest_frequencies",
     "shear_coefficient",

@@ -25,7 +25,14 @@ def whirl_speeds(case: Case, rotor: str) -> tuple[float, ...]:
 
 
 def campbell_speeds(case: Case, rotor: str) -> tuple[float, ...]:
-    """Return the speeds of the Campbell diagram: as given, else the sweep's, else up to beyond operation, else none."""
+    """Return the speeds of the Campbell diagram: as given, else the sweep's, else up to beyond operation, else none.
+
+    Ascending, each once; those of a rotor that turns clockwise are negative.
+    """
+    return tuple(sorted(set(_diagram_speeds(case, rotor))))
+
+
+def _diagram_speeds(case: Case, rotor: str) -> tuple[float, ...]:
     analysis = case.rotor_analysis
     if analysis is not None and analysis.speed is not None:
         return _turned(case, rotor, listed(analysis.speed))

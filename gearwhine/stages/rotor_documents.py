@@ -35,10 +35,16 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "critical_bearings_at_rpm": _in_rpm(one.critical_speed),
                 "critical_directions": one.critical.direction.round(6).tolist(),
                 "critical_margins": _margins(one),
-                "campbell": _campbell(one.campbell),
+                "campbell": _campbell(one),
                 "static": _static(one),
                 "unbalance_response": None if one.response is None else _response(one.response),
                 "damping": "of the bearings; the shaft's own acts in the coupled system",
+                "stiffness_map": None
+                if one.stiffness_map is None
+                else {
+                    "stiffness_n_per_m": one.stiffness_map.stiffnesses.tolist(),
+                    "forward_critical_speeds_rpm": (one.stiffness_map.speeds * _RPM).tolist(),
+                },
                 "certificate": _certificate(one),
             }
             for one in solved
@@ -70,16 +76,35 @@ def _modes(whirl: room.WhirlModes) -> dict[str, Any]:
     }
 
 
-def _campbell(campbell: tuple[room.WhirlModes, ...]) -> dict[str, Any] | None:
-    """Whirl over speed, a row for each speed, and the lowest speed at which a mode grows; None without speeds."""
-    if not campbell:
+def _campbell(one: SolvedRotor) -> dict[str, Any] | None:
+    """Whirl over speed, a row for each speed and a column for each branch; None without speeds.
+
+    ``unstable_from_rpm`` is the lowest speed looked at, without its sense, at which a mode grows.
+    """
+    if one.campbell is None:
         return None
-    unstable = [abs(whirl.speed) * _RPM for whirl in campbell if not is_stable(whirl)]
-    rows = [_modes(whirl) for whirl in campbell]
+    diagram, crossings = one.campbell, one.crossings
+    # Branches that do not oscillate at a speed are not a number there, which compares as stable.
+    grows = (diagram.log_decrements < -2.0 * np.pi * NEUTRAL).any(axis=1)
     return {
-        "speed_rpm": [whirl.speed * _RPM for whirl in campbell],
-        **{key: [row[key] for row in rows] for key in ("frequency_hz", "log_decrement", "direction")},
-        "unstable_from_rpm": min(unstable, default=None),
+        "speed_rpm": (diagram.speeds * _RPM).tolist(),
+        "frequency_hz": (diagram.frequencies / _HERTZ).tolist(),
+        "log_decrement": diagram.log_decrements.tolist(),
+        "direction": diagram.direction.tolist(),
+        "unstable_from_rpm": float(np.abs(diagram.speeds[grows]).min()) * _RPM if grows.any() else None,
+        "proved_at_rpm": (diagram.speeds[diagram.proved] * _RPM).tolist(),
+        "critical_speeds": None if isinstance(crossings, str) else [_crossing(one, each) for each in crossings],
+        "why_no_critical_speeds": crossings if isinstance(crossings, str) else None,
+    }
+
+
+def _crossing(one: SolvedRotor, crossing: room.Crossing) -> dict[str, Any]:
+    """A damped critical speed."""
+    return {
+        "speed_rpm": crossing.speed * _RPM,
+        "direction": crossing.direction,
+        "log_decrement": crossing.log_decrement,
+        "margin": abs(crossing.speed / one.operation) - 1.0 if one.operation else None,
     }
 
 

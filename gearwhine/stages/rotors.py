@@ -1,6 +1,5 @@
 """The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, weight, unbalance and bow."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import rotors as room
@@ -30,8 +29,10 @@ class SolvedRotor:
     torsional : rotors.TorsionalModes
     whirl : tuple of rotors.WhirlModes
         At the speed of operation, then at those of the sweep.
-    campbell : tuple of rotors.WhirlModes
-        At the speeds of the Campbell diagram.
+    campbell : rotors.Campbell or None
+        None without speeds.
+    crossings : tuple of rotors.Crossing or str
+        Damped critical speeds within the Campbell diagram; or why they are not known.
     critical : rotors.CriticalSpeeds
         With the bearings' coefficients at one speed.
     critical_speed : float or None
@@ -42,6 +43,8 @@ class SolvedRotor:
         Deflection under gravity at operation, else at rest; or why there is none.
     response : SolvedResponse or None
         To unbalance and bow; None where there is neither.
+    stiffness_map : rotors.CriticalSpeedMap or None
+        Where the case asks for it.
     """
 
     rotor: room.Rotor
@@ -52,12 +55,14 @@ class SolvedRotor:
     lateral: room.LateralModes
     torsional: room.TorsionalModes
     whirl: tuple[room.WhirlModes, ...]
-    campbell: tuple[room.WhirlModes, ...]
+    campbell: room.Campbell | None
+    crossings: tuple[room.Crossing, ...] | str
     critical: room.CriticalSpeeds
     critical_speed: float | None
     operation: float | None
     weight: SolvedWeight | str
     response: SolvedResponse | None
+    stiffness_map: room.CriticalSpeedMap | None
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
@@ -81,6 +86,8 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         reference = lowest if operation is None else operation
         tabled = any(bearing.speeds is not None for bearing in bearings)
         weight = solve_weight(analysis, rotor, bearings, reference)
+        diagram = campbell_speeds(case, given.name)
+        campbell = room.campbell(rotor, bearings, diagram, count=analysis.modes) if diagram else None
         held = not isinstance(weight, str)
         solved.append(
             SolvedRotor(
@@ -91,8 +98,9 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 rest=room.rest_frequencies(rotor, resting, count=analysis.modes),
                 lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
                 torsional=room.solve_torsional_modes(rotor),
-                whirl=_whirl(rotor, bearings, speeds, analysis.modes),
-                campbell=_whirl(rotor, bearings, campbell_speeds(case, given.name), analysis.modes),
+                whirl=tuple(room.solve_whirl(rotor, bearings, speed, count=analysis.modes) for speed in speeds),
+                campbell=campbell,
+                crossings=() if campbell is None else _crossings(campbell),
                 critical=room.critical_speeds(
                     rotor, [bearing.at_speed(reference) for bearing in bearings], count=analysis.modes
                 ),
@@ -100,18 +108,17 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 operation=operation,
                 weight=weight,
                 response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
+                stiffness_map=None
+                if analysis.stiffness_map is None
+                else room.critical_speed_map(rotor, bearings, analysis.stiffness_map.stiffnesses),
             )
         )
     return tuple(solved)
 
 
-def _whirl(
-    rotor: room.Rotor, bearings: Bearings, speeds: Sequence[float], count: int | None
-) -> tuple[room.WhirlModes, ...]:
-    """Whirl at each speed; bearings that do not change share one basis."""
-    constant = all(bearing.speeds is None for bearing in bearings)
-    basis = room.whirl_basis(rotor, bearings, count=count) if constant and speeds else None
-    return tuple(
-        room.solve_whirl(rotor, [bearing.at_speed(speed) for bearing in bearings], speed, count=count, basis=basis)
-        for speed in speeds
-    )
+def _crossings(campbell: room.Campbell) -> tuple[room.Crossing, ...] | str:
+    """Damped critical speeds; a diagram of few speeds may not separate them, which is no reason to show nothing."""
+    try:
+        return campbell.crossings()
+    except room.IncompleteModesError as error:
+        return str(error)
