@@ -14,6 +14,9 @@ and answered for by frozen results, each with the certificate that no mode is mi
     rest_frequencies(shaft, bearings, count=8)
     solve_whirl(shaft, bearings, speed=418.9, count=8)
     critical_speeds(shaft, bearings, speed_limit=1e3)
+    campbell(shaft, bearings, speeds=np.linspace(0.0, 600.0, 100)).crossings()
+    unbalance_response(shaft, bearings, [Unbalance(at=0.5, moment=1e-4)], speeds)
+    static_deflection(shaft, bearings).bearing_loads
 
 Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z along the shaft; slopes and
 the gyroscopic sign are those of `rotors.whirl`.
@@ -25,19 +28,23 @@ from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
 from .campbell import Campbell, Crossing, campbell
 from .certificate import ModeCertificate
+from .critical_map import CriticalSpeedMap, critical_speed_map
 from .errors import IncompleteModesError, RotorError
+from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response
 from .lateral import LateralModes, solve_lateral_modes
+from .loads import Bow, HarmonicForce, Unbalance
 from .material import ShaftMaterial, shear_coefficient
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
 from .projection import whirl_basis
-from .loads import Bow, Unbalance
 from .section import Section
 from .segment import Segment
 from .shaft import Disc, Rotor
 from .shaft_coupling import Coupling
-from .statics import StaticDeflection, static_deflection
+from .spatial_field import SpatialMotion
+from .statics import StaticDeflection, StaticForce, static_deflection
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
-from .unbalance import SynchronousResponse, unbalance_response
+from .torsional_response import Torque, TorsionalDashpot, TorsionalResponse, torsional_response
+from .unbalance import BowShape, SynchronousResponse, bow_shape, unbalance_response
 from .whirl import WhirlModes, solve_whirl
 from .whirl_certificate import WhirlCertificate
 
@@ -46,14 +53,19 @@ __all__ = [
     "AxisSpring",
     "Bearing",
     "Bow",
+    "BowShape",
     "Campbell",
     "Coupling",
+    "CriticalSpeedMap",
     "CriticalSpeeds",
     "Crossing",
     "Disc",
+    "HarmonicForce",
+    "HarmonicResponse",
     "IncompleteModesError",
     "LateralModes",
     "ModeCertificate",
+    "Orbit",
     "Pedestal",
     "RadialSupport",
     "RestFrequencies",
@@ -62,15 +74,24 @@ __all__ = [
     "Section",
     "Segment",
     "ShaftMaterial",
+    "SpatialMotion",
     "StaticDeflection",
+    "StaticForce",
     "SynchronousResponse",
+    "Torque",
+    "TorsionalDashpot",
     "TorsionalModes",
+    "TorsionalResponse",
     "Unbalance",
     "WhirlCertificate",
     "WhirlModes",
     "attach_loads",
+    "bow_shape",
     "campbell",
+    "critical_speed_map",
     "critical_speeds",
+    "frequency_response",
+    "harmonic_response",
     "rest_frequencies",
     "shear_coefficient",
     "solve_axial_modes",
@@ -79,6 +100,7 @@ __all__ = [
     "solve_torsional_modes",
     "solve_whirl",
     "static_deflection",
+    "torsional_response",
     "unbalance_response",
     "whirl_basis",
 ]

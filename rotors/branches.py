@@ -64,7 +64,7 @@ def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArra
         for root, branch in enumerate(owner.tolist()):
             if branch < 0:
                 branch = len(branches)
-                branches.append((np.full(speeds.size, np.nan + 0j), np.full(speeds.size, np.nan)))
+                branches.append((np.full(speeds.size, complex(np.nan, np.nan)), np.full(speeds.size, np.nan)))
             branches[branch][0][k] = one.eigenvalues[root]
             branches[branch][1][k] = ways[k][root]
             active.append((branch, shapes[root]))

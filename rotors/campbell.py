@@ -271,7 +271,7 @@ def _refined(
     """Exact roots at every speed: those that lie apart in one batch, near ones together at their speed."""
     chosen = [row[np.abs(row) < WINDOW * limit] for row, limit in zip(values, limits, strict=True)]
     same = all(chain is chains[0] for chain in chains)
-    near = [not same or any(c.size > 1 for c in clusters(row, NEAR)) for row in chosen]
+    near = [not same or len(clusters(row, NEAR)) < row.size for row in chosen]
     owner = np.concatenate([np.full(row.size, k) for k, row in enumerate(chosen)])
     alone = ~np.array(near)[owner]
     batch = refine_each(chains[0], np.concatenate(chosen)[alone], speeds[owner[alone]])
@@ -307,7 +307,7 @@ def _prove(
     else:
         chosen = np.arange(speeds.size) if prove_all else np.linspace(0, speeds.size - 1, PROOFS).round().astype(int)
         doubtful = np.unique(chosen)
-    for k in doubtful:
+    for k in doubtful.tolist():
         sector = oscillating(least, float(limits[k]))
         inside, _ = certified_roots(chains[k], roots[k], constant_speed(float(speeds[k])), sector, undriven)
         beyond = roots[k].take(~sector.holds(roots[k].eigenvalues))

@@ -178,7 +178,7 @@ def solve_harmonic(
     highest = max(
         (whirl_reach(float(w), float(s)) for w, s in zip(np.abs(frequencies), speeds, strict=True)), default=0.0
     )
-    eigenvalues = 1j * frequencies
+    eigenvalues = (1j * frequencies).astype(np.complex128)
     forces = np.zeros((frequencies.size, len(constant), 5), dtype=np.complex128)
     motion: SpatialMotion | None = None
     for blocks in sets:

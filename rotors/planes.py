@@ -7,18 +7,24 @@ import numpy as np
 import numpy.typing as npt
 
 from .bearing import Bearing
+from .campbell import campbell
 from .certificate import ModeCertificate
 from .errors import require, require_count
-from .exact_roots import synchronous_speed
+from .exact_roots import ACCEPTED, synchronous_speed
 from .lateral import LateralModes, solve_lateral_modes
-from .projection import DEFAULT_COUNT, Projection, basis_for
+from .projection import DEFAULT_COUNT, Projection, basis_for, slowest
 from .root_count import count_below
 from .rotor_lines import bending_chain, bending_line
 from .shaft import Rotor
 from .shapes import SAME_ROOT
+from .spatial_field import SpatialMotion
 from .spatial_ties import block_sets
 from .whirl import certified_whirl, solve_whirl
 from .whirl_certificate import NO_OSCILLATION, WhirlCertificate
+
+# Speeds at which tables are looked at for critical ones, and how far beyond them branches are followed.
+TABLE_SPEEDS = 60
+TABLE_REACH = 1.2
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -78,7 +84,7 @@ def rest_frequencies(
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; no bearings leave it free.
+        The rotor and what holds it; no bearings leave it free. Of tables the lowest speed is taken.
     frequency_limit
         rad/s: all frequencies strictly below.
     count
@@ -89,6 +95,7 @@ def rest_frequencies(
     RotorError, IncompleteModesError
         As `rotors.solve_lateral_modes`.
     """
+    bearings = [bearing.at_speed(slowest(bearing)) for bearing in bearings]
     if not all(_is_planar(bearing) for bearing in bearings):
         undamped = [_undamped(bearing) for bearing in bearings]
         modes = solve_whirl(rotor, undamped, 0.0, frequency_limit=frequency_limit, count=count)
@@ -134,7 +141,8 @@ def critical_speeds(
         K q = ω² [[M, −i G], [i G, M]] q
 
     over both planes; a disc whose polar inertia exceeds its diametral one takes its forward root away.
-    With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying whirl),
+    Where bearings have tables over speed, these are the crossings of a diagram of 60 speeds in the range that the
+    tables share. With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying whirl),
     and the real part of ω is given. Damping is left out, which is the usual definition; the damped whirl
     frequency crosses a little lower.
 
@@ -156,21 +164,47 @@ def critical_speeds(
     """
     chosen = basis_for(rotor, bearings, speed_limit, count, basis)
     undamped = [_undamped(bearing) for bearing in bearings]
+    if any(bearing.speeds is not None for bearing in undamped):
+        return _tabled_critical_speeds(rotor, undamped, speed_limit, count, chosen)
     sets = [Projection.of(rotor, undamped, blocks, chosen) for blocks in block_sets(undamped)]
-    motion, certificate = certified_whirl(
-        rotor,
-        undamped,
-        [(one.blocks, one.critical(undamped)) for one in sets],
-        synchronous_speed,
-        None,
-        NO_OSCILLATION * sets[0].floor,
-        speed_limit,
-        None if speed_limit is not None else count or DEFAULT_COUNT,
-    )
+    motion, certificate = certified_criticals(rotor, undamped, sets, speed_limit, count)
     shares = motion.shares()
     order = np.argsort(motion.eigenvalues.imag)
     direction = (shares[:, 0] - shares[:, 1]) / shares.sum(axis=1)
     return CriticalSpeeds(motion.eigenvalues.imag[order], direction[order], certificate)
+
+
+def _tabled_critical_speeds(
+    rotor: Rotor, bearings: Sequence[Bearing], limit: float | None, count: int | None, basis: LateralModes
+) -> CriticalSpeeds:
+    """Crossings of a Campbell diagram whose stiffness follows the speed, within all tables."""
+    tables = [bearing.speeds for bearing in bearings if bearing.speeds is not None]
+    low, high = max(float(table[0]) for table in tables), min(float(table[-1]) for table in tables)
+    high = min(high, limit or np.inf)
+    require(low < high, "speeds of the bearings' tables", (low, high), "a range of speeds that they share")
+    diagram = campbell(
+        rotor, bearings, np.linspace(low, high, TABLE_SPEEDS), frequency_limit=TABLE_REACH * high, basis=basis
+    )
+    found = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
+    speeds = np.array([crossing.speed for crossing in found])
+    proof = WhirlCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
+    return CriticalSpeeds(speeds, np.array([crossing.direction for crossing in found]), proof)
+
+
+def certified_criticals(
+    rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[Projection], limit: float | None, count: int | None
+) -> tuple[SpatialMotion, WhirlCertificate]:
+    """Synchronous whirl of undamped bearings below a limit, or the lowest few, for some sets of tied motions."""
+    return certified_whirl(
+        rotor,
+        bearings,
+        [(one.blocks, one.critical(bearings)) for one in sets],
+        synchronous_speed,
+        None,
+        NO_OSCILLATION * sets[0].floor,
+        limit,
+        None if limit is not None else count or DEFAULT_COUNT,
+    )
 
 
 def _undamped(bearing: Bearing) -> Bearing:

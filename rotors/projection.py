@@ -32,10 +32,11 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 DEFAULT_COUNT = 12
-LEAST_MODES = 12
+LEAST_MODES = 8
+SPARE_MODES = 4
 AXIAL_MODES = 8
-# The basis reaches this many times beyond the highest whirl frequency asked for.
-BASIS_REACH = 4.0
+# The basis reaches this many times beyond the highest whirl frequency asked for: it gives starting values only.
+BASIS_REACH = 1.5
 # A massless pedestal weighs this part of the rotor in the basis, where every coordinate has a mass.
 PEDESTAL_MASS = 1e-6
 
@@ -49,8 +50,8 @@ def whirl_basis(
 ) -> LateralModes:
     """Planar basis for whirl: modes at averaged stiffness, well beyond the need, and attachment vectors.
 
-    It holds every mode below four times ``frequency_limit``, or four more than ``count``, and at least
-    twelve; behind them the static responses to a force at each bearing and to a moment at each disc, where
+    It holds every mode below ``frequency_limit`` and half as far again, or four more than half of ``count``, and at
+    least eight; behind them the static responses to a force at each bearing and to a moment at each disc, where
     the compensation and gyroscopic terms act. Build it once to sweep the speed. Of tables over speed it holds
     the stiffness at the middle of the table.
 
@@ -73,7 +74,7 @@ def whirl_basis(
     supports = mean_supports(bearings)
     available = bending_line(rotor, supports).available_modes
     if frequency_limit is None:
-        wanted = (count or DEFAULT_COUNT) + 4
+        wanted = (count or DEFAULT_COUNT) // 2 + SPARE_MODES
         modes = solve_lateral_modes(rotor, supports, count=int(min(max(wanted, LEAST_MODES), available)))
     else:
         require_finite("frequency_limit", frequency_limit, positive=True)
@@ -112,6 +113,11 @@ def mean_supports(bearings: Sequence[Bearing]) -> tuple[RadialSupport, ...]:
         else bearing.mean_support
         for bearing in bearings
     )
+
+
+def slowest(bearing: Bearing) -> float:
+    """The lowest speed of a bearing's tables, or zero, rad/s."""
+    return 0.0 if bearing.speeds is None else float(bearing.speeds[0])
 
 
 @dataclass(frozen=True)

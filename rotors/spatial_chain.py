@@ -151,7 +151,7 @@ class SpatialChain:
     def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Entries of the equations at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
         chain, batch = self.bending, eigenvalues.size
-        parts = [
+        parts: list[npt.NDArray[np.complex128] | FloatArray] = [
             -np.moveaxis(self._transfers(block, eigenvalues, speeds, scale), 1, 0).reshape(batch, -1)
             for block in self.blocks
         ]

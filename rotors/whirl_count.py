@@ -61,7 +61,7 @@ def is_conservative(bearings: Sequence[Bearing]) -> bool:
 
 def negative_count(chain: SpatialChain, frequencies: FloatArray, speed: Speed) -> IntArray:
     """Negative eigenvalues s(D(ω)) of the undamped dynamic stiffness at every ω (rad/s), (b,)."""
-    eigenvalues = 1j * frequencies
+    eigenvalues = (1j * frequencies).astype(np.complex128)
     # One unit of forces for all: at a frequency near zero its own would make every bearing a rigid one.
     speeds, scale = speed(eigenvalues), np.full(frequencies.size, chain.force_scale(eigenvalues).max())
     n, batch = chain.size, frequencies.size

@@ -125,7 +125,7 @@ def _crossings(console: Console, rotor: dict[str, Any], campbell: dict[str, Any]
 def _undamped(console: Console, rotor: dict[str, Any]) -> None:
     """Undamped critical speeds, which way they whirl, and how far they are from the speed of operation."""
     speeds, directions, margins = (rotor[f"critical_{key}"] for key in ("speeds_rpm", "directions", "margins"))
-    title = f"Undamped critical speeds{_with_bearings_at(rotor['critical_bearings_at_rpm'])}"
+    title = "Undamped critical speeds"
     if margins is None:
         listed = [(f"{speed:.5g}", _whirl_name(way)) for speed, way in zip(speeds, directions, strict=True)]
         _show(console, title, ("speed [rpm]", "whirl"), listed[:_MOST])
@@ -221,15 +221,13 @@ def _span(campbell: dict[str, Any]) -> str:
 
 
 def _proof(certificate: dict[str, Any]) -> str:
-    if certificate["expected"] is None:
-        return "No count: the bearings' stiffness couples the planes"
     found, expected = certificate["found"], certificate["expected"]
     return f"Bending at rest complete below {certificate['limit_hz']:.5g} Hz: {found} found, {expected} counted"
 
 
 def _show(console: Console, title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     table = Table(*head, box=SIMPLE_HEAD, show_edge=False)
-    table.columns[0].justify = "right"
+    table.columns[0].justify = "right" if "[" in head[0] else "left"  # numbers have a unit
     for row in rows:
         table.add_row(*row)
     console.print(f"  {title}")

@@ -21,6 +21,8 @@ class SolvedWeight:
     Attributes
     ----------
     deflection : rotors.StaticDeflection
+    speed : float
+        Where tables over speed were read [rad/s].
     places : (p,) array
         Evenly along the shaft, and every station [m].
     displacement : (2, p) array
@@ -28,6 +30,7 @@ class SolvedWeight:
     """
 
     deflection: room.StaticDeflection
+    speed: float
     places: FloatArray
     displacement: FloatArray
 
@@ -81,7 +84,7 @@ def solve_weight(
     except room.RotorError as error:
         return str(error)
     places = np.union1d(np.linspace(0.0, rotor.length, _PLACES), rotor.stations)
-    return SolvedWeight(deflection, places, deflection.evaluate(places)[:2])
+    return SolvedWeight(deflection, speed, places, deflection.evaluate(places)[:2])
 
 
 def solve_response(

@@ -34,9 +34,7 @@ class SolvedRotor:
     crossings : tuple of rotors.Crossing or str
         Damped critical speeds within the Campbell diagram; or why they are not known.
     critical : rotors.CriticalSpeeds
-        With the bearings' coefficients at one speed.
-    critical_speed : float or None
-        That speed: of operation, or of rest where there is none [rad/s]; None without tables.
+        Undamped; with tables, within the speeds that they hold.
     operation : float or None
         Speed of operation [rad/s].
     weight : SolvedWeight or str
@@ -58,7 +56,6 @@ class SolvedRotor:
     campbell: room.Campbell | None
     crossings: tuple[room.Crossing, ...] | str
     critical: room.CriticalSpeeds
-    critical_speed: float | None
     operation: float | None
     weight: SolvedWeight | str
     response: SolvedResponse | None
@@ -84,7 +81,6 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         speeds = whirl_speeds(case, given.name)
         operation = speeds[0] if case.operation is not None else None
         reference = lowest if operation is None else operation
-        tabled = any(bearing.speeds is not None for bearing in bearings)
         weight = solve_weight(analysis, rotor, bearings, reference)
         diagram = campbell_speeds(case, given.name)
         campbell = room.campbell(rotor, bearings, diagram, count=analysis.modes) if diagram else None
@@ -94,17 +90,14 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 rotor=rotor,
                 bearings=bearings,
                 resting=resting,
-                rest_speed=lowest if tabled else None,
+                rest_speed=lowest if any(bearing.speeds is not None for bearing in bearings) else None,
                 rest=room.rest_frequencies(rotor, resting, count=analysis.modes),
                 lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
                 torsional=room.solve_torsional_modes(rotor),
                 whirl=tuple(room.solve_whirl(rotor, bearings, speed, count=analysis.modes) for speed in speeds),
                 campbell=campbell,
                 crossings=() if campbell is None else _crossings(campbell),
-                critical=room.critical_speeds(
-                    rotor, [bearing.at_speed(reference) for bearing in bearings], count=analysis.modes
-                ),
-                critical_speed=reference if tabled else None,
+                critical=room.critical_speeds(rotor, bearings, count=analysis.modes),
                 operation=operation,
                 weight=weight,
                 response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),

@@ -1,8 +1,6 @@
-"""What must hold for any rotor: the count, the shapes, the symmetries and the scaling of its modes.
+"""What must hold for any rotor: the shapes, the symmetries, the static response and the scaling of its modes.
 
-The independent computation is a spectral finite-element model written here: displacement and rotation are
-separate polynomials of high degree in every span, integrated by Gauss quadrature, consistent in mass. It
-shares no formula with the transfer matrices beyond the definition of the Timoshenko energies.
+Frequencies against an independent model are in `test_no_missed_roots` and `test_whirl_reference`.
 """
 
 import itertools
@@ -11,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from finite_element_rotor import bending_model
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import legendre
-from scipy.linalg import eig, eigh
 
 from rotors import (
     Bearing,
@@ -33,7 +31,6 @@ from rotors import (
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 BRASS = ShaftMaterial(100e9, 37e9, 8500.0)
-DEGREE = 9
 FEW = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
@@ -41,7 +38,6 @@ def reals(low: float, high: float) -> st.SearchStrategy[float]:
     return st.floats(low, high).map(lambda value: round(value, 4))
 
 
-# Not nearer than this to each other: the independent model, not the rotor, loses digits on tiny elements.
 PLACES = st.integers(0, 24).map(lambda k: k / 24)
 
 
@@ -75,87 +71,6 @@ def random_supports(draw: st.DrawFn, rotor: Rotor) -> list[RadialSupport]:
 
 def supported_rotors() -> st.SearchStrategy[tuple[Rotor, list[RadialSupport]]]:
     return random_rotors().flatmap(lambda rotor: st.tuples(st.just(rotor), random_supports(rotor)))
-
-
-class SpectralModel:
-    """Mass, stiffness and polar matrices of a rotor over the polynomial coefficients of all spans."""
-
-    def __init__(self, rotor: Rotor, places: list[float]) -> None:
-        points = sorted({0.0, *rotor.joints.tolist(), *(disc.at for disc in rotor.discs), *places})
-        # Elements no longer than a quarter of the shaft resolve twelve half waves to 1e-8.
-        self.ends = [0.0]
-        for point in points[1:]:
-            span = point - self.ends[-1]
-            if span > 1e-9 * rotor.length:
-                cuts = math.ceil(4 * span / rotor.length)
-                self.ends.extend((self.ends[-1] + span * np.arange(1, cuts + 1) / cuts).tolist())
-        self.size = (len(self.ends) - 1) * DEGREE + 1
-        shape = (2 * self.size, 2 * self.size)
-        self.mass, self.stiffness, self.polar, self.twist = (np.zeros(shape) for _ in range(4))
-        # Nodes are the Chebyshev–Lobatto points; values at Gauss points through the Legendre basis.
-        nodes = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
-        gauss, weight = legendre.leggauss(DEGREE + 3)
-        coefficients = np.linalg.inv(legendre.legvander(nodes, DEGREE))
-        value = legendre.legvander(gauss, DEGREE) @ coefficients
-        derived = np.stack([legendre.legval(gauss, legendre.legder(column)) for column in coefficients.T], axis=1)
-        for span in range(len(self.ends) - 1):
-            left, right = self.ends[span], self.ends[span + 1]
-            index = min(int(np.searchsorted(rotor.joints, (left + right) / 2)) - 1, len(rotor.segments) - 1)
-            part, half = rotor.segments[index].section(0.5), (right - left) / 2
-            x = np.arange(DEGREE + 1) + span * DEGREE
-            b = x + self.size
-            self._add(self.mass, x, x, value, value, half * weight * part.material.density * part.area)
-            rotary = half * weight * part.material.density * part.second_moment
-            self._add(self.mass, b, b, value, value, rotary)
-            self._add(self.polar, b, b, value, value, 2 * rotary)
-            slope = derived / half
-            self._add(self.stiffness, b, b, slope, slope, half * weight * part.bending_stiffness)
-            torsional = half * weight * 2 * part.material.shear_modulus * part.second_moment
-            self._add(self.twist, b, b, slope, slope, torsional)
-            shear = half * weight * part.shear_stiffness
-            for rows, rows_value, row_sign in ((x, slope, 1.0), (b, value, -1.0)):
-                for columns, columns_value, column_sign in ((x, slope, 1.0), (b, value, -1.0)):
-                    self._add(self.stiffness, rows, columns, row_sign * rows_value, column_sign * columns_value, shear)
-        for disc in rotor.discs:
-            node = self.node(disc.at)
-            self.mass[node, node] += disc.mass
-            self.mass[node + self.size, node + self.size] += disc.diametral_inertia
-            self.polar[node + self.size, node + self.size] += disc.polar_inertia
-
-    def node(self, at: float) -> int:
-        return int(np.argmin(np.abs(np.array(self.ends) - at))) * DEGREE
-
-    @staticmethod
-    def _add(matrix, rows, columns, left, right, weight) -> None:
-        matrix[np.ix_(rows, columns)] += left.T @ (weight[:, None] * right)
-
-    def lateral(self, supports: list[RadialSupport]) -> np.ndarray:
-        stiffness, held = self.stiffness.copy(), set()
-        for support in supports:
-            node = self.node(support.at)
-            if math.isinf(support.stiffness):
-                held.add(node)
-            else:
-                stiffness[node, node] += support.stiffness
-        free = np.array([i for i in range(2 * self.size) if i not in held])
-        squared = eigh(stiffness[np.ix_(free, free)], self.mass[np.ix_(free, free)], eigvals_only=True)
-        return np.sqrt(np.maximum(squared, 0.0))
-
-
-@FEW
-@given(supported_rotors())
-def test_modes_are_those_of_an_independent_finite_element_model(case: tuple[Rotor, list[RadialSupport]]) -> None:
-    rotor, supports = case
-    independent = SpectralModel(rotor, [support.at for support in supports]).lateral(supports)
-    # A limit in the middle of a gap, where the independent model has converged.
-    count = 7
-    gap = count + int(np.argmax(np.diff(independent[count - 1 : count + 3]))) - 1
-    limit = (independent[gap] + independent[gap + 1]) / 2
-    modes = solve_lateral_modes(rotor, supports, frequency_limit=float(limit))
-    assert modes.count == modes.certificate.expected == int(np.count_nonzero(independent < limit))
-    # A dense eigensolver is good to rounding of its largest ω², zeros included.
-    rounding = 1e-14 * independent[-1] ** 2
-    np.testing.assert_allclose(modes.frequencies**2, independent[: modes.count] ** 2, rtol=2e-6, atol=rounding)
 
 
 @FEW
@@ -253,56 +168,6 @@ def test_added_mass_lowers_and_added_stiffness_raises(
     assert (stiffer[: count - 1] <= plain[1:count] * (1 + 1e-11) + 1e-9).all()
 
 
-@FEW
-@given(random_rotors())
-def test_torsion_is_that_of_an_independent_finite_element_model(rotor: Rotor) -> None:
-    modes = solve_torsional_modes(rotor, count=6)
-    model = SpectralModel(rotor, [])
-    n = model.size
-    squared = eigh(model.twist[n:, n:], model.polar[n:, n:], eigvals_only=True)
-    np.testing.assert_allclose(modes.frequencies**2, squared[:6], rtol=2e-6, atol=1e-14 * squared[-1])
-
-
-@settings(FEW, max_examples=5)
-@given(random_rotors(), st.data())
-def test_whirl_is_that_of_an_independent_finite_element_model(rotor: Rotor, data: st.DataObject) -> None:
-    speed = data.draw(reals(-2000.0, 2000.0))
-    entries = [data.draw(reals(1e6, 1e8)) for _ in range(4)]
-    cross = [data.draw(reals(-3e5, 3e5)) for _ in range(2)]
-    losses = [data.draw(reals(0.0, 2e3)) for _ in range(2)]
-    bearings = [
-        Bearing(
-            "left",
-            0.1 * rotor.length,
-            np.array([[entries[0], cross[0]], [cross[1], entries[1]]]),
-            losses[0] * np.eye(2),
-        ),
-        Bearing("right", 0.9 * rotor.length, np.diag(entries[2:]), np.diag([losses[1], 0.0])),
-    ]
-    model = SpectralModel(rotor, [bearing.at for bearing in bearings])
-    n = 2 * model.size
-    mass, polar = np.kron(np.eye(2), model.mass), model.polar
-    stiffness, damping = np.kron(np.eye(2), model.stiffness), np.zeros((2 * n, 2 * n))
-    for bearing in bearings:
-        at = model.node(bearing.at) + n * np.arange(2)
-        stiffness[np.ix_(at, at)] += bearing.stiffness
-        damping[np.ix_(at, at)] += bearing.damping
-    damping += speed * np.block([[np.zeros((n, n)), polar], [-polar, np.zeros((n, n))]])
-    # Over the undamped modes of its own planes, all of them, and with states ω q and q̇, eig is well scaled.
-    squared, vectors = eigh(model.stiffness + 1e6 * model.mass, model.mass)
-    shapes, weight = np.kron(np.eye(2), vectors), np.tile(np.sqrt(squared), 2)
-    k, c = shapes.T @ stiffness @ shapes, shapes.T @ damping @ shapes
-    np.testing.assert_allclose(shapes.T @ mass @ shapes, np.eye(2 * n), atol=1e-6)
-    values = eig(np.block([[np.zeros((2 * n, 2 * n)), np.diag(weight)], [-k / weight, -c]]), right=False)
-    values = values[values.imag > 1.0]
-
-    modes = solve_whirl(rotor, bearings, speed, count=6)
-    for value in modes.eigenvalues:
-        nearest = values[np.argmin(np.abs(values - value))]
-        assert abs(nearest - value) < 1e-4 * abs(value)
-    assert modes.frequencies.size == 6
-
-
 @settings(FEW, max_examples=5)
 @given(random_rotors(), reals(1e5, 1e8), reals(10.0, 2000.0))
 def test_reversed_rotation_swaps_the_directions(rotor: Rotor, stiffness: float, speed: float) -> None:
@@ -338,15 +203,13 @@ def test_compliance_of_attached_loads_is_reciprocal_and_that_of_the_model(
     modes = attach_loads(solve_lateral_modes(rotor, supports, count=3), forces_at=places)
     shapes = modes.evaluate(places)[0]
     compliance = (shapes / modes.frequencies[:, None] ** 2).T @ shapes
-    model = SpectralModel(rotor, places)
-    stiffness = model.stiffness.copy()
-    for support in supports:
-        stiffness[model.node(support.at), model.node(support.at)] += support.stiffness
-    loads = np.zeros((2 * model.size, 2))
+    model = bending_model(rotor, supports, float(modes.frequencies[2]), places=places)
+    stiffness = model.assembled("stiffness")
+    loads = np.zeros((stiffness.shape[0], 2))
     for column, place in enumerate(places):
-        loads[model.node(place), column] = 1.0
+        loads[2 * model.elements.node(place), column] = 1.0
     expected = loads.T @ np.linalg.solve(stiffness, loads)
-    np.testing.assert_allclose(compliance, expected, rtol=1e-6, atol=1e-8 * expected.max())
+    np.testing.assert_allclose(compliance, expected, rtol=1e-8, atol=1e-9 * expected.max())
 
 
 def test_lumping_converges_to_the_distributed_shaft() -> None:

@@ -1,0 +1,210 @@
+"""No root is missed, and none invented: the modes of rotors drawn to be hard, against the reference's own count.
+
+The reference is the finite-element model of `finite_element_rotor`, in thirty-one digits, counted by Sylvester's law
+of inertia. It is counted just below and just above every frequency found, and at the limit: so each frequency is a
+root to `CLOSE` of itself, with its multiplicity, and there are no others. Its own error is 1e-13 (its own tests).
+Frequencies nearer to each other than `CLOSE` are held together, as one root of their number.
+
+Drawn are shafts of lengths, diameters and materials many decades apart, discs that are points or huge, supports from
+none to rigid, mirrored and nearly mirrored shafts, twins tied by a hair or by pins, free shafts, tiny segments. The
+number of examples is `EXAMPLES`, or that of the environment's NO_MISSED_ROOTS_EXAMPLES.
+"""
+
+import itertools
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from finite_element_rotor import PlaneModel, bending_model, rod_model
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from rotors import (
+    Bearing,
+    Disc,
+    RadialSupport,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    rest_frequencies,
+    solve_lateral_modes,
+    solve_torsional_modes,
+)
+
+# As close as the package itself calls two roots one.
+CLOSE = 1e-10
+EXAMPLES = int(os.environ.get("NO_MISSED_ROOTS_EXAMPLES", "60"))
+MANY = settings(max_examples=EXAMPLES, deadline=None, suppress_health_check=list(HealthCheck))
+MATERIALS = [
+    ShaftMaterial(207e9, 79.6e9, 7850.0),
+    ShaftMaterial(70e9, 26e9, 2700.0),
+    ShaftMaterial(100e9, 37e9, 8500.0),
+    ShaftMaterial(3e9, 1.1e9, 1400.0),
+    ShaftMaterial(5e6, 1.7e6, 1100.0),
+]
+Case = tuple[Rotor, list[RadialSupport]]
+
+
+def powers(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers whose decimal logarithms are uniform, four digits each."""
+    return st.floats(low, high).map(lambda power: float(f"{10.0**power:.4g}"))
+
+
+DIFFERENCES = st.sampled_from([0.0, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6])
+STIFFNESSES = st.one_of(st.just(math.inf), powers(4.0, 9.0), powers(-1.0, 15.0))
+TILTS = st.one_of(st.just(0.0), st.just(0.0), st.just(math.inf), powers(-1.0, 12.0))
+
+
+@st.composite
+def segment_rows(draw: st.DrawFn) -> list[Segment]:
+    one_material = draw(st.booleans())
+    material = draw(st.sampled_from(MATERIALS))
+    row = []
+    for _ in range(draw(st.integers(1, 5))):
+        outer = draw(powers(-2.0, -0.7) | powers(-3.0, -0.5))
+        bore = outer * draw(st.sampled_from([0.0, 0.0, 0.5, 0.95]))
+        own = material if one_material else draw(st.sampled_from(MATERIALS))
+        row.append(Segment(draw(powers(-1.3, 0.0) | powers(-5.0, 0.3)), outer, bore, own))
+    return row
+
+
+@st.composite
+def disc_sets(draw: st.DrawFn, shaft: Rotor) -> list[Disc]:
+    discs = []
+    for _ in range(draw(st.integers(0, 3))):
+        mass = draw(powers(-1.0, 2.0) | powers(-4.0, 5.0))
+        size = draw(st.one_of(st.just(0.0), powers(-2.0, 0.0)))
+        discs.append(Disc(draw(places(shaft)), mass, mass * size**2, 0.5 * mass * size**2))
+    return discs
+
+
+def places(shaft: Rotor) -> st.SearchStrategy[float]:
+    """Joints, ends among them, and twelfths of the length."""
+    return st.sampled_from([*shaft.joints.tolist(), *(shaft.length * np.arange(13) / 12.0).tolist()])
+
+
+@st.composite
+def any_rotors(draw: st.DrawFn) -> Case:
+    shaft = Rotor("any", draw(segment_rows()))
+    supports = [
+        RadialSupport(draw(places(shaft)), draw(STIFFNESSES), draw(TILTS)) for _ in range(draw(st.integers(0, 3)))
+    ]
+    return replace(shaft, discs=draw(disc_sets(shaft))), supports
+
+
+@st.composite
+def twins(draw: st.DrawFn) -> Case:
+    """A rotor and its mirror image, nearly or exactly, joined end to end, by a hair, or by a pinned shaft."""
+    half, supports = draw(any_rotors())
+    off = 1.0 + draw(DIFFERENCES)
+    joint = draw(st.sampled_from(["nothing", "hair", "pins"]))
+    middle: list[Segment] = []
+    if joint == "hair":
+        middle = [Segment(draw(powers(-2.0, 0.0)), draw(powers(-6.0, -3.0)), 0.0, MATERIALS[0])]
+    elif joint == "pins":
+        middle = [Segment(0.05, 0.05, 0.0, MATERIALS[0])] * draw(st.integers(1, 12))
+    rotor = Rotor("twins", [*half.segments, *middle, *half.segments[::-1]])
+    length = rotor.length
+    discs = [*half.discs]
+    discs += [
+        Disc(max(length - d.at, 0.0), off * d.mass, off * d.polar_inertia, off * d.diametral_inertia) for d in discs
+    ]
+    held = [*supports, *(replace(s, at=max(length - s.at, 0.0), stiffness=off * s.stiffness) for s in supports)]
+    if joint == "pins":
+        first = len(half.segments)
+        held += [RadialSupport(float(at), math.inf) for at in rotor.joints[first : first + len(middle) + 1]]
+    return replace(rotor, discs=discs), held
+
+
+def cases() -> st.SearchStrategy[Case]:
+    return any_rotors() | twins()
+
+
+def assert_these_are_all(
+    frequencies: npt.NDArray[np.float64], limit: float, models: Sequence[PlaneModel], zeros: int
+) -> None:
+    """Assert that the frequencies below ``limit`` of the models together are these, each with its multiplicity."""
+    elastic = frequencies[zeros:]
+    assert (frequencies[:zeros] == 0.0).all()
+    breaks = np.flatnonzero(np.diff(elastic) > 4.0 * CLOSE * elastic[1:]) + 1
+    edges = [0, *breaks.tolist(), elastic.size] if elastic.size else [0]
+    probes, expected = [limit], [frequencies.size]
+    for first, after in itertools.pairwise(edges):
+        probes += [elastic[first] * (1.0 - CLOSE), elastic[after - 1] * (1.0 + CLOSE)]
+        expected += [zeros + first, zeros + after]
+    counted = sum(model.count_below(probes) for model in models)
+    np.testing.assert_array_equal(counted, expected, err_msg=f"at {probes} rad/s")
+
+
+def limit_above(frequencies: npt.NDArray[np.float64], part: float) -> float:
+    """A limit above the last frequency by a part of it."""
+    return float(frequencies[-1]) * (1.0 + part) if frequencies[-1] > 0.0 else 1.0
+
+
+@MANY
+@given(cases(), st.integers(3, 9), powers(-9.0, 0.0))
+def test_every_root_of_bending(case: Case, count: int, part: float) -> None:
+    rotor, supports = case
+    lowest = solve_lateral_modes(rotor, supports, count=count).frequencies
+    limit = limit_above(lowest, part)
+    model = bending_model(rotor, supports, limit)
+    if np.ptp(model.count_below(limit * np.array([1.0 - CLOSE, 1.0 + CLOSE]))):
+        limit *= 1.0 + 8.0 * CLOSE
+    modes = solve_lateral_modes(rotor, supports, frequency_limit=limit)
+    assert modes.certificate.expected == modes.count
+    # Two rigid motions at most, of which each support takes what it can.
+    zeros = int(np.count_nonzero(modes.frequencies == 0.0))
+    assert zeros == rigid_motions(supports, rotor.length)
+    assert_these_are_all(modes.frequencies, limit, [model], zeros)
+    np.testing.assert_allclose(modes.frequencies[: lowest.size], lowest, rtol=1e-11)
+
+
+@MANY
+@given(cases(), st.integers(3, 8))
+def test_every_root_of_torsion(case: Case, count: int) -> None:
+    rotor = case[0]
+    modes = solve_torsional_modes(rotor, count=count)
+    limit = limit_above(modes.frequencies, CLOSE)
+    assert_these_are_all(modes.frequencies, limit, [rod_model(rotor, "torsion", limit)], 1)
+
+
+@MANY
+@given(cases(), DIFFERENCES, st.integers(6, 14))
+def test_every_root_of_both_planes(case: Case, difference: float, count: int) -> None:
+    rotor, supports = case
+    bearings = [
+        Bearing(str(number), s.at, np.diag([s.stiffness, s.stiffness * (1.0 + difference)]), np.zeros((2, 2)))
+        for number, s in enumerate(supports)
+        if math.isfinite(s.stiffness)
+    ]
+    found = rest_frequencies(rotor, bearings, count=count)
+    assert found.certificate.complete
+    frequencies = found.frequencies
+    limit = limit_above(frequencies, CLOSE)
+    planes = [[bearing.plane_support(plane) for bearing in bearings] for plane in (0, 1)]
+    zeros = 2 * rigid_motions(planes[0], rotor.length)
+    assert_these_are_all(frequencies, limit, [bending_model(rotor, plane, limit) for plane in planes], zeros)
+
+
+def rigid_motions(supports: Sequence[RadialSupport], length: float) -> int:
+    """Two, less what the supports hold of shift and tilt."""
+    held = [support.at for support in supports if support.stiffness > 0.0]
+    apart = bool(held) and max(held) - min(held) > 1e-9 * length
+    return 2 - min(2, (2 if apart else len(held[:1])) + any(support.tilt_stiffness > 0.0 for support in supports))
+
+
+def test_the_reference_would_notice_a_missed_root() -> None:
+    rotor = Rotor("bar", [Segment(1.0, 0.05, 0.0, MATERIALS[0])])
+    modes = solve_lateral_modes(rotor, count=6).frequencies
+    limit = limit_above(modes, 0.01)
+    model = bending_model(rotor, [], limit)
+    assert_these_are_all(modes, limit, [model], 2)
+    doubled = np.sort(np.append(modes, modes[3]))
+    moved = modes * np.where(np.arange(6) == 4, 1.0 + 3.0 * CLOSE, 1.0)
+    for wrong in (np.delete(modes, 3), doubled, moved):
+        with pytest.raises(AssertionError, match="rad/s"):
+            assert_these_are_all(wrong, limit, [model], 2)
