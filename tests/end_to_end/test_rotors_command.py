@@ -110,7 +110,7 @@ def test_bearings_carry_the_weight_in_equal_shares_and_sag_by_it(gearwhine: Any,
     share = MASS * 9.80665 / 2.0
     for bearing in static["bearings"]:
         assert bearing["load_n"] == pytest.approx([0.0, -share, 0.0], abs=1e-6)
-    assert static["largest_deflection_m"] == pytest.approx(share / 2e6, rel=1e-4)  # stiffness at 2000 rpm
+    assert static["largest_deflection_m"] == pytest.approx(share / 2e6, rel=1e-4)
     sideways = solved(gearwhine, jeffcott, "rotor_analysis.gravity=['9.81 m/s^2', 0, 0]")["static"]
     assert sideways["bearings"][0]["load_n"] == pytest.approx([MASS * 9.81 / 2.0, 0.0, 0.0], abs=1e-6)
     free = solved(gearwhine, "friswell-rotor", "bearing=[]", "provenance=", "rotor_analysis.modes=6")
@@ -125,7 +125,6 @@ def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(gearwhine: Any,
         "{name='x', rotor='shaft', at='50 mm'}, {name='y', rotor='shaft', at='50 mm', angle='90 deg'}]}",
     )
     response = solved(gearwhine, jeffcott, *settings)["unbalance_response"]
-    assert response["speed_rpm"] == pytest.approx([1000.0, 3000.0])
     along_x, along_y = response["probes"]
 
     def expected(rpm: float, stiffness: float) -> complex:
@@ -141,8 +140,7 @@ def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(gearwhine: Any,
         assert along_y["phase_lag_deg"][place] == pytest.approx((lag + 90.0) % 360.0, abs=0.01)
         force = abs(motion) * abs(stiffness + 200j * rpm * RPM)
         assert response["bearings"][0]["force_n"][0][place] == pytest.approx(force, rel=1e-4)
-    at_operation = expected(2000.0, 2e6)
-    assert along_x["operation_amplitude_m"] == pytest.approx(abs(at_operation), rel=1e-4)
+    assert along_x["operation_amplitude_m"] == pytest.approx(abs(expected(2000.0, 2e6)), rel=1e-4)
     assert solved(gearwhine, jeffcott)["unbalance_response"] is None
 
 
