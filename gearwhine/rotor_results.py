@@ -86,7 +86,12 @@ def _response(solved: tuple[SolvedRotor, ...], variables: Variables, coordinates
     coordinates["probe"] = ("probe", [f"{rotor}: {reading.probe.name}" for rotor, _, reading in rows], {})
     for name, unit, what, values in (
         ("response_speed", "rpm", "speed of the rotor", [speeds * _RPM for _, speeds, _ in rows]),
-        ("probe_amplitude", "m", "reading of the probe, zero to peak", [reading.amplitude for *_, reading in rows]),
+        (
+            "probe_amplitude",
+            "m",
+            "reading of the probe, zero to peak",
+            [np.abs(reading.amplitude) for *_, reading in rows],
+        ),
         ("probe_phase_lag", "rad", "lag of the reading behind the mark", [reading.phase_lag for *_, reading in rows]),
         ("orbit_major_axis", "m", "half the length of the orbit", [reading.major_axis for *_, reading in rows]),
     ):

@@ -141,16 +141,21 @@ def modes_case(
     return _kept(housing_documents.modes_document(housing, detail=detail), case, folder, write, housing)
 
 
-def rotors_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
-    """The rotors; with a folder, also as a results file."""
-    from gearwhine import results
+def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ross: bool = False) -> dict[str, Any]:
+    """The rotors; with a folder, also as a results file and pictures, and where asked as files that ROSS loads."""
+    from gearwhine import figures, results
 
     rotors = rotor_stage.solve_rotors(case, progress)
+    document = rotor_documents.rotors_document(rotors)
 
     def write(place: Path) -> None:
         results.write(place / "results.nc", case, None, rotors, (), None, None)
+        figures.draw_rotors(place, case, rotors, progress)
+        if write_ross:
+            remarks = rotor_stage.write_ross_files(place, rotors)
+            document["warnings"] = [{"name": "ross", "message": remark} for remark in remarks]
 
-    return _kept(rotor_documents.rotors_document(rotors), case, folder, write)
+    return _kept(document, case, folder, write)
 
 
 def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:

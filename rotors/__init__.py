@@ -22,20 +22,23 @@ Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z al
 the gyroscopic sign are those of `rotors.whirl`.
 """
 
-from .attachment import attach_loads
+from .attachment import attach_loads, attach_motions
 from .axial import AxialModes, solve_axial_modes
 from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
+from .buckling import buckling_factor
 from .campbell import Campbell, Crossing, campbell
 from .certificate import ModeCertificate
 from .critical_map import CriticalSpeedMap, critical_speed_map
 from .errors import IncompleteModesError, RotorError
-from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response
+from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response, orbit_of
 from .lateral import LateralModes, solve_lateral_modes
 from .loads import Bow, HarmonicForce, Unbalance
 from .material import ShaftMaterial, shear_coefficient
+from .modal import ModalRotor, modal_rotor
 from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
 from .projection import whirl_basis
+from .ross_files import RossModel, read_ross, write_ross
 from .section import Section
 from .segment import Segment
 from .shaft import Disc, Rotor
@@ -64,11 +67,13 @@ __all__ = [
     "HarmonicResponse",
     "IncompleteModesError",
     "LateralModes",
+    "ModalRotor",
     "ModeCertificate",
     "Orbit",
     "Pedestal",
     "RadialSupport",
     "RestFrequencies",
+    "RossModel",
     "Rotor",
     "RotorError",
     "Section",
@@ -86,12 +91,17 @@ __all__ = [
     "WhirlCertificate",
     "WhirlModes",
     "attach_loads",
+    "attach_motions",
     "bow_shape",
+    "buckling_factor",
     "campbell",
     "critical_speed_map",
     "critical_speeds",
     "frequency_response",
     "harmonic_response",
+    "modal_rotor",
+    "orbit_of",
+    "read_ross",
     "rest_frequencies",
     "shear_coefficient",
     "solve_axial_modes",
@@ -103,4 +113,5 @@ __all__ = [
     "torsional_response",
     "unbalance_response",
     "whirl_basis",
+    "write_ross",
 ]

@@ -7,14 +7,18 @@ import numpy as np
 import numpy.typing as npt
 
 from .bearing import Bearing
+from .buckling import require_unbuckled
 from .campbell import campbell
 from .certificate import ModeCertificate
-from .errors import require, require_count
+from .chain import Chain
+from .errors import require, require_count, require_finite
 from .exact_roots import ACCEPTED, synchronous_speed
-from .lateral import LateralModes, solve_lateral_modes
+from .lateral import LateralModes
+from .lines import Line
 from .projection import DEFAULT_COUNT, Projection, basis_for, slowest
 from .root_count import count_below
-from .rotor_lines import bending_chain, bending_line
+from .rotor_lines import bending_line
+from .search import certified_modes, chain_that_holds
 from .shaft import Rotor
 from .shapes import SAME_ROOT
 from .spatial_field import SpatialMotion
@@ -27,6 +31,11 @@ TABLE_SPEEDS = 60
 TABLE_REACH = 1.2
 
 FloatArray = npt.NDArray[np.float64]
+
+# Bisections after which roots of both planes that are not parted yet are one.
+MOST_HALVINGS = 50
+# Part of the frequency scale below which there are rigid motions only.
+STANDSTILL = 1e-12
 
 
 @dataclass(frozen=True)
@@ -105,23 +114,42 @@ def rest_frequencies(
     if frequency_limit is None and count is None:
         wanted = DEFAULT_COUNT
     require_count("count of frequencies", wanted)
-    per_plane = [_plane_modes(rotor, bearings, plane, frequency_limit, wanted) for plane in (0, 1)]
-    merged = np.sort(np.concatenate([modes.frequencies for modes in per_plane]))
+    planes = [tuple(bearing.plane_support(direction) for bearing in bearings) for direction in (0, 1)]
+    for held in planes:
+        require_unbuckled(rotor, held)
+    lines = [bending_line(rotor, held) for held in planes]
+    if frequency_limit is not None:
+        require(count is None, "frequency_limit and count", (frequency_limit, count), "one of the two")
+        require_finite("frequency_limit", frequency_limit, positive=True)
+        chains = [line.cut(frequency_limit) for line in lines]
+        shares = [count_below(chain, frequency_limit) for chain in chains]
+    else:
+        chains, shares = _shares(lines, wanted or DEFAULT_COUNT)
+    alike = planes[0] == planes[1]
+    solved = [
+        certified_modes(chain, share, frequency_limit)
+        for chain, share in list(zip(chains, shares, strict=True))[: 1 if alike else 2]
+        if share
+    ]
+    merged = np.sort(
+        np.concatenate([modes.frequencies for modes in (solved * 2 if alike else solved)] or [np.zeros(0)])
+    )
     if count is not None:
         expected = f"at most {merged.size}, all this lumped rotor has"
         require(count <= merged.size, "count of frequencies", count, expected)
-    proofs = [modes.certificate for modes in per_plane]
-    limit = min(proof.limit for proof in proofs)
-    if wanted is not None:
-        limit = min(limit, max(float(merged[min(wanted, merged.size) - 1]) * (1.0 + 2.0 * SAME_ROOT), 0.0))
-        # A free rotor's zeros are below every limit.
+    if frequency_limit is not None:
+        limit = frequency_limit
+    else:
+        # Just above the last one wanted, and taking in its twins; rigid motions' zeros are below every limit.
+        last = float(merged[min(wanted or DEFAULT_COUNT, merged.size) - 1])
+        limit = last * (1.0 + 2.0 * SAME_ROOT) if last > 0.0 else STANDSTILL * chains[0].highest
         merged = merged[merged <= limit]
     certificate = ModeCertificate(
         limit=limit,
-        expected=sum(_counted(rotor, bearings, plane, limit) for plane in (0, 1)),
+        expected=sum(count_below(chain, limit) for chain in chains),
         found=merged.size,
-        max_residual=max(proof.max_residual for proof in proofs),
-        orthonormality=max(proof.orthonormality for proof in proofs),
+        max_residual=max((modes.certificate.max_residual for modes in solved), default=0.0),
+        orthonormality=max((modes.certificate.orthonormality for modes in solved), default=0.0),
     )
     return RestFrequencies(merged, certificate)
 
@@ -221,17 +249,30 @@ def _is_planar(bearing: Bearing) -> bool:
     return bearing.pedestal is None and bool((stiffness[~np.eye(5, dtype=np.bool_)] == 0.0).all())
 
 
-def _counted(rotor: Rotor, bearings: Sequence[Bearing], plane: int, limit: float) -> int:
-    """How many frequencies of one plane lie below a limit (rad/s), by a count of its own."""
-    chain = bending_chain(rotor, tuple(bearing.plane_support(plane) for bearing in bearings), limit)
-    return int(count_below(chain, limit)[0])
+def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
+    """Chains of the planes, and how many modes each gives to the lowest ``count`` of both.
 
-
-def _plane_modes(
-    rotor: Rotor, bearings: Sequence[Bearing], plane: int, frequency_limit: float | None, count: int | None
-) -> LateralModes:
-    supports = tuple(bearing.plane_support(plane) for bearing in bearings)
-    if count is not None:
-        # One plane of a lumped rotor may have fewer modes than are asked for over both.
-        count = int(min(count, bending_line(rotor, supports).available_modes))
-    return solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)
+    Of a lumped rotor that has fewer, all.
+    """
+    available = [line.available_modes for line in lines]
+    if sum(available) <= count:
+        most = [int(number) for number in available]
+        return [chain_that_holds(line, number) for line, number in zip(lines, most, strict=True)], most
+    low, high = 0.0, lines[0].likely_frequency((count + 1) // 2)
+    while True:
+        chains = [line.cut(high) for line in lines]
+        shares = [count_below(chain, high) for chain in chains]
+        if sum(shares) >= count:
+            break
+        low, high = high, 2.0 * high
+    for _ in range(MOST_HALVINGS):
+        # One too many costs less than the search for the gap between the last two.
+        if sum(shares) <= count + 1:
+            break
+        middle = 0.5 * (low + high)
+        fewer = [count_below(chain, middle) for chain in chains]
+        if sum(fewer) >= count:
+            high, shares = middle, fewer
+        else:
+            low = middle
+    return chains, shares

@@ -48,10 +48,13 @@ def _diagram_speeds(case: Case, rotor: str) -> tuple[float, ...]:
 
 
 def response_speeds(case: Case, rotor: str) -> tuple[float, ...]:
-    """Return the speeds of the unbalance response: as given, else the range of the Campbell diagram in finer steps."""
+    """Return the speeds of the unbalance response: as given, else the range of the Campbell diagram in finer steps.
+
+    From the slowest to the fastest, each once.
+    """
     analysis = case.rotor_analysis
     if analysis is not None and analysis.unbalance_response.speed is not None:
-        return _turned(case, rotor, listed(analysis.unbalance_response.speed))
+        return tuple(sorted(set(_turned(case, rotor, listed(analysis.unbalance_response.speed))), key=abs))
     speeds = campbell_speeds(case, rotor)
     if len(speeds) < 2:
         return speeds

@@ -45,6 +45,9 @@ def warnings_of(case: Case) -> tuple[str, ...]:
     if case.operation is not None and case.operation.torque > 0.0 and not case.gear_pair and not case.operation.output:
         found.append("operation.torque has nothing to work against: there are no gear pairs and no outputs")
     for rotor in case.rotor:
-        if not any(bearing.rotor == rotor.name for bearing in case.bearing):
+        if rotor.saved is not None:
+            found += [f'rotor "{rotor.name}": {remark}' for remark in rotor.saved.warnings]
+        held = rotor.saved is not None and rotor.saved.bearings
+        if not held and not any(bearing.rotor == rotor.name for bearing in case.bearing):
             found.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
     return tuple(found)

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, GetCoreSchemaHandler, Tag, model_validator
+from pydantic import (
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    PrivateAttr,
+    SerializerFunctionWrapHandler,
+    Tag,
+    model_serializer,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError, core_schema
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     Angle,
+    CaseFile,
     DampingRatio,
     Density,
     Force,
@@ -29,6 +39,9 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
+
+if TYPE_CHECKING:
+    from rotors import RossModel
 
 
 @dataclass(frozen=True)
@@ -161,28 +174,62 @@ class Bow(Table):
     phase: Angle = 0.0
 
 
+_OF_THE_SHAFT = ("segments", "shear_coefficient", "axial_force")
+"""Keys that a rotor's file stands for."""
+
+
 class Rotor(Table):
     """`[[rotor]]`: a shaft along z at `axis` (x, y), its left end at z = `start`, all in m.
 
     `damping_ratio` is that of the shaft's own modes. `shear_coefficient` (a formula or a number) and `axial_force`
     [N, tension positive] hold for segments that have none of their own. Of its modes the coupled system keeps the
-    lowest so many (`modes`) or those below a frequency (`frequency_limit`, Hz).
+    lowest so many (`modes`) or those below a frequency (`frequency_limit`, Hz). Where a `file` of ROSS holds the shaft,
+    with its discs and grounded bearings, there are no `segments` here.
     """
 
     name: Name
     axis: tuple[Length, Length] = (0.0, 0.0)
     start: Length = 0.0
-    material: Name
+    file: CaseFile | None = None
+    material: Name | None = None
     mass: Literal["distributed", "lumped"] = "distributed"
     damping_ratio: DampingRatio = 0.005
     shear_coefficient: ShearCoefficient = "cowper"
     axial_force: Force = 0.0
     modes: Annotated[int, Whole(1, 1000)] | None = None
     frequency_limit: PositiveFrequency | None = None
-    segments: tuple[AnySegment, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
+    segments: tuple[AnySegment, ...] = Field(default=(), min_length=1, max_length=MOST_ENTRIES)
     discs: tuple[AnyDisc, ...] = Field(default=(), max_length=MOST_ENTRIES)
     unbalance: tuple[Unbalance, ...] = Field(default=(), max_length=MOST_ENTRIES)
     bow: tuple[Bow, ...] = Field(default=(), max_length=MOST_ENTRIES)
+
+    _saved: RossModel | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _described(self) -> Rotor:
+        if self.file is None:
+            for key, what in (("material", "the name of a material"), ("segments", "a list")):
+                if not getattr(self, key):
+                    raise wrong(f"{what}, or a rotor's file instead", key)
+            return self
+        for key in _OF_THE_SHAFT:
+            if key in self.model_fields_set:
+                raise wrong("no such key beside file, which holds the shaft", key)
+        from rotors import RotorError, read_ross
+
+        try:
+            self._saved = read_ross(self.file)
+        except RotorError as error:
+            raise wrong(f"a rotor saved by ROSS ({error})", "file") from None
+        return self
+
+    @model_serializer(mode="wrap")
+    def _without_what_the_file_holds(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        written: dict[str, Any] = write(self)
+        if self.file is not None:
+            for key in _OF_THE_SHAFT:
+                del written[key]
+        return written
 
     @model_validator(mode="after")
     def _one_measure(self) -> Rotor:
@@ -191,6 +238,13 @@ class Rotor(Table):
         return self
 
     @property
+    def saved(self) -> RossModel | None:
+        """What the file holds; None where the shaft is described here."""
+        return self._saved
+
+    @property
     def length(self) -> float:
         """Length of the shaft [m]."""
+        if self._saved is not None:
+            return self._saved.rotor.length
         return sum(segment.length for segment in self.segments)

@@ -74,6 +74,9 @@ def build_rotor(case: Case, given: GivenRotor) -> rotor_room.Rotor:
             mass, polar, diametral = gear_inertia(case, gear)
             if mass or polar or diametral:
                 discs.append(rotor_room.Disc(gear.at, mass, polar, diametral))
+    if given.saved is not None:
+        of_file = given.saved.rotor
+        return rotor_room.Rotor(given.name, of_file.segments, [*of_file.discs, *discs], given.mass)
     segments = [_segment(case, given, segment) for segment in given.segments]
     return rotor_room.Rotor(given.name, segments, discs, given.mass)
 
@@ -83,7 +86,7 @@ def _segment(
 ) -> rotor_room.Segment | rotor_room.Coupling:
     if isinstance(given, CouplingSegment):
         return rotor_room.Coupling(given.length, **given.coupling.model_dump())
-    steel = case.material[given.material or rotor.material]
+    steel = case.material[_material(given.material, rotor)]
     return rotor_room.Segment(
         length=given.length,
         outer_diameter=given.diameter,
@@ -96,6 +99,13 @@ def _segment(
     )
 
 
+def _material(own: str | None, rotor: GivenRotor) -> str:
+    """The name of a part's material: its own, or the rotor's."""
+    name = own or rotor.material
+    assert name is not None
+    return name
+
+
 def build_discs(case: Case, given: GivenRotor) -> list[rotor_room.Disc]:
     """The discs of a rotor without its gears, in the order of the file."""
     return [_disc(case, given, disc) for disc in given.discs]
@@ -104,19 +114,23 @@ def build_discs(case: Case, given: GivenRotor) -> list[rotor_room.Disc]:
 def _disc(case: Case, rotor: GivenRotor, given: Disc | RoundDisc) -> rotor_room.Disc:
     if isinstance(given, Disc):
         return rotor_room.Disc(given.at, given.mass, given.polar_inertia, given.diametral_inertia)
-    density = given.density or case.material[given.material or rotor.material].density
+    density = given.density or case.material[_material(given.material, rotor)].density
     return rotor_room.Disc.from_dimensions(given.at, given.width, given.diameter, given.bore, density)
 
 
 def build_bearings(case: Case, rotor: str) -> tuple[rotor_room.Bearing, ...]:
-    """The bearings of one rotor, in the order of the file.
+    """The bearings of one rotor, in the order of the file; first those of the rotor's own file.
+
+    A bearing of the case takes the place of one of the same name in the rotor's file.
 
     Raises
     ------
     CaseError
         For stiffness given in a form that comes in a later version.
     """
-    bearings = []
+    saved = case.rotor_named(rotor).saved
+    replaced = {given.name for given in case.bearing if given.rotor == rotor}
+    bearings = [bearing for bearing in (saved.bearings if saved else ()) if bearing.name not in replaced]
     for index, given in enumerate(case.bearing):
         if given.rotor != rotor:
             continue

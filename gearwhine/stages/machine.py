@@ -20,8 +20,6 @@ _HERTZ = 2.0 * np.pi
 # what lies above answers statically, through attachment vectors at bearings and gears.
 _LATERAL_LIMIT_HZ = 8000.0
 _LIMIT_FACTOR = 2.5
-_FEWEST_LATERAL = 4
-_FEWEST_TORSIONAL = 4
 
 
 def build_machine(
@@ -43,18 +41,25 @@ def build_machine(
     for given in case.rotor:
         progress(f"modes of rotor {given.name}")
         rotor, held = build_rotor(case, given), build_bearings(case, given.name)
+        limit, count = _kept(case, given.name)
         gears_at = [gear.at for gear in case.gear if gear.rotor == given.name and gear.at is not None]
         components.append(
             room.rotor_component(
                 given.name,
-                _lateral_basis(case, rotor, held, gears_at),
-                _torsional_basis(case, rotor),
+                rotor_room.modal_rotor(
+                    rotor,
+                    [bearing.at_speed(speeds[given.name]) for bearing in held],
+                    frequency_limit=limit,
+                    count=count,
+                    gears_at=gears_at,
+                ),
                 start=given.start,
                 damping_ratio=given.damping_ratio,
             )
         )
-        seats = {entry.name: None if entry.grounded else entry.seat for entry in case.bearing}
-        bearings += [room.MountedBearing(bearing, given.name, seats[bearing.name]) for bearing in held]
+        # Those of the rotor's own file stand on the ground.
+        seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
+        bearings += [room.MountedBearing(bearing, given.name, seats.get(bearing.name)) for bearing in held]
     return room.couple(
         components,
         None if housing is None else _housing_component(case, housing),
@@ -115,26 +120,6 @@ def system_document(
         "trusted_below_hz": None if housing is None else housing.modes.certificate.limit / _HERTZ,
         "static_error": None if housing is None else static_error_document(housing.modes, housing.loaded),
     }
-
-
-def _lateral_basis(
-    case: Case, rotor: rotor_room.Rotor, bearings: tuple[rotor_room.Bearing, ...], gears_at: list[float]
-) -> rotor_room.LateralModes:
-    supports = [bearing.mean_support for bearing in bearings]
-    limit, count = _kept(case, rotor.name)
-    modes = rotor_room.solve_lateral_modes(rotor, supports, frequency_limit=limit, count=count)
-    if modes.count < _FEWEST_LATERAL and count is None:
-        modes = rotor_room.solve_lateral_modes(rotor, supports)
-    if rotor.mass_model == "lumped":
-        return modes
-    return rotor_room.attach_loads(modes, forces_at=[bearing.at for bearing in bearings] + gears_at)
-
-
-def _torsional_basis(case: Case, rotor: rotor_room.Rotor) -> rotor_room.TorsionalModes:
-    limit, count = _kept(case, rotor.name)
-    modes = rotor_room.solve_torsional_modes(rotor, frequency_limit=limit, count=count)
-    enough = modes.count >= _FEWEST_TORSIONAL or count is not None
-    return modes if enough else rotor_room.solve_torsional_modes(rotor)
 
 
 def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:

@@ -133,19 +133,20 @@ def _response(solved: SolvedResponse) -> dict[str, Any]:
     response = solved.response
     rows = []
     for place, reading in enumerate(solved.readings):
-        largest = int(reading.amplitude.argmax())
+        amplitude = np.abs(reading.amplitude)
+        largest = int(amplitude.argmax())
         at_operation = solved.at_operation[place] if solved.at_operation else None
         rows.append(
             {
                 "name": reading.probe.name,
                 "at_m": reading.probe.at,
                 "angle_deg": float(np.degrees(reading.probe.angle)),
-                "amplitude_m": reading.amplitude.tolist(),
+                "amplitude_m": amplitude.tolist(),
                 "phase_lag_deg": np.degrees(reading.phase_lag).tolist(),
                 "major_axis_m": reading.major_axis.tolist(),
-                "largest_amplitude_m": float(reading.amplitude[largest]),
+                "largest_amplitude_m": float(amplitude[largest]),
                 "largest_at_rpm": float(response.speeds[largest]) * _RPM,
-                "operation_amplitude_m": None if at_operation is None else float(at_operation.amplitude[0]),
+                "operation_amplitude_m": None if at_operation is None else float(abs(at_operation.amplitude[0])),
                 "operation_phase_lag_deg": None
                 if at_operation is None
                 else float(np.degrees(at_operation.phase_lag[0])),

@@ -10,6 +10,7 @@ from gearwhine.case import Case, Probe, RotorAnalysis, response_speeds
 from gearwhine.case import Rotor as GivenRotor
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 _PLACES = 201  # along a rotor, of its static deflection
 
@@ -42,18 +43,20 @@ class ProbeReading:
     Attributes
     ----------
     probe : Probe
-    amplitude : (b,) array
-        Along the probe's angle, zero to peak, run-out included [m].
-    phase_lag : (b,) array
-        By which the reading is behind the rotor's mark, as it passes x [rad].
+    amplitude : (b,) complex array
+        Reading Re(amplitude e^{iΩt}) along the probe's angle, run-out included; t from where the mark passes x [m].
     major_axis : (b,) array
-        Half the length of the orbit of the shaft there, without run-out [m].
+        Half the length of the orbit that is read there [m].
     """
 
     probe: Probe
-    amplitude: FloatArray
-    phase_lag: FloatArray
+    amplitude: ComplexArray
     major_axis: FloatArray
+
+    @property
+    def phase_lag(self) -> FloatArray:
+        """By which the reading is behind the rotor's mark, from 0 to 2π, (b,) [rad]."""
+        return np.asarray(np.mod(-np.angle(self.amplitude), 2.0 * np.pi))
 
 
 @dataclass(frozen=True)
@@ -121,12 +124,7 @@ def solve_response(
 def _read(response: room.SynchronousResponse, probe: Probe) -> ProbeReading:
     x, y = (part[:, 0] for part in response.reading([probe.at]))
     along = x * np.cos(probe.angle) + y * np.sin(probe.angle)
-    return ProbeReading(
-        probe,
-        np.abs(along),
-        np.mod(-np.angle(along), 2.0 * np.pi),
-        response.orbit([probe.at]).major[:, 0],
-    )
+    return ProbeReading(probe, along, room.orbit_of(x, y, response.frequencies).major)
 
 
 def _probes(case: Case, analysis: RotorAnalysis, given: GivenRotor) -> list[Probe]:

@@ -1,9 +1,11 @@
 """The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, weight, unbalance and bow."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import rotors as room
 from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
+from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import build_bearings, build_rotor
 from gearwhine.stages.rotor_loads import SolvedResponse, SolvedWeight, solve_response, solve_weight
@@ -82,6 +84,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         operation = speeds[0] if case.operation is not None else None
         reference = lowest if operation is None else operation
         weight = solve_weight(analysis, rotor, bearings, reference)
+        progress(f"rotor {given.name}: whirl over speed")
         diagram = campbell_speeds(case, given.name)
         campbell = room.campbell(rotor, bearings, diagram, count=analysis.modes) if diagram else None
         held = not isinstance(weight, str)
@@ -102,7 +105,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 weight=weight,
                 response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
                 stiffness_map=None
-                if analysis.stiffness_map is None
+                if analysis.stiffness_map is None or not bearings
                 else room.critical_speed_map(rotor, bearings, analysis.stiffness_map.stiffnesses),
             )
         )
@@ -115,3 +118,11 @@ def _crossings(campbell: room.Campbell) -> tuple[room.Crossing, ...] | str:
         return campbell.crossings()
     except room.IncompleteModesError as error:
         return str(error)
+
+
+def write_ross_files(folder: Path, solved: tuple[SolvedRotor, ...]) -> tuple[str, ...]:
+    """Write every rotor as ``<name>.ross.toml``, and return what ROSS has no place for."""
+    remarks: list[str] = []
+    for one, stem in zip(solved, file_stems([one.rotor.name for one in solved]), strict=True):
+        remarks += room.write_ross(folder / f"{stem}.ross.toml", one.rotor, one.bearings)
+    return tuple(remarks)

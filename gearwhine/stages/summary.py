@@ -36,8 +36,8 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
     if case.rotor:
         document["rotors"] = _rotors(case)
         document["rotor_analysis"] = _analysis(case)
-    if case.bearing:
-        document["bearings"] = [_bearing(bearing) for bearing in case.bearing]
+    if bearings := _bearings(case):
+        document["bearings"] = bearings
     if case.gear_pair:
         document["gear_pairs"] = _pairs(case)
     if case.operation is not None:
@@ -101,6 +101,17 @@ def _bushing(given: Mount | Joint) -> dict[str, Any]:
                 turning = motion in ("rx", "ry", "rz", "tilting", "torsional")
                 document.setdefault(f"{key}_{turning_unit if turning else unit}", {})[motion] = amount
     return document
+
+
+def _bearings(case: Case) -> list[dict[str, Any]]:
+    """Every bearing and where it stands, those of the rotors' own files on the ground."""
+    own = {(bearing.rotor, bearing.name) for bearing in case.bearing}
+    return [_bearing(bearing) for bearing in case.bearing] + [
+        {"name": bearing.name, "rotor": rotor.name, "seat": "ground"}
+        for rotor in case.rotor
+        for bearing in (rotor.saved.bearings if rotor.saved else ())
+        if (rotor.name, bearing.name) not in own
+    ]
 
 
 def _rotors(case: Case) -> list[dict[str, Any]]:

@@ -1,0 +1,46 @@
+"""The pictures that `gearwhine rotors` leaves: which files there are, that all are listed, and how they are named."""
+
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from gearwhine.output import file_stems
+
+KINDS = {"shaft", "modes", "torsion", "whirl", "campbell"}
+
+
+def test_rotors_are_drawn_into_the_folder(gearwhine, tmp_path: Path) -> None:
+    document = gearwhine("rotors", "friswell-rotor", "--json", "-q", "-o", "out").document
+    present = {path.name for path in (tmp_path / "out").iterdir()}
+    assert present == set(document["files"])
+    assert {name for name in present if name.endswith(".png")} == {f"rotor-shaft-{kind}.png" for kind in KINDS}
+    for path in (tmp_path / "out").glob("*.png"):
+        with Image.open(path) as image:
+            assert image.width == pytest.approx(160 / 25.4 * 200, abs=1)
+            assert len(image.convert("RGB").getcolors(maxcolors=1 << 24) or ()) > 50
+
+
+def test_without_a_speed_there_is_no_whirl_to_draw(gearwhine) -> None:
+    still = ("--set", "operation=", "--set", "sweep=")
+    document = gearwhine("rotors", "friswell-rotor", "--json", "-q", "-o", "out", *still).document
+    pictures = {name for name in document["files"] if name.endswith(".png")}
+    assert pictures == {f"rotor-shaft-{kind}.png" for kind in ("shaft", "modes", "torsion")}
+
+
+def test_gears_seats_and_odd_names(gearwhine) -> None:
+    renamed = []
+    for key in ("rotor.0.name", "bearing.0.rotor", "bearing.1.rotor", "gear.0.rotor"):
+        renamed += ["--set", f'{key}="Welle ä: $1*"']
+    outcome = gearwhine("rotors", "nasa-gear-noise-rig", "--json", "-q", "-o", "out", "--set", "sweep=", *renamed)
+    assert outcome.code == 0, outcome.err
+    pictures = {name for name in outcome.document["files"] if name.endswith(".png")}
+    kinds = KINDS - {"campbell"}
+    assert pictures == {f"rotor-{stem}-{kind}.png" for stem in ("Welle-1", "output") for kind in kinds}
+
+
+def test_names_of_files_are_plain_short_and_unlike() -> None:
+    stems = file_stems(["input", "Input", "轴", "轴 2", "..", "a" * 98, "a" * 99, "x*y", "x?y"], "rotor-")
+    assert len({stem.lower() for stem in stems}) == len(stems)
+    assert stems[0] == "rotor-input"
+    assert all(stem.isascii() and len(stem) < 80 and not set(stem) & set('/\\:*?"<>| ') for stem in stems)

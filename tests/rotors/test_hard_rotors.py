@@ -1,0 +1,109 @@
+"""Rotors that random search found to be refused, or to lose digits: each the shortest known of its kind.
+
+A mark says what happens so far. None of them misses a root.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from finite_element_rotor import bending_model, rod_model
+
+from rotors import (
+    Disc,
+    IncompleteModesError,
+    RadialSupport,
+    Rotor,
+    RotorError,
+    Segment,
+    ShaftMaterial,
+    solve_lateral_modes,
+    solve_torsional_modes,
+)
+
+STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
+ALUMINIUM = ShaftMaterial(70e9, 26e9, 2700.0)
+BRASS = ShaftMaterial(100e9, 37e9, 8500.0)
+PLASTIC = ShaftMaterial(3e9, 1.1e9, 1400.0)
+RUBBER = ShaftMaterial(5e6, 1.7e6, 1100.0)
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=ZeroDivisionError,
+    reason="where one side of a clamp is at a root to the last digit, its states beyond the clamp are one, not two",
+)
+def test_two_overhangs_of_one_clamp() -> None:
+    count = 10
+    sides = [Segment(0.5, 0.05, 0.0, STEEL), Segment(0.4, 0.05, 0.0, STEEL)]
+    modes = solve_lateral_modes(Rotor("clamped", sides), [RadialSupport(0.5, math.inf, math.inf)], count=count)
+    alone = [
+        solve_lateral_modes(Rotor("side", [side]), [RadialSupport(at, math.inf, math.inf)], count=count).frequencies
+        for side, at in zip(sides, (0.5, 0.0), strict=True)
+    ]
+    np.testing.assert_allclose(modes.frequencies, np.sort(np.concatenate(alone))[: modes.count], rtol=1e-12)
+
+
+@pytest.mark.xfail(
+    strict=True, raises=RotorError, reason="the first guess of a short, wide shaft's limit is far too high"
+)
+def test_few_modes_of_a_flat_ring() -> None:
+    ring = Rotor("ring", [Segment(0.0019, 0.3, 0.285, STEEL)])
+    modes = solve_lateral_modes(ring, count=7)
+    limit = float(modes.frequencies[-1]) * (1.0 + 1e-9)
+    reference = bending_model(ring, [], limit).natural_frequencies(limit)
+    np.testing.assert_allclose(modes.frequencies, reference, rtol=1e-11)
+
+
+@pytest.mark.xfail(
+    strict=True, raises=IncompleteModesError, reason="shapes of twins tied by a hair do not come out orthonormal"
+)
+def test_twins_tied_by_a_hair_in_bending() -> None:
+    half = [
+        Segment(0.4131, 0.1844, 0.95 * 0.1844, RUBBER),
+        Segment(0.1254, 0.1844, 0.95 * 0.1844, PLASTIC),
+        Segment(1.0, 0.03074, 0.0, PLASTIC),
+        Segment(0.3632, 0.004711, 0.5 * 0.004711, ALUMINIUM),
+    ]
+    off = 1.0 + 1e-11
+    discs = [Disc(1.2678, 3491.0, 3491.0, 1745.5), Disc(3.5356, off * 3491.0, off * 3491.0, off * 1745.5)]
+    rotor = Rotor("twins", [*half, Segment(1.0, 1e-6, 0.0, STEEL), *half[::-1]], discs)
+    supports = [RadialSupport(at, 1e4) for at in (0.158475, 0.4131)]
+    supports += [RadialSupport(at, off * 1e4) for at in (4.644925, 4.3903)]
+    modes = solve_lateral_modes(rotor, supports, count=5)
+    limit = float(modes.frequencies[-1]) * (1.0 + 1e-9)
+    reference = bending_model(rotor, supports, limit).natural_frequencies(limit)
+    np.testing.assert_allclose(modes.frequencies, reference, rtol=1e-10)
+
+
+@pytest.mark.xfail(
+    strict=True, raises=IncompleteModesError, reason="shapes of twins tied by a hair do not come out orthonormal"
+)
+def test_twins_tied_by_a_hair_in_torsion() -> None:
+    half = [Segment(0.6955, 0.001, 0.0, BRASS), Segment(0.0002677, 0.009917, 0.0, BRASS)]
+    inertia = 0.09211224999999999
+    discs = [
+        Disc(0.28990320833333333, 1.0, inertia, 0.5 * inertia),
+        Disc(2.1016321916666665, 1.000000000001, 0.09211225000009211, 0.04605612500004606),
+    ]
+    rotor = Rotor("twins", [*half, Segment(1.0, 2.971e-06, 0.0, STEEL), *half[::-1]], discs)
+    modes = solve_torsional_modes(rotor, count=6)
+    limit = float(modes.frequencies[-1]) * (1.0 + 1e-9)
+    reference = rod_model(rotor, "torsion", limit).natural_frequencies(limit)
+    np.testing.assert_allclose(modes.frequencies, reference, rtol=1e-10, atol=1e-9 * limit)
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="what a hair holds, a million times slower than the rest, keeps eight digits",
+)
+def test_digits_of_what_a_hair_holds() -> None:
+    bar = Segment(1.0, 0.01, 0.0, ALUMINIUM)
+    end = Segment(0.0002573, 0.1329, 0.5 * 0.1329, ALUMINIUM)
+    discs = [Disc(0.6668382, 0.3519), Disc(1.4359764, 0.3519)]
+    rotor = Rotor("pair", [end, bar, Segment(0.1023, 1.313e-6, 0.0, STEEL), bar, end], discs)
+    modes = solve_lateral_modes(rotor, count=4)
+    limit = float(modes.frequencies[-1]) * 1.01
+    reference = bending_model(rotor, [], limit).natural_frequencies(limit, floor=1e-12)
+    np.testing.assert_allclose(modes.frequencies[2:4], reference[-2:], rtol=1e-10)
