@@ -11,7 +11,6 @@ import rotors
 from gearwhine.figures import ProbeResponse, draw_campbell, draw_critical_map, draw_unbalance_response
 from gearwhine.figures.campbell import stability_onset
 from gearwhine.figures.critical_map import meetings
-from gearwhine.figures.rotors import whirl_branches
 from gearwhine.figures.unbalance import phase_lag
 
 RPM = 60.0 / (2.0 * math.pi)
@@ -203,18 +202,17 @@ def test_unbalance_response_without_probes_or_motion() -> None:
         draw_unbalance_response("t", SPEEDS, [ProbeResponse("short", np.zeros(3, dtype=complex))])
 
 
-def test_branches_stay_themselves_where_they_cross() -> None:
+def test_the_branches_that_are_drawn_stay_themselves_where_they_cross() -> None:
     """On isotropic bearings a whirl is circular, so that a branch keeps its sense through every crossing."""
     steel = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
     discs = [rotors.Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0), rotors.Disc(1.0, 51.5, 0.8, 0.42)]
     rotor = rotors.Rotor("two discs", [rotors.Segment(1.5, 0.05, 0.0, steel)], discs)
     bearings = [rotors.Bearing.isotropic("left", 0.0, 1e6), rotors.Bearing.isotropic("right", 1.5, 1e6)]
-    basis = rotors.whirl_basis(rotor, bearings, count=8)
-    speeds = np.linspace(0.0, 2000.0, 41)
-    whirl = [rotors.solve_whirl(rotor, bearings, speed, count=8, basis=basis) for speed in speeds]
-    frequencies, directions, ratios = whirl_branches(whirl)
-    assert frequencies.shape == directions.shape == ratios.shape == (41, 8)
-    assert (np.diff(np.argsort(frequencies, axis=1), axis=0) != 0).any()  # some do cross
-    # At rest the shapes of double roots, and so their senses, are any.
-    assert (np.abs(directions[1:]) > 0.999).all()
-    assert (np.sign(directions[1:]) == np.sign(directions[-1])).all()
+    diagram = rotors.campbell(rotor, bearings, np.linspace(50.0, 2000.0, 40), count=8)
+    known = np.isfinite(diagram.frequencies)
+    assert (known.sum(axis=1) >= 8).all()
+    whole = known.all(axis=0)
+    assert (np.diff(np.argsort(diagram.frequencies[:, whole], axis=1), axis=0) != 0).any()  # some do cross
+    for sense, seen in zip(diagram.direction.T, known.T, strict=True):
+        assert (np.abs(sense[seen]) > 0.999).all()
+        assert len(set(np.sign(sense[seen]))) == 1
