@@ -18,8 +18,8 @@ and answered for by frozen results, each with the certificate that no mode is mi
     unbalance_response(shaft, bearings, [Unbalance(at=0.5, moment=1e-4)], speeds)
     static_deflection(shaft, bearings).bearing_loads
 
-Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z along the shaft; slopes and
-the gyroscopic sign are those of `rotors.whirl`.
+`rotors.rolling` makes bearings from the geometry of rolling ones. Lengths are m, frequencies and speeds rad/s. The
+frame is right-handed with z along the shaft; slopes and the gyroscopic sign are those of `rotors.whirl`.
 """
 
 from .attachment import attach_loads, attach_motions
@@ -29,14 +29,15 @@ from .bearing import Bearing, Pedestal, RadialSupport
 from .buckling import buckling_factor
 from .campbell import Campbell, Crossing, campbell
 from .certificate import ModeCertificate
+from .critical import CriticalSpeeds, critical_speeds
 from .critical_map import CriticalSpeedMap, critical_speed_map
-from .errors import IncompleteModesError, RotorError
+from .errors import EquilibriumError, IncompleteModesError, RotorError
 from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response, orbit_of
 from .lateral import LateralModes, solve_lateral_modes
 from .loads import Bow, HarmonicForce, Unbalance
 from .material import ShaftMaterial, shear_coefficient
 from .modal import ModalRotor, modal_rotor
-from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .planes import RestFrequencies, rest_frequencies
 from .projection import whirl_basis
 from .ross_files import RossModel, read_ross, write_ross
 from .section import Section
@@ -63,6 +64,7 @@ __all__ = [
     "CriticalSpeeds",
     "Crossing",
     "Disc",
+    "EquilibriumError",
     "HarmonicForce",
     "HarmonicResponse",
     "IncompleteModesError",

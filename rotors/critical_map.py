@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .bearing import Bearing
+from .critical import certified_criticals
 from .errors import RotorError, require, require_count
-from .planes import certified_criticals
 from .projection import Projection, whirl_basis
 from .shaft import Rotor
 

@@ -81,13 +81,17 @@ class Line:
         return int(np.count_nonzero((self.node_inertia > 0.0) & ~np.isinf(self.node_stiffness)))
 
     def likely_frequency(self, count: int) -> float:
-        """About the ``count``-th natural frequency, rad/s: of the bare shaft by its wave number, or a scale."""
-        flexible, heavy = self.stiffness[self.kind, -1], self.inertia[self.kind, 0]
-        if bool(heavy.any()):
-            power = 0.25 if self.stiffness.shape[1] == 2 else 0.5
-            return float(((count + 0.5) * np.pi / (self.lengths @ (heavy / flexible) ** power)) ** (0.5 / power))
-        # In the chain's units stiffness is about one.
-        return float(np.pi / np.sqrt(max(self.node_inertia[:, 0].sum(), 1e-300)))
+        """About the ``count``-th natural frequency of the bare shaft, by its waves, or a scale of it; rad/s."""
+        heavy = self.inertia[self.kind, 0]
+        if not bool(heavy.any()):
+            # In the chain's units stiffness is about one.
+            return float(np.pi / np.sqrt(max(self.node_inertia[:, 0].sum(), 1e-300)))
+        phase = (count + 0.5) * np.pi
+        # Waves are no longer than those of bending without shear, nor than those of shear without bending.
+        waves = [phase / (self.lengths @ np.sqrt(heavy / self.stiffness[self.kind, 0]))]
+        if self.stiffness.shape[1] == 2:
+            waves.append((phase / (self.lengths @ (heavy / self.stiffness[self.kind, 1]) ** 0.25)) ** 2)
+        return float(min(waves))
 
     def cut(self, highest: float) -> Chain:
         """Chain good up to ``highest`` rad/s.

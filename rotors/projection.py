@@ -183,10 +183,10 @@ class Projection:
             spread[units.size + np.arange(len(foot)), rows] = 1.0
             first += len(foot)
             # The bearing feels the shaft less its pedestal.
-            relative = spread[: units.size].copy()
+            relative = tie.frame @ spread[: units.size]
             relative[foot] -= spread[units.size :]
-            stiffness += relative.T @ tie.stiffness @ relative
-            damping += relative.T @ tie.damping @ relative
+            stiffness += relative.conj().T @ tie.stiffness @ relative
+            damping += relative.conj().T @ tie.damping @ relative
             if foot:
                 stiffness[np.ix_(rows, rows)] += tie.foot_stiffness
                 damping[np.ix_(rows, rows)] += tie.foot_damping
@@ -242,15 +242,11 @@ class Projection:
         turn = np.eye(order, dtype=np.complex128)
         if len(self.blocks) == 1:
             return turn
-        b = self.basis.count
-        pairs = [(np.arange(b), b + np.arange(b))]
-        lateral = 2 * b + (self.axial_frequencies.size if 0 in self.blocks else 0)
-        # Pedestals come in pairs of + and −.
-        pairs.append((np.arange(lateral, order, 2), np.arange(lateral + 1, order, 2)))
-        root = np.sqrt(0.5)
-        for plus, minus in pairs:
-            turn[plus, plus], turn[plus, minus] = root, 1j * root
-            turn[minus, plus], turn[minus, minus] = root, -1j * root
+        # Pedestals and axial motion are real as they are.
+        b, root = self.basis.count, np.sqrt(0.5)
+        plus, minus = np.arange(b), b + np.arange(b)
+        turn[plus, plus], turn[plus, minus] = root, 1j * root
+        turn[minus, plus], turn[minus, minus] = root, -1j * root
         return turn
 
 

@@ -97,12 +97,13 @@ def _node_matrices(
 
 def _reduced(tie: Tie, eigenvalues: ComplexArray) -> tuple[ComplexArray, IntArray]:
     bearing, ground = tie.dynamic_stiffness(eigenvalues)
+    turned = tie.frame.conj().T
     if not tie.foot:
-        return bearing, np.zeros(eigenvalues.size, dtype=np.intp)
+        return turned @ bearing @ tie.frame, np.zeros(eigenvalues.size, dtype=np.intp)
     foot = list(tie.foot)
     whole = ground + bearing[:, foot][:, :, foot]
     reduced = bearing - bearing[:, :, foot] @ np.linalg.solve(whole, bearing[:, foot])
-    return reduced, _negatives(whole)
+    return turned @ reduced @ tie.frame, _negatives(whole)
 
 
 def _negatives(matrices: ComplexArray) -> IntArray:

@@ -172,7 +172,8 @@ def test_bow_is_the_least_strained_curve_and_reads_as_measured_at_slow_roll() ->
 
 
 def test_bowed_jeffcott_rotor() -> None:
-    # (k − mΩ² + i c Ω) r = k b: at resonance as large as k / cΩ, at high speed straight (Nicholas, Gunter & Allaire 1976).
+    # (k − mΩ² + i c Ω) r = k b: at resonance as large as k / cΩ, at high speed straight
+    # (Nicholas, Gunter & Allaire 1976).
     shaft, bearings, mass, stiffness = jeffcott(300.0)
     natural = math.sqrt(stiffness / mass)
     speeds = natural * np.array([0.01, 0.5, 1.0, 3.0])
