@@ -25,7 +25,14 @@ def whirl_speeds(case: Case, rotor: str) -> tuple[float, ...]:
 
 
 def campbell_speeds(case: Case, rotor: str) -> tuple[float, ...]:
-    """Return the speeds of the Campbell diagram: as given, else the sweep's, else up to beyond operation, else none."""
+    """Return the speeds of the Campbell diagram: as given, else the sweep's, else up to beyond operation, else none.
+
+    Ascending, each once; those of a rotor that turns clockwise are negative.
+    """
+    return tuple(sorted(set(_diagram_speeds(case, rotor))))
+
+
+def _diagram_speeds(case: Case, rotor: str) -> tuple[float, ...]:
     analysis = case.rotor_analysis
     if analysis is not None and analysis.speed is not None:
         return _turned(case, rotor, listed(analysis.speed))
@@ -41,10 +48,13 @@ def campbell_speeds(case: Case, rotor: str) -> tuple[float, ...]:
 
 
 def response_speeds(case: Case, rotor: str) -> tuple[float, ...]:
-    """Return the speeds of the unbalance response: as given, else the range of the Campbell diagram in finer steps."""
+    """Return the speeds of the unbalance response: as given, else the range of the Campbell diagram in finer steps.
+
+    From the slowest to the fastest, each once.
+    """
     analysis = case.rotor_analysis
     if analysis is not None and analysis.unbalance_response.speed is not None:
-        return _turned(case, rotor, listed(analysis.unbalance_response.speed))
+        return tuple(sorted(set(_turned(case, rotor, listed(analysis.unbalance_response.speed))), key=abs))
     speeds = campbell_speeds(case, rotor)
     if len(speeds) < 2:
         return speeds

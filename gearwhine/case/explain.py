@@ -8,8 +8,9 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
+from gearwhine.case.fields import Quantity, Table, Whole
 from gearwhine.case.model import Case
+from gearwhine.case.over_speed import OverSpeed
 from gearwhine.case.problems import NOTHING, Finding, Location, did_you_mean
 
 _PLAIN_WORDS = {

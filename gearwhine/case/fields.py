@@ -120,35 +120,6 @@ class Quantity:
         return str(self.write(limit)) if self.dimension.unit else f"{limit:g}"
 
 
-@dataclass(frozen=True)
-class OverSpeed:
-    """Validates a quantity, or a list with one for each speed of a table; to stand in `Annotated`."""
-
-    each: Quantity
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Tell pydantic how to validate and write this field."""
-        writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
-        return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
-
-    @property
-    def expected(self) -> str:
-        """What a user should write here, in words."""
-        return self.each.expected
-
-    def write(self, given: float | tuple[float, ...]) -> str | float | list[str | float]:
-        """Return the quantity, or each of the list, as text with its unit."""
-        return [self.each.write(number) for number in given] if isinstance(given, tuple) else self.each.write(given)
-
-    def validate(self, value: object) -> float | tuple[float, ...]:
-        """Return the quantity or quantities in SI, or raise pydantic's error with what was expected and where."""
-        if isinstance(value, (list, tuple)):
-            if len(value) > MOST_ENTRIES:
-                raise wrong(f"at most {MOST_ENTRIES} entries")
-            return tuple(self.each.validate_at(entry, place) for place, entry in enumerate(value))
-        return self.each.validate(value)
-
-
 def hint_of_millimetres(value: object) -> str:
     """Return the advice for a plain number of metres that looks like millimetres, or nothing."""
     if isinstance(value, str):

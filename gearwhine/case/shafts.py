@@ -17,7 +17,6 @@ from gearwhine.case.fields import (
     LengthFromZero,
     Mass,
     Name,
-    OverSpeed,
     PositiveLength,
     PositiveStiffness,
     Quantity,
@@ -27,10 +26,8 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
+from gearwhine.case.over_speed import Coefficient, OverSpeed
 from gearwhine.case.units import Dimension
-
-Coefficient = float | tuple[float, ...]
-"""A constant, or one value for each of the bearing's speeds."""
 
 
 class RadialStiffness(Table):

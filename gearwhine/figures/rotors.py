@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.figure import Figure
 
 import rotors as room
@@ -20,9 +21,11 @@ from gearwhine.figures.whirl_shapes import draw_whirl_modes
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import gear_inertia
-from gearwhine.stages.rotor_documents import STATIC_PLACES
 from gearwhine.stages.rotors import SolvedRotor
 
+FloatArray = npt.NDArray[np.float64]
+
+_CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
 _MODES = 6  # drawn of each kind
 _ADDENDUM, _DEDENDUM, _WIDTH = 1.0, 1.25, 10.0  # of a drawn tooth and of a gear without a face width, in modules
 
@@ -105,6 +108,7 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
     operation = one.operation
     if operation is not None and one.whirl[0].frequencies.size:
         figures.append(("whirl", draw_whirl_modes(assembly, one.whirl[0], most=_MODES)))
+    critical, directions = _critical_speeds(one)
     name = f"Rotor {shortened(one.rotor.name, 20)}"
     if one.campbell is not None and one.campbell.eigenvalues.size:
         eigenvalues = one.campbell.eigenvalues
@@ -114,34 +118,43 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
             one.campbell.frequencies,
             one.campbell.direction,
             -eigenvalues.real / np.abs(eigenvalues),
-            critical_speeds=one.critical.speeds,
-            critical_directions=one.critical.direction,
+            critical_speeds=critical,
+            critical_directions=directions,
             operating_speed=operation,
         )
         figures.append(("campbell", campbell))
-    if one.critical_map is not None:
+    if one.stiffness_map is not None:
         sheet = draw_critical_map(
             f"{name}: undamped critical-speed map",
-            one.critical_map.stiffnesses,
-            one.critical_map.speeds,
+            one.stiffness_map.stiffnesses,
+            one.stiffness_map.speeds,
             bearings=one.bearings,
             operating_speed=operation,
         )
         figures.append(("critical-map", sheet))
-    if one.response is not None and one.response.speeds.size > 1:
-        readings = [ProbeResponse(read.name, read.amplitude, read.major_axis) for read in one.response.readings]
+    if one.response is not None and one.response.response.speeds.size > 1:
+        readings = [ProbeResponse(read.probe.name, read.amplitude, read.major_axis) for read in one.response.readings]
         running = None if operation is None else (abs(operation), abs(operation))
         response = draw_unbalance_response(
             f"{name}: response to unbalance" + (" and bow" if case.rotor_named(one.rotor.name).bow else ""),
-            one.response.speeds,
+            np.abs(one.response.response.speeds),
             readings,
-            critical_speeds=one.critical.forward,
+            critical_speeds=critical[directions > _CIRCULAR_BACKWARD],
             operating_range=running,
         )
         figures.append(("unbalance", response))
-    if one.static is not None:
-        z = np.linspace(0.0, one.rotor.length, STATIC_PLACES)
+    if not isinstance(one.weight, str):
         # What the bearings carry presses on them; the arrows show what holds the rotor.
-        holding = -one.static.bearing_loads[:, :2]
-        figures.append(("static", draw_static_deflection(assembly, z, one.static.evaluate(z)[:2].T, holding)))
+        holding = -one.weight.deflection.bearing_loads[:, :2]
+        sheet = draw_static_deflection(assembly, one.weight.places, one.weight.displacement.T, holding)
+        figures.append(("static", sheet))
     return figures
+
+
+def _critical_speeds(one: SolvedRotor) -> tuple[FloatArray, FloatArray]:
+    """Critical speeds and their directions: damped, where the Campbell diagram meets 1×, or else undamped."""
+    if one.campbell is None or isinstance(one.crossings, str):
+        return one.critical.speeds, one.critical.direction
+    sense = -1.0 if one.campbell.speeds.min() < 0.0 else 1.0
+    speeds = np.array([abs(crossing.speed) for crossing in one.crossings])
+    return speeds, sense * np.array([crossing.direction for crossing in one.crossings])

@@ -13,6 +13,7 @@ from rich.text import Text
 from gearwhine.screen.console import counted, open_console, show_written
 
 _MOST = 12  # rows of a table
+_MAP_ROWS = 5  # of the critical-speed map
 _REACH = 2.0  # critical speeds beyond so many times the speed of operation are only counted
 _PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 _NEUTRAL = 1e-9  # a damping ratio this near to zero neither grows nor decays
@@ -28,10 +29,13 @@ def show_rotors(document: dict[str, Any]) -> None:
         _at_rest(console, rotor)
         _whirl(console, rotor)
         _critical_speeds(console, rotor)
+        _weight(console, rotor["static"])
+        if rotor["unbalance_response"] is not None:
+            _response(console, rotor["unbalance_response"])
+        if rotor["stiffness_map"] is not None:
+            _stiffness_map(console, rotor["stiffness_map"])
         if rotor["campbell"]:
             console.print(f"  {_stability(rotor['campbell'])}")
-        _response(console, rotor["unbalance_response"])
-        _static(console, rotor)
         console.print(f"  {_proof(rotor['certificate'])}")
     show_written(console, document)
 
@@ -83,9 +87,45 @@ def _whirl(console: Console, rotor: dict[str, Any]) -> None:
 
 
 def _critical_speeds(console: Console, rotor: dict[str, Any]) -> None:
-    """Critical speeds, which way they whirl, and how far they are from the speed of operation."""
+    """Critical speeds: where the Campbell diagram has them, damped; without a diagram, undamped."""
+    campbell = rotor["campbell"]
+    if campbell is not None and campbell["critical_speeds"] is not None:
+        _crossings(console, rotor, campbell)
+    else:
+        _undamped(console, rotor)
+        if campbell is not None:
+            console.print(f"  No damped critical speeds: {campbell['why_no_critical_speeds']}")
+
+
+def _crossings(console: Console, rotor: dict[str, Any], campbell: dict[str, Any]) -> None:
+    """Damped critical speeds, which way they whirl, how fast that decays, and how far they are from operation."""
+    turning = -1.0 if min(campbell["speed_rpm"]) < 0.0 else 1.0
+    title = f"Critical speeds from {_span(campbell)}"
+    head, rows = ("speed [rpm]", "whirl", "log decrement", "from operation"), []
+    excited = []
+    for one in campbell["critical_speeds"]:
+        speed, way, margin = abs(one["speed_rpm"]), turning * one["direction"], one["margin"]
+        decrement = f"{one['log_decrement']:.3g}" if abs(one["log_decrement"]) > _NEUTRAL else "0"
+        rows.append((f"{speed:.5g}", _whirl_name(way), decrement, "" if margin is None else _beside(margin)))
+        if margin is not None and way >= -1.0 + _PLANAR:  # circular backward whirl takes no work from unbalance
+            excited.append((abs(margin), speed, margin))
+    if rows:
+        _show(console, title, head if rotor["operation_rpm"] is not None else head[:3], rows[:_MOST])
+    else:
+        lowest = (
+            f"; undamped, the lowest is {rotor['critical_speeds_rpm'][0]:.5g} rpm"
+            if rotor["critical_speeds_rpm"]
+            else ""
+        )
+        console.print(f"  No critical speed from {_span(campbell)}{lowest}")
+    if excited:
+        _nearest(console, excited)
+
+
+def _undamped(console: Console, rotor: dict[str, Any]) -> None:
+    """Undamped critical speeds, which way they whirl, and how far they are from the speed of operation."""
     speeds, directions, margins = (rotor[f"critical_{key}"] for key in ("speeds_rpm", "directions", "margins"))
-    title = f"Undamped critical speeds{_with_bearings_at(rotor['critical_bearings_at_rpm'])}"
+    title = "Undamped critical speeds"
     if margins is None:
         listed = [(f"{speed:.5g}", _whirl_name(way)) for speed, way in zip(speeds, directions, strict=True)]
         _show(console, title, ("speed [rpm]", "whirl"), listed[:_MOST])
@@ -102,8 +142,57 @@ def _critical_speeds(console: Console, rotor: dict[str, Any]) -> None:
         if way >= -1.0 + _PLANAR  # circular backward whirl takes no work from unbalance
     ]
     if excited:
-        _, speed, margin = min(excited)
-        console.print(f"  Of those that unbalance excites, {speed:.5g} rpm is nearest: {_beside(margin)} operation")
+        _nearest(console, excited)
+
+
+def _nearest(console: Console, excited: Sequence[tuple[float, float, float]]) -> None:
+    """The critical speed nearest to operation of some, each with its distance, speed and margin."""
+    _, speed, margin = min(excited)
+    console.print(f"  Of those that unbalance excites, {speed:.5g} rpm is nearest: {_beside(margin)} operation")
+
+
+def _weight(console: Console, static: dict[str, Any]) -> None:
+    """What the bearings carry of the rotor's weight, and how far it sags."""
+    if static["bearings"] is None:
+        console.print(f"  No static deflection: {static['why_not']}")
+        return
+    rows = [(bearing["name"], *(f"{load:z.5g}" for load in bearing["load_n"][:2])) for bearing in static["bearings"]]
+    title = f"Under its weight{_with_bearings_at(static['bearings_at_rpm'])}"
+    _show(console, title, ("bearing carries", "x [N]", "y [N]"), rows)
+    sag, place = 1e6 * static["largest_deflection_m"], 1e3 * static["largest_deflection_at_m"]
+    console.print(f"  It sags most at {place:.5g} mm, by {sag:.3g} µm")
+
+
+def _response(console: Console, response: dict[str, Any]) -> None:
+    """What each probe reads of unbalance and bow, at operation and at its largest."""
+    rows = []
+    for probe in response["probes"][:_MOST]:
+        at_operation = ("", "")
+        if probe["operation_amplitude_m"] is not None:
+            at_operation = (
+                f"{1e6 * probe['operation_amplitude_m']:.3g}",
+                f"{probe['operation_phase_lag_deg']:.0f}°",
+            )
+        largest = f"{1e6 * probe['largest_amplitude_m']:.3g} at {probe['largest_at_rpm']:.5g} rpm"
+        place = f"{probe['name']}, {1e3 * probe['at_m']:.5g} mm, {probe['angle_deg']:.0f}°"
+        rows.append((place, *at_operation, largest))
+    _show(
+        console,
+        "Response to unbalance and bow",
+        ("probe", "at operation [µm, peak]", "lag", "largest [µm, peak]"),
+        rows,
+    )
+
+
+def _stiffness_map(console: Console, given: dict[str, Any]) -> None:
+    """Forward critical speeds from the softest to the stiffest bearings; the rest is in the files."""
+    stiffnesses, speeds = given["stiffness_n_per_m"], given["forward_critical_speeds_rpm"]
+    chosen = sorted({round(part * (len(stiffnesses) - 1) / (_MAP_ROWS - 1)) for part in range(_MAP_ROWS)})
+    rows = [
+        (f"{stiffnesses[row]:.3g}", "  ".join(f"{speed:.5g}" for speed in speeds[row] if math.isfinite(speed)))
+        for row in chosen
+    ]
+    _show(console, "Over the stiffness of all bearings", ("stiffness [N/m]", "forward critical speeds [rpm]"), rows)
 
 
 def _beside(margin: float) -> str:
@@ -121,37 +210,14 @@ def _whirl_name(direction: float) -> str:
 
 def _stability(campbell: dict[str, Any]) -> str:
     """Up to which speed no mode grows."""
-    speeds = [abs(speed) for speed in campbell["speed_rpm"]]
-    span = f"{counted(len(speeds), 'speed')} from {min(speeds):.6g} to {max(speeds):.6g} rpm"
+    span = f"{counted(len(campbell['speed_rpm']), 'speed')} from {_span(campbell)}"
     onset = campbell["unstable_from_rpm"]
     return f"Stable at {span}" if onset is None else f"UNSTABLE from {onset:.6g} rpm on, of {span}"
 
 
-def _response(console: Console, response: dict[str, Any] | None) -> None:
-    """Where each probe reads most."""
-    if response is None:
-        return
-    rows = [
-        (probe["name"], f"{1e6 * probe['highest']['peak_to_peak_m']:.4g}", f"{probe['highest']['speed_rpm']:.5g}")
-        for probe in response["probes"]
-    ]
-    speeds = response["speed_rpm"]
-    title = f"Response to unbalance and bow, {min(speeds):.6g} to {max(speeds):.6g} rpm"
-    _show(console, title, ("probe", "highest, peak to peak [µm]", "at [rpm]"), rows[:_MOST])
-
-
-def _static(console: Console, rotor: dict[str, Any]) -> None:
-    """What the bearings carry of the rotor's weight."""
-    static = rotor["static"]
-    if static is None:
-        if rotor["unheld"]:
-            console.print(f"  No static deflection: {rotor['unheld']}")
-        return
-    loads = ", ".join(f"{one['bearing']} {math.hypot(*one['force_n']):.5g} N" for one in static["bearing_loads"])
-    console.print(
-        f"  Its weight bends it by up to {1e6 * static['largest_deflection_m']:.4g} µm, "
-        f"{1e3 * static['at_m']:.5g} mm from its left end; bearings carry {loads}"
-    )
+def _span(campbell: dict[str, Any]) -> str:
+    speeds = [abs(speed) for speed in campbell["speed_rpm"]]
+    return f"{min(speeds):.6g} to {max(speeds):.6g} rpm"
 
 
 def _proof(certificate: dict[str, Any]) -> str:
@@ -161,7 +227,7 @@ def _proof(certificate: dict[str, Any]) -> str:
 
 def _show(console: Console, title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     table = Table(*head, box=SIMPLE_HEAD, show_edge=False)
-    table.columns[0].justify = "right"
+    table.columns[0].justify = "right" if "[" in head[0] else "left"  # numbers have a unit
     for row in rows:
         table.add_row(*row)
     console.print(f"  {title}")

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 import rotors as room
-from gearwhine.stages.rotor_loads import Reading, SolvedResponse
+from gearwhine.stages.rotor_loads import SolvedResponse
 from gearwhine.stages.rotors import SolvedRotor
 
 FloatArray = npt.NDArray[np.float64]
@@ -16,9 +16,6 @@ _RPM = 60.0 / (2.0 * np.pi)
 
 # A damping ratio nearer to zero than this is rounding: the mode neither grows nor decays.
 NEUTRAL = 1e-9
-
-STATIC_PLACES = 401
-"""Along a shaft, where its deflection is read."""
 
 
 def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
@@ -35,15 +32,18 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "operation_rpm": _in_rpm(one.operation),
                 "whirl": [{"speed_rpm": whirl.speed * _RPM} | _modes(whirl) for whirl in one.whirl],
                 "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
-                "critical_bearings_at_rpm": _in_rpm(one.critical_speed),
                 "critical_directions": one.critical.direction.round(6).tolist(),
                 "critical_margins": _margins(one),
-                "campbell": _campbell(one.campbell),
-                "critical_map": _critical_map(one.critical_map),
-                "unbalance_response": _response(one.response),
+                "campbell": _campbell(one),
                 "static": _static(one),
-                "unheld": one.unheld,
+                "unbalance_response": None if one.response is None else _response(one.response),
                 "damping": "of the bearings; the shaft's own acts in the coupled system",
+                "stiffness_map": None
+                if one.stiffness_map is None
+                else {
+                    "stiffness_n_per_m": one.stiffness_map.stiffnesses.tolist(),
+                    "forward_critical_speeds_rpm": (one.stiffness_map.speeds * _RPM).tolist(),
+                },
                 "certificate": _certificate(one),
             }
             for one in solved
@@ -75,84 +75,91 @@ def _modes(whirl: room.WhirlModes) -> dict[str, Any]:
     }
 
 
-def _campbell(campbell: room.Campbell | None) -> dict[str, Any] | None:
-    """Whirl over speed, a row for each speed and a column for each branch; None without speeds."""
-    if campbell is None:
+def _campbell(one: SolvedRotor) -> dict[str, Any] | None:
+    """Whirl over speed, a row for each speed and a column for each branch; None without speeds.
+
+    ``unstable_from_rpm`` is the lowest speed looked at, without its sense, at which a mode grows.
+    """
+    if one.campbell is None:
         return None
-    growing = (campbell.log_decrements < -NEUTRAL).any(axis=1)
-    unstable = np.abs(campbell.speeds[growing]) * _RPM
+    diagram, crossings = one.campbell, one.crossings
+    # Branches that do not oscillate at a speed are not a number there, which compares as stable.
+    grows = (diagram.log_decrements < -2.0 * np.pi * NEUTRAL).any(axis=1)
     return {
-        "speed_rpm": (campbell.speeds * _RPM).tolist(),
-        "frequency_hz": _known(campbell.frequencies / _HERTZ),
-        "log_decrement": _known(campbell.log_decrements),
-        "direction": _known(campbell.direction),
-        "proved": campbell.proved.tolist(),
-        "crossings": [
-            {
-                "speed_rpm": crossing.speed * _RPM,
-                "direction": crossing.direction,
-                "log_decrement": crossing.log_decrement,
-            }
-            for crossing in campbell.crossings()
-        ],
-        "unstable_from_rpm": float(unstable.min()) if unstable.size else None,
+        "speed_rpm": (diagram.speeds * _RPM).tolist(),
+        "frequency_hz": (diagram.frequencies / _HERTZ).tolist(),
+        "log_decrement": diagram.log_decrements.tolist(),
+        "direction": diagram.direction.tolist(),
+        "unstable_from_rpm": float(np.abs(diagram.speeds[grows]).min()) * _RPM if grows.any() else None,
+        "proved_at_rpm": (diagram.speeds[diagram.proved] * _RPM).tolist(),
+        "critical_speeds": None if isinstance(crossings, str) else [_crossing(one, each) for each in crossings],
+        "why_no_critical_speeds": crossings if isinstance(crossings, str) else None,
     }
 
 
-def _known(values: FloatArray) -> list[list[float | None]]:
-    """Rows of numbers, None where a branch is not known."""
-    return [[None if np.isnan(value) else float(value) for value in row] for row in values]
+def _crossing(one: SolvedRotor, crossing: room.Crossing) -> dict[str, Any]:
+    """A damped critical speed."""
+    return {
+        "speed_rpm": crossing.speed * _RPM,
+        "direction": crossing.direction,
+        "log_decrement": crossing.log_decrement,
+        "margin": abs(crossing.speed / one.operation) - 1.0 if one.operation else None,
+    }
 
 
-def _critical_map(found: room.CriticalSpeedMap | None) -> dict[str, Any] | None:
-    if found is None:
-        return None
-    return {"stiffness_n_per_m": found.stiffnesses.tolist(), "speed_rpm": _known(found.speeds * _RPM)}
+def _static(one: SolvedRotor) -> dict[str, Any]:
+    """Bearing loads under gravity and the shaft's sag; or why there are none."""
+    if isinstance(one.weight, str):
+        return {"bearings": None, "why_not": one.weight}
+    deflection = one.weight.deflection
+    sag = np.hypot(*one.weight.displacement)
+    lowest = int(sag.argmax())
+    return {
+        "gravity_m_per_s2": deflection.gravity.tolist(),
+        "bearings_at_rpm": None if one.rest_speed is None else _in_rpm(one.weight.speed),
+        "bearings": [
+            {"name": name, "load_n": load[:3].tolist(), "moment_n_m": load[3:].tolist()}
+            for name, load in zip(deflection.bearings, deflection.bearing_loads, strict=True)
+        ],
+        "largest_deflection_m": float(sag[lowest]),
+        "largest_deflection_at_m": float(one.weight.places[lowest]),
+        "place_m": one.weight.places.tolist(),
+        "deflection_m": one.weight.displacement.tolist(),
+    }
 
 
-def _response(response: SolvedResponse | None) -> dict[str, Any] | None:
-    """Amplitude and phase lag of every probe over speed."""
-    if response is None:
-        return None
+def _response(solved: SolvedResponse) -> dict[str, Any]:
+    """What each probe reads over speed, at its largest and at operation; forces on the bearings over x and y."""
+    response = solved.response
+    rows = []
+    for place, reading in enumerate(solved.readings):
+        amplitude = np.abs(reading.amplitude)
+        largest = int(amplitude.argmax())
+        at_operation = solved.at_operation[place] if solved.at_operation else None
+        rows.append(
+            {
+                "name": reading.probe.name,
+                "at_m": reading.probe.at,
+                "angle_deg": float(np.degrees(reading.probe.angle)),
+                "amplitude_m": amplitude.tolist(),
+                "phase_lag_deg": np.degrees(reading.phase_lag).tolist(),
+                "major_axis_m": reading.major_axis.tolist(),
+                "largest_amplitude_m": float(amplitude[largest]),
+                "largest_at_rpm": float(response.speeds[largest]) * _RPM,
+                "operation_amplitude_m": None if at_operation is None else float(abs(at_operation.amplitude[0])),
+                "operation_phase_lag_deg": None
+                if at_operation is None
+                else float(np.degrees(at_operation.phase_lag[0])),
+            }
+        )
+    forces = np.abs(response.bearing_forces[:, :, :2])
     return {
         "speed_rpm": (response.speeds * _RPM).tolist(),
-        "probes": [
-            {
-                "name": reading.name,
-                "at_m": reading.at,
-                "angle_deg": float(np.degrees(reading.angle)),
-                "peak_to_peak_m": (2.0 * np.abs(reading.amplitude)).tolist(),
-                "phase_lag_deg": np.degrees(-np.angle(reading.amplitude)).tolist(),
-                "major_axis_m": reading.major_axis.tolist(),
-                "highest": _highest(response.speeds, reading),
-            }
-            for reading in response.readings
+        "amplitude_convention": "zero to peak",
+        "probes": rows,
+        "bearings": [
+            {"name": name, "force_n": forces[:, place].T.tolist()} for place, name in enumerate(response.bearings)
         ],
-    }
-
-
-def _highest(speeds: FloatArray, reading: Reading) -> dict[str, float]:
-    place = int(np.argmax(np.abs(reading.amplitude)))
-    return {
-        "speed_rpm": float(speeds[place]) * _RPM,
-        "peak_to_peak_m": float(2.0 * np.abs(reading.amplitude[place])),
-    }
-
-
-def _static(one: SolvedRotor) -> dict[str, Any] | None:
-    """Loads on the bearings under the rotor's weight, and its largest deflection."""
-    if one.static is None:
-        return None
-    z = np.linspace(0.0, one.rotor.length, STATIC_PLACES)
-    size = np.linalg.norm(one.static.evaluate(z), axis=0)
-    return {
-        "gravity_m_per_s2": one.static.gravity.tolist(),
-        "bearing_loads": [
-            {"bearing": name, "force_n": load[:3].tolist(), "moment_n_m": load[3:].tolist()}
-            for name, load in zip(one.static.bearings, one.static.bearing_loads, strict=True)
-        ],
-        "largest_deflection_m": float(size.max()),
-        "at_m": float(z[np.argmax(size)]),
     }
 
 

@@ -1,6 +1,5 @@
-"""The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds."""
+"""The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, weight, unbalance and bow."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,7 +8,7 @@ from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import build_bearings, build_rotor
-from gearwhine.stages.rotor_loads import SolvedResponse, solve_response, solve_static
+from gearwhine.stages.rotor_loads import SolvedResponse, SolvedWeight, solve_response, solve_weight
 
 Bearings = tuple[room.Bearing, ...]
 
@@ -33,21 +32,19 @@ class SolvedRotor:
     whirl : tuple of rotors.WhirlModes
         At the speed of operation, then at those of the sweep.
     campbell : rotors.Campbell or None
-        Whirl followed over two speeds or more; None without them.
+        None without speeds.
+    crossings : tuple of rotors.Crossing or str
+        Damped critical speeds within the Campbell diagram; or why they are not known.
     critical : rotors.CriticalSpeeds
-        With the bearings' coefficients at one speed.
-    critical_speed : float or None
-        That speed: of operation, or of rest where there is none [rad/s]; None without tables.
-    critical_map : rotors.CriticalSpeedMap or None
-        Forward critical speeds over bearing stiffness, where the case asks for them.
-    response : SolvedResponse or None
-        To unbalance and bow, where there are any.
-    static : rotors.StaticDeflection or None
-        By the rotor's weight, with the bearings' coefficients of ``critical_speed``.
-    unheld : str or None
-        Why there is none.
+        Undamped; with tables, within the speeds that they hold.
     operation : float or None
         Speed of operation [rad/s].
+    weight : SolvedWeight or str
+        Deflection under gravity at operation, else at rest; or why there is none.
+    response : SolvedResponse or None
+        To unbalance and bow; None where there is neither.
+    stiffness_map : rotors.CriticalSpeedMap or None
+        Where the case asks for it.
     """
 
     rotor: room.Rotor
@@ -59,13 +56,12 @@ class SolvedRotor:
     torsional: room.TorsionalModes
     whirl: tuple[room.WhirlModes, ...]
     campbell: room.Campbell | None
+    crossings: tuple[room.Crossing, ...] | str
     critical: room.CriticalSpeeds
-    critical_speed: float | None
-    critical_map: room.CriticalSpeedMap | None
-    response: SolvedResponse | None
-    static: room.StaticDeflection | None
-    unheld: str | None
     operation: float | None
+    weight: SolvedWeight | str
+    response: SolvedResponse | None
+    stiffness_map: room.CriticalSpeedMap | None
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
@@ -87,56 +83,41 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         speeds = whirl_speeds(case, given.name)
         operation = speeds[0] if case.operation is not None else None
         reference = lowest if operation is None else operation
-        tabled = any(bearing.speeds is not None for bearing in bearings)
-        running = [bearing.at_speed(reference) for bearing in bearings]
-        static, unheld = solve_static(case, rotor, running)
+        weight = solve_weight(analysis, rotor, bearings, reference)
         progress(f"rotor {given.name}: whirl over speed")
+        diagram = campbell_speeds(case, given.name)
+        campbell = room.campbell(rotor, bearings, diagram, count=analysis.modes) if diagram else None
+        held = not isinstance(weight, str)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
                 bearings=bearings,
                 resting=resting,
-                rest_speed=lowest if tabled else None,
+                rest_speed=lowest if any(bearing.speeds is not None for bearing in bearings) else None,
                 rest=room.rest_frequencies(rotor, resting, count=analysis.modes),
                 lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
                 torsional=room.solve_torsional_modes(rotor),
-                whirl=_whirl(rotor, bearings, speeds, analysis.modes),
-                campbell=_campbell(rotor, bearings, campbell_speeds(case, given.name), analysis.modes),
-                critical=room.critical_speeds(rotor, running, count=analysis.modes),
-                critical_speed=reference if tabled else None,
-                critical_map=_critical_map(rotor, bearings, analysis),
-                response=solve_response(case, given, rotor, bearings),
-                static=static,
-                unheld=unheld,
+                whirl=tuple(room.solve_whirl(rotor, bearings, speed, count=analysis.modes) for speed in speeds),
+                campbell=campbell,
+                crossings=() if campbell is None else _crossings(campbell),
+                critical=room.critical_speeds(rotor, bearings, count=analysis.modes),
                 operation=operation,
+                weight=weight,
+                response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
+                stiffness_map=None
+                if analysis.stiffness_map is None or not bearings
+                else room.critical_speed_map(rotor, bearings, analysis.stiffness_map.stiffnesses),
             )
         )
     return tuple(solved)
 
 
-def _whirl(
-    rotor: room.Rotor, bearings: Bearings, speeds: Sequence[float], count: int | None
-) -> tuple[room.WhirlModes, ...]:
-    """Whirl at each speed; bearings that do not change share one basis."""
-    constant = all(bearing.speeds is None for bearing in bearings)
-    basis = room.whirl_basis(rotor, bearings, count=count) if constant and speeds else None
-    return tuple(
-        room.solve_whirl(rotor, [bearing.at_speed(speed) for bearing in bearings], speed, count=count, basis=basis)
-        for speed in speeds
-    )
-
-
-def _campbell(
-    rotor: room.Rotor, bearings: Bearings, speeds: Sequence[float], count: int | None
-) -> room.Campbell | None:
-    distinct = sorted(set(speeds))
-    return room.campbell(rotor, bearings, distinct, count=count) if len(distinct) > 1 else None
-
-
-def _critical_map(rotor: room.Rotor, bearings: Bearings, analysis: RotorAnalysis) -> room.CriticalSpeedMap | None:
-    if analysis.stiffness_map is None or not bearings:
-        return None
-    return room.critical_speed_map(rotor, bearings, analysis.stiffness_map.stiffnesses)
+def _crossings(campbell: room.Campbell) -> tuple[room.Crossing, ...] | str:
+    """Damped critical speeds; a diagram of few speeds may not separate them, which is no reason to show nothing."""
+    try:
+        return campbell.crossings()
+    except room.IncompleteModesError as error:
+        return str(error)
 
 
 def write_ross_files(folder: Path, solved: tuple[SolvedRotor, ...]) -> tuple[str, ...]:

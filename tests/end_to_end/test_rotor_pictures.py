@@ -38,6 +38,15 @@ def test_gears_seats_and_odd_names(gearwhine) -> None:
     assert pictures == {f"rotor-{stem}-{kind}.png" for stem in ("Welle-1", "output") for kind in KINDS}
 
 
+def test_the_critical_speed_map_is_drawn_where_it_is_asked_for(gearwhine) -> None:
+    few = ("rotor_analysis.modes=4", "sweep=", "rotor.0.unbalance=")
+    settings = [part for change in few for part in ("--set", change)]
+    given = ("--set", "rotor_analysis.stiffness_map={from='1e5 N/m', to='1e7 N/m', points=3}")
+    document = gearwhine("rotors", "friswell-rotor", "--json", "-q", "-o", "out", *settings, *given).document
+    assert "rotor-shaft-critical-map.png" in document["files"]
+    assert "rotor-shaft-unbalance.png" not in document["files"]
+
+
 def test_names_of_files_are_plain_short_and_unlike() -> None:
     stems = file_stems(["input", "Input", "轴", "轴 2", "..", "a" * 98, "a" * 99, "x*y", "x?y"], "rotor-")
     assert len({stem.lower() for stem in stems}) == len(stems)

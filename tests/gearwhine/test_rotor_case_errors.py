@@ -77,6 +77,7 @@ def changed(*changes: tuple[str, Any]) -> dict[str, Any]:
 
 
 CONE, LINK, ROUND, POINT = (f"rotor.0.{part}" for part in ("segments.1", "segments.2", "discs.0", "discs.1"))
+LINK_AT = "rotor[0].segments[2].coupling"
 RESPONSE = "rotor_analysis.unbalance_response"
 
 ONE_WRONG = {
@@ -98,27 +99,17 @@ ONE_WRONG = {
     "no stiffness": (
         f"{LINK}.coupling.tilt_stiffness",
         GONE,
-        "rotor[0].segments[2].coupling.tilt_stiffness",
+        f"{LINK_AT}.tilt_stiffness",
         "a tilting stiffness above 0 N*m/rad",
     ),
-    "rigid": (
-        f"{LINK}.coupling.axial_stiffness",
-        "inf N/m",
-        "rotor[0].segments[2].coupling.axial_stiffness",
-        "a stiffness",
-    ),
+    "rigid": (f"{LINK}.coupling.axial_stiffness", "inf N/m", f"{LINK_AT}.axial_stiffness", "a stiffness"),
     "torsion in N/m": (
         f"{LINK}.coupling.torsional_stiffness",
         "2e4 N/m",
-        "rotor[0].segments[2].coupling.torsional_stiffness",
+        f"{LINK_AT}.torsional_stiffness",
         "(stiffness)",
     ),
-    "unknown of a coupling": (
-        f"{LINK}.coupling.stiffness",
-        1,
-        "rotor[0].segments[2].coupling.stiffness",
-        "did you mean",
-    ),
+    "unknown of a coupling": (f"{LINK}.coupling.stiffness", 1, f"{LINK_AT}.stiffness", "did you mean"),
     "a coupling has no diameter": (
         f"{LINK}.diameter",
         "60 mm",

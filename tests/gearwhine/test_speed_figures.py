@@ -200,3 +200,19 @@ def test_unbalance_response_without_probes_or_motion() -> None:
     assert len(draw_unbalance_response("t", SPEEDS, [still], logarithmic=True).axes) == 2
     with pytest.raises(ValueError, match="do not fit the probes"):
         draw_unbalance_response("t", SPEEDS, [ProbeResponse("short", np.zeros(3, dtype=complex))])
+
+
+def test_the_branches_that_are_drawn_stay_themselves_where_they_cross() -> None:
+    """On isotropic bearings a whirl is circular, so that a branch keeps its sense through every crossing."""
+    steel = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
+    discs = [rotors.Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0), rotors.Disc(1.0, 51.5, 0.8, 0.42)]
+    rotor = rotors.Rotor("two discs", [rotors.Segment(1.5, 0.05, 0.0, steel)], discs)
+    bearings = [rotors.Bearing.isotropic("left", 0.0, 1e6), rotors.Bearing.isotropic("right", 1.5, 1e6)]
+    diagram = rotors.campbell(rotor, bearings, np.linspace(50.0, 2000.0, 40), count=8)
+    known = np.isfinite(diagram.frequencies)
+    assert (known.sum(axis=1) >= 8).all()
+    whole = known.all(axis=0)
+    assert (np.diff(np.argsort(diagram.frequencies[:, whole], axis=1), axis=0) != 0).any()  # some do cross
+    for sense, seen in zip(diagram.direction.T, known.T, strict=True):
+        assert (np.abs(sense[seen]) > 0.999).all()
+        assert len(set(np.sign(sense[seen]))) == 1
