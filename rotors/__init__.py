@@ -18,8 +18,8 @@ and answered for by frozen results, each with the certificate that no mode is mi
     critical_speeds(shaft, bearings, speed_limit=1e3)
 
 Segments may be cones, carry an axial force, and stand between flexible couplings. The compiled parts load when a
-first question is asked. Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z along the shaft; slopes and
-the gyroscopic sign are those of `rotors.whirl`.
+first question is asked. Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z along the
+shaft; slopes and the gyroscopic sign are those of `rotors.whirl`.
 """
 
 from .attachment import attach_loads
