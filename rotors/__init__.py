@@ -11,6 +11,8 @@ and answered for by frozen results, each with the certificate that no mode is mi
 
     solve_lateral_modes(shaft, [b.mean_support for b in bearings], frequency_limit=5e3)
     solve_torsional_modes(shaft, count=5)
+    solve_axial_modes(shaft, [AxisSpring(0.0, 1e8)], count=5)
+    buckling_factor(shaft, [b.mean_support for b in bearings])
     rest_frequencies(shaft, bearings, count=8)
     solve_whirl(shaft, bearings, speed=418.9, count=8)
     critical_speeds(shaft, bearings, speed_limit=1e3)
@@ -18,8 +20,10 @@ and answered for by frozen results, each with the certificate that no mode is mi
     unbalance_response(shaft, bearings, [Unbalance(at=0.5, moment=1e-4)], speeds)
     static_deflection(shaft, bearings).bearing_loads
 
-`rotors.rolling` makes bearings from the geometry of rolling ones. Lengths are m, frequencies and speeds rad/s. The
-frame is right-handed with z along the shaft; slopes and the gyroscopic sign are those of `rotors.whirl`.
+Segments may be cones, carry an axial force, and stand between flexible couplings; `rotors.rolling` makes bearings from
+the geometry of rolling ones. The compiled parts load when a first question is asked. Lengths are m, frequencies and
+speeds rad/s. The frame is right-handed with z along the shaft; slopes and the gyroscopic sign are those of
+`rotors.whirl`.
 """
 
 from .attachment import attach_loads, attach_motions

@@ -160,13 +160,12 @@ def axial_chain_on(rotor: "Rotor", bending: Chain) -> Chain:
     It has no springs, and no other mass at its nodes than the bending chain has.
     """
     free = rotor.free_lines.axial.with_nodes(bending.nodes)
-    # A displacement unit squared is the reciprocal of a unit of stiffness, by which compliance is scaled, and inertia
-    # by its reciprocal; the unit of length is the rotor's in both.
-    ratio = float(free.displacement_unit[0] ** 2 / bending.displacement_unit[0] ** 2)
+    # A displacement unit squared is the reciprocal of a unit of stiffness, by which compliance and inertia are scaled.
+    ratio = float(free.displacement_unit[0] / bending.displacement_unit[0]) ** 2
     line = replace(
         free,
         coefficients=free.coefficients * np.array([ratio, 1.0 / ratio])[:, None],
         node_inertia=free.node_inertia / ratio,
-        displacement_unit=free.displacement_unit / np.sqrt(ratio),
+        displacement_unit=bending.displacement_unit[:1],
     )
     return line.in_pieces(np.ones(bending.element.size, dtype=np.intp), bending.highest)
