@@ -84,7 +84,7 @@ def test_preloaded_pair_presses_as_asked(arrangement: str) -> None:
 
 @pytest.mark.parametrize(("arrangement", "directions"), [("back to back", (1, -1)), ("face to face", (-1, 1))])
 def test_preloaded_pair_has_the_closed_form_of_its_stiffness(arrangement: str, directions: tuple[int, int]) -> None:
-    """All balls of a centred pair are alike: sums of cos² ψ are Z/2, along the contact 3/2 K δ^{1/2}, across it Q/|v|."""
+    """All balls of a centred pair are alike: sums of cos² ψ are Z/2, along it 3/2 K δ^{1/2}, across it Q/|v|."""
     spacing = 15e-3
     state = rolling_equilibrium(paired(ANGULAR, arrangement, spacing, preload=200.0), np.zeros(5))  # type: ignore[arg-type]
     angle, load = float(state.rows[0].inner_angle[0]), float(state.rows[0].inner_load[0])
