@@ -1,6 +1,6 @@
 """Rotors that random search found to be refused, or to lose digits: each the shortest known of its kind.
 
-A mark says what happens so far. None of them misses a root.
+Where a mark stands it says what happens so far. None of them misses a root.
 """
 
 import math
@@ -11,10 +11,8 @@ from finite_element_rotor import bending_model, rod_model
 
 from rotors import (
     Disc,
-    IncompleteModesError,
     RadialSupport,
     Rotor,
-    RotorError,
     Segment,
     ShaftMaterial,
     solve_lateral_modes,
