@@ -87,8 +87,8 @@ def synchronous_speed(eigenvalues: ComplexArray) -> ComplexArray:
     return -1j * eigenvalues
 
 
-def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> ExactRoots:
-    """Exact roots near starting values; fewer than those where several lead to one root, or one to none.
+def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tuple[ExactRoots, ComplexArray]:
+    """Exact roots near starting values, each once, and the places where the iteration has not settled.
 
     Parameters
     ----------
@@ -116,13 +116,14 @@ def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> Exa
                 settled.append(_together(chain, values, vectors, speed, steps=MOST_STEPS))
     if alone:
         values, vectors = np.array([one[0] for one in alone]), np.array([one[1] for one in alone])
-        settled.append(_singly(chain, values, vectors, lambda _, at: speed(at)))
+        settled.append(refine_alone(chain, values, vectors, speed))
     if not settled:
-        return ExactRoots(np.zeros(0, complex), np.zeros((0, order), complex), np.zeros(0), np.zeros(0))
+        return ExactRoots(np.zeros(0, complex), np.zeros((0, order), complex), np.zeros(0), np.zeros(0)), starts
     roots = settled[0]
     for more in settled[1:]:
         roots = roots.joined(more)
-    return distinct(roots.take(roots.residuals <= ACCEPTED))
+    good = roots.residuals <= ACCEPTED
+    return distinct(roots.take(good)), roots.eigenvalues[~good]
 
 
 def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp]]:
@@ -173,6 +174,11 @@ def refine_each(
     if vectors is None:
         vectors = random_vectors(starts.size, chain.pattern.order)
     return _singly(chain, starts, vectors, lambda index, _: speeds[index].astype(np.complex128))
+
+
+def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArray, speed: Speed) -> ExactRoots:
+    """Exact roots from starting values (w,) and vectors (w, order), each by itself; none is dropped."""
+    return _singly(chain, starts, vectors, lambda _, at: speed(at))
 
 
 def random_vectors(count: int, order: int) -> ComplexArray:

@@ -160,8 +160,8 @@ def axial_chain_on(rotor: "Rotor", bending: Chain) -> Chain:
     It has no springs, and no other mass at its nodes than the bending chain has.
     """
     free = rotor.free_lines.axial.with_nodes(bending.nodes)
-    ratio = float(free.displacement_unit[0] ** 2 * bending.length_unit / bending.displacement_unit[0] ** 2)
-    # Compliance is scaled by the unit of force, inertia by its reciprocal (times length, which both share).
+    ratio = float(free.displacement_unit[0] ** 2 / bending.displacement_unit[0] ** 2)
+    # Scaled compliance goes with the reciprocal of the displacement unit's square, inertia with the square.
     line = replace(
         free,
         coefficients=free.coefficients * np.array([ratio, 1.0 / ratio])[:, None],
