@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from .exact_roots import ACCEPTED, NEAR, ExactRoots, clusters, constant_speed, distinct, refine_each, refine_roots
+from .coalesced_roots import refine_roots
+from .exact_roots import ACCEPTED, NEAR, ExactRoots, clusters, constant_speed, distinct, refine_each
 from .spatial_chain import SpatialChain
 from .whirl_certificate import certified_roots, oscillating
 from .whirl_count import negative_count
@@ -57,7 +58,10 @@ def roots_at_speeds(
             roots.append(refine_roots(chains[k], row, constant_speed(float(speeds[k]))))
         else:
             own = batch.take(batch_owner == k)
-            roots.append(distinct(own.take(own.residuals <= ACCEPTED)))
+            good = own.residuals <= ACCEPTED
+            if not good.all():
+                own = refine_roots(chains[k], own.eigenvalues, constant_speed(float(speeds[k])))
+            roots.append(distinct(own))
     return roots
 
 

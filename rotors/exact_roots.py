@@ -38,6 +38,8 @@ PARALLEL = 1e-3
 SETTLED = 2e-14
 ACCEPTED = 1e-11
 MOST_STEPS = 14
+# Slopes are taken anew after steps longer than this.
+STALE = 1e-4
 # A step larger than this part of the root starts from nowhere near it, and is shortened.
 LONGEST_STEP = 0.3
 
@@ -87,8 +89,8 @@ def synchronous_speed(eigenvalues: ComplexArray) -> ComplexArray:
     return -1j * eigenvalues
 
 
-def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> ExactRoots:
-    """Exact roots near starting values; fewer than those where several lead to one root, or one to none.
+def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tuple[ExactRoots, ComplexArray]:
+    """Exact roots near starting values, each once, and the places where the iteration has not settled.
 
     Parameters
     ----------
@@ -116,13 +118,14 @@ def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> Exa
                 settled.append(_together(chain, values, vectors, speed, steps=MOST_STEPS))
     if alone:
         values, vectors = np.array([one[0] for one in alone]), np.array([one[1] for one in alone])
-        settled.append(_singly(chain, values, vectors, lambda _, at: speed(at)))
+        settled.append(refine_alone(chain, values, vectors, speed))
     if not settled:
-        return ExactRoots(np.zeros(0, complex), np.zeros((0, order), complex), np.zeros(0), np.zeros(0))
+        return ExactRoots(np.zeros(0, complex), np.zeros((0, order), complex), np.zeros(0), np.zeros(0)), starts
     roots = settled[0]
     for more in settled[1:]:
         roots = roots.joined(more)
-    return distinct(roots.take(roots.residuals <= ACCEPTED))
+    good = roots.residuals <= ACCEPTED
+    return distinct(roots.take(good)), roots.eigenvalues[~good]
 
 
 def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp]]:
@@ -151,15 +154,13 @@ def distinct(roots: ExactRoots) -> ExactRoots:
     return roots.take(np.array(sorted(kept), dtype=np.intp))
 
 
-def equations_at(
-    chain: SpatialChain, eigenvalues: ComplexArray, speed: Speed, scale: FloatArray
-) -> tuple[ComplexArray, ComplexArray]:
-    """Entries of N and of dN/dλ at every λ, (b, nnz) both."""
+def slopes_at(chain: SpatialChain, eigenvalues: ComplexArray, speed: Speed, scale: FloatArray) -> ComplexArray:
+    """Entries of dN/dλ at every λ, (b, nnz)."""
     step = SLOPE_STEP * np.abs(eigenvalues)
     ahead, behind = (
         chain.values(shifted, speed(shifted), scale) for shifted in (eigenvalues + step, eigenvalues - step)
     )
-    return chain.values(eigenvalues, speed(eigenvalues), scale), (ahead - behind) / (2.0 * step[:, None])
+    return np.asarray((ahead - behind) / (2.0 * step[:, None]))
 
 
 def refine_each(
@@ -173,6 +174,11 @@ def refine_each(
     if vectors is None:
         vectors = random_vectors(starts.size, chain.pattern.order)
     return _singly(chain, starts, vectors, lambda index, _: speeds[index].astype(np.complex128))
+
+
+def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArray, speed: Speed) -> ExactRoots:
+    """Exact roots from starting values (w,) and vectors (w, order), each by itself; none is dropped."""
+    return _singly(chain, starts, vectors, lambda _, at: speed(at))
 
 
 def random_vectors(count: int, order: int) -> ComplexArray:
@@ -190,13 +196,20 @@ def _singly(
     """Newton's method for each; ``speed`` takes the indices of roots and their values."""
     values, vectors = values.copy(), vectors.copy()
     residuals, scales = np.full(values.size, np.inf), np.ones(values.size)
+    last, slopes = np.full(values.size, np.inf), np.zeros((values.size, 0), dtype=np.complex128)
     active = np.arange(values.size)
     for step in range(MOST_STEPS):
         if active.size == 0:
             break
-        at = values[active]
+        at, turning = values[active], partial(speed, active)
         scale = chain.force_scale(at)
-        entries, slopes = equations_at(chain, at, partial(speed, active), scale)
+        entries = chain.values(at, turning(at), scale)
+        # Slopes of the last step do for a root that has hardly moved since: they are not in the residual.
+        moved = np.flatnonzero(last[active] > STALE)
+        if step == 0:
+            slopes = np.zeros_like(entries)
+        if moved.size:
+            slopes[moved] = slopes_at(chain, at[moved], partial(speed, active[moved]), scale[moved])
         right, left = chain.pattern.null_vectors(entries, vectors[active][:, None], 2 if step == 0 else 1)
         top = chain.pattern.forms(entries, left, right)[:, 0, 0]
         bottom = chain.pattern.forms(slopes, left, right)[:, 0, 0]
@@ -208,11 +221,16 @@ def _singly(
         change = np.where(np.isfinite(change), change, 0.0)
         vectors[active], scales[active] = right[:, 0], scale
         # Rounding alone moves a settled root: it stays where its last good step brought it.
-        rounding = (share < ACCEPTED) & (share >= 0.5 * residuals[active])
+        rounding = (share < ACCEPTED) & (share >= 0.5 * last[active])
         values[active] = np.where(rounding, at, at + change)
-        residuals[active] = share
-        done = rounding | (share <= SETTLED)
-        active = active[~done]
+        # What is left after the step, from how the last two steps fell.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            forecast = share**2 * np.maximum(1.0, share / last[active] ** 2) + STALE * share
+        forecast = np.where((share < ACCEPTED**0.5) & (last[active] < 1.0), forecast, np.inf)
+        done = rounding | (share <= SETTLED) | (forecast <= SETTLED)
+        residuals[active] = np.where(rounding, share, np.minimum(share, forecast))
+        last[active] = share
+        active, slopes = active[~done], slopes[~done]
     return ExactRoots(values, vectors, residuals, scales)
 
 
@@ -224,7 +242,8 @@ def _together(chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, 
     for step in range(steps):
         centre = np.array([values.mean()])
         scale = chain.force_scale(centre)
-        entries, slopes = equations_at(chain, centre, speed, scale)
+        entries = chain.values(centre, speed(centre), scale)
+        slopes = slopes_at(chain, centre, speed, scale)
         right, left = chain.pattern.null_vectors(entries, basis, 3 if step == 0 else 1)
         top, bottom = (chain.pattern.forms(matrix, left, right)[0] for matrix in (entries, slopes))
         offsets, mixing = linalg.eig(top, -bottom)

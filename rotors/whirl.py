@@ -13,8 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .bearing import Bearing
+from .coalesced_roots import refine_roots
 from .errors import require_finite
-from .exact_roots import ExactRoots, Speed, constant_speed, refine_roots
+from .exact_roots import ExactRoots, Speed, constant_speed
 from .lateral import LateralModes
 from .projection import DEFAULT_COUNT, Projection, basis_for
 from .segment import Segment

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from .coalesced_roots import refine_roots, with_circle
 from .errors import IncompleteModesError
-from .exact_roots import ExactRoots, Speed, distinct, refine_roots
+from .exact_roots import ExactRoots, Speed, distinct
 from .spatial_chain import SpatialChain
 from .whirl_count import negative_count
 from .winding import RootOnContourError, Sector, wind
@@ -104,6 +105,10 @@ def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector)
         if missing <= MOST_MISSING:
             starts = winding.missing(inside)
             roots = distinct(roots.joined(refine_roots(chain, starts, speed)))
+            for start in starts:
+                if int(part.holds(roots.eigenvalues).sum()) == winding.count:
+                    break
+                roots = with_circle(chain, roots, complex(start), speed)
             if int(part.holds(roots.eigenvalues).sum()) == winding.count:
                 continue
         if cuts >= MOST_CUTS:

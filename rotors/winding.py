@@ -36,6 +36,9 @@ MOST_ROUNDS = 48
 # The second step of a sample, as a part of the interval it was put into.
 SLOPE_PART = 1e-3
 BATCH = 512
+# An interval of ln λ still unsafe at this length passes through a root to rounding.
+SHORTEST = 1e-10
+MOST_SAMPLES = 40_000
 
 
 class RootOnContourError(IncompleteModesError):
@@ -150,6 +153,8 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
         steep = np.maximum(np.abs(h * slopes[1:]), np.abs(h * slopes[:-1])) > STEEPEST
         misfit = np.abs(change - 0.5 * h * (slopes[1:] + slopes[:-1])) > MISFIT
         unsafe = np.flatnonzero(steep | misfit)
+        if unsafe.size and (np.abs(h[unsafe]).min() < SHORTEST or samples > MOST_SAMPLES):
+            break
         if unsafe.size == 0:
             count = round(float(change.imag.sum()) / (2.0 * np.pi))
             continued = logs[0] + np.concatenate([[0.0], np.cumsum(change)])

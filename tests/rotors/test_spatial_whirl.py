@@ -13,6 +13,7 @@ from rotors import (
     Disc,
     IncompleteModesError,
     Pedestal,
+    RadialSupport,
     Rotor,
     RotorError,
     Segment,
@@ -24,7 +25,8 @@ from rotors import (
     solve_lateral_modes,
     solve_whirl,
 )
-from rotors.exact_roots import constant_speed, refine_roots
+from rotors.coalesced_roots import refine_roots
+from rotors.exact_roots import constant_speed
 from rotors.spatial_chain import spatial_chain, whirl_reach
 from rotors.spatial_ties import block_sets
 from rotors.whirl_certificate import certified_roots, count_roots, oscillating
@@ -114,15 +116,24 @@ def test_double_and_nearly_double_roots_keep_all_digits() -> None:
         np.testing.assert_allclose(modes.frequencies, np.sort(np.concatenate([planar, upper])), rtol=5e-13)
 
 
-def rigid_disc(
-    polar: float, diametral: float, damping: np.ndarray, stiffness: np.ndarray
-) -> tuple[Rotor, list[Bearing]]:
-    """A disc at the middle of a massless shaft; at the ends the bearings."""
-    light = ShaftMaterial(211e9, 81.2e9, 0.0)
-    return Rotor("jeffcott", [Segment(0.5, 0.03, 0.0, light)] * 2, [Disc(0.5, 20.0, polar, diametral)]), [
-        Bearing("l", 0.0, stiffness, damping),
-        Bearing("r", 1.0, stiffness, damping),
+@pytest.mark.parametrize("excess", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
+def test_forward_and_backward_whirl_that_coalesce(excess: float) -> None:
+    # [[m + d, κ], [−κ, m − d]] has the principal stiffnesses m ± √(d² − κ²): one, with one shape, at κ = d. Bearings
+    # alike have the same axes, so each is a planar problem of its own.
+    mean, half = 1.5e7, 5e6
+    kappa = half * (1.0 - excess)
+    matrix = np.array([[mean + half, kappa], [-kappa, mean - half]])
+    bearings = [Bearing("a", 0.05, matrix, ZERO), Bearing("b", 0.75, matrix, ZERO)]
+    modes = solve_whirl(SHAFT, bearings, 0.0, count=8)
+    part = half * math.sqrt(excess * (2.0 - excess))
+    planar = [
+        solve_lateral_modes(SHAFT, [RadialSupport(at, mean + sign * part) for at in (0.05, 0.75)], count=4).frequencies
+        for sign in (1.0, -1.0)
     ]
+    # κ itself is rounded: what parts the pair is known to the root of that.
+    known = 3e-15 / math.sqrt(max(excess, 1e-15))
+    np.testing.assert_allclose(modes.frequencies, np.sort(np.concatenate(planar)), rtol=max(1e-11, 10.0 * known))
+    assert modes.certificate.complete
 
 
 def test_stability_threshold_of_the_cross_coupled_jeffcott_rotor() -> None:
