@@ -79,6 +79,10 @@ class HousingComponent(Component):
         # A rotation about y moves a point above the centre towards +x, one about x towards -y.
         return np.asarray(motion[:, 0] + arm * motion[:, 4] if axis == 0 else motion[:, 1] - arm * motion[:, 3])
 
+    def seat_tilt(self, seat: str, axis: int) -> FloatArray:
+        """Rotation of a seat about x (axis 0) or y (1)."""
+        return np.asarray(self.seats[seat][:, 3 + axis])
+
 
 @dataclass(frozen=True)
 class RotorComponent(Component):
@@ -106,6 +110,18 @@ class RotorComponent(Component):
         row = np.zeros(self.size)
         m = len(self.lateral.frequencies)
         row[axis * m : (axis + 1) * m] = self.mixture.T @ self.lateral.evaluate(np.array([at]))[0][:, 0]
+        return row
+
+    def tilt(self, at: float, axis: int) -> FloatArray:
+        """Rotation of the section about x (axis 0) or y (1), shape (n,).
+
+        The slope in x is the rotation about y; the slope in y is minus that about x.
+        """
+        row = np.zeros(self.size)
+        m = len(self.lateral.frequencies)
+        slope = self.mixture.T @ self.lateral.evaluate(np.array([at]))[1][:, 0]
+        plane = 1 - axis
+        row[plane * m : (plane + 1) * m] = slope if axis == 1 else -slope
         return row
 
     def rotation(self, at: float) -> FloatArray:

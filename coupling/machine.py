@@ -144,17 +144,22 @@ def couple(
     linear = []
     for mounted in bearings:
         which, rotor = rotor_named(mounted.rotor)
-        at = mounted.bearing.at
-        columns = [embed(components, which, rotor.direction(at, axis)) for axis in (0, 1)]
+        name, at, law = mounted.bearing.name, mounted.bearing.at, mounted.bearing
+        # A shaft has no axial motion of its own yet, so z stays out, and what does not resist tilting needs no slopes.
+        tilts = bool(law.spatial_stiffness[3:].any() or law.spatial_damping[3:].any())
+        kept = [0, 1, 3, 4] if tilts else [0, 1]
+        rows = [rotor.tilt(at, axis - 3) if axis >= 3 else rotor.direction(at, axis) for axis in kept]
+        columns = [embed(components, which, row) for row in rows]
         if mounted.seat is not None:
             if housing is None or mounted.seat not in housing.seats:
-                raise CouplingError(f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing")
-            z = rotor.start + at
-            for axis in (0, 1):
-                seat = embed(components, number[housing.name], housing.seat_direction(mounted.seat, axis, z))
-                columns[axis] = columns[axis] - seat
-        name, law = mounted.bearing.name, mounted.bearing
-        linear.append(LinearConnector(name, np.array(columns).T, law.radial_stiffness, law.radial_damping))
+                raise CouplingError(f"bearing {name!r}: no seat {mounted.seat!r} in the housing")
+            seat, z = mounted.seat, rotor.start + at
+            for column, axis in enumerate(kept):
+                row = housing.seat_tilt(seat, axis - 3) if axis >= 3 else housing.seat_direction(seat, axis, z)
+                columns[column] = columns[column] - embed(components, number[housing.name], row)
+        block = np.ix_(kept, kept)
+        stiffness, damping = law.spatial_stiffness[block], law.spatial_damping[block]
+        linear.append(LinearConnector(name, np.array(columns).T, stiffness, damping))
 
     drive, back = [], []
     for mesh in meshes:

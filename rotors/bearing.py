@@ -185,8 +185,9 @@ class Bearing:
 
     @property
     def has_cross_stiffness(self) -> bool:
-        """Whether a displacement in x is answered in y, or the reverse."""
-        return bool(self.radial_stiffness[0, 1] != 0.0 or self.radial_stiffness[1, 0] != 0.0)
+        """Whether one of x, y and the rotations about x and y is answered in another of them."""
+        matrix = self.spatial_stiffness[np.ix_([0, 1, 3, 4], [0, 1, 3, 4])]
+        return bool((matrix != np.diag(np.diag(matrix))).any())
 
     @property
     def mean_support(self) -> RadialSupport:

@@ -120,6 +120,7 @@ def whirl_basis(
             modes = solve_lateral_modes(rotor, supports, count=int(min(LEAST_MODES, available)))
     forces = [bearing.at for bearing in bearings]
     moments = [disc.at for disc in rotor.discs if disc.polar_inertia > 0.0]
+    moments += [bearing.at for bearing in bearings if bearing.spatial_stiffness[3:].any()]
     return attach_loads(modes, forces_at=forces, moments_at=moments)
 
 
@@ -207,12 +208,16 @@ def plane_matrices(basis: LateralModes, bearings: Sequence[Bearing]) -> tuple[Fl
     """Stiffness and damping over both planes' coordinates, each (2 b, 2 b), x before y."""
     stiffness: FloatArray = np.kron(np.eye(2), np.diag(basis.frequencies**2)).astype(np.float64)
     damping: FloatArray = np.zeros_like(stiffness)
+    kept = np.ix_([0, 1, 3, 4], [0, 1, 3, 4])
     for bearing in bearings:
-        shape = basis.evaluate([bearing.at])[0]
-        outer = shape @ shape.T
+        shape, slope = (part[:, 0] for part in basis.evaluate([bearing.at]))
+        # The section's x, y and rotations about x and y, the first of which is minus the slope in y.
+        zero = np.zeros(basis.count)
+        motion = np.array([[*shape, *zero], [*zero, *shape], [*zero, *-slope], [*slope, *zero]])
         # Compensation: the basis already holds the averaged stiffness.
-        stiffness += np.kron(bearing.radial_stiffness - bearing.mean_stiffness * np.eye(2), outer)
-        damping += np.kron(bearing.radial_damping, outer)
+        mean = np.repeat([bearing.mean_stiffness, bearing.mean_tilt_stiffness], 2)
+        stiffness += motion.T @ (bearing.spatial_stiffness[kept] - np.diag(mean)) @ motion
+        damping += motion.T @ bearing.spatial_damping[kept] @ motion
     return stiffness, damping
 
 

@@ -59,16 +59,17 @@ from gearwhine.case.motion import (
 from gearwhine.case.patches import Patch
 from gearwhine.case.problems import CaseError, Problem, did_you_mean
 from gearwhine.case.require import require
+from gearwhine.case.rolling import Catalogue, RollingCatalogue, RollingGeometry
 from gearwhine.case.running import Measured, Operation, Output, SpeedRange, Sweep, Transient
 from gearwhine.case.shafts import (
     Bearing,
+    BearingLoad,
     Bow,
     Disc,
     MatrixDamping,
     MatrixStiffness,
     RadialDamping,
     RadialStiffness,
-    Rolling,
     RollingStiffness,
     Rotor,
     Segment,
@@ -81,6 +82,7 @@ __all__ = [
     "AxialDashpots",
     "AxialSprings",
     "Bearing",
+    "BearingLoad",
     "Boss",
     "Bow",
     "Box",
@@ -88,6 +90,7 @@ __all__ = [
     "CadFile",
     "Case",
     "CaseError",
+    "Catalogue",
     "Dashpots",
     "Disc",
     "Feet",
@@ -111,7 +114,8 @@ __all__ = [
     "Problem",
     "RadialDamping",
     "RadialStiffness",
-    "Rolling",
+    "RollingCatalogue",
+    "RollingGeometry",
     "RollingStiffness",
     "Rotor",
     "Seat",

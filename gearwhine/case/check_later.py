@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from gearwhine.case.draft import Draft
 from gearwhine.case.problems import UNSAID, Finding
 
-_FORMS = {"matrix": "5x5 matrix", "rolling": "rolling geometry"}
-
 
 def check_later(draft: Draft) -> Iterator[Finding]:
-    """Yield bows and bearings by matrix or rolling geometry, sound or not."""
+    """Yield bows, sound or not."""
     for index, rotor in draft.raw_entries("rotor"):
         if rotor.get("bow"):
             yield Finding(("rotor", index, "bow"), "no points: residual bow comes in a later version", UNSAID)
-    for index, bearing in draft.raw_entries("bearing"):
-        for key, forms in (("stiffness", ("matrix", "rolling")), ("damping", ("matrix",))):
-            given = bearing.get(key)
-            form = next((form for form in forms if isinstance(given, Mapping) and form in given), None)
-            if form is not None:
-                expected = f"{{ xx, yy, xy, yx }}: {key} by {_FORMS[form]} comes in a later version"
-                yield Finding(("bearing", index, key), expected)

@@ -42,6 +42,10 @@ def warnings_of(case: Case) -> tuple[str, ...]:
         found.append("[housing] stands on dashpots alone: it is not held and creeps away under load")
     if case.operation is not None and case.operation.torque > 0.0 and not case.gear_pair and not case.operation.output:
         found.append("operation.torque has nothing to work against: there are no gear pairs and no outputs")
+    axial = [bearing.name for bearing in case.bearing if bearing.resists_axially]
+    if axial:
+        names = ", ".join(f'"{name}"' for name in axial)
+        found.append(f"shafts do not move along z so far: what bearing {names} would do against it is left out")
     for rotor in case.rotor:
         if not any(bearing.rotor == rotor.name for bearing in case.bearing):
             found.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')

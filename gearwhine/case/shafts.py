@@ -26,9 +26,9 @@ from gearwhine.case.fields import (
     Quantity,
     Stiffness,
     Table,
-    Whole,
     wrong,
 )
+from gearwhine.case.rolling import Rolling
 from gearwhine.case.units import Dimension
 
 
@@ -162,36 +162,18 @@ class MatrixDamping(Table):
         return _read_matrix(value, _DAMPINGS)
 
 
-class Rolling(Table):
-    """A rolling-element bearing by its geometry [m, rad]; a groove is its radius over the ball's diameter.
-
-    `clearance` is diametral; a negative one is an interference. `preload` is axial.
-    """
-
-    element: Literal["ball", "roller"] = "ball"
-    count: Annotated[int, Whole(3, 500)]
-    element_diameter: PositiveLength
-    element_length: PositiveLength | None = None
-    pitch_diameter: PositiveLength
-    contact_angle: Annotated[float, Quantity(units.ANGLE, at_least=0.0, below=1.57)] = 0.0
-    inner_groove: Annotated[float, Quantity(units.RATIO, above=0.5, at_most=1.0)] = 0.52
-    outer_groove: Annotated[float, Quantity(units.RATIO, above=0.5, at_most=1.0)] = 0.53
-    clearance: Length = 0.0
-    preload: Force = 0.0
-
-    @model_validator(mode="after")
-    def _fits(self) -> Rolling:
-        if self.element_diameter >= self.pitch_diameter:
-            raise wrong("rolling elements smaller than their pitch circle", "element_diameter")
-        if self.element == "roller" and self.element_length is None:
-            raise wrong("the length of the rollers", "element_length")
-        return self
-
-
 class RollingStiffness(Table):
     """A stiffness that follows from the geometry of a rolling-element bearing under its load."""
 
     rolling: Rolling
+
+
+class BearingLoad(Table):
+    """What a bearing carries on average: the force of the shaft on it [N]."""
+
+    x: Force = 0.0
+    y: Force = 0.0
+    z: Force = 0.0
 
 
 def _stiffness_form(value: Any) -> str:
@@ -233,6 +215,17 @@ class Bearing(Table):
         Annotated[RadialDamping, Tag("~radial")] | Annotated[MatrixDamping, Tag("~matrix")],
         Discriminator(lambda value: "~radial" if _stiffness_form(value) == "~rolling" else _stiffness_form(value)),
     ] = RadialDamping()
+    load: BearingLoad | None = None
+
+    @model_validator(mode="after")
+    def _loaded(self) -> Bearing:
+        rolls = isinstance(self.stiffness, RollingStiffness)
+        if self.load is not None and not rolls:
+            raise wrong("nothing: only the stiffness of a rolling bearing depends on its load", "load")
+        if isinstance(self.stiffness, RollingStiffness) and self.load is None and not self.stiffness.rolling.pressed:
+            expected = "{ x, y, z }, the force of the shaft on it: a rolling bearing without preload has no stiffness"
+            raise wrong(expected, "load")
+        return self
 
     @property
     def radial_stiffness(self) -> Matrix2 | None:
@@ -243,6 +236,17 @@ class Bearing(Table):
     def radial_damping(self) -> Matrix2:
         """The 2×2 damping over x, y [N s/m], of a 5×5 its first block."""
         return _radial(self.damping)
+
+    @property
+    def resists_axially(self) -> bool:
+        """Whether its stiffness or damping has anything along z, as far as the case says."""
+        given = [
+            matrix for matrix in (self.stiffness, self.damping) if isinstance(matrix, (MatrixStiffness, MatrixDamping))
+        ]
+        stated = any(any(form.matrix[2]) or any(row[2] for row in form.matrix) for form in given)
+        return stated or (
+            isinstance(self.stiffness, RollingStiffness) and not self.stiffness.rolling.rolls_on_cylinders
+        )
 
     @property
     def grounded(self) -> bool:

@@ -1,10 +1,8 @@
-"""The parts of a case as the rooms' own inputs: gears, rotors, bearings."""
-
-import numpy as np
+"""The parts of a case as the rooms' own inputs: gears and rotors."""
 
 import coupling.gears as gear_room
 import rotors as rotor_room
-from gearwhine.case import Case, CaseError, Problem, RadialDamping, RadialStiffness, RollingStiffness
+from gearwhine.case import Case
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import Rotor as GivenRotor
 
@@ -66,34 +64,6 @@ def build_rotor(case: Case, given: GivenRotor) -> rotor_room.Rotor:
             rotor_room.Segment(segment.length, segment.diameter, segment.bore, material, given.shear_coefficient)
         )
     return rotor_room.Rotor(given.name, segments, discs, given.mass)
-
-
-def build_bearings(case: Case, rotor: str) -> tuple[rotor_room.Bearing, ...]:
-    """The bearings of one rotor, in the order of the file.
-
-    Raises
-    ------
-    CaseError
-        For stiffness given in a form that comes in a later version.
-    """
-    bearings = []
-    for index, given in enumerate(case.bearing):
-        if given.rotor != rotor:
-            continue
-        stiffness, damping = given.stiffness, given.damping
-        if not isinstance(stiffness, RadialStiffness) or not isinstance(damping, RadialDamping):
-            form = "rolling" if isinstance(stiffness, RollingStiffness) else "matrix"
-            expected = "{ xx, yy, xy, yx }: bearings by 5x5 matrix or rolling geometry come in a later version"
-            raise CaseError([Problem(f"bearing[{index}].stiffness", form, expected, label=f'bearing "{given.name}"')])
-        bearings.append(
-            rotor_room.Bearing(
-                given.name,
-                given.at,
-                np.array([[stiffness.xx, stiffness.xy], [stiffness.yx, stiffness.yy]]),
-                np.array([[damping.xx, damping.xy], [damping.yx, damping.yy]]),
-            )
-        )
-    return tuple(bearings)
 
 
 def _gear_material(case: Case, given: GivenGear) -> str | None:

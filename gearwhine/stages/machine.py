@@ -9,7 +9,8 @@ import coupling as room
 import rotors as rotor_room
 from gearwhine.case import Case, CaseError, Problem, applied_torques, require, rotor_speeds
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.build import build_bearings, build_rotor
+from gearwhine.stages.bearings import build_bearings
+from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gears import SolvedPair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, solve_housing
 from gearwhine.stages.housing_checks import static_error_document
@@ -125,7 +126,8 @@ def _lateral_basis(
         modes = rotor_room.solve_lateral_modes(rotor, supports)
     if rotor.mass_model == "lumped":
         return modes
-    return rotor_room.attach_loads(modes, forces_at=[bearing.at for bearing in bearings] + gears_at)
+    tilting = [bearing.at for bearing in bearings if bearing.spatial_stiffness[3:].any()]
+    return rotor_room.attach_loads(modes, forces_at=[bearing.at for bearing in bearings] + gears_at, moments_at=tilting)
 
 
 def _torsional_basis(case: Case, rotor: rotor_room.Rotor) -> rotor_room.TorsionalModes:

@@ -9,7 +9,8 @@ import numpy.typing as npt
 import rotors as room
 from gearwhine.case import Case, require, rotor_speeds
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.build import build_bearings, build_rotor
+from gearwhine.stages.bearings import build_bearings, rolling_document
+from gearwhine.stages.build import build_rotor
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,6 +34,8 @@ class SolvedRotor:
     whirl : tuple of rotors.WhirlModes
         At the speed of operation, then at those of the sweep.
     critical : rotors.CriticalSpeeds
+    rolling : list of dict
+        What its rolling bearings carry, as the command's JSON.
     """
 
     rotor: room.Rotor
@@ -42,6 +45,7 @@ class SolvedRotor:
     torsional: room.TorsionalModes
     whirl: tuple[room.WhirlModes, ...]
     critical: room.CriticalSpeeds
+    rolling: list[dict[str, Any]]
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
@@ -69,6 +73,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                     room.solve_whirl(rotor, bearings, speed, basis=basis) for speed in _speeds(case, given.name)
                 ),
                 critical=room.critical_speeds(rotor, bearings, basis=basis),
+                rolling=rolling_document(case, given.name),
             )
         )
     return tuple(solved)
@@ -94,6 +99,7 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 ],
                 "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
                 "critical_directions": one.critical.direction.round(6).tolist(),
+                "rolling_bearings": one.rolling,
                 "damping": "of the bearings; the shaft's own acts in the coupled system",
                 "certificate": _certificate(one),
             }

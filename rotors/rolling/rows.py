@@ -6,7 +6,7 @@ centre. A row's own direction is +1 where pushing the inner ring towards +z load
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -102,6 +102,10 @@ class BallRow:
     def groove_distance(self) -> float:
         """A: between the centres of the grooves' curvature with a ball that just touches both, m."""
         return (self.inner_groove + self.outer_groove - 1.0) * self.ball_diameter
+
+    def facing(self, direction: int) -> "BallRow":
+        """The same row with another direction."""
+        return replace(self, direction=direction)
 
     @property
     def free_contact_angle(self) -> float:

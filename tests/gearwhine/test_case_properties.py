@@ -230,7 +230,7 @@ def test_the_radial_part_of_a_bearing_is_given_for_either_form() -> None:
     document["bearing"][0]["stiffness"] = {"xx": 1.0, "xy": 2.0, "yx": 3.0, "yy": 4.0}
     document["bearing"][1]["stiffness"] = {"matrix": [[10.0 * row + column for column in range(5)] for row in range(5)]}
     rolling = {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}
-    document["bearing"][2]["stiffness"] = {"rolling": rolling}
+    document["bearing"][2] |= {"stiffness": {"rolling": rolling}, "load": {"y": "-500 N"}}
     bearings = [Bearing.model_validate(bearing) for bearing in document["bearing"]]
     assert bearings[0].radial_stiffness == ((1.0, 2.0), (3.0, 4.0))
     assert bearings[1].radial_stiffness == ((0.0, 1.0), (10.0, 11.0))
