@@ -59,11 +59,10 @@ from gearwhine.case.motion import (
 from gearwhine.case.patches import Patch
 from gearwhine.case.problems import CaseError, Problem, did_you_mean
 from gearwhine.case.require import require
-from gearwhine.case.rolling import Catalogue, RollingCatalogue, RollingGeometry
+from gearwhine.case.rolling import BearingLoad, Catalogue, RollingCatalogue, RollingGeometry
 from gearwhine.case.running import Measured, Operation, Output, SpeedRange, Sweep, Transient
 from gearwhine.case.shafts import (
     Bearing,
-    BearingLoad,
     Bow,
     Disc,
     MatrixDamping,

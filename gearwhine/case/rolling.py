@@ -7,12 +7,20 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Tag, model_validator
 
 from gearwhine.case import units
-from gearwhine.case.fields import Length, PositiveLength, Quantity, Table, Whole, wrong
+from gearwhine.case.fields import Force, Length, PositiveLength, Quantity, Table, Whole, wrong
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
 
 _ContactAngle = Annotated[float, Quantity(units.ANGLE, at_least=0.0, below=1.57)]
 _Groove = Annotated[float, Quantity(units.RATIO, above=0.5, at_most=1.0)]
+
+
+class BearingLoad(Table):
+    """What a bearing carries on average: the force of the shaft on it [N]."""
+
+    x: Force = 0.0
+    y: Force = 0.0
+    z: Force = 0.0
 
 
 class _Mounted(Table):

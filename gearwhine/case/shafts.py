@@ -14,7 +14,6 @@ from gearwhine.case.fields import (
     Damping,
     DampingFromZero,
     DampingRatio,
-    Force,
     Imbalance,
     Inertia,
     Length,
@@ -28,7 +27,7 @@ from gearwhine.case.fields import (
     Table,
     wrong,
 )
-from gearwhine.case.rolling import Rolling
+from gearwhine.case.rolling import BearingLoad, Rolling
 from gearwhine.case.units import Dimension
 
 
@@ -166,14 +165,6 @@ class RollingStiffness(Table):
     """A stiffness that follows from the geometry of a rolling-element bearing under its load."""
 
     rolling: Rolling
-
-
-class BearingLoad(Table):
-    """What a bearing carries on average: the force of the shaft on it [N]."""
-
-    x: Force = 0.0
-    y: Force = 0.0
-    z: Force = 0.0
 
 
 def _stiffness_form(value: Any) -> str:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy import linalg
 
 from coupling import (
     CouplingError,
@@ -60,6 +61,18 @@ def free_rotor(name: str, disc: float) -> RotorComponent:
 
 
 ROTORS = (free_rotor("input", 2.0), free_rotor("output", 5.0))
+
+
+# Over x, y, z and the rotations about x and y, positive definite, with an arm between forces and moments.
+TILTING = np.array(
+    [
+        [5e7, 0.4e7, 1e6, 1e5, -6e5],
+        [0.4e7, 4e7, 2e6, 5e5, 1e5],
+        [1e6, 2e6, 1e7, 3e4, 2e4],
+        [1e5, 5e5, 3e4, 4e4, 2e3],
+        [-6e5, 1e5, 2e4, 2e3, 5e4],
+    ]
+)
 
 
 def rigid_housing(centres: dict[str, FloatArray]) -> HousingComponent:
@@ -135,9 +148,11 @@ def rigid_motion(parts: Machine, translation: FloatArray, rotation: FloatArray) 
 
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("psi", [0.0, 0.3, 2.0, -2.5])
-def test_a_rigid_motion_deflects_nothing(psi: float, sense: int) -> None:
+@pytest.mark.parametrize("stiffness", [None, TILTING], ids=["radial", "tilting"])
+def test_a_rigid_motion_deflects_nothing(psi: float, sense: int, stiffness: FloatArray | None) -> None:
     """So the forces of bearings and gears have no resultant force or moment, about any axis: Newton's third law."""
-    parts = machine(psi=psi, sense=sense, housing=True, backlash=BACKLASH)
+    parts = machine(psi=psi, sense=sense, housing=True, backlash=BACKLASH, stiffness=stiffness)
+    assert parts.system.linear[0].directions.shape[1] == (2 if stiffness is None else 4)
     rng = np.random.default_rng(3)
     for translation, rotation in ((rng.normal(size=3), np.zeros(3)), (np.zeros(3), rng.normal(size=3))):
         q = rigid_motion(parts, translation, rotation)
@@ -151,9 +166,10 @@ def test_a_rigid_motion_deflects_nothing(psi: float, sense: int) -> None:
     assert abs(parts.system.contacts[0].direction @ q) > 1e-3
 
 
-def test_free_machine_has_its_rigid_motions() -> None:
+@pytest.mark.parametrize("matrix", [None, TILTING], ids=["radial", "tilting"])
+def test_free_machine_has_its_rigid_motions(matrix: FloatArray | None) -> None:
     """Six of the body, of which z moves the housing alone, and the train's own rotation of the shafts."""
-    parts = machine(housing=True)
+    parts = machine(housing=True, stiffness=matrix)
     stiffness = parts.system.mean_stiffness()
     np.testing.assert_allclose(stiffness, stiffness.T, rtol=0.0, atol=1e-12 * np.abs(stiffness).max())
     values = np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T))
@@ -186,10 +202,13 @@ def test_rolling_does_not_compress() -> None:
 
 @pytest.mark.parametrize("angle", [0.4, np.pi / 2.0, 2.9])
 @pytest.mark.parametrize("sense", [1, -1])
-def test_frame_rotation(angle: float, sense: int) -> None:
+@pytest.mark.parametrize("tilting", [False, True])
+def test_frame_rotation(angle: float, sense: int, tilting: bool) -> None:
     """The machine turned about z, its bearings' axes with it, has the same eigenvalues."""
     stiffness = np.array([[5e7, 1e7], [-0.3e7, 3e7]])
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    if tilting:
+        stiffness, turn = TILTING, linalg.block_diag(turn, 1.0, turn)
     one = coupled_modes(machine(psi=0.3, sense=sense, stiffness=stiffness).system)
     turned = machine(psi=0.3 + angle, sense=sense, stiffness=turn @ stiffness @ turn.T)
     two = coupled_modes(turned.system)

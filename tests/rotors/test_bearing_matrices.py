@@ -14,7 +14,7 @@ RIGID = Rotor(
 
 
 def through_an_arm(at: float, arm: float, radial: np.ndarray, damping: np.ndarray) -> Bearing:
-    """A radial bearing at ``at + arm``, written as forces and moments on the section at ``at``: x + arm θ_y, y − arm θ_x."""
+    """A radial bearing at ``at + arm`` by its forces and moments on the section at ``at``: x + arm θ_y, y − arm θ_x."""
     moves = np.array([[1.0, 0.0, 0.0, 0.0, arm], [0.0, 1.0, 0.0, -arm, 0.0]])
     return Bearing(f"arm at {at}", at, moves.T @ radial @ moves, moves.T @ damping @ moves)
 
