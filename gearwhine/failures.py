@@ -14,8 +14,8 @@ def explain(error: Exception) -> tuple[int, str | None]:
     from gearwhine.case import CaseError
     from housing.errors import FactorizationError, HealthError, HousingError, IncompleteModesError, ReductionError
     from meshes.errors import GeometryError, MesherUnavailableError
+    from rotors.errors import EquilibriumError, RotorError
     from rotors.errors import IncompleteModesError as IncompleteRotorModesError
-    from rotors.errors import RotorError
 
     if isinstance(error, CaseError):
         count = len(error.problems)
@@ -25,6 +25,7 @@ def explain(error: Exception) -> tuple[int, str | None]:
         return 2, str(error)
     proofs = (
         ContactAccuracyError,
+        EquilibriumError,
         FactorizationError,
         HealthError,
         IncompleteModesError,

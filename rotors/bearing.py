@@ -184,11 +184,6 @@ class Bearing:
         return 0.5 * float(np.trace(self.spatial_stiffness[3:, 3:]))
 
     @property
-    def has_cross_stiffness(self) -> bool:
-        """Whether a displacement in x is answered in y, or the reverse."""
-        return bool(self.radial_stiffness[0, 1] != 0.0 or self.radial_stiffness[1, 0] != 0.0)
-
-    @property
     def mean_support(self) -> RadialSupport:
         """The planar spring of the modal basis."""
         return RadialSupport(self.at, self.mean_stiffness, self.mean_tilt_stiffness)

@@ -63,6 +63,7 @@ from gearwhine.case.motion import (
 from gearwhine.case.patches import Patch
 from gearwhine.case.problems import CaseError, Problem, did_you_mean
 from gearwhine.case.require import require
+from gearwhine.case.rolling import BearingLoad, Catalogue, RollingCatalogue, RollingGeometry
 from gearwhine.case.rotors import (
     Bow,
     Coupling,
@@ -81,7 +82,6 @@ from gearwhine.case.shafts import (
     Pedestal,
     RadialDamping,
     RadialStiffness,
-    Rolling,
     RollingStiffness,
 )
 from gearwhine.case.train import shaft_of
@@ -91,6 +91,7 @@ __all__ = [
     "AxialDashpots",
     "AxialSprings",
     "Bearing",
+    "BearingLoad",
     "Boss",
     "Bow",
     "Box",
@@ -98,6 +99,7 @@ __all__ = [
     "CadFile",
     "Case",
     "CaseError",
+    "Catalogue",
     "Coupling",
     "CouplingSegment",
     "Dashpots",
@@ -125,7 +127,8 @@ __all__ = [
     "Problem",
     "RadialDamping",
     "RadialStiffness",
-    "Rolling",
+    "RollingCatalogue",
+    "RollingGeometry",
     "RollingStiffness",
     "Rotor",
     "RotorAnalysis",

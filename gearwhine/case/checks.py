@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from gearwhine.case.check_bearings import check_bearings
 from gearwhine.case.check_gears import check_gears
 from gearwhine.case.check_housing import check_box, check_housing_form
-from gearwhine.case.check_later import check_later
 from gearwhine.case.check_names import check_names
 from gearwhine.case.check_provenance import check_provenance
 from gearwhine.case.check_running import check_running
@@ -27,7 +26,6 @@ def check(draft: Draft) -> Iterator[Finding]:
     yield from check_gears(draft)
     yield from check_running(draft)
     yield from check_provenance(draft)
-    yield from check_later(draft)
 
 
 def warnings_of(case: Case) -> tuple[str, ...]:

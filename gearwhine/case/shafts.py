@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
@@ -12,21 +12,18 @@ from gearwhine.case.fields import (
     MOST_ENTRIES,
     Damping,
     DampingFromZero,
-    Force,
-    Length,
     LengthFromZero,
     Mass,
     Name,
-    PositiveLength,
     PositiveStiffness,
     Quantity,
     SpeedFromZero,
     Stiffness,
     Table,
-    Whole,
     wrong,
 )
 from gearwhine.case.over_speed import Coefficient, OverSpeed
+from gearwhine.case.rolling import BearingLoad, Rolling
 from gearwhine.case.units import Dimension
 
 
@@ -87,12 +84,15 @@ _DAMPINGS = (units.DAMPING, units.COUPLED_DAMPING, units.TILT_DAMPING)
 
 
 def _read_matrix(value: Any, kinds: tuple[Dimension, Dimension, Dimension]) -> MatrixRows:
-    """Validate a 5×5 matrix of quantities over (x, y, z, tilt about x, tilt about y)."""
+    """Validate a 5×5 matrix of quantities over (x, y, z, tilt about x, tilt about y), none negative on its diagonal."""
     rows = value if isinstance(value, (list, tuple)) else ()
     if len(rows) != 5 or any(not isinstance(row, (list, tuple)) or len(row) != 5 for row in rows):
         raise wrong("five rows of five, over x, y, z and the tilts about x and y")
     return tuple(
-        tuple(Quantity(kinds[(i >= 3) + (j >= 3)]).validate_at(entry, i, j) for j, entry in enumerate(row))
+        tuple(
+            Quantity(kinds[(i >= 3) + (j >= 3)], at_least=0.0 if i == j else None).validate_at(entry, i, j)
+            for j, entry in enumerate(row)
+        )
         for i, row in enumerate(value)
     )
 
@@ -117,32 +117,6 @@ class MatrixDamping(Table):
     @classmethod
     def _read(cls, value: Any) -> MatrixRows:
         return _read_matrix(value, _DAMPINGS)
-
-
-class Rolling(Table):
-    """A rolling-element bearing by its geometry [m, rad]; a groove is its radius over the ball's diameter.
-
-    `clearance` is diametral; a negative one is an interference. `preload` is axial.
-    """
-
-    element: Literal["ball", "roller"] = "ball"
-    count: Annotated[int, Whole(3, 500)]
-    element_diameter: PositiveLength
-    element_length: PositiveLength | None = None
-    pitch_diameter: PositiveLength
-    contact_angle: Annotated[float, Quantity(units.ANGLE, at_least=0.0, below=1.57)] = 0.0
-    inner_groove: Annotated[float, Quantity(units.RATIO, above=0.5, at_most=1.0)] = 0.52
-    outer_groove: Annotated[float, Quantity(units.RATIO, above=0.5, at_most=1.0)] = 0.53
-    clearance: Length = 0.0
-    preload: Force = 0.0
-
-    @model_validator(mode="after")
-    def _fits(self) -> Rolling:
-        if self.element_diameter >= self.pitch_diameter:
-            raise wrong("rolling elements smaller than their pitch circle", "element_diameter")
-        if self.element == "roller" and self.element_length is None:
-            raise wrong("the length of the rollers", "element_length")
-        return self
 
 
 class RollingStiffness(Table):
@@ -182,8 +156,19 @@ class Bearing(Table):
     ]
     damping: Annotated[
         Annotated[RadialDamping, Tag("~radial")] | Annotated[MatrixDamping, Tag("~matrix")],
-        Discriminator(lambda value: "~radial" if _stiffness_form(value) == "~rolling" else _stiffness_form(value)),
+        Discriminator(_damping_form),
     ] = RadialDamping()
+    load: BearingLoad | None = None
+
+    @model_validator(mode="after")
+    def _loaded(self) -> Bearing:
+        rolls = isinstance(self.stiffness, RollingStiffness)
+        if self.load is not None and not rolls:
+            raise wrong("nothing: only the stiffness of a rolling bearing depends on its load", "load")
+        if isinstance(self.stiffness, RollingStiffness) and self.load is None and not self.stiffness.rolling.pressed:
+            expected = "{ x, y, z }, the force of the shaft on it: a rolling bearing without preload has no stiffness"
+            raise wrong(expected, "load")
+        return self
 
     @model_validator(mode="after")
     def _ascending(self) -> Bearing:

@@ -29,6 +29,8 @@ def show_rotors(document: dict[str, Any]) -> None:
         _at_rest(console, rotor)
         _whirl(console, rotor)
         _critical_speeds(console, rotor)
+        if rotor["rolling_bearings"]:
+            _rolling(console, rotor["rolling_bearings"])
         _weight(console, rotor["static"])
         if rotor["unbalance_response"] is not None:
             _response(console, rotor["unbalance_response"])
@@ -149,6 +151,22 @@ def _nearest(console: Console, excited: Sequence[tuple[float, float, float]]) ->
     """The critical speed nearest to operation of some, each with its distance, speed and margin."""
     _, speed, margin = min(excited)
     console.print(f"  Of those that unbalance excites, {speed:.5g} rpm is nearest: {_beside(margin)} operation")
+
+
+def _rolling(console: Console, bearings: Sequence[dict[str, Any]]) -> None:
+    """How stiff each rolling bearing is under its load, how many of its elements carry that, and how hard."""
+    rows = [
+        (
+            bearing["name"],
+            ", ".join(f"{load:z.5g}" for load in bearing["load_n"]),
+            f"{bearing['loaded_elements']} of {bearing['elements']}",
+            f"{1e-9 * bearing['peak_pressure_pa']:.3g}",
+            ", ".join(f"{bearing['stiffness'][motion][motion]:.3g}" for motion in range(3)),
+        )
+        for bearing in bearings
+    ]
+    head = ("bearing", "x, y, z [N]", "loaded", "peak [GPa]", "stiffness [N/m]")
+    _show(console, "Rolling bearings under their loads", head, rows)
 
 
 def _weight(console: Console, static: dict[str, Any]) -> None:

@@ -1,28 +1,10 @@
-"""The parts of a case as the rooms' own inputs: gears, rotors, bearings."""
-
-import numpy as np
-import numpy.typing as npt
+"""The parts of a case as the rooms' own inputs: gears and rotors."""
 
 import coupling.gears as gear_room
 import rotors as rotor_room
-from gearwhine.case import (
-    Case,
-    CaseError,
-    CouplingSegment,
-    Disc,
-    Pedestal,
-    Problem,
-    RadialDamping,
-    RadialStiffness,
-    RollingStiffness,
-    RoundDisc,
-    Segment,
-)
+from gearwhine.case import Case, CouplingSegment, Disc, RoundDisc, Segment
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import Rotor as GivenRotor
-from gearwhine.case.shafts import PedestalDamping, PedestalStiffness
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
@@ -116,50 +98,6 @@ def _disc(case: Case, rotor: GivenRotor, given: Disc | RoundDisc) -> rotor_room.
         return rotor_room.Disc(given.at, given.mass, given.polar_inertia, given.diametral_inertia)
     density = given.density or case.material[_material(given.material, rotor)].density
     return rotor_room.Disc.from_dimensions(given.at, given.width, given.diameter, given.bore, density)
-
-
-def build_bearings(case: Case, rotor: str) -> tuple[rotor_room.Bearing, ...]:
-    """The bearings of one rotor, in the order of the file; first those of the rotor's own file.
-
-    A bearing of the case takes the place of one of the same name in the rotor's file.
-
-    Raises
-    ------
-    CaseError
-        For stiffness given in a form that comes in a later version.
-    """
-    saved = case.rotor_named(rotor).saved
-    replaced = {given.name for given in case.bearing if given.rotor == rotor}
-    bearings = [bearing for bearing in (saved.bearings if saved else ()) if bearing.name not in replaced]
-    for index, given in enumerate(case.bearing):
-        if given.rotor != rotor:
-            continue
-        stiffness, damping = given.stiffness, given.damping
-        if not isinstance(stiffness, RadialStiffness) or not isinstance(damping, RadialDamping):
-            form = "rolling" if isinstance(stiffness, RollingStiffness) else "matrix"
-            expected = "{ xx, yy, xy, yx }: bearings by 5x5 matrix or rolling geometry come in a later version"
-            raise CaseError([Problem(f"bearing[{index}].stiffness", form, expected, label=f'bearing "{given.name}"')])
-        bearings.append(
-            rotor_room.Bearing(
-                given.name,
-                given.at,
-                _radial(stiffness),
-                _radial(damping),
-                None if given.speeds is None else np.array(given.speeds),
-                None if given.pedestal is None else _pedestal(given.pedestal),
-            )
-        )
-    return tuple(bearings)
-
-
-def _radial(given: RadialStiffness | RadialDamping | PedestalStiffness | PedestalDamping) -> FloatArray:
-    """The matrix over x, y, (2, 2), or with lists in it one for each speed, (s, 2, 2)."""
-    entries = np.broadcast_arrays(given.xx, given.xy, given.yx, given.yy)
-    return np.stack(entries, axis=-1).reshape(*entries[0].shape, 2, 2)
-
-
-def _pedestal(given: Pedestal) -> rotor_room.Pedestal:
-    return rotor_room.Pedestal(_radial(given.stiffness), _radial(given.damping), given.mass)
 
 
 def _gear_material(case: Case, given: GivenGear) -> str | None:

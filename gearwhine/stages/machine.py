@@ -9,7 +9,8 @@ import coupling as room
 import rotors as rotor_room
 from gearwhine.case import Case, CaseError, Problem, applied_torques, require, rotor_speeds
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.build import build_bearings, build_rotor
+from gearwhine.stages.bearings import build_bearings
+from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gears import SolvedPair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, solve_housing
 from gearwhine.stages.housing_checks import static_error_document

@@ -8,6 +8,7 @@ import numpy.typing as npt
 import rotors as room
 from gearwhine.stages.rotor_loads import SolvedResponse
 from gearwhine.stages.rotors import SolvedRotor
+from rotors.rolling import RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -37,6 +38,7 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "campbell": _campbell(one),
                 "static": _static(one),
                 "unbalance_response": None if one.response is None else _response(one.response),
+                "rolling_bearings": [_rolling(name, state) for name, state in one.rolling.items()],
                 "damping": "of the bearings; the shaft's own acts in the coupled system",
                 "stiffness_map": None
                 if one.stiffness_map is None
@@ -104,6 +106,23 @@ def _crossing(one: SolvedRotor, crossing: room.Crossing) -> dict[str, Any]:
         "direction": crossing.direction,
         "log_decrement": crossing.log_decrement,
         "margin": abs(crossing.speed / one.operation) - 1.0 if one.operation else None,
+    }
+
+
+def _rolling(name: str, state: RollingState) -> dict[str, Any]:
+    """A rolling bearing under its load: where the shaft goes, the stiffness there, how hard its elements are pressed.
+
+    ``stiffness`` is over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad.
+    """
+    return {
+        "name": name,
+        "load_n": state.load[:3].tolist(),
+        "displacement_m": state.displacement[:3].tolist(),
+        "stiffness": state.stiffness.tolist(),
+        "elements": sum(row.count for row in state.bearing.rows),
+        "loaded_elements": state.loaded,
+        "peak_pressure_pa": state.peak_pressure,
+        "residual": state.residual,
     }
 
 

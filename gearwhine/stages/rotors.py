@@ -1,5 +1,6 @@
 """The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, weight, unbalance and bow."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -7,8 +8,10 @@ import rotors as room
 from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.build import build_bearings, build_rotor
+from gearwhine.stages.bearings import build_bearings, rolling_states
+from gearwhine.stages.build import build_rotor
 from gearwhine.stages.rotor_loads import SolvedResponse, SolvedWeight, solve_response, solve_weight
+from rotors.rolling import RollingState
 
 Bearings = tuple[room.Bearing, ...]
 
@@ -45,6 +48,8 @@ class SolvedRotor:
         To unbalance and bow; None where there is neither.
     stiffness_map : rotors.CriticalSpeedMap or None
         Where the case asks for it.
+    rolling : mapping of str to rotors.rolling.RollingState
+        What its rolling bearings carry, by their names.
     """
 
     rotor: room.Rotor
@@ -62,6 +67,7 @@ class SolvedRotor:
     weight: SolvedWeight | str
     response: SolvedResponse | None
     stiffness_map: room.CriticalSpeedMap | None
+    rolling: Mapping[str, RollingState]
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
@@ -107,6 +113,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 stiffness_map=None
                 if analysis.stiffness_map is None or not bearings
                 else room.critical_speed_map(rotor, bearings, analysis.stiffness_map.stiffnesses),
+                rolling=rolling_states(case, given.name),
             )
         )
     return tuple(solved)

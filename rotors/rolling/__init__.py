@@ -10,13 +10,15 @@ against each other. Coordinates are x, y, z and the rotations about x and y of t
 """
 
 from .arrangements import paired, preload_offset
+from .ball_row import BallRow
 from .catalogue import catalogue_row, static_rating
 from .elasticity import STEEL, ContactElasticity
 from .energy import ElementLoads
 from .equilibrium import LARGEST_APPROACH, rolling_equilibrium, rolling_reaction
 from .hertz import PointContact, point_contact
 from .mounting import bearing_from, kramer_ball_stiffness, kramer_roller_stiffness
-from .rows import BallRow, RollerRow, RollingBearing
+from .roller_row import RollerRow
+from .rolling_bearing import RollingBearing
 from .state import COORDINATES, RollingState
 
 __all__ = [

@@ -8,7 +8,8 @@ from scipy.optimize import brentq
 
 from rotors.errors import require, require_finite
 
-from .rows import BallRow, RollingBearing
+from .ball_row import BallRow
+from .rolling_bearing import RollingBearing
 
 Arrangement = Literal["back to back", "face to face", "tandem"]
 

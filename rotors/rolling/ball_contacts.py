@@ -24,8 +24,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from .ball_row import BallRow
 from .energy import ElementLoads, RowEnergy
-from .rows import BallRow
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -31,9 +31,9 @@ import numpy.typing as npt
 from rotors.errors import EquilibriumError
 
 from .ball_contacts import ball_kinematics, ball_loads, row_energy
+from .ball_row import BallRow
 from .energy import ElementLoads, RowEnergy
 from .hertz import PointContact
-from .rows import BallRow
 from .trust_region import Local, minimise
 
 FloatArray = npt.NDArray[np.float64]

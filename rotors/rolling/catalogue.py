@@ -17,7 +17,9 @@ from typing import Literal
 
 from rotors.errors import require, require_finite
 
-from .rows import BallRow, RollerRow, Row
+from .ball_row import BallRow
+from .roller_row import RollerRow
+from .rolling_bearing import Row
 
 CatalogueType = Literal["deep-groove", "angular-contact", "cylindrical-roller"]
 

@@ -18,10 +18,11 @@ import numpy.typing as npt
 from rotors.errors import EquilibriumError, RotorError, require, require_finite
 
 from .ball_contacts import BallsAtRest
+from .ball_row import BallRow
 from .balls_in_motion import BallsInMotion
 from .energy import ElementLoads, RowContacts, RowEnergy
 from .roller_contacts import RollerSlices
-from .rows import BallRow, RollingBearing, Row
+from .rolling_bearing import RollingBearing, Row
 from .state import COORDINATES, RollingState
 from .trust_region import Local, minimise
 

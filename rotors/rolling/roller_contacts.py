@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .energy import ElementLoads, RowEnergy
-from .rows import RollerRow
+from .roller_row import RollerRow
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .energy import ElementLoads
-from .rows import RollingBearing
+from .rolling_bearing import RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 

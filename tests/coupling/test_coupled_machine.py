@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy import linalg
 
 from coupling import (
     CouplingError,
@@ -30,6 +31,7 @@ from rotors import (
     Segment,
     ShaftMaterial,
     attach_loads,
+    solve_axial_modes,
     solve_lateral_modes,
     solve_torsional_modes,
 )
@@ -52,15 +54,32 @@ GEAR_AT = {"input": 0.12, "output": 0.10}
 BEARINGS_AT = (0.0, LENGTH)
 
 
-def free_rotor(name: str, disc: float) -> RotorComponent:
-    """On the free shaft's modes, which hold its two rigid motions exactly, and what bearings and gear add."""
+def free_rotor(name: str, disc: float, *, along: bool = False) -> RotorComponent:
+    """On the free shaft's modes, which hold its two rigid motions exactly, and what bearings and gear add.
+
+    Where bearings resist it the shaft also moves ``along`` its axis.
+    """
     at = GEAR_AT[name]
     shaft = Rotor(name, [Segment(0.1, 0.04, 0.0, STEEL)] * 3, [Disc(at, disc, 0.004 * disc, 0.0025 * disc)])
     lateral = attach_loads(solve_lateral_modes(shaft, count=5), forces_at=[*BEARINGS_AT, at])
-    return rotor_component(name, ModalRotor(lateral, solve_torsional_modes(shaft, count=4)), start=START[name])
+    axial = solve_axial_modes(shaft, count=3) if along else None
+    return rotor_component(name, ModalRotor(lateral, solve_torsional_modes(shaft, count=4), axial), start=START[name])
 
 
 ROTORS = (free_rotor("input", 2.0), free_rotor("output", 5.0))
+THRUST_ROTORS = (free_rotor("input", 2.0, along=True), free_rotor("output", 5.0, along=True))
+
+
+# Over x, y, z and the rotations about x and y, positive definite, with an arm between forces and moments.
+TILTING = np.array(
+    [
+        [5e7, 0.4e7, 1e6, 1e5, -6e5],
+        [0.4e7, 4e7, 2e6, 5e5, 1e5],
+        [1e6, 2e6, 1e7, 3e4, 2e4],
+        [1e5, 5e5, 3e4, 4e4, 2e3],
+        [-6e5, 1e5, 2e4, 2e3, 5e4],
+    ]
+)
 
 
 def rigid_housing(centres: dict[str, FloatArray]) -> HousingComponent:
@@ -92,9 +111,10 @@ def machine(
 ) -> Machine:
     """Two rotors; the line of centres from driver to driven at an angle psi, the torque with the rotation."""
     matrix = 5e7 * np.eye(2) if stiffness is None else stiffness
+    rotors = ROTORS if matrix.shape == (2, 2) else THRUST_ROTORS
     axes = {"input": np.zeros(2), "output": DISTANCE * np.array([np.cos(psi), np.sin(psi)])}
     bearings, centres = [], {}
-    for rotor in ROTORS:
+    for rotor in rotors:
         for end, at in zip(("front", "back"), BEARINGS_AT, strict=True):
             name = f"{rotor.name} {end}"
             # Seats whose centres are not where the bearings are: the housing's rotation counts.
@@ -104,7 +124,7 @@ def machine(
     gears = [MountedGear(f"{name} gear", name, GEAR_AT[name], (axis[0], axis[1])) for name, axis in axes.items()]
     mesh = GearMesh(gears[0], gears[1], PAIR, tooth_contact(PAIR, ConstantStiffness(MESH_STIFFNESS)), backlash)
     return couple(
-        ROTORS,
+        rotors,
         rigid_housing(centres) if housing else None,
         speeds={"input": sense * SPEED, "output": -sense * SPEED / PAIR.ratio},
         bearings=bearings,
@@ -126,6 +146,9 @@ def rigid_motion(parts: Machine, translation: FloatArray, rotation: FloatArray) 
             moved = translation + np.cross(rotation, [*axis, rotor.start + at])
             rows += [rotor.direction(at, 0), rotor.direction(at, 1), rotor.rotation(at)]
             wanted += [moved[0], moved[1], rotation[2]]
+            if rotor.modal.axial is not None:
+                rows.append(rotor.motions(at)[2])
+                wanted.append(moved[2])
         solution, *_ = np.linalg.lstsq(np.array(rows), np.array(wanted), rcond=1e-10)
         np.testing.assert_allclose(np.array(rows) @ solution, wanted, atol=1e-9)
         coordinates.append(solution)
@@ -136,9 +159,11 @@ def rigid_motion(parts: Machine, translation: FloatArray, rotation: FloatArray) 
 
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("psi", [0.0, 0.3, 2.0, -2.5])
-def test_a_rigid_motion_deflects_nothing(psi: float, sense: int) -> None:
+@pytest.mark.parametrize("stiffness", [None, TILTING], ids=["radial", "five motions"])
+def test_a_rigid_motion_deflects_nothing(psi: float, sense: int, stiffness: FloatArray | None) -> None:
     """So the forces of bearings and gears have no resultant force or moment, about any axis: Newton's third law."""
-    parts = machine(psi=psi, sense=sense, housing=True, backlash=BACKLASH)
+    parts = machine(psi=psi, sense=sense, housing=True, backlash=BACKLASH, stiffness=stiffness)
+    assert parts.system.linear[0].directions.shape[1] == (2 if stiffness is None else 5)
     rng = np.random.default_rng(3)
     for translation, rotation in ((rng.normal(size=3), np.zeros(3)), (np.zeros(3), rng.normal(size=3))):
         q = rigid_motion(parts, translation, rotation)
@@ -148,13 +173,14 @@ def test_a_rigid_motion_deflects_nothing(psi: float, sense: int) -> None:
         for contact in parts.system.contacts:
             assert abs(contact.direction @ q) < 1e-9
     # And the check can fail: the deflections of one part alone are not zero.
-    q[: ROTORS[0].size] = 0.0
+    q[: parts.rotors[0].size] = 0.0
     assert abs(parts.system.contacts[0].direction @ q) > 1e-3
 
 
-def test_free_machine_has_its_rigid_motions() -> None:
-    """Six of the body, of which z moves the housing alone, and the train's own rotation of the shafts."""
-    parts = machine(housing=True)
+@pytest.mark.parametrize("matrix", [None, TILTING], ids=["radial", "five motions"])
+def test_free_machine_has_its_rigid_motions(matrix: FloatArray | None) -> None:
+    """Six of the body, of which z moves radial bearings' housing alone, and the train's own rotation of the shafts."""
+    parts = machine(housing=True, stiffness=matrix)
     stiffness = parts.system.mean_stiffness()
     np.testing.assert_allclose(stiffness, stiffness.T, rtol=0.0, atol=1e-12 * np.abs(stiffness).max())
     values = np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T))
@@ -187,10 +213,13 @@ def test_rolling_does_not_compress() -> None:
 
 @pytest.mark.parametrize("angle", [0.4, np.pi / 2.0, 2.9])
 @pytest.mark.parametrize("sense", [1, -1])
-def test_frame_rotation(angle: float, sense: int) -> None:
+@pytest.mark.parametrize("tilting", [False, True])
+def test_frame_rotation(angle: float, sense: int, tilting: bool) -> None:
     """The machine turned about z, its bearings' axes with it, has the same eigenvalues."""
     stiffness = np.array([[5e7, 1e7], [-0.3e7, 3e7]])
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    if tilting:
+        stiffness, turn = TILTING, linalg.block_diag(turn, 1.0, turn)
     one = coupled_modes(machine(psi=0.3, sense=sense, stiffness=stiffness).system)
     turned = machine(psi=0.3 + angle, sense=sense, stiffness=turn @ stiffness @ turn.T)
     two = coupled_modes(turned.system)

@@ -82,23 +82,73 @@ ONE_WRONG = {
     "unknown table": ("gaer", [], "gaer", "did you mean 'gear'?"),
     "later key": ("gear.0.fault", {}, "gear[0].fault", "comes in a later version"),
     "rim": ("gear.0.rim", "5 mm", "gear[0].rim", "comes in a later version"),
-    "stiffness by matrix": (
-        "bearing.0.stiffness",
-        {"matrix": [[1.0] * 5] * 5},
-        "bearing[0].stiffness",
-        "5x5 matrix comes in a later version",
-    ),
-    "damping by matrix": (
-        "bearing.1.damping",
-        {"matrix": [[1.0] * 5] * 5},
-        "bearing[1].damping",
-        "5x5 matrix comes in a later version",
-    ),
-    "rolling bearing": (
+    "rolling without load": (
         "bearing.2.stiffness",
         {"rolling": {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}},
-        "bearing[2].stiffness",
-        "rolling geometry comes in a later version",
+        "bearing[2].load",
+        "{ x, y, z }, the force of the shaft on it",
+    ),
+    "load of a spring": ("bearing.0.load", {"x": "5 N"}, "bearing[0].load", "only the stiffness of a rolling bearing"),
+    "rollers without length": (
+        "bearing.2.stiffness",
+        {"rolling": {"element": "roller", "count": 7, "element_diameter": "8 mm", "pitch_diameter": "43.5 mm"}},
+        "bearing[2].stiffness.rolling.element_length",
+        "the length of the rollers",
+    ),
+    "preload on rollers": (
+        "bearing.2.stiffness",
+        {
+            "rolling": {
+                "catalogue": {"type": "cylindrical-roller", "bore": 0.025, "outer_diameter": 0.052, "width": 0.015},
+                "preload": "50 N",
+            }
+        },
+        "bearing[2].stiffness.rolling.preload",
+        "cylindrical rollers carry no axial load",
+    ),
+    "catalogue in inches": (
+        "bearing.2.stiffness",
+        {"rolling": {"catalogue": {"type": "deep-groove", "bore": "5 cm", "outer_diameter": "2 in", "width": "x"}}},
+        "bearing[2].stiffness.rolling.catalogue.width",
+        "a length",
+    ),
+    "ring inside out": (
+        "bearing.2.stiffness",
+        {"rolling": {"catalogue": {"type": "deep-groove", "bore": 0.06, "outer_diameter": 0.05, "width": 0.015}}},
+        "bearing[2].stiffness.rolling.catalogue.outer_diameter",
+        "more than the bore of 0.06 m",
+    ),
+    "unknown catalogue": (
+        "bearing.2.stiffness",
+        {"rolling": {"catalogue": {"type": "tapered", "bore": 0.03, "outer_diameter": 0.05, "width": 0.015}}},
+        "bearing[2].stiffness.rolling.catalogue.type",
+        "'deep-groove', 'angular-contact' or 'cylindrical-roller'",
+    ),
+    "pair without spacing": (
+        "bearing.2.stiffness",
+        {
+            "rolling": {
+                "count": 7,
+                "element_diameter": "11.5 mm",
+                "pitch_diameter": "43.5 mm",
+                "preload": "10 N",
+                "arrangement": "tandem",
+            }
+        },
+        "bearing[2].stiffness.rolling.spacing",
+        "the distance between the two rows",
+    ),
+    "matrix that pushes": (
+        "bearing.0.stiffness",
+        {"matrix": [[0.0] * 3 + [-1.0] * 2] * 5},
+        "bearing[0].stiffness.matrix[3][3]",
+        "at least 0",
+    ),
+    "matrix of four rows": (
+        "bearing.1.damping",
+        {"matrix": [[1.0] * 5] * 4},
+        "bearing[1].damping.matrix",
+        "five rows of five",
     ),
     "later error": ("gear.0.errors", {"profile": "1 um"}, "gear[0].errors.profile", "comes in a later version"),
     "pitch of some teeth": ("gear.0.errors", {"pitch": ["1 um"] * 27}, "gear[0].errors.pitch", "each of 28 teeth"),

@@ -20,7 +20,8 @@ from gearwhine.case import (
     table_range,
     whirl_speeds,
 )
-from gearwhine.stages.build import build_bearings, build_rotor
+from gearwhine.stages.bearings import build_bearings
+from gearwhine.stages.build import build_rotor
 
 RPM = math.pi / 30.0
 STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}

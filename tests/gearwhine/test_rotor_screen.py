@@ -22,6 +22,14 @@ STATIC = {
     "largest_deflection_m": 3.2e-5,
     "largest_deflection_at_m": 0.25,
 }
+ROLLING = {
+    "name": "left",
+    "load_n": [0.0, -1250.0, 40.0],
+    "stiffness": [[1.5e8 if i == j == 1 else 2e7 * (i == j) for j in range(5)] for i in range(5)],
+    "elements": 9,
+    "loaded_elements": 4,
+    "peak_pressure_pa": 1.4567e9,
+}
 PROBE = {
     "name": "disc",
     "at_m": 0.25,
@@ -58,6 +66,7 @@ def rotor(**more: Any) -> Document:
         "static": STATIC,
         "unbalance_response": None,
         "stiffness_map": None,
+        "rolling_bearings": [],
         "certificate": certificate,
     } | more
 
@@ -170,6 +179,12 @@ def test_bearings_carry_the_weight_or_it_is_said_why_not() -> None:
     assert rows(out, "Under its weight") == [["left", "0", "-12.5"]]
     assert "It sags most at 250 mm, by 32 µm" in out
     assert "No static deflection: it floats" in said(static={"bearings": None, "why_not": "it floats"})
+
+
+def test_rolling_bearings_tell_how_stiff_and_how_hard_pressed_they_are() -> None:
+    told = rows(said(rolling_bearings=[ROLLING]), "Rolling bearings under their loads")
+    assert told == [["left", "0, -1250, 40", "4 of 9", "1.46", "2e+07, 1.5e+08, 2e+07"]]
+    assert "Rolling bearings" not in said()
 
 
 def test_a_stiffness_map_is_shown_from_end_to_end() -> None:

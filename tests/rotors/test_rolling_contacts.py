@@ -84,9 +84,10 @@ def test_preloaded_pair_presses_as_asked(arrangement: str) -> None:
 
 @pytest.mark.parametrize(("arrangement", "directions"), [("back to back", (1, -1)), ("face to face", (-1, 1))])
 def test_preloaded_pair_has_the_closed_form_of_its_stiffness(arrangement: str, directions: tuple[int, int]) -> None:
-    """All balls of a centred pair are alike: sums of cos² ψ are Z/2, along it 3/2 K δ^{1/2}, across it Q/|v|."""
+    """All balls are alike: cos² ψ sums to Z/2, the stiffness along a contact is 3/2 K δ^{1/2} and across it Q/|v|."""
     spacing = 15e-3
-    state = rolling_equilibrium(paired(ANGULAR, arrangement, spacing, preload=200.0), np.zeros(5))  # type: ignore[arg-type]
+    pair = paired(ANGULAR, arrangement, spacing, preload=200.0)  # type: ignore[arg-type]
+    state = rolling_equilibrium(pair, np.zeros(5))
     angle, load = float(state.rows[0].inner_angle[0]), float(state.rows[0].inner_load[0])
     approach = (load / ANGULAR.stiffness) ** (2.0 / 3.0)
     along, across = 1.5 * load / approach, load / (ANGULAR.groove_distance + approach)

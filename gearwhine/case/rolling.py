@@ -1,0 +1,131 @@
+"""A rolling bearing in a case: by its geometry, or by the main dimensions that a catalogue prints."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Tag, model_validator
+
+from gearwhine.case import units
+from gearwhine.case.fields import Force, Length, PositiveLength, Quantity, Table, Whole, wrong
+
+Arrangement = Literal["single", "back to back", "face to face", "tandem"]
+
+_ContactAngle = Annotated[float, Quantity(units.ANGLE, at_least=0.0, below=1.57)]
+_Groove = Annotated[float, Quantity(units.RATIO, above=0.5, at_most=1.0)]
+
+
+class BearingLoad(Table):
+    """What a bearing carries on average: the force of the shaft on it [N]."""
+
+    x: Force = 0.0
+    y: Force = 0.0
+    z: Force = 0.0
+
+
+class _Mounted(Table):
+    """How a bearing is mounted: its play, its preload, and the rows it has [m, N].
+
+    `clearance` is diametral and in running; a negative one is an interference. `preload` is axial: of a single row a
+    spring's force on the shaft along `carries`, of two rows the force with which they press each other. `carries` is
+    the way in which an axial force of the shaft presses the balls of a single row, or of two in tandem.
+    """
+
+    clearance: Length = 0.0
+    preload: Annotated[float, Quantity(units.FORCE, at_least=0.0)] = 0.0
+    carries: Literal["+z", "-z"] = "+z"
+    arrangement: Arrangement = "single"
+    spacing: PositiveLength | None = None
+
+    @property
+    def pressed(self) -> bool:
+        """Whether its elements are pressed without any load of the shaft."""
+        return self.preload > 0.0 or self.clearance < 0.0
+
+    @model_validator(mode="after")
+    def _arranged(self) -> _Mounted:
+        if self.arrangement != "single" and self.spacing is None:
+            raise wrong("the distance between the two rows", "spacing")
+        if self.arrangement == "single" and self.spacing is not None:
+            raise wrong("nothing: a single row has no spacing", "spacing")
+        if self.preload > 0.0 and self.rolls_on_cylinders:
+            raise wrong("nothing: cylindrical rollers carry no axial load", "preload")
+        if self.arrangement != "single" and self.rolls_on_cylinders:
+            raise wrong("'single': two rows of rollers are one of twice the length", "arrangement")
+        return self
+
+    @property
+    def rolls_on_cylinders(self) -> bool:
+        """Whether its elements are cylindrical rollers, which carry no axial load."""
+        raise NotImplementedError
+
+
+class RollingGeometry(_Mounted):
+    """By its geometry [m, rad]; a groove is its radius over the ball's diameter."""
+
+    element: Literal["ball", "roller"] = "ball"
+    count: Annotated[int, Whole(3, 500)]
+    element_diameter: PositiveLength
+    element_length: PositiveLength | None = None
+    pitch_diameter: PositiveLength
+    contact_angle: _ContactAngle = 0.0
+    inner_groove: _Groove = 0.52
+    outer_groove: _Groove = 0.53
+    profile: Literal["straight", "logarithmic"] = "logarithmic"
+
+    @model_validator(mode="after")
+    def _fits(self) -> RollingGeometry:
+        if self.element_diameter >= self.pitch_diameter:
+            raise wrong("rolling elements smaller than their pitch circle", "element_diameter")
+        if self.element == "roller" and self.element_length is None:
+            raise wrong("the length of the rollers", "element_length")
+        if self.element == "ball" and self.element_length is not None:
+            raise wrong("nothing: balls have no length", "element_length")
+        if self.element == "roller" and self.contact_angle != 0.0:
+            raise wrong("nothing, or 0: rollers are cylindrical", "contact_angle")
+        return self
+
+    @property
+    def rolls_on_cylinders(self) -> bool:
+        """Whether its elements are cylindrical rollers."""
+        return self.element == "roller"
+
+
+class Catalogue(Table):
+    """What a catalogue prints [m, rad]; the inside follows by estimate."""
+
+    type: Literal["deep-groove", "angular-contact", "cylindrical-roller"]
+    bore: PositiveLength
+    outer_diameter: PositiveLength
+    width: PositiveLength
+    contact_angle: _ContactAngle | None = None
+
+    @model_validator(mode="after")
+    def _is_a_ring(self) -> Catalogue:
+        if self.outer_diameter <= self.bore:
+            raise wrong(f"more than the bore of {self.bore:g} m", "outer_diameter")
+        if self.contact_angle is not None and self.type != "angular-contact":
+            raise wrong("nothing: only angular-contact bearings have one", "contact_angle")
+        return self
+
+
+class RollingCatalogue(_Mounted):
+    """By its main dimensions."""
+
+    catalogue: Catalogue
+
+    @property
+    def rolls_on_cylinders(self) -> bool:
+        """Whether its elements are cylindrical rollers."""
+        return self.catalogue.type == "cylindrical-roller"
+
+
+def _form(value: Any) -> str:
+    keys = value if isinstance(value, dict) else getattr(value, "model_fields_set", ())
+    return "~catalogue" if "catalogue" in keys else "~geometry"
+
+
+Rolling = Annotated[
+    Annotated[RollingGeometry, Tag("~geometry")] | Annotated[RollingCatalogue, Tag("~catalogue")],
+    Discriminator(_form),
+]

@@ -1,0 +1,141 @@
+"""A row of balls by its geometry."""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from rotors.errors import require, require_finite
+
+from .elasticity import STEEL, ContactElasticity
+from .hertz import PointContact, in_series, point_contact
+from .room import require_room
+
+RIGHT_ANGLE = math.pi / 2.0
+
+
+@dataclass(frozen=True)
+class BallRow:
+    """One row of balls between two grooves.
+
+    Parameters
+    ----------
+    count
+        Balls, three or more.
+    ball_diameter, pitch_diameter
+        D and the diameter of the balls' centres, m.
+    contact_angle
+        Nominal, without clearance, rad; 0 for deep grooves.
+    inner_groove, outer_groove
+        Groove radius over ball diameter, above 0.5.
+    clearance
+        Diametral, m; negative is an interference.
+    axial_offset
+        By how much assembly has moved the inner groove along the row's direction, pressing the balls, m: a preload
+        against another row.
+    position
+        Of the balls' centres from the bearing's centre along z, m.
+    direction
+        1 or −1.
+    groove_limits
+        Contact angles between which there is a groove, in the row's direction, rad: its shoulders.
+    elasticity
+        Steel unless given.
+
+    Raises
+    ------
+    RotorError
+        What cannot be, such as balls that do not find room on their circle.
+    """
+
+    count: int
+    ball_diameter: float
+    pitch_diameter: float
+    contact_angle: float = 0.0
+    inner_groove: float = 0.52
+    outer_groove: float = 0.53
+    clearance: float = 0.0
+    axial_offset: float = 0.0
+    position: float = 0.0
+    direction: int = 1
+    groove_limits: tuple[float, float] = (-RIGHT_ANGLE, RIGHT_ANGLE)
+    elasticity: ContactElasticity = STEEL
+
+    def __post_init__(self) -> None:
+        require_room("ball", self.count, self.ball_diameter, self.pitch_diameter)
+        within = 0.0 <= self.contact_angle < RIGHT_ANGLE
+        require(within, "contact angle", self.contact_angle, "an angle from 0 to below a right angle, rad")
+        for what in ("inner_groove", "outer_groove"):
+            ratio = getattr(self, what)
+            require(0.5 < ratio <= 1.0, what, ratio, "a groove radius over 0.5 and up to 1 of the ball's diameter")
+        for what in ("clearance", "axial_offset", "position"):
+            require_finite(what.replace("_", " "), getattr(self, what))
+        widest = 2.0 * self.groove_distance * math.cos(self.contact_angle)
+        require(
+            self.clearance < widest, "clearance", self.clearance, f"less than {widest:g} m, which its grooves leave"
+        )
+        require(self.direction in (1, -1), "direction of a row", self.direction, "1 or -1")
+        low, high = self.groove_limits
+        ordered = -RIGHT_ANGLE <= low <= self.contact_angle <= high <= RIGHT_ANGLE
+        require(
+            ordered, "groove limits", self.groove_limits, "two angles within right angles, around the contact angle"
+        )
+
+    @property
+    def element_diameter(self) -> float:
+        """Of the balls, m."""
+        return self.ball_diameter
+
+    @property
+    def groove_distance(self) -> float:
+        """A: between the centres of the grooves' curvature with a ball that just touches both, m."""
+        return (self.inner_groove + self.outer_groove - 1.0) * self.ball_diameter
+
+    def facing(self, direction: int) -> "BallRow":
+        """The same row with another direction."""
+        return replace(self, direction=direction)
+
+    @property
+    def free_contact_angle(self) -> float:
+        """Contact angle after the inner ring has taken up the clearance along the row's direction, rad."""
+        radial = math.cos(self.contact_angle) - 0.5 * self.clearance / self.groove_distance
+        return math.acos(min(radial, 1.0))
+
+    @cached_property
+    def inner_contact(self) -> PointContact:
+        """A ball in the inner groove: curvatures 2/D and γ/(1 − γ) · 2/D along, 2/D and −1/(f D) across."""
+        return self._contact(self.inner_groove, self._gamma / (1.0 - self._gamma))
+
+    @cached_property
+    def outer_contact(self) -> PointContact:
+        """A ball in the outer groove: curvatures 2/D and −γ/(1 + γ) · 2/D along, 2/D and −1/(f D) across."""
+        return self._contact(self.outer_groove, -self._gamma / (1.0 + self._gamma))
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Of one ball between both grooves, Q = K δ^{3/2}, N/m^{3/2}."""
+        return in_series(self.inner_contact, self.outer_contact)
+
+    def centrifugal_force(self, speed: float) -> float:
+        """On one ball with the inner ring turning at ``speed`` (rad/s) and the outer at rest, N.
+
+        m (D_pw / 2) ω², with pure rolling at the nominal contact angle, ω = ½ (1 − γ) Ω (Harris and Kotzalas 2006).
+        """
+        mass = self.elasticity.element_density * math.pi / 6.0 * self.ball_diameter**3
+        return mass * 0.5 * self.pitch_diameter * (0.5 * (1.0 - self._gamma) * speed) ** 2
+
+    def axial_force(self, axial_offset: float) -> float:
+        """Force (N) along the row's direction that moves a centred inner ring by ``axial_offset`` (m)."""
+        angle = self.contact_angle
+        radial = self.groove_distance * math.cos(angle) - 0.5 * self.clearance
+        axial = self.groove_distance * math.sin(angle) + axial_offset
+        distance = math.hypot(radial, axial)
+        approach = max(distance - self.groove_distance, 0.0)
+        return float(self.count * self.stiffness * approach**1.5 * axial / distance)
+
+    @property
+    def _gamma(self) -> float:
+        return self.ball_diameter * math.cos(self.contact_angle) / self.pitch_diameter
+
+    def _contact(self, groove: float, along: float) -> PointContact:
+        across = (2.0 - 1.0 / groove) / self.ball_diameter
+        return point_contact(across, 2.0 * (1.0 + along) / self.ball_diameter, self.elasticity.contact_modulus)

@@ -1,0 +1,15 @@
+"""Whether the elements of a row find room on their circle."""
+
+import math
+
+from rotors.errors import require, require_count, require_finite
+
+
+def require_room(what: str, count: int, diameter: float, pitch_diameter: float) -> None:
+    """Raise `RotorError` unless three or more elements (m) fit side by side on the pitch circle (m)."""
+    require_count(f"count of {what}s", count)
+    require(count >= 3, f"count of {what}s", count, "three or more")
+    require_finite(f"{what} diameter", diameter, positive=True)
+    require_finite("pitch diameter", pitch_diameter, positive=True)
+    room = pitch_diameter * math.sin(math.pi / count)
+    require(diameter < room, f"{what} diameter", diameter, f"less than {room:g} m, the room that {count} {what}s have")

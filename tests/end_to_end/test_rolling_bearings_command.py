@@ -1,0 +1,115 @@
+"""Bearings by 5x5 matrix and by rolling geometry, through the command."""
+
+import copy
+import tomllib
+from collections.abc import Callable
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gearwhine.case import CaseError, parse_case
+from gearwhine.stages.bearings import build_bearings, rolling_state
+from gearwhine.stages.machine import build_machine, coupled_modes
+from gearwhine.stages.rotor_documents import rotors_document
+from gearwhine.stages.rotors import solve_rotors
+
+FRISWELL = tomllib.loads(files("gearwhine.cases").joinpath("friswell-rotor.toml").read_text(encoding="utf-8"))
+ISO = {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}
+
+
+def friswell(**bearing: Any) -> dict[str, Any]:
+    """The published rotor with both bearings changed."""
+    document = copy.deepcopy(FRISWELL)
+    for entry in document["bearing"]:
+        entry.update(copy.deepcopy(bearing))
+    return document
+
+
+def test_the_iso_bearing_under_a_case() -> None:
+    case = parse_case(friswell(stiffness={"rolling": ISO}, load={"x": "1 kN"}))
+    state = rolling_state(case, 0)
+    assert state is not None
+    assert 1e6 * state.displacement[0] == pytest.approx(15.110, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "rolling",
+    [
+        {"catalogue": {"type": "deep-groove", "bore": "50 mm", "outer_diameter": "90 mm", "width": "20 mm"}},
+        {
+            "catalogue": {"type": "angular-contact", "bore": "50 mm", "outer_diameter": "90 mm", "width": "20 mm"},
+            "arrangement": "back to back",
+            "spacing": "20 mm",
+            "preload": "400 N",
+        },
+        {
+            "catalogue": {"type": "angular-contact", "bore": "50 mm", "outer_diameter": "90 mm", "width": "20 mm"},
+            "carries": "-z",
+            "preload": "600 N",
+        },
+        {
+            "element": "roller",
+            "count": 16,
+            "element_diameter": "11 mm",
+            "element_length": "11 mm",
+            "pitch_diameter": "70 mm",
+        },
+    ],
+)
+def test_rolling_geometry_is_the_matrix_that_it_makes(rolling: dict[str, Any]) -> None:
+    """Frequencies at rest, whirl and the coupled system agree with those of the printed 5x5 matrix."""
+    case = parse_case(friswell(stiffness={"rolling": rolling}, load={"y": "-400 N"}))
+    (solved,) = solve_rotors(case)
+    document = rotors_document((solved,))["rotors"][0]
+    told = document["rolling_bearings"][0]
+    assert told["loaded_elements"] > 0
+    assert told["residual"] < 1e-10
+    by_matrix = parse_case(friswell(stiffness={"matrix": told["stiffness"]}))
+    same = rotors_document(solve_rotors(by_matrix))["rotors"][0]
+    np.testing.assert_allclose(same["lateral_hz"], document["lateral_hz"], rtol=1e-9)
+    np.testing.assert_allclose(same["whirl"][0]["frequency_hz"], document["whirl"][0]["frequency_hz"], rtol=1e-9)
+    machine = build_machine(case, None, ())
+    coupled = coupled_modes(machine).frequencies_hz
+    # The system keeps more modes and damps the shaft by half a percent; its lowest whirl is the rotor's own.
+    lowest = sorted(frequency for frequency in coupled if frequency > 1.0)[:4]
+    np.testing.assert_allclose(lowest, document["whirl"][0]["frequency_hz"][:4], rtol=2e-3)
+
+
+def test_a_rolling_bearing_stands_on_a_pedestal_with_damping_over_speed() -> None:
+    stands = {"stiffness": {"rolling": ISO}, "load": {"x": "1 kN"}}
+    tabled = {"speeds": [0.0, 1000.0], "damping": {"xx": [100.0, 300.0], "yy": 50.0}}
+    pedestal = {"mass": "4 kg", "stiffness": {"xx": 1e8, "yy": 2e8}}
+    case = parse_case(friswell(**stands, **tabled, pedestal=pedestal))
+    bearing = build_bearings(case, "shaft")[0]
+    state = rolling_state(case, 0)
+    assert state is not None
+    assert bearing.pedestal is not None
+    assert bearing.pedestal.mass == 4.0
+    turning = bearing.at_speed(1000.0)
+    np.testing.assert_array_equal(turning.spatial_stiffness, state.stiffness)
+    np.testing.assert_array_equal(turning.radial_damping, np.diag([300.0, 50.0]))
+
+
+def test_damping_by_matrix_damps_tilting() -> None:
+    matrix = np.diag([1e6, 1e6, 0.0, 1e4, 1e4])
+    tilting = np.diag([0.0, 0.0, 0.0, 50.0, 50.0])
+    case = parse_case(friswell(stiffness={"matrix": matrix.tolist()}, damping={"matrix": tilting.tolist()}))
+    assert build_bearings(case, "shaft")[0].spatial_damping[4, 4] == 50.0
+    (solved,) = solve_rotors(case)
+    assert solved.whirl[0].damping_ratios.min() > 0.0
+
+
+def test_a_bearing_that_its_load_does_not_hold_is_the_users_to_mend(
+    gearwhine: Callable[..., Any], tmp_path: Any
+) -> None:
+    loose = friswell(stiffness={"rolling": {**ISO, "clearance": "20 um"}}, load={"z": "0 N"})
+    with pytest.raises(CaseError, match=r"bearing\[0\].stiffness.rolling .*loose in x and y"):
+        build_bearings(parse_case(loose), "shaft")
+    changes = (
+        "bearing.left.stiffness={ rolling = { count = 7, element_diameter = 0.0115, pitch_diameter = 0.0435 } }",
+    )
+    outcome = gearwhine("rotors", "friswell-rotor", "--set", *changes, "--set", 'bearing.left.load={ x = "900 kN" }')
+    assert outcome.code == 2
+    assert "of their diameter" in outcome.err
