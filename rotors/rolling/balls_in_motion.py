@@ -38,8 +38,8 @@ from .trust_region import Local, minimise
 
 FloatArray = npt.NDArray[np.float64]
 
-# Parts of the distance between the grooves' centres by which the contacts may miss it: aimed at, and refused. The latter
-# also of the greater of the static and the centrifugal force, by which the contact's may be off.
+# Parts of the distance between the grooves' centres by which the contacts may miss it: aimed at, and refused. The
+# latter also of the greater of the static and the centrifugal force, by which the contact's may be off.
 _CLOSED = 1e-15
 _OPEN = 1e-12
 
@@ -105,7 +105,7 @@ class BallsInMotion:
             )
 
         found = minimise(local, start, 0.5, _CLOSED)
-        # A ball that barely touches has a force of hardly a direction: then it counts how far the force itself can be off.
+        # A ball that barely touches has a force of hardly a direction: then it counts how far that can be off.
         there = local(found.place)
         if found.residual > _OPEN and np.linalg.norm(np.linalg.solve(there.hessian, there.gradient)) > _OPEN:
             raise EquilibriumError(
