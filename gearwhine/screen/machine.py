@@ -80,13 +80,16 @@ def show_system(document: dict[str, Any]) -> None:
     modes, trusted = document["modes"], document.get("trusted_below_hz")
     shown = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
     console.print(f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm")
-    shares_of = ("housing", "rotor", "torsion", "residual", "teeth")
-    table = Table("frequency [Hz]", "damping ratio", "kind", *shares_of, box=SIMPLE_HEAD)
+    # Few machines have motions along the axis or pedestals: no columns of zeros for the others.
+    rare = [kind for kind in ("axial", "pedestal") if any(mode["energy"][kind] > 0.0 for mode in shown)]
+    shares_of = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
+    heads = ["teeth" if kind == "mesh" else kind for kind in shares_of]
+    table = Table("frequency [Hz]", "damping ratio", "kind", *heads, box=SIMPLE_HEAD)
     for column in table.columns:
         column.justify = "right"
     for mode in shown:
         # A rigid mode is the free turning of the train: its shares say nothing of vibration.
-        kinds = () if mode["kind"] == "rigid" else ("housing", "rotor", "torsion", "residual", "mesh")
+        kinds = () if mode["kind"] == "rigid" else shares_of
         shares = [f"{100 * mode['energy'][kind]:z.0f} %" for kind in kinds]
         table.add_row(f"{mode['frequency_hz']:z.2f}", f"{mode['damping_ratio']:z.4f}", mode["kind"], *shares)
     console.print(table)

@@ -38,7 +38,8 @@ from .trust_region import Local, minimise
 
 FloatArray = npt.NDArray[np.float64]
 
-# Parts of the distance between the grooves' centres by which the contacts may miss it: aimed at, and refused.
+# Parts of the distance between the grooves' centres by which the contacts may miss it: aimed at, and refused. The
+# latter also of the greater of the static and the centrifugal force, by which the contact's may be off.
 _CLOSED = 1e-15
 _OPEN = 1e-12
 
@@ -104,7 +105,9 @@ class BallsInMotion:
             )
 
         found = minimise(local, start, 0.5, _CLOSED)
-        if found.residual > _OPEN:
+        # A ball that barely touches has a force of hardly a direction: then it counts how far that can be off.
+        there = local(found.place)
+        if found.residual > _OPEN and np.linalg.norm(np.linalg.solve(there.hessian, there.gradient)) > _OPEN:
             raise EquilibriumError(
                 f"a ball's contacts miss their grooves by {found.residual:.3g} of the distance of their centres after "
                 f"{found.iterations} steps; expected {_OPEN:g}: check that geometry and speed are in m and rad/s"

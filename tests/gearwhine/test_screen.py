@@ -38,7 +38,8 @@ def _run(loss: float = 0.0) -> Document:
 
 
 def _system(**more: Any) -> Document:
-    shares = {"housing": 0.0, "rotor": -1e-9, "torsion": 1.0, "residual": 0.0, "mesh": -1e-3}
+    none = dict.fromkeys(("housing", "axial", "pedestal", "residual"), 0.0)
+    shares = none | {"rotor": -1e-9, "torsion": 1.0, "mesh": -1e-3}
     modes = [
         {"frequency_hz": frequency, "damping_ratio": damping, "kind": kind, "energy": shares}
         for frequency, damping, kind in ((-0.0, -0.0, "rigid"), (900.0, -1e-9, "torsion"), (2500.0, 0.01, "torsion"))
@@ -81,6 +82,16 @@ def test_no_share_is_minus_nothing_and_rigid_modes_have_none() -> None:
     assert rows[1].split() == ["900.00", "0.0000", "torsion", "0", "%", "0", "%", "100", "%", "0", "%", "0", "%"]
     assert len(rows) == 3
     assert "above" not in out
+
+
+def test_motion_along_the_axis_and_of_pedestals_is_shown_where_there_is_any() -> None:
+    thrust = _system()
+    thrust["modes"][1]["energy"] = thrust["modes"][1]["energy"] | {"torsion": 0.25, "axial": 0.75}
+    out = _said(screen.show_system, thrust)
+    assert "axial" in out
+    assert "75 %" in out
+    assert "pedestal" not in out
+    assert "axial" not in _said(screen.show_system, _system())
 
 
 def test_modes_far_above_the_housing_limit_are_counted_only() -> None:
