@@ -5,8 +5,8 @@ of inertia. It is counted just below and just above every frequency found, and a
 root to `CLOSE` of itself, with its multiplicity, and there are no others. Its own error is 1e-13 (its own tests).
 Frequencies nearer to each other than `CLOSE` are held together, as one root of their number.
 
-Drawn are shafts of lengths, diameters and materials many decades apart, discs that are points or huge, supports from
-none to rigid, mirrored and nearly mirrored shafts, twins tied by a hair or by pins, free shafts, tiny segments. The
+Drawn are shafts of lengths, diameters and materials many decades apart, with cones, axial forces and couplings, discs
+that are points or huge, supports from none to rigid, mirrored and nearly mirrored shafts, twins tied by a hair or by pins, free shafts, tiny segments. The
 number of examples is `EXAMPLES`, or that of the environment's NO_MISSED_ROOTS_EXAMPLES.
 """
 
@@ -25,7 +25,9 @@ from hypothesis import HealthCheck, assume, given, reject, settings
 from hypothesis import strategies as st
 
 from rotors import (
+    AxisSpring,
     Bearing,
+    Coupling,
     Disc,
     IncompleteModesError,
     RadialSupport,
@@ -33,6 +35,7 @@ from rotors import (
     Segment,
     ShaftMaterial,
     rest_frequencies,
+    solve_axial_modes,
     solve_lateral_modes,
     solve_torsional_modes,
 )
@@ -72,17 +75,34 @@ TILTS = st.one_of(st.just(0.0), st.just(0.0), st.just(math.inf), powers(-1.0, 12
 
 
 @st.composite
-def segment_rows(draw: st.DrawFn) -> list[Segment]:
+def segment_rows(draw: st.DrawFn) -> list[Segment | Coupling]:
     one_material = draw(st.booleans())
     material = draw(st.sampled_from(MATERIALS))
-    row = []
+    row: list[Segment | Coupling] = []
     for _ in range(draw(st.integers(1, 5))):
         outer = draw(powers(-2.0, -0.7) | powers(-3.0, -0.5))
-        bore = outer * draw(st.sampled_from([0.0, 0.0, 0.5, 0.95]))
+        ratio = draw(st.sampled_from([0.0, 0.0, 0.5, 0.95]))
         own = material if one_material else draw(st.sampled_from(MATERIALS))
-        row.append(Segment(draw(powers(-1.3, 0.0) | powers(-5.0, 0.3)), outer, bore, own))
+        part = Segment(draw(powers(-1.3, 0.0) | powers(-5.0, 0.3)), outer, ratio * outer, own)
+        kind = draw(st.sampled_from(["cylinder", "cylinder", "cone", "pulled"]))
+        if kind == "cone":
+            right = outer * draw(st.sampled_from([0.2, 0.7, 1.5, 5.0]))
+            part = replace(
+                part, right_outer_diameter=right, right_inner_diameter=draw(st.sampled_from([0.8, 1.0])) * ratio * right
+            )
+        elif kind == "pulled":
+            # Up to a hundredth of E A: tension only, for compression may buckle.
+            part = replace(part, axial_force=draw(powers(-8.0, -2.0)) * part.section(0.0).axial_stiffness)
+        row.append(part)
+    if draw(st.integers(0, 5)) == 5:
+        spring = draw(powers(4.0, 9.0))
+        length = draw(powers(-2.0, -0.5))
+        weight = draw(st.sampled_from([0.0, 2.0]))
+        tilt, twist = spring * length**2, 0.5 * spring * length**2
+        row.append(Coupling(length, spring, tilt, twist, spring, weight, 0.1 * weight, 0.06 * weight))
+        row.append(Segment(0.2, 0.05, 0.0, material))
     # A shaft, not a plate.
-    assume(sum(part.length for part in row) > 0.05 * max(part.outer_diameter for part in row))
+    assume(sum(part.length for part in row) > 0.05 * max(thicknesses(row)))
     return row
 
 
@@ -94,6 +114,11 @@ def disc_sets(draw: st.DrawFn, shaft: Rotor) -> list[Disc]:
         size = draw(st.one_of(st.just(0.0), powers(-2.0, 0.0)))
         discs.append(Disc(draw(places(shaft)), mass, mass * size**2, 0.5 * mass * size**2))
     return discs
+
+
+def thicknesses(row: Sequence[Segment | Coupling]) -> list[float]:
+    """Diameters at both ends of all segments, m."""
+    return [outer for part in row if isinstance(part, Segment) for outer, _ in part.end_diameters]
 
 
 def places(shaft: Rotor) -> st.SearchStrategy[float]:
@@ -121,7 +146,7 @@ def twins(draw: st.DrawFn) -> Case:
         middle = [Segment(draw(powers(-2.0, 0.0)), draw(powers(-6.0, -3.0)), 0.0, MATERIALS[0])]
     elif joint == "pins":
         middle = [Segment(0.05, 0.05, 0.0, MATERIALS[0])] * draw(st.integers(1, 12))
-    rotor = Rotor("twins", [*half.segments, *middle, *half.segments[::-1]])
+    rotor = Rotor("twins", [*half.segments, *middle, *map(turned, half.segments[::-1])])
     length = rotor.length
     discs = [*half.discs]
     discs += [
@@ -132,6 +157,20 @@ def twins(draw: st.DrawFn) -> Case:
         first = len(half.segments)
         held += [RadialSupport(float(at), math.inf) for at in rotor.joints[first : first + len(middle) + 1]]
     return replace(rotor, discs=discs), held
+
+
+def turned(part: Segment | Coupling) -> Segment | Coupling:
+    """A segment seen from its other end."""
+    if isinstance(part, Coupling) or not part.is_conical:
+        return part
+    (outer, inner), (right_outer, right_inner) = part.end_diameters
+    return replace(
+        part,
+        outer_diameter=right_outer,
+        inner_diameter=right_inner,
+        right_outer_diameter=outer,
+        right_inner_diameter=inner,
+    )
 
 
 def cases() -> st.SearchStrategy[Case]:
@@ -155,7 +194,7 @@ def refusal_allowed_of_hairs(rotor: Rotor) -> Iterator[None]:
     try:
         yield
     except IncompleteModesError:
-        diameters = [part.outer_diameter for part in rotor.segments]
+        diameters = thicknesses(rotor.segments)
         if min(diameters) > HAIR * max(diameters):
             raise
         reject()
@@ -203,7 +242,7 @@ def test_every_root_of_bending(case: Case, count: int, part: float) -> None:
     assert modes.certificate.expected == modes.count
     # Two rigid motions at most, of which each support takes what it can.
     zeros = int(np.count_nonzero(modes.frequencies == 0.0))
-    assert zeros == rigid_motions(supports, rotor.length)
+    assert zeros == rigid_motions(rotor, supports)
     assert_these_are_all(modes.frequencies, limit, [model], zeros)
     again = modes.frequencies[: lowest.size]
     assert (np.abs(again - lowest) <= 2.0 * closeness(lowest, limit) * lowest).all()
@@ -217,6 +256,19 @@ def test_every_root_of_torsion(case: Case, count: int) -> None:
         modes = solve_torsional_modes(rotor, count=count)
     limit = limit_above(modes.frequencies, CLOSE)
     assert_these_are_all(modes.frequencies, limit, [rod_model(rotor, "torsion", limit)], 1)
+
+
+@MANY
+@given(cases(), st.integers(3, 8))
+def test_every_root_of_axial_motion(case: Case, count: int) -> None:
+    rotor, supports = case
+    # Held beyond the left end: `test_hard_rotors` has what happens then.
+    springs = [AxisSpring(s.at, s.stiffness) for s in supports if math.isfinite(s.stiffness) or s.at == 0.0]
+    with refusal_allowed_of_hairs(rotor):
+        modes = solve_axial_modes(rotor, springs, count=count)
+    limit = limit_above(modes.frequencies, CLOSE)
+    model = rod_model(rotor, "axial", limit, springs=[(spring.at, spring.stiffness) for spring in springs])
+    assert_these_are_all(modes.frequencies, limit, [model], 0 if springs else 1)
 
 
 @MANY
@@ -234,15 +286,17 @@ def test_every_root_of_both_planes(case: Case, difference: float, count: int) ->
     frequencies = found.frequencies
     limit = limit_above(frequencies, CLOSE)
     planes = [[bearing.plane_support(plane) for bearing in bearings] for plane in (0, 1)]
-    zeros = 2 * rigid_motions(planes[0], rotor.length)
+    zeros = 2 * rigid_motions(rotor, planes[0])
     assert_these_are_all(frequencies, limit, [bending_model(rotor, plane, limit) for plane in planes], zeros)
 
 
-def rigid_motions(supports: Sequence[RadialSupport], length: float) -> int:
-    """Two, less what the supports hold of shift and tilt."""
+def rigid_motions(rotor: Rotor, supports: Sequence[RadialSupport]) -> int:
+    """Two, less what the supports hold of shift and tilt; a pulled shaft resists tilting by itself."""
     held = [support.at for support in supports if support.stiffness > 0.0]
-    apart = bool(held) and max(held) - min(held) > 1e-9 * length
-    return 2 - min(2, (2 if apart else len(held[:1])) + any(support.tilt_stiffness > 0.0 for support in supports))
+    apart = bool(held) and max(held) - min(held) > 1e-9 * rotor.length
+    pulled = any(isinstance(part, Segment) and part.axial_force > 0.0 for part in rotor.segments)
+    tilt = pulled or any(support.tilt_stiffness > 0.0 for support in supports)
+    return 2 - min(2, (2 if apart else len(held[:1])) + tilt)
 
 
 def test_the_reference_would_notice_a_missed_root() -> None:

@@ -1,6 +1,6 @@
 """Rotors that random search found to be refused, or to lose digits: each the shortest known of its kind.
 
-A mark says what happens so far. None of them misses a root.
+A mark says what happens so far.
 """
 
 import math
@@ -10,6 +10,7 @@ import pytest
 from finite_element_rotor import bending_model, rod_model
 
 from rotors import (
+    AxisSpring,
     Disc,
     IncompleteModesError,
     RadialSupport,
@@ -17,6 +18,7 @@ from rotors import (
     RotorError,
     Segment,
     ShaftMaterial,
+    solve_axial_modes,
     solve_lateral_modes,
     solve_torsional_modes,
 )
@@ -42,6 +44,21 @@ def test_two_overhangs_of_one_clamp() -> None:
         for side, at in zip(sides, (0.5, 0.0), strict=True)
     ]
     np.testing.assert_allclose(modes.frequencies, np.sort(np.concatenate(alone))[: modes.count], rtol=1e-12)
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=IncompleteModesError,
+    reason="the count of a rod held beyond its left end starts anew with a wrong sign",
+)
+@pytest.mark.parametrize("at", [0.5, 1.0])
+def test_rod_held_elsewhere_than_at_its_left_end(at: float) -> None:
+    # Each side free at one end and held at the other, (n − ½) π c / l.
+    rod = Rotor("rod", [Segment(0.5, 0.1, 0.0, STEEL)] * 2)
+    modes = solve_axial_modes(rod, [AxisSpring(at, math.inf)], frequency_limit=3e4)
+    waves = math.pi * math.sqrt(207e9 / 7850.0) * (np.arange(1, 20) - 0.5)
+    roots = np.sort(np.concatenate([waves / side for side in (at, 1.0 - at) if side > 0.0]))
+    np.testing.assert_allclose(modes.frequencies, roots[roots < 3e4], rtol=1e-12)
 
 
 @pytest.mark.xfail(
