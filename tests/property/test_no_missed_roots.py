@@ -13,7 +13,7 @@ number of examples is `EXAMPLES`, or that of the environment's NO_MISSED_ROOTS_E
 import itertools
 import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -173,17 +173,15 @@ def turned(part: Segment | Coupling) -> Segment | Coupling:
 
 
 def cases() -> st.SearchStrategy[Case]:
-    return (any_rotors() | twins()).filter(lambda case: not has_inner_clamp(*case))
+    return (any_rotors() | twins()).filter(lambda case: not has_clamp(case[1]))
 
 
-def has_inner_clamp(rotor: Rotor, supports: Sequence[RadialSupport]) -> bool:
-    """Whether supports hold a section inside the shaft entirely; `test_hard_rotors` has what happens then."""
-    slack = 1e-9 * rotor.length
-    inner = [support for support in supports if slack < support.at < rotor.length - slack]
+def has_clamp(supports: Sequence[RadialSupport]) -> bool:
+    """Whether supports hold a section entirely; `test_hard_rotors` has what happens then."""
     return any(
-        abs(one.at - other.at) <= slack and math.isinf(one.stiffness) and math.isinf(other.tilt_stiffness)
-        for one in inner
-        for other in inner
+        math.isclose(one.at, other.at) and math.isinf(one.stiffness) and math.isinf(other.tilt_stiffness)
+        for one in supports
+        for other in supports
     )
 
 
@@ -225,73 +223,98 @@ def closeness(rotor: Rotor) -> float:
     return CLOSE_OF_HAIRS if has_hair(rotor) else CLOSE
 
 
-def limit_above(frequencies: npt.NDArray[np.float64], part: float) -> float:
-    """A limit above the last frequency by a part of it."""
-    return float(frequencies[-1]) * (1.0 + part) if frequencies[-1] > 0.0 else 1.0
+def assert_every_root(
+    rotor: Rotor,
+    solve: Callable[..., npt.NDArray[np.float64]],
+    models: Callable[[float], list[PlaneModel]],
+    zeros: int,
+    count: int,
+    part: float,
+) -> None:
+    """Assert that ``solve`` has all of the lowest ``count``, and all below a limit beyond them, as the models say.
+
+    The limit is beyond by a ``part`` of the last frequency, or by as little more as keeps it off the next.
+    """
+    close = closeness(rotor)
+    with refusal_allowed_of_hairs(rotor):
+        lowest = solve(count=count)
+    limit = float(lowest[-1]) * (1.0 + max(part, 4.0 * close)) if lowest[-1] > 0.0 else 1.0
+    reference = models(limit * (1.0 + 32.0 * close))
+    around = limit * (1.0 + close * np.arange(-2.0, 31.0, 4.0))
+    same = np.flatnonzero(np.diff(sum(model.count_below(around) for model in reference)) == 0)
+    assume(same.size > 0)
+    limit = 0.5 * float(around[same[0]] + around[same[0] + 1])
+    with refusal_allowed_of_hairs(rotor):
+        found = solve(frequency_limit=limit)
+    assert_these_are_all(found, limit, reference, zeros, close)
+    np.testing.assert_allclose(found[: lowest.size], lowest, rtol=2.0 * close)
+
+
+PARTS = powers(-9.0, 0.0)
 
 
 @MANY
-@given(cases(), st.integers(3, 9), powers(-9.0, 0.0))
+@given(cases(), st.integers(3, 9), PARTS)
 def test_every_root_of_bending(case: Case, count: int, part: float) -> None:
     rotor, supports = case
-    with refusal_allowed_of_hairs(rotor):
-        lowest = solve_lateral_modes(rotor, supports, count=count).frequencies
-    limit = limit_above(lowest, part)
-    model = bending_model(rotor, supports, limit)
-    if np.ptp(model.count_below(limit * np.array([1.0 - CLOSE, 1.0 + CLOSE]))):
-        limit *= 1.0 + 8.0 * CLOSE
-    with refusal_allowed_of_hairs(rotor):
-        modes = solve_lateral_modes(rotor, supports, frequency_limit=limit)
-    assert modes.certificate.expected == modes.count
-    # Two rigid motions at most, of which each support takes what it can.
-    zeros = int(np.count_nonzero(modes.frequencies == 0.0))
-    assert zeros == rigid_motions(rotor, supports)
-    assert_these_are_all(modes.frequencies, limit, [model], zeros, closeness(rotor))
-    again = modes.frequencies[: lowest.size]
-    np.testing.assert_allclose(again, lowest, rtol=2.0 * closeness(rotor))
+    assert_every_root(
+        rotor,
+        lambda **wanted: solve_lateral_modes(rotor, supports, **wanted).frequencies,
+        lambda highest: [bending_model(rotor, supports, highest)],
+        rigid_motions(rotor, supports),
+        count,
+        part,
+    )
 
 
 @MANY
-@given(cases(), st.integers(3, 8))
-def test_every_root_of_torsion(case: Case, count: int) -> None:
+@given(cases(), st.integers(3, 8), PARTS)
+def test_every_root_of_torsion(case: Case, count: int, part: float) -> None:
     rotor = case[0]
-    with refusal_allowed_of_hairs(rotor):
-        modes = solve_torsional_modes(rotor, count=count)
-    limit = limit_above(modes.frequencies, closeness(rotor))
-    assert_these_are_all(modes.frequencies, limit, [rod_model(rotor, "torsion", limit)], 1, closeness(rotor))
+    assert_every_root(
+        rotor,
+        lambda **wanted: solve_torsional_modes(rotor, **wanted).frequencies,
+        lambda highest: [rod_model(rotor, "torsion", highest)],
+        1,
+        count,
+        part,
+    )
 
 
 @MANY
-@given(cases(), st.integers(3, 8))
-def test_every_root_of_axial_motion(case: Case, count: int) -> None:
+@given(cases(), st.integers(3, 8), PARTS)
+def test_every_root_of_axial_motion(case: Case, count: int, part: float) -> None:
     rotor, supports = case
     # Held beyond the left end: `test_hard_rotors` has what happens then.
     springs = [AxisSpring(s.at, s.stiffness) for s in supports if math.isfinite(s.stiffness) or s.at == 0.0]
-    with refusal_allowed_of_hairs(rotor):
-        modes = solve_axial_modes(rotor, springs, count=count)
-    limit = limit_above(modes.frequencies, closeness(rotor))
-    model = rod_model(rotor, "axial", limit, springs=[(spring.at, spring.stiffness) for spring in springs])
-    assert_these_are_all(modes.frequencies, limit, [model], 0 if springs else 1, closeness(rotor))
+    pairs = [(spring.at, spring.stiffness) for spring in springs]
+    assert_every_root(
+        rotor,
+        lambda **wanted: solve_axial_modes(rotor, springs, **wanted).frequencies,
+        lambda highest: [rod_model(rotor, "axial", highest, springs=pairs)],
+        0 if springs else 1,
+        count,
+        part,
+    )
 
 
 @MANY
-@given(cases(), DIFFERENCES, st.integers(6, 14))
-def test_every_root_of_both_planes(case: Case, difference: float, count: int) -> None:
+@given(cases(), DIFFERENCES, st.integers(6, 14), PARTS)
+def test_every_root_of_both_planes(case: Case, difference: float, count: int, part: float) -> None:
     rotor, supports = case
     bearings = [
         Bearing(str(number), s.at, np.diag([s.stiffness, s.stiffness * (1.0 + difference)]), np.zeros((2, 2)))
         for number, s in enumerate(supports)
         if math.isfinite(s.stiffness)
     ]
-    with refusal_allowed_of_hairs(rotor):
-        found = rest_frequencies(rotor, bearings, count=count)
-    assert found.certificate.complete
-    frequencies = found.frequencies
-    limit = limit_above(frequencies, closeness(rotor))
     planes = [[bearing.plane_support(plane) for bearing in bearings] for plane in (0, 1)]
-    zeros = 2 * rigid_motions(rotor, planes[0])
-    assert_these_are_all(
-        frequencies, limit, [bending_model(rotor, plane, limit) for plane in planes], zeros, closeness(rotor)
+    assert_every_root(
+        rotor,
+        lambda **wanted: rest_frequencies(rotor, bearings, **wanted).frequencies,
+        lambda highest: [bending_model(rotor, plane, highest) for plane in planes],
+        2 * rigid_motions(rotor, planes[0]),
+        count,
+        part,
     )
 
 
@@ -307,7 +330,7 @@ def rigid_motions(rotor: Rotor, supports: Sequence[RadialSupport]) -> int:
 def test_the_reference_would_notice_a_missed_root() -> None:
     rotor = Rotor("bar", [Segment(1.0, 0.05, 0.0, MATERIALS[0])])
     modes = solve_lateral_modes(rotor, count=6).frequencies
-    limit = limit_above(modes, 0.01)
+    limit = 1.01 * float(modes[-1])
     model = bending_model(rotor, [], limit)
     assert_these_are_all(modes, limit, [model], 2, CLOSE)
     doubled = np.sort(np.append(modes, modes[3]))
