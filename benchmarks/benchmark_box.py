@@ -1,20 +1,12 @@
 """The housing that the benchmarks solve: a hollow box with two through bores, clamped under its four corners."""
 
-import argparse
-import os
-import platform
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from housing import Material, Support, fixed_freedoms
 from meshes import Bore, BoxGeometry, Mesh, WallThickness, mesh_box
-
-Result = TypeVar("Result")
 
 STEEL = Material(2.07e11, 0.3, 7850.0)
 SIZE = (0.330, 0.279, 0.254)
@@ -52,28 +44,3 @@ def benchmark_box(mesh_size: float) -> Problem:
             box = ((x, -1e-6, z), (x + PAD, 1e-6, z + PAD))
             pads.append(Support(f"pad {len(pads) + 1}", box=box, fixed=(True, True, True)))
     return Problem(mesh, fixed_freedoms(mesh, pads))
-
-
-def timed(work: Callable[[], Result]) -> tuple[Result, float]:
-    """What some work gives, and the seconds it took."""
-    start = time.perf_counter()
-    result = work()
-    return result, time.perf_counter() - start
-
-
-def arguments(description: str, **defaults: tuple[type, object, str]) -> argparse.Namespace:
-    """The command line: each option by name with its type, default and meaning."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    for name, (kind, default, meaning) in defaults.items():
-        option = f"--{name.replace('_', '-')}"
-        if kind is bool:
-            parser.add_argument(option, action="store_true", help=meaning)
-        else:
-            parser.add_argument(option, type=kind, default=default, help=meaning)
-    return parser.parse_args()
-
-
-def machine() -> str:
-    """What the numbers were measured on."""
-    cores, load = os.cpu_count(), os.getloadavg()[0]
-    return f"{platform.machine()}, {cores} cores, Python {platform.python_version()}, load {load:.1f} at the start"

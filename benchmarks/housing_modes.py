@@ -10,8 +10,9 @@ import resource
 import statistics
 
 import numpy as np
-from benchmark_box import STEEL, Problem, arguments, benchmark_box, machine, timed
+from benchmark_box import STEEL, Problem, benchmark_box
 from scipy.sparse.linalg import eigsh
+from timing import arguments, machine, timed
 
 from housing import ModeSet, assemble, solve_modes
 from housing.factorization import Factorizer

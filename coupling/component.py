@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError
 from housing import ModeSet
-from rotors import LateralModes, TorsionalModes
+from rotors import ModalRotor, Pedestal
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -31,9 +31,9 @@ class Component:
     ----------
     name : str
     kinds : tuple of str
-        For each coordinate what it moves: ``housing``, ``rotor`` (lateral), ``torsion``, or ``residual``: an
-        attachment of the housing, which stands for the static response of all that its modes leave out. Its own
-        frequency is no natural frequency of the housing, and motion at that frequency means nothing.
+        For each coordinate what it moves: ``housing``, ``rotor`` (lateral), ``torsion``, ``axial``, ``pedestal``, or
+        ``residual``: an attachment of the housing, which stands for the static response of all that its modes leave
+        out. Its own frequency is no natural frequency of the housing, and motion at that frequency means nothing.
     stiffness : ndarray, shape (n, n)
         K [1/s²], symmetric.
     damping : ndarray, shape (n, n)
@@ -72,46 +72,52 @@ class HousingComponent(Component):
     seat_z: Mapping[str, float]
     sensors: Mapping[str, FloatArray]
 
-    def seat_direction(self, seat: str, axis: int, z: float) -> FloatArray:
-        """Lateral motion (axis 0: x, 1: y) of a seat's rigid motion, taken at height z of the shaft [m]."""
-        motion = self.seats[seat]
+    def seat_motions(self, seat: str, z: float) -> FloatArray:
+        """A seat's rigid motion, taken at height z of the shaft [m]: x, y, z, rotations about x and y, shape (5, n)."""
+        x, y, along, about_x, about_y = self.seats[seat].T[:5]
         arm = z - self.seat_z[seat]
         # A rotation about y moves a point above the centre towards +x, one about x towards -y.
-        return np.asarray(motion[:, 0] + arm * motion[:, 4] if axis == 0 else motion[:, 1] - arm * motion[:, 3])
+        return np.array([x + arm * about_y, y - arm * about_x, along, about_x, about_y])
 
 
 @dataclass(frozen=True)
 class RotorComponent(Component):
-    """A rotor: lateral modes in the x and in the y plane, torsional modes, in this order.
+    """A rotor: lateral modes in the x and in the y plane, torsional modes, motion along its axis, in this order.
 
     Attributes
     ----------
-    lateral : LateralModes
-        Planar modes on averaged supports, the basis in both planes.
-    torsional : TorsionalModes
-        Free-free, the rigid rotation first.
+    modal : ModalRotor
+        Its planar modes on averaged supports are the basis in both planes; the torsional ones are free.
     start : float
         z of the rotor's left end [m].
     mixture : ndarray, shape (m, m)
         The plane's coordinates in terms of the planar modes, orthogonal: columns diagonalise the free shaft.
     """
 
-    lateral: LateralModes
-    torsional: TorsionalModes
+    modal: ModalRotor
     start: float
     mixture: FloatArray
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
-        row = np.zeros(self.size)
-        m = len(self.lateral.frequencies)
-        row[axis * m : (axis + 1) * m] = self.mixture.T @ self.lateral.evaluate(np.array([at]))[0][:, 0]
-        return row
+        return np.asarray(self.motions(at)[axis])
+
+    def motions(self, at: float) -> FloatArray:
+        """Motion of a section: x, y, z, rotations about x and y, shape (5, n)."""
+        m = self.modal.lateral.count
+        displacement, slope = (self.mixture.T @ part[:, 0] for part in self.modal.lateral.evaluate([at]))
+        rows = np.zeros((5, self.size))
+        rows[0, :m] = rows[1, m : 2 * m] = displacement
+        if self.modal.axial is not None:
+            rows[2, self.size - self.modal.axial.count :] = self.modal.axial.evaluate([at])[:, 0]
+        rows[3, m : 2 * m], rows[4, :m] = -slope, slope
+        return rows
 
     def rotation(self, at: float) -> FloatArray:
         """Rotation about z at a distance from the left end [m], shape (n,)."""
         row = np.zeros(self.size)
-        row[2 * len(self.lateral.frequencies) :] = self.torsional.evaluate(np.array([at]))[:, 0]
+        first = 2 * self.modal.lateral.count
+        row[first : first + self.modal.torsional.count] = self.modal.torsional.evaluate([at])[:, 0]
         return row
 
 
@@ -171,6 +177,41 @@ def housing_component(
     )
 
 
+@dataclass(frozen=True)
+class PedestalComponent(Component):
+    """What a grounded bearing stands on: its motions along x and y, times the root of its mass.
+
+    Attributes
+    ----------
+    motion : ndarray, shape (2, 2)
+        x and y of the bearing's foot by the coordinates [1/√kg].
+    """
+
+    motion: FloatArray
+
+
+def pedestal_component(name: str, pedestal: Pedestal) -> PedestalComponent:
+    """A pedestal as a component of two coordinates.
+
+    Raises
+    ------
+    CouplingError
+        Where it has no mass, whose motion no step in time could follow.
+    """
+    if pedestal.mass <= 0.0:
+        raise CouplingError(
+            f"{name}: a pedestal without mass cannot be followed in time; expected a mass, even a small one"
+        )
+    return PedestalComponent(
+        name=name,
+        kinds=("pedestal",) * 2,
+        stiffness=pedestal.stiffness / pedestal.mass,
+        damping=pedestal.damping / pedestal.mass,
+        gyroscopic=np.zeros((2, 2)),
+        motion=np.eye(2) / np.sqrt(pedestal.mass),
+    )
+
+
 def _check_damping(matrix: FloatArray, n: int) -> None:
     """Refuse a damping matrix of another order, or one that is not symmetric and free of gain."""
     if matrix.shape != (n, n):
@@ -182,15 +223,8 @@ def _check_damping(matrix: FloatArray, n: int) -> None:
         raise CouplingError("the damping matrix of the housing modes has a negative eigenvalue: it feeds energy in")
 
 
-def rotor_component(
-    name: str,
-    lateral: LateralModes,
-    torsional: TorsionalModes,
-    *,
-    start: float,
-    damping_ratio: float = 0.0,
-) -> RotorComponent:
-    """A rotor from its planar and torsional modes, freed of the springs that its basis was found on.
+def rotor_component(name: str, modal: ModalRotor, *, start: float, damping_ratio: float = 0.0) -> RotorComponent:
+    """A rotor from its modes, freed of the springs that its planar basis was found on.
 
     The planar modes are those at averaged support stiffness k̄ (TM-101442 Eq. 7). The springs come back with the
     bearings' connectors, so they are taken out here, K = diag(ω²) - Σ k̄ φ(z_b) φ(z_b)ᵀ in each plane (the
@@ -202,31 +236,31 @@ def rotor_component(
     Parameters
     ----------
     name : str
-    lateral, torsional
-        m and t modes: the component has 2 m + t coordinates.
+    modal : ModalRotor
+        m planar, t torsional and a axial modes, vectors included: the component has 2 m + t + a coordinates.
     start : float
         z of the rotor's left end [m].
     damping_ratio : float
         Of the shaft's own material and fits, on every mode of the free shaft.
     """
-    m, t = len(lateral.frequencies), len(torsional.frequencies)
-    n = 2 * m + t
+    lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
+    m, t = lateral.count, modal.torsional.count
+    n = 2 * m + t + len(along)
     values, mixture = np.linalg.eigh(np.diag(lateral.frequencies**2) - lateral.support_matrix)
     # Motions of the whole shaft have no stiffness; what rounding leaves of it is taken off.
     values = np.where(np.abs(values) < 1e-9 * values[-1], 0.0, np.maximum(values, 0.0))
-    squared = np.concatenate([values, values, torsional.frequencies**2])
+    squared = np.concatenate([values, values, modal.torsional.frequencies**2, along**2])
     gyroscopic = np.zeros((n, n))
     polar = mixture.T @ lateral.polar_inertia_matrix @ mixture
     gyroscopic[:m, m : 2 * m] = polar
     gyroscopic[m : 2 * m, :m] = -polar
     return RotorComponent(
         name=name,
-        kinds=("rotor",) * (2 * m) + ("torsion",) * t,
+        kinds=("rotor",) * (2 * m) + ("torsion",) * t + ("axial",) * len(along),
         stiffness=np.diag(squared),
         damping=np.diag(2.0 * damping_ratio * np.sqrt(squared)),
         gyroscopic=gyroscopic,
-        lateral=lateral,
-        torsional=torsional,
+        modal=modal,
         start=start,
         mixture=mixture,
     )

@@ -71,9 +71,8 @@ def histories(machine: Machine, result: TransientResult) -> Histories:
     for connector in machine.system.linear:
         columns = slice(column, column + connector.directions.shape[1])
         column = columns.stop
-        forces[connector.name] = (
-            deflections[:, columns] @ connector.stiffness.T + result.velocity[:, columns] @ connector.damping.T
-        )
+        force = deflections[:, columns] @ connector.stiffness.T + result.velocity[:, columns] @ connector.damping.T
+        forces[connector.name] = force[:, :2]
     names = [] if machine.housing is None else list(machine.housing.sensors)
     contacts = [contact.name for contact in machine.system.contacts]
     return Histories(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.component import Component, HousingComponent, RotorComponent
+from coupling.component import Component, HousingComponent, RotorComponent, pedestal_component
 from coupling.connector import ContactConnector, LinearConnector
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry, ToothContact
@@ -87,7 +87,7 @@ class Machine:
     bearings : tuple of MountedBearing
     meshes : tuple of GearMesh
     system : CoupledSystem
-        Components in the order rotors, housing; linear connectors as ``bearings``; the drive flanks of
+        Components in the order rotors, housing, pedestals; linear connectors as ``bearings``; the drive flanks of
         ``meshes`` first among its contacts, then the back flanks.
     """
 
@@ -127,6 +127,12 @@ def couple(
     components: list[Component] = [*rotors]
     if housing is not None:
         components.append(housing)
+    pedestals = [
+        pedestal_component(mounted.bearing.name, mounted.bearing.pedestal)
+        for mounted in bearings
+        if mounted.seat is None and mounted.bearing.pedestal is not None
+    ]
+    components += pedestals
     number = {component.name: i for i, component in enumerate(components)}
     if len(number) < len(components):
         raise CouplingError(f"components named {[part.name for part in components]}; expected each name once")
@@ -145,16 +151,23 @@ def couple(
     for mounted in bearings:
         which, rotor = rotor_named(mounted.rotor)
         at = mounted.bearing.at
-        columns = [embed(components, which, rotor.direction(at, axis)) for axis in (0, 1)]
+        law = mounted.bearing.at_speed(speeds[mounted.rotor])
+        # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
+        held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
+        held = np.union1d(held, [0, 1])
+        relative = np.array([embed(components, which, row) for row in rotor.motions(at)])
         if mounted.seat is not None:
             if housing is None or mounted.seat not in housing.seats:
-                raise CouplingError(f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing")
-            z = rotor.start + at
-            for axis in (0, 1):
-                seat = embed(components, number[housing.name], housing.seat_direction(mounted.seat, axis, z))
-                columns[axis] = columns[axis] - seat
-        name, law = mounted.bearing.name, mounted.bearing
-        linear.append(LinearConnector(name, np.array(columns).T, law.radial_stiffness, law.radial_damping))
+                raise CouplingError(f"bearing {law.name!r}: no seat {mounted.seat!r} in the housing")
+            seat = housing.seat_motions(mounted.seat, rotor.start + at)
+            relative = relative - [embed(components, number[housing.name], row) for row in seat]
+        elif law.pedestal is not None:
+            foot = next(part for part in pedestals if part.name == law.name)
+            relative[:2] -= [embed(components, number[foot.name], row) for row in foot.motion]
+        among = np.ix_(held, held)
+        linear.append(
+            LinearConnector(law.name, relative[held].T, law.spatial_stiffness[among], law.spatial_damping[among])
+        )
 
     drive, back = [], []
     for mesh in meshes:

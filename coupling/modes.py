@@ -10,7 +10,7 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-COORDINATE_KINDS = ("housing", "rotor", "torsion", "residual")
+COORDINATE_KINDS = ("housing", "rotor", "torsion", "axial", "pedestal", "residual")
 
 _MESH_SHARE = 0.3  # a mode with more of its strain energy than this in the teeth is called a mesh mode
 
@@ -26,8 +26,9 @@ class CoupledModes:
     shapes : ndarray of complex, shape (m, n)
         Coordinates, of unit norm.
     kinds : tuple of str
-        What moves: ``housing``, ``rotor``, ``torsion``, ``mesh``, or ``rigid`` where nothing resists; ``residual``
-        where it is the local compliance that the housing's modes leave out, and the frequency means nothing.
+        What moves: ``housing``, ``rotor``, ``torsion``, ``axial``, ``pedestal``, ``mesh``, or ``rigid`` where nothing
+        resists; ``residual`` where it is the local compliance that the housing's modes leave out, and the frequency
+        means nothing.
     energy : tuple of dict
         Share of each kind of coordinate in the mode's kinetic energy, and under ``mesh`` the teeth's share in its
         strain energy.

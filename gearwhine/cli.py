@@ -121,12 +121,28 @@ def modes(
 
 
 @app.command
-def rotors(case: CaseName, *, common: Common = _DEFAULTS) -> None:
-    """Each rotor's lateral and torsional modes, whirl and critical speeds."""
+def rotors(
+    case: CaseName,
+    *,
+    write_ross: Annotated[
+        bool,
+        Parameter(
+            name=["--write-ross"],
+            negative=(),
+            help="Also each rotor with its bearings as a file that ROSS loads, in OUT (default: ./<case>-results).",
+        ),
+    ] = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """Each rotor's lateral and torsional modes, whirl and critical speeds; of a case, or of a rotor saved by ROSS."""
     from gearwhine.screen import show_rotors
     from gearwhine.work import rotors_case
 
-    _on_case(case, common, lambda given, progress: rotors_case(given, common.output, progress), show_rotors)
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        folder = _folder(case, common) if write_ross else common.output
+        return rotors_case(given, folder, progress, write_ross=write_ross)
+
+    _on_case(case, common, work, show_rotors)
 
 
 @app.command

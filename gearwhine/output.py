@@ -2,9 +2,10 @@
 
 import json
 import os
+import re
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from gearwhine.locks import alone_in, held, in_use
 SUMMARY = "summary.json"
 _STAGING = ".partial-"
 _DRAWN = (".png", ".glb", ".vtu")
+_LONGEST = 60  # of a name in a file's [characters]
 
 
 @contextmanager
@@ -90,3 +92,16 @@ def finite(value: Any) -> Any:
     if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
         return None
     return value
+
+
+def file_stems(names: Sequence[str], prefix: str = "") -> list[str]:
+    """A file's stem for each name, after a prefix: of letters that any file system takes, and no two alike."""
+    stems: list[str] = []
+    for number, name in enumerate(names, start=1):
+        plain = re.sub(r"[^A-Za-z0-9._+-]+", "-", name).strip("-.")[:_LONGEST]
+        stem = f"{prefix}{plain or number}"
+        # Some file systems take capitals and small letters for the same.
+        if stem.lower() in (other.lower() for other in stems):
+            stem = f"{stem}-{number}"
+        stems.append(stem)
+    return stems

@@ -1,7 +1,6 @@
 """The results file: labelled arrays with units, as NetCDF4 that any tool opens."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +10,7 @@ from coupling import CoupledModes
 from coupling.gears import mesh_stiffness, static_transmission_error
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
+from gearwhine.rotor_results import Variables, write_rotors
 from gearwhine.stages.gears import SolvedPair
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.rotors import SolvedRotor
@@ -20,9 +20,6 @@ FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 _PHASES = 400  # of the mesh period
-_PLACES = 101  # along a rotor
-
-Variables = dict[str, tuple[Any, Any, dict[str, str]]]
 
 
 def write(
@@ -40,7 +37,7 @@ def write(
     if housing is not None:
         _housing(housing, variables, coordinates)
     if rotors:
-        _rotors(rotors, variables, coordinates)
+        write_rotors(rotors, variables, coordinates)
     if pairs:
         _pairs(pairs, variables, coordinates)
     if system is not None:
@@ -101,37 +98,6 @@ def _housing(solved: SolvedHousing, variables: Variables, coordinates: Variables
         survey.reshape(len(numbers), -1, 3),
         _unit("kg-0.5", "mass-normalised mode shapes at the survey points"),
     )
-
-
-def _rotors(solved: tuple[SolvedRotor, ...], variables: Variables, coordinates: Variables) -> None:
-    coordinates["rotor"] = ("rotor", [one.rotor.name for one in solved], {})
-    variables["rotor_rest_frequency"] = (
-        ("rotor", "rest_mode"),
-        _padded([one.rest.frequencies / _HERTZ for one in solved]),
-        _unit("Hz", "lateral natural frequencies at rest, both planes"),
-    )
-    variables["rotor_torsional_frequency"] = (
-        ("rotor", "torsional_mode"),
-        _padded([one.torsional.frequencies / _HERTZ for one in solved]),
-        _unit("Hz", "free torsional natural frequencies"),
-    )
-    places = [np.linspace(0.0, one.rotor.length, _PLACES) for one in solved]
-    variables["rotor_place"] = (("rotor", "place"), np.array(places), _unit("m", "distance from the rotor's left end"))
-    for kind, shapes in (
-        ("lateral", [one.lateral.evaluate(z)[0] for one, z in zip(solved, places, strict=True)]),
-        ("torsional", [one.torsional.evaluate(z) for one, z in zip(solved, places, strict=True)]),
-    ):
-        most = max(len(shape) for shape in shapes)
-        padded = np.full((len(solved), most, _PLACES), np.nan)
-        for row, shape in zip(padded, shapes, strict=True):
-            row[: len(shape)] = shape
-        dimension = "torsional_mode" if kind == "torsional" else "lateral_mode"
-        unit = "kg-0.5 m-1" if kind == "torsional" else "kg-0.5"
-        variables[f"rotor_{kind}_shape"] = (
-            ("rotor", dimension, "place"),
-            padded,
-            _unit(unit, f"orthonormal {kind} mode shapes"),
-        )
 
 
 def _pairs(solved: tuple[SolvedPair, ...], variables: Variables, coordinates: Variables) -> None:
@@ -219,11 +185,3 @@ def _transient(solved: SolvedTransient, variables: Variables, coordinates: Varia
         attributes = _unit(unit, what) | {"window": first.window}
         variables[name] = ((dimension, "frequency"), amplitude, attributes)
         variables[f"{name}_phase"] = ((dimension, "frequency"), phase, _unit("rad", f"phase of {what[18:]}"))
-
-
-def _padded(rows: list[FloatArray]) -> FloatArray:
-    """Rows of unequal length, filled up with NaN."""
-    padded = np.full((len(rows), max(len(row) for row in rows)), np.nan)
-    for target, row in zip(padded, rows, strict=True):
-        target[: len(row)] = row
-    return padded

@@ -12,7 +12,7 @@ from gearwhine.progress import Progress
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
-from gearwhine.stages import housing_documents, mesh_health
+from gearwhine.stages import housing_documents, mesh_health, rotor_documents
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import transient as transient_stage
@@ -29,6 +29,8 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
 
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
+    if case.operation is not None:
+        machine_stage.require_no_bow(case)
     if case.housing is not None:
         # Found out before the work, not after it.
         pictures.load_pyvista()
@@ -47,7 +49,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     timed("housing", begin)
     if rotors:
-        document |= rotor_stage.rotors_document(rotors)
+        document |= rotor_documents.rotors_document(rotors)
     if pairs:
         document |= gear_stage.gears_document(pairs)
     comparison = None
@@ -139,16 +141,21 @@ def modes_case(
     return _kept(housing_documents.modes_document(housing, detail=detail), case, folder, write, housing)
 
 
-def rotors_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
-    """The rotors; with a folder, also as a results file."""
-    from gearwhine import results
+def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ross: bool = False) -> dict[str, Any]:
+    """The rotors; with a folder, also as a results file and pictures, and where asked as files that ROSS loads."""
+    from gearwhine import figures, results
 
     rotors = rotor_stage.solve_rotors(case, progress)
+    document = rotor_documents.rotors_document(rotors)
 
     def write(place: Path) -> None:
         results.write(place / "results.nc", case, None, rotors, (), None, None)
+        figures.draw_rotors(place, case, rotors, progress)
+        if write_ross:
+            remarks = rotor_stage.write_ross_files(place, rotors)
+            document["warnings"] = [{"name": "ross", "message": remark} for remark in remarks]
 
-    return _kept(rotor_stage.rotors_document(rotors), case, folder, write)
+    return _kept(document, case, folder, write)
 
 
 def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:

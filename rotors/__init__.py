@@ -11,29 +11,48 @@ and answered for by frozen results, each with the certificate that no mode is mi
 
     solve_lateral_modes(shaft, [b.mean_support for b in bearings], frequency_limit=5e3)
     solve_torsional_modes(shaft, count=5)
+    solve_axial_modes(shaft, [AxisSpring(0.0, 1e8)], count=5)
+    buckling_factor(shaft, [b.mean_support for b in bearings])
     rest_frequencies(shaft, bearings, count=8)
     solve_whirl(shaft, bearings, speed=418.9, count=8)
     critical_speeds(shaft, bearings, speed_limit=1e3)
+    campbell(shaft, bearings, speeds=np.linspace(0.0, 600.0, 100)).crossings()
+    unbalance_response(shaft, bearings, [Unbalance(at=0.5, moment=1e-4)], speeds)
+    static_deflection(shaft, bearings).bearing_loads
 
-Lengths are m, frequencies and speeds rad/s. The frame is right-handed with z along the shaft; slopes and
-the gyroscopic sign are those of `rotors.whirl`.
+Segments may be cones, carry an axial force, and stand between flexible couplings; `rotors.rolling` makes bearings from
+the geometry of rolling ones. The compiled parts load when a first question is asked. Lengths are m, frequencies and
+speeds rad/s. The frame is right-handed with z along the shaft; slopes and the gyroscopic sign are those of
+`rotors.whirl`.
 """
 
-from .attachment import attach_loads
+from .attachment import attach_loads, attach_motions
 from .axial import AxialModes, solve_axial_modes
 from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
+from .buckling import buckling_factor
+from .campbell import Campbell, Crossing, campbell
 from .certificate import ModeCertificate
-from .errors import IncompleteModesError, RotorError
+from .critical import CriticalSpeeds, critical_speeds
+from .critical_map import CriticalSpeedMap, critical_speed_map
+from .errors import EquilibriumError, IncompleteModesError, RotorError
+from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response, orbit_of
 from .lateral import LateralModes, solve_lateral_modes
+from .loads import Bow, HarmonicForce, Unbalance
 from .material import ShaftMaterial, shear_coefficient
-from .planes import CriticalSpeeds, RestFrequencies, critical_speeds, rest_frequencies
+from .modal import ModalRotor, modal_rotor
+from .planes import RestFrequencies, rest_frequencies
 from .projection import whirl_basis
+from .ross_files import RossModel, read_ross, write_ross
 from .section import Section
 from .segment import Segment
 from .shaft import Disc, Rotor
 from .shaft_coupling import Coupling
+from .spatial_field import SpatialMotion
+from .statics import StaticDeflection, StaticForce, static_deflection
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
+from .torsional_response import Torque, TorsionalDashpot, TorsionalResponse, torsional_response
+from .unbalance import BowShape, SynchronousResponse, bow_shape, unbalance_response
 from .whirl import WhirlModes, solve_whirl
 from .whirl_certificate import WhirlCertificate
 
@@ -41,25 +60,54 @@ __all__ = [
     "AxialModes",
     "AxisSpring",
     "Bearing",
+    "Bow",
+    "BowShape",
+    "Campbell",
     "Coupling",
+    "CriticalSpeedMap",
     "CriticalSpeeds",
+    "Crossing",
     "Disc",
+    "EquilibriumError",
+    "HarmonicForce",
+    "HarmonicResponse",
     "IncompleteModesError",
     "LateralModes",
+    "ModalRotor",
     "ModeCertificate",
+    "Orbit",
     "Pedestal",
     "RadialSupport",
     "RestFrequencies",
+    "RossModel",
     "Rotor",
     "RotorError",
     "Section",
     "Segment",
     "ShaftMaterial",
+    "SpatialMotion",
+    "StaticDeflection",
+    "StaticForce",
+    "SynchronousResponse",
+    "Torque",
+    "TorsionalDashpot",
     "TorsionalModes",
+    "TorsionalResponse",
+    "Unbalance",
     "WhirlCertificate",
     "WhirlModes",
     "attach_loads",
+    "attach_motions",
+    "bow_shape",
+    "buckling_factor",
+    "campbell",
+    "critical_speed_map",
     "critical_speeds",
+    "frequency_response",
+    "harmonic_response",
+    "modal_rotor",
+    "orbit_of",
+    "read_ross",
     "rest_frequencies",
     "shear_coefficient",
     "solve_axial_modes",
@@ -67,5 +115,9 @@ __all__ = [
     "solve_torsional_chain",
     "solve_torsional_modes",
     "solve_whirl",
+    "static_deflection",
+    "torsional_response",
+    "unbalance_response",
     "whirl_basis",
+    "write_ross",
 ]

@@ -8,15 +8,18 @@ from scipy import linalg
 
 from .fields import Fields
 from .lateral import LateralModes, lateral_modes
-from .search import require_positions
+from .rods import Modes, RodModes, rod_modes
+from .search import FoundModes, require_positions
 from .shapes import responses, ritz_vectors
 
 FloatArray = npt.NDArray[np.float64]
 
 # A residual smaller than this part of the static response is rounding: the basis has it already.
 NOTHING_LEFT = 1e-7
-# A free shaft has no static response: a shift of ω² this far below its first elastic ω stands in for it.
-FREE_SHIFT = 1e-3
+# A free shaft has no static response: a shift of ω² this far below its first elastic ω stands in for it. Of that
+# response all but a thousandth is rigid; what is left has a direction in error by the same part at most, and so a
+# compliance in error by its square. A smaller part would lose to rounding what it gains.
+FREE_SHIFT = 0.03
 
 
 def attach_loads(
@@ -43,43 +46,75 @@ def attach_loads(
     """
     forces = require_positions(modes.stations, list(forces_at))
     moments = require_positions(modes.stations, list(moments_at))
-    chain = modes.fields.chain.with_nodes(np.concatenate([forces, moments]))
-    loads = [(chain.node_at(place), 0) for place in forces] + [(chain.node_at(place), 1) for place in moments]
+    loads = [(place, 0) for place in forces.tolist()] + [(place, 1) for place in moments.tolist()]
+    found = _attached(modes, loads)
+    if found is None:
+        return modes
+    return lateral_modes(found.frequencies, found.fields, found.mixture, modes.supports, modes.certificate)
+
+
+def attach_motions(modes: Modes, at: Sequence[float]) -> Modes:
+    """Torsional or axial modes, and behind them vectors that make the static response to point loads exact.
+
+    As `attach_loads`, of torques or of forces along the axis. Of a free shaft it is the strain that a load leaves
+    beside the motion of the whole.
+
+    Parameters
+    ----------
+    modes
+        A certified set from `rotors.solve_torsional_modes` or `rotors.solve_axial_modes`.
+    at
+        Places of the loads, m from the left end.
+
+    Raises
+    ------
+    RotorError
+        A place that is not on the shaft.
+    """
+    places = require_positions(modes.stations, list(at))
+    found = _attached(modes, [(place, 0) for place in places.tolist()])
+    return modes if found is None else rod_modes(type(modes), found)
+
+
+def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]]) -> FoundModes | None:
+    """Modes with the vectors of some loads behind them; None where these add nothing.
+
+    Each load is a place (m) and the component of displacement along which it acts.
+    """
+    chain = modes.fields.chain.with_nodes(np.array([place for place, _ in loads_at]))
+    loads = [(chain.node_at(place), component) for place, component in loads_at]
     loads = [load for load in dict.fromkeys(loads) if not chain.constrained[load]]
     if not loads:
-        return modes
+        return None
     elastic = modes.frequencies[modes.frequencies > 0.0]
+    zeros = modes.count - elastic.size
     is_free = chain.rigid_shapes.shape[0] > 0
     reference = elastic[0] if elastic.size else 1.0
     squared_shift = -((FREE_SHIFT * reference) ** 2) if is_free else 0.0
     static = Fields(chain, np.full(len(loads), squared_shift), responses(chain, loads, squared_shift))
     fields = modes.fields.on(chain).joined(static)
-    mixture = _residuals(fields, modes.mixture, len(loads))
+    mixture = _residuals(fields, modes.mixture, zeros, len(loads))
     if mixture.shape[0] == 0:
-        return modes
+        return None
     squared, vectors = ritz_vectors(*fields.energies(mixture))
     old = np.hstack([modes.mixture, np.zeros((modes.count, len(loads)))])
-    return lateral_modes(
-        np.concatenate([modes.frequencies, np.sqrt(np.maximum(squared, 0.0))]),
-        fields,
-        np.vstack([old, vectors.T @ mixture]),
-        modes.supports,
-        modes.certificate,
-    )
+    frequencies = np.concatenate([modes.frequencies, np.sqrt(np.maximum(squared, 0.0))])
+    return FoundModes(frequencies, fields, np.vstack([old, vectors.T @ mixture]), modes.certificate)
 
 
-def _residuals(fields: Fields, modes: FloatArray, count: int) -> FloatArray:
-    """Combinations of fields that span the last ``count`` of them less the modes, (r, fields)."""
+def _residuals(fields: Fields, modes: FloatArray, zeros: int, count: int) -> FloatArray:
+    """Combinations of fields that span the last ``count`` of them less the modes, (r, fields).
+
+    The first ``zeros`` modes are rigid. They go first: the response of a shaft that is all but free is rigid but for
+    a small part, and it is this part of which something may be left.
+    """
     kept = np.hstack([modes, np.zeros((modes.shape[0], count))])
     rows = np.hstack([np.zeros((count, modes.shape[1])), np.eye(count)])
-    size = np.sqrt(np.diag(fields.energies(rows)[0]))
-    rows /= size[:, None]
-    # Twice: the first projection of a nearly rigid response leaves rounding of its size.
-    for _ in range(2):
-        mass = fields.energies(np.vstack([kept, rows]))[0]
-        rows = rows - mass[kept.shape[0] :, : kept.shape[0]] @ kept
-    mass = fields.energies(rows)[0]
-    left = np.sqrt(np.diag(mass))
+    rows = rows / _sizes(fields, rows)[:, None]
+    rows = _without(fields, rows, kept[:zeros])
+    rows = rows / _sizes(fields, rows)[:, None]
+    rows = _without(fields, rows, kept)
+    left = _sizes(fields, rows)
     rows, left = rows[left > NOTHING_LEFT], left[left > NOTHING_LEFT]
     if rows.shape[0] == 0:
         return rows
@@ -87,3 +122,16 @@ def _residuals(fields: Fields, modes: FloatArray, count: int) -> FloatArray:
     values, vectors = linalg.eigh(fields.energies(rows)[0])
     independent = values > 1e-9
     return np.asarray((vectors[:, independent] / np.sqrt(values[independent])).T @ rows)
+
+
+def _sizes(fields: Fields, rows: FloatArray) -> FloatArray:
+    """Norms in mass of combinations of fields."""
+    return np.sqrt(np.diag(fields.energies(rows)[0]))
+
+
+def _without(fields: Fields, rows: FloatArray, modes: FloatArray) -> FloatArray:
+    """Combinations less what they have of orthonormal modes; twice, for the rounding that the first time leaves."""
+    for _ in range(2):
+        mass = fields.energies(np.vstack([modes, rows]))[0]
+        rows = rows - mass[modes.shape[0] :, : modes.shape[0]] @ modes
+    return rows

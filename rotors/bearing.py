@@ -211,6 +211,14 @@ class Bearing:
         return (self.name, self.at, *(None if array is None else (array.shape, array.tobytes()) for array in arrays))
 
 
+def undamped(bearing: Bearing) -> Bearing:
+    """The bearing and its pedestal without damping."""
+    pedestal = bearing.pedestal
+    if pedestal is not None:
+        pedestal = replace(pedestal, damping=np.zeros((2, 2)))
+    return replace(bearing, damping=np.zeros_like(bearing.damping), pedestal=pedestal)
+
+
 def _frozen(what: str, value: npt.ArrayLike) -> FloatArray:
     """A finite array that nobody can change."""
     array = np.array(value, dtype=np.float64)

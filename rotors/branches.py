@@ -45,7 +45,7 @@ def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArra
     From one speed to the next, branches and roots are paired so that the sum of what they differ by is least:
     the distance of the root from the branch's linear continuation, as a part of it, and a little of 1 − MAC.
     """
-    inside = chain.starts[:, None] + np.arange(chain.size)
+    inside = chain.starts[:-1, None] + np.arange(chain.size)
     ways = _directions_of_all(chain, roots, speeds)
     branches: list[tuple[ComplexArray, FloatArray]] = []
     active: list[tuple[int, ComplexArray]] = []
@@ -64,7 +64,7 @@ def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArra
         for root, branch in enumerate(owner.tolist()):
             if branch < 0:
                 branch = len(branches)
-                branches.append((np.full(speeds.size, np.nan + 0j), np.full(speeds.size, np.nan)))
+                branches.append((np.full(speeds.size, complex(np.nan, np.nan)), np.full(speeds.size, np.nan)))
             branches[branch][0][k] = one.eigenvalues[root]
             branches[branch][1][k] = ways[k][root]
             active.append((branch, shapes[root]))

@@ -8,6 +8,7 @@ makes chains of rotors.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +19,25 @@ from .timoshenko import NumberArray, PieceTable
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+
+# Products of two fields, on pieces this short, are integrated to rounding.
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+GAUSS_FRACTIONS = 0.5 * (_POINTS + 1.0)
+
+
+@dataclass(frozen=True)
+class EnergyWeights:
+    """Weights of squared motions and strains at the Gauss points of all pieces, and then at the nodes.
+
+    ``mass`` and ``polar`` weigh n displacements at each; ``strain`` weighs the rotation (of a beam) and the n
+    forces at each Gauss point and the n displacements of each node.
+    """
+
+    mass: FloatArray
+    polar: FloatArray
+    strain: FloatArray
 
 
 @dataclass(frozen=True)
@@ -77,10 +97,24 @@ class Chain:
         """Node stiffness with constraints, which store no energy, as zero, (p + 1, n)."""
         return np.where(self.constrained, 0.0, self.node_stiffness)
 
-    @property
-    def inertia_rows(self) -> slice:
-        """Columns of `coefficients_at` that hold inertia per length, n of them."""
-        return slice(2, 4) if self.size == 2 else slice(1, 2)
+    @cached_property
+    def energy_weights(self) -> EnergyWeights:
+        """What turns squared fields into energies: coefficients times lengths times the weights of Gauss."""
+        table, beam = self.table, self.size == 2
+        points, kinds = GAUSS_FRACTIONS.size, table.lengths.size
+        values = table.coefficients_at(np.repeat(np.arange(kinds), points), np.tile(GAUSS_FRACTIONS, kinds))
+        values = values.reshape(kinds, points, -1) * (0.5 * table.lengths[:, None] * _WEIGHTS)[:, :, None]
+        along = values[self.element]
+        inertia, strain = along[:, :, 2:4] if beam else along[:, :, 1:], along[:, :, [5, 0, 1] if beam else [0]]
+        # A round section's polar moment of area is twice its diametral one.
+        polar, node_polar = np.zeros_like(inertia), np.zeros_like(self.node_inertia)
+        if beam:
+            polar[:, :, 1], node_polar[:, 1] = 2.0 * inertia[:, :, 1], self.node_polar
+        return EnergyWeights(
+            np.concatenate([inertia.ravel(), self.node_inertia.ravel()]),
+            np.concatenate([polar.ravel(), node_polar.ravel()]),
+            np.concatenate([strain.ravel(), self.finite_stiffness.ravel()]),
+        )
 
     def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:
         """Coefficients of `rotors.timoshenko.PieceTable` at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""
@@ -125,17 +159,17 @@ class Chain:
         piece, start = self.places(nodes[:-1])
         end = np.where(piece[1:] == piece[:-1], start[1:], 1.0) if piece.size > 1 else np.ones(0)
         part = np.append(end, 1.0) - start
-        element = self.element[piece]
+        element, index = self.element[piece], np.searchsorted(nodes, self.nodes)
         coefficients = restricted(self.table.coefficients[element], 2.0 * start + part - 1.0, part)
         return replace(
             self,
             nodes=nodes,
             table=PieceTable(self.table.lengths[element] * part, coefficients),
             element=np.arange(piece.size),
-            node_inertia=spread(nodes, self.nodes, self.node_inertia),
-            node_stiffness=spread(nodes, self.nodes, self.node_stiffness),
-            node_polar=spread(nodes, self.nodes, self.node_polar),
-            is_station=spread(nodes, self.nodes, self.is_station.astype(np.float64)) > 0.0,
+            node_inertia=spread(nodes.size, index, self.node_inertia),
+            node_stiffness=spread(nodes.size, index, self.node_stiffness),
+            node_polar=spread(nodes.size, index, self.node_polar),
+            is_station=spread(nodes.size, index, self.is_station),
         )
 
     @cached_property
@@ -161,10 +195,10 @@ class Chain:
         return np.zeros((0, place.size, 2))
 
 
-def spread(nodes: FloatArray, stations: FloatArray, values: FloatArray) -> FloatArray:
-    """Values at the stations, put at the nodes that are those stations; zero at the others."""
-    if nodes.size == stations.size:
+def spread(size: int, index: IntArray, values: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
+    """Values at some of ``size`` nodes, those of the given ascending indices; zero at the others."""
+    if size == index.size:
         return values
-    whole = np.zeros((nodes.size, *values.shape[1:]))
-    whole[np.searchsorted(nodes, stations)] = values
+    whole = np.zeros((size, *values.shape[1:]), dtype=values.dtype)
+    whole[index] = values
     return whole

@@ -1,4 +1,4 @@
-"""Compiled root count of a chain, and the natural frequencies from it; the derivation is in `rotors.root_count`.
+"""Compiled root count of a chain; the derivation is in `rotors.root_count`.
 
 Importing this module imports numba. The arrays of a chain come in one order throughout: lengths and coefficients
 of the pieces that differ, which of them each piece is, and stiffness and inertia of the nodes.
@@ -15,11 +15,6 @@ from .piece_kernels import table_transfers
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 State = tuple[float, float, float, float]
-
-# Brackets of multiple roots end this narrow; steps towards single roots end at a few units of rounding.
-RELATIVE_WIDTH = 2e-13
-LAST_STEP = 5e-15
-MOST_STEPS = 200
 
 
 @njit(cache=True, nogil=True)
@@ -62,18 +57,16 @@ def _with_term(first: State, second: State, row: int, term: float) -> tuple[Stat
     if size > 0.0:
         c, s = first[row] / size, second[row] / size
         first, second = _combined(c, first, s, second), _combined(c, second, -s, first)
+    elif abs(second[2 + row]) > abs(first[2 + row]):
+        # At a root to the last digit nothing moves here: the state that is nearer to the reaction makes way for it.
+        first, second = second, _combined(-1.0, first, 0.0, first)
+    held = math.isinf(term)
     if row == 0:
         second = (0.0, second[1], second[2], second[3])
-        if math.isinf(term):
-            first = (0.0, 0.0, 1.0, 0.0)
-        else:
-            first = (first[0], first[1], first[2] + term * first[0], first[3])
+        first = (0.0, 0.0, 1.0, 0.0) if held else (first[0], first[1], first[2] + term * first[0], first[3])
     else:
         second = (second[0], 0.0, second[2], second[3])
-        if math.isinf(term):
-            first = (0.0, 0.0, 0.0, 1.0)
-        else:
-            first = (first[0], first[1], first[2], first[3] + term * first[1])
+        first = (0.0, 0.0, 0.0, 1.0) if held else (first[0], first[1], first[2], first[3] + term * first[1])
     first, second = _orthonormal(first, second)
     return first, second, size
 
@@ -135,7 +128,8 @@ def _rod_count(
         if math.isinf(stiffness[node, 0]):
             if scale > 1e-200:
                 scale *= abs(u)
-            u, f = 0.0, 1.0
+            # A lone state cannot be turned: the reaction keeps the sign that its displacement had.
+            u, f = 0.0, sign
         else:
             f += (stiffness[node, 0] - squared * inertia[node, 0]) * u
         if node == element.size:
@@ -173,94 +167,15 @@ def count_at(
 
 
 @njit(cache=True, nogil=True)
-def counts_below(
-    frequencies: FloatArray,
+def count_of(
+    frequency: float,
     lengths: FloatArray,
     given: FloatArray,
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
-) -> IntArray:
-    """Number of roots below each frequency (b,)."""
+) -> int:
+    """Number of roots below a frequency."""
     size = 2 * stiffness.shape[1]
     transfers = np.empty((1, lengths.size, 1, size, size))
-    found = np.empty(frequencies.size, np.intp)
-    for b in range(frequencies.size):
-        found[b] = count_at(frequencies[b], lengths, given, element, stiffness, inertia, transfers)[0]
-    return found
-
-
-@njit(cache=True, nogil=True)
-def lowest_roots(
-    wanted: int,
-    zeros: int,
-    lowest: float,
-    limit: float,
-    lengths: FloatArray,
-    given: FloatArray,
-    element: IntArray,
-    stiffness: FloatArray,
-    inertia: FloatArray,
-) -> FloatArray:
-    """The roots numbered ``zeros`` to ``wanted`` between two frequencies whose counts enclose them, ascending.
-
-    Every root keeps a bracket of its own, low counts on one side and high ones on the other, which each
-    evaluation narrows for all. A bracket that holds one root alone has determinants of both signs at its
-    ends and is closed by the inverse quadratic steps of Chandrupatla (Adv. Eng. Softw. 28, 1997), which
-    fall back to halving; the count, not the determinant, says on which side a step has come down. Others are halved.
-    """
-    size = 2 * stiffness.shape[1]
-    transfers = np.empty((1, lengths.size, 1, size, size))
-    number = wanted - zeros
-    low, high = np.full(number, lowest), np.full(number, limit)
-    low_count, high_count = np.full(number, zeros), np.full(number, wanted + 1)
-    value_low, value_high = np.zeros(number), np.zeros(number)
-    for end in (lowest, limit):
-        count, value = count_at(end, lengths, given, element, stiffness, inertia, transfers)
-        if end == lowest:
-            low_count[:], value_low[:] = count, value
-        else:
-            high_count[:], value_high[:] = count, value
-    roots = np.empty(number)
-    for root in range(number):
-        order = zeros + root
-        for _ in range(MOST_STEPS):
-            single = low_count[root] == order and high_count[root] == order + 1
-            a, b = low[root], high[root]
-            if (single and b <= 4.0 * a) or b - a <= RELATIVE_WIDTH * b:
-                break
-            middle = math.sqrt(a) * math.sqrt(b) if b > 4.0 * a else 0.5 * (a + b)
-            count, value = count_at(middle, lengths, given, element, stiffness, inertia, transfers)
-            for k in range(root, number):
-                if count <= zeros + k:
-                    if middle > low[k]:
-                        low[k], low_count[k], value_low[k] = middle, count, value
-                elif middle < high[k]:
-                    high[k], high_count[k], value_high[k] = middle, count, value
-        a, b = low[root], high[root]
-        if b - a <= RELATIVE_WIDTH * b:
-            roots[root] = 0.5 * (a + b)
-            continue
-        # x1 is the newest point, x2 the other end of its bracket, x3 the one before.
-        x1, x2, f1, f2 = b, a, value_high[root], value_low[root]
-        above, share = True, 0.5
-        x3, f3 = x2, f2
-        for _ in range(MOST_STEPS):
-            x = x1 + share * (x2 - x1)
-            count, value = count_at(x, lengths, given, element, stiffness, inertia, transfers)
-            if (count > order) == above:
-                x3, f3 = x1, f1
-            else:
-                x3, f3, x2, f2 = x2, f2, x1, f1
-                above = not above
-            x1, f1 = x, value
-            roots[root] = x1 if abs(f1) < abs(f2) else x2
-            least = LAST_STEP * roots[root] / abs(x2 - x1) if x2 != x1 else 1.0
-            if least > 0.5 or value == 0.0:
-                break
-            xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2) if f3 != f2 else 2.0
-            share = 0.5
-            if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi and f1 != f2 and f3 != f1:
-                share = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
-            share = min(max(share, least), 1.0 - least)
-    return roots
+    return count_at(frequency, lengths, given, element, stiffness, inertia, transfers)[0]

@@ -12,6 +12,10 @@ class IncompleteModesError(RuntimeError):
     """The modes found are not the modes that the root count demands, or a mode fails its energy check."""
 
 
+class EquilibriumError(RuntimeError):
+    """A rolling bearing's equilibrium is not one, or is where its theory has ended; says why, and what would help."""
+
+
 def require(condition: bool, what: str, value: object, expected: str) -> None:
     """Raise `RotorError` naming ``what``, its ``value`` and what was ``expected`` unless ``condition``."""
     if not condition:

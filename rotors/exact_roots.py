@@ -34,6 +34,7 @@ NEAR = 1e-3
 TIED = 1e-7
 # Refined roots nearer than this with parallel vectors are one root found twice.
 SAME = 1e-9
+PARALLEL = 1e-3
 SETTLED = 2e-14
 ACCEPTED = 1e-11
 MOST_STEPS = 14
@@ -126,26 +127,28 @@ def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> Exa
 
 def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp]]:
     """Indices of values that chains of distances below ``tolerance`` of their modulus connect."""
-    near = np.abs(values[:, None] - values) <= tolerance * np.abs(values)[:, None]
     label = np.arange(values.size)
-    for i in range(values.size):
-        joined = np.unique(label[near[i] | near[:, i]])
-        label[np.isin(label, joined)] = joined[0] if joined.size else label[i]
-    return [np.flatnonzero(label == one) for one in np.unique(label)]
+    near = np.abs(values[:, None] - values) <= tolerance * np.abs(values)[:, None]
+    for i, j in np.argwhere(near & ~np.eye(values.size, dtype=np.bool_)):
+        label[label == label[j]] = label[i]
+    order = np.argsort(label, kind="stable")
+    edges = np.flatnonzero(np.diff(label[order])) + 1
+    return np.split(order, edges) if values.size else []
 
 
 def distinct(roots: ExactRoots) -> ExactRoots:
     """Each root once: equal values are several roots only where their vectors are independent."""
     kept: list[int] = []
-    for i, value in enumerate(roots.eigenvalues):
-        rivals = [k for k in kept if abs(roots.eigenvalues[k] - value) <= SAME * abs(value)]
-        if rivals:
-            basis = np.linalg.qr(roots.solutions[rivals].T)[0]
-            rest = roots.solutions[i] - basis @ (basis.conj().T @ roots.solutions[i])
-            if np.linalg.norm(rest) < 1e-3:
-                continue
-        kept.append(i)
-    return roots.take(np.array(kept, dtype=np.intp))
+    for cluster in clusters(roots.eigenvalues, SAME):
+        first = len(kept)
+        for i in cluster.tolist():
+            if len(kept) > first:
+                basis = np.linalg.qr(roots.solutions[kept[first:]].T)[0]
+                rest = roots.solutions[i] - basis @ (basis.conj().T @ roots.solutions[i])
+                if np.linalg.norm(rest) < PARALLEL:
+                    continue
+            kept.append(i)
+    return roots.take(np.array(sorted(kept), dtype=np.intp))
 
 
 def equations_at(

@@ -11,12 +11,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from .chain import Chain
+from .chain import GAUSS_FRACTIONS, Chain
 
 FloatArray = npt.NDArray[np.float64]
-
-GAUSS_POINTS = 10
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 
 
 @dataclass(frozen=True)
@@ -61,22 +58,16 @@ class Fields:
         mass, stiffness
             Both (m, m).
         """
-        chain, n = self.chain, self.chain.size
-        inside, nodal = self._combined(mixture)
-        weighted = self._weighted_coefficients
-        mass = _gram(inside[:, :, :n], weighted[:, chain.inertia_rows]) + _gram(nodal, chain.node_inertia)
-        if n == 1:
-            strain = _gram(inside[:, :, 1:], weighted[:, :1])
-        else:
-            strain = _gram(inside[:, :, 1:], weighted[:, [5, 0, 1]])
-        return mass, strain + _gram(nodal, chain.finite_stiffness)
+        motion, strain = self._rows
+        if mixture is not None:
+            motion, strain = mixture @ motion, mixture @ strain
+        weights = self.chain.energy_weights
+        return (motion * weights.mass) @ motion.T, (strain * weights.strain) @ strain.T
 
     def polar_matrix(self, mixture: FloatArray) -> FloatArray:
         """∫ ρI_p βᵢ βⱼ dz plus the nodes' polar inertias, of combinations of bending fields, (m, m)."""
-        inside, nodal = self._combined(mixture)
-        # A round section's polar moment of area is twice its diametral one.
-        along = _gram(inside[:, :, 1:2], 2.0 * self._weighted_coefficients[:, 3:4])
-        return along + _gram(nodal[:, :, 1:2], self.chain.node_polar[:, None])
+        motion = mixture @ self._rows[0]
+        return np.asarray((motion * self.chain.energy_weights.polar) @ motion.T)
 
     def joined(self, other: "Fields") -> "Fields":
         """These fields followed by those of ``other``, on the same chain."""
@@ -91,40 +82,20 @@ class Fields:
         return Fields(chain, self.frequency_squared, self.at(chain.nodes))
 
     @cached_property
-    def _inside(self) -> FloatArray:
-        """States at the Gauss points of every piece, (k, z, 2n)."""
-        from .shape_kernels import inside_states
+    def _rows(self) -> tuple[FloatArray, FloatArray]:
+        """Motion and strain of every field at the Gauss points and the nodes (`rotors.shape_kernels.energy_rows`)."""
+        from .shape_kernels import energy_rows
 
-        table, states = self.chain.table, self.states
-        inside = inside_states(
+        table, weights, count = self.chain.table, self.chain.energy_weights, self.frequency_squared.size
+        motion, strain = np.empty((count, weights.mass.size)), np.empty((count, weights.strain.size))
+        energy_rows(
             self.frequency_squared,
-            states,
-            0.5 * (_POINTS + 1.0),
+            self.states,
+            GAUSS_FRACTIONS,
             table.lengths,
             table.coefficients,
             self.chain.element,
+            motion,
+            strain,
         )
-        return np.asarray(inside.reshape(states.shape[0], -1, states.shape[2]))
-
-    @cached_property
-    def _weighted_coefficients(self) -> FloatArray:
-        """Coefficients of the chain's pieces at the Gauss points, times the weights, (z, 6) or (z, 2)."""
-        table = self.chain.table
-        element = np.repeat(np.arange(table.lengths.size), GAUSS_POINTS)
-        values = table.coefficients_at(element, np.tile(0.5 * (_POINTS + 1.0), table.lengths.size))
-        values = values * (0.5 * table.lengths[:, None] * _WEIGHTS).reshape(-1, 1)
-        return values.reshape(table.lengths.size, GAUSS_POINTS, -1)[self.chain.element].reshape(-1, values.shape[1])
-
-    def _combined(self, mixture: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-        """States at the Gauss points (m, z, 2n) and displacements at the nodes (m, p + 1, n)."""
-        nodal = self.states[:, :, : self.chain.size]
-        if mixture is None:
-            return self._inside, nodal
-        return np.tensordot(mixture, self._inside, axes=1), np.tensordot(mixture, nodal, axes=1)
-
-
-def _gram(values: FloatArray, weights: FloatArray) -> FloatArray:
-    """Σ over places and components of w vᵢ vⱼ; values (k, z, c), weights (z, c)."""
-    fields = values.shape[0]
-    rows = (values * weights).reshape(fields, -1)
-    return np.asarray(rows @ values.reshape(fields, -1).T)
+        return motion, strain

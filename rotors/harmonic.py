@@ -178,12 +178,12 @@ def solve_harmonic(
     highest = max(
         (whirl_reach(float(w), float(s)) for w, s in zip(np.abs(frequencies), speeds, strict=True)), default=0.0
     )
-    eigenvalues = 1j * frequencies
+    eigenvalues = (1j * frequencies).astype(np.complex128)
     forces = np.zeros((frequencies.size, len(constant), 5), dtype=np.complex128)
     motion: SpatialMotion | None = None
     for blocks in sets:
         chain = spatial_chain(rotor, constant, blocks, max(highest, 1e-6), places)
-        scale = chain.force_scale(eigenvalues)
+        scale = chain.response_scale(eigenvalues)
         sides = _sides(chain, places, loads) / scale[:, None]
         solutions = np.empty((frequencies.size, chain.pattern.order), dtype=np.complex128)
         runs = (
@@ -194,25 +194,26 @@ def solve_harmonic(
         for run, tied in runs:
             values = tied.values(eigenvalues[run], speeds[run].astype(np.complex128), scale[run])
             solutions[run] = chain.pattern.solve(values, sides[run, None])[:, 0]
-            forces[run] += bearing_forces(tied, solutions[run], eigenvalues[run])
+            forces[run] += bearing_forces(tied, solutions[run], scale[run])
         part = SpatialMotion.of(chain, eigenvalues, speeds.astype(np.complex128), solutions, scale)
         motion = part if motion is None else motion.plus(part)
     assert motion is not None
     return HarmonicResponse(frequencies, speeds, motion, tuple(bearing.name for bearing in bearings), forces)
 
 
-def bearing_forces(chain: SpatialChain, solutions: ComplexArray, eigenvalues: ComplexArray) -> ComplexArray:
+def bearing_forces(chain: SpatialChain, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
     """Forces on the bearings' carriers (b, ties, 5) over x, y, z and about x and y, in SI."""
-    members = [member for block in chain.blocks for member in MEMBERS[block]]
+    length, angle = chain.bending.displacement_unit
     forces = np.zeros((solutions.shape[0], len(chain.ties), 5), dtype=np.complex128)
-    for index, (tie, foot) in enumerate(zip(chain.ties, chain.feet, strict=True)):
-        relative = solutions[:, chain.starts[tie.node] + np.arange(chain.size)].copy()
-        relative[:, list(tie.foot)] -= solutions[:, foot]
-        stiffness, _ = tie.dynamic_stiffness(eigenvalues)
-        circular = np.zeros((solutions.shape[0], 5), dtype=np.complex128)
-        circular[:, members] = np.einsum("bij,bj->bi", stiffness, relative) / chain.units
-        # The change of coordinates is unitary: its inverse is its adjoint.
-        forces[:, index] = circular @ CIRCULAR.conj()
+    for index, (tie, (force, _)) in enumerate(zip(chain.ties, chain.tie_unknowns, strict=True)):
+        own = np.zeros((solutions.shape[0], 5), dtype=np.complex128)
+        own[:, list(tie.directions)] = solutions[:, force] * scale[:, None]
+        if tie.circular:
+            # The change of coordinates is unitary: its inverse is its adjoint.
+            own = (own / np.array([length, angle, length, angle, length])) @ CIRCULAR.conj()
+        else:
+            own = own / np.array([length, length, length, angle, angle])
+        forces[:, index] = own
     return forces
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .bearing import RadialSupport
+from .buckling import require_unbuckled
 from .certificate import ModeCertificate
 from .fields import Fields
 from .rotor_lines import bending_line
@@ -104,11 +105,13 @@ def solve_lateral_modes(
     Raises
     ------
     RotorError
-        A support off the shaft, both a limit and a count, or more modes than a lumped rotor has.
+        A support off the shaft, both a limit and a count, more modes than a lumped rotor has, or axial forces that
+        buckle the shaft.
     IncompleteModesError
         The modes fail their own proof.
     """
     held = tuple(supports)
+    require_unbuckled(rotor, held)
     found = find_modes(bending_line(rotor, held), frequency_limit, count)
     return lateral_modes(found.frequencies, found.fields, found.mixture, held, found.certificate)
 
@@ -123,11 +126,14 @@ def lateral_modes(
     """Assemble the result from fields in the chain's units and the mixture that makes modes of them."""
     chain = fields.chain
     is_station = chain.is_station
-    nodal = np.tensordot(mixture, fields.states[:, is_station, :2], axes=1)
+    at_stations = fields.states[:, is_station, :2]
+    nodal = (mixture @ at_stations.reshape(mixture.shape[1], -1)).reshape(-1, at_stations.shape[1], 2)
     # The largest displacement is positive, so that a shape does not depend on the solver's start.
-    largest = np.take_along_axis(nodal[:, :, 0], np.abs(nodal[:, :, 0]).argmax(axis=1)[:, None], axis=1)
-    mixture = np.where(largest < 0.0, -1.0, 1.0) * mixture
-    nodal = np.tensordot(mixture, fields.states[:, is_station, :2], axes=1) * chain.displacement_unit
+    shapes = nodal[:, :, 0]
+    largest = np.abs(shapes).argmax(axis=1)
+    sign = np.where(shapes[np.arange(largest.size), largest] < 0.0, -1.0, 1.0)
+    mixture = sign[:, None] * mixture
+    nodal = sign[:, None, None] * nodal * chain.displacement_unit
     # Polar inertia and rotary mass share one unit, so that the unit modal mass carries it over unchanged.
     polar = fields.polar_matrix(mixture)
     return LateralModes(

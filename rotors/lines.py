@@ -11,7 +11,8 @@ with the least stiffness and the largest inertia of the piece; of a rod, when ρ
 term J₀ from the Wittrick–Williams count and bounds the growth of any transfer matrix.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,7 @@ import numpy.typing as npt
 from .chain import Chain, spread
 from .errors import RotorError
 from .profile import restricted
+from .shaft import merged_positions, station_index
 from .timoshenko import PieceTable
 
 FloatArray = npt.NDArray[np.float64]
@@ -79,13 +81,17 @@ class Line:
         return int(np.count_nonzero((self.node_inertia > 0.0) & ~np.isinf(self.node_stiffness)))
 
     def likely_frequency(self, count: int) -> float:
-        """About the ``count``-th natural frequency, rad/s: of the bare shaft by its wave number, or a scale."""
-        flexible, heavy = self.stiffness[self.kind, -1], self.inertia[self.kind, 0]
-        if bool(heavy.any()):
-            power = 0.25 if self.stiffness.shape[1] == 2 else 0.5
-            return float(((count + 0.5) * np.pi / (self.lengths @ (heavy / flexible) ** power)) ** (0.5 / power))
-        # In the chain's units stiffness is about one.
-        return float(np.pi / np.sqrt(max(self.node_inertia[:, 0].sum(), 1e-300)))
+        """About the ``count``-th natural frequency of the bare shaft, by its waves, or a scale of it; rad/s."""
+        heavy = self.inertia[self.kind, 0]
+        if not bool(heavy.any()):
+            # In the chain's units stiffness is about one.
+            return float(np.pi / np.sqrt(max(self.node_inertia[:, 0].sum(), 1e-300)))
+        phase = (count + 0.5) * np.pi
+        # Waves are no longer than those of bending without shear, nor than those of shear without bending.
+        waves = [phase / (self.lengths @ np.sqrt(heavy / self.stiffness[self.kind, 0]))]
+        if self.stiffness.shape[1] == 2:
+            waves.append((phase / (self.lengths @ (heavy / self.stiffness[self.kind, 1]) ** 0.25)) ** 2)
+        return float(min(waves))
 
     def cut(self, highest: float) -> Chain:
         """Chain good up to ``highest`` rad/s.
@@ -95,69 +101,70 @@ class Line:
         RotorError
             It takes too many pieces.
         """
-        longest = self._longest(highest)[self.kind]
-        pieces = np.maximum(np.ceil(PIECE_MARGIN * self.lengths / longest), 1.0)
-        if pieces.sum() > MOST_PIECES:
+        from .line_kernels import piece_counts
+
+        counts = piece_counts(highest, PIECE_MARGIN, self.kind, self.lengths, self.stiffness, self.inertia, self.force)
+        if counts.sum() > MOST_PIECES:
             raise RotorError(
-                f"{self.label}: a limit of {highest:g} rad/s needs {pieces.sum():.0f} pieces of shaft, "
+                f"{self.label}: a limit of {highest:g} rad/s needs {counts.sum():.0f} pieces of shaft, "
                 f"more than {MOST_PIECES}; expected a lower frequency limit or fewer modes"
             )
-        counts = pieces.astype(np.intp)
-        lengths, kind, start, end, nodes = self.lengths, self.kind, self.start, self.end, self.nodes
-        if int(counts.sum()) > counts.size:
-            span = np.repeat(np.arange(counts.size), counts)
-            within = np.arange(span.size) - np.repeat(np.cumsum(counts) - counts, counts)
-            lengths, kind = (lengths / counts)[span], kind[span]
-            part = (end - start) / counts
-            start = start[span] + within * part[span]
-            end = start + part[span]
-            nodes = np.append(nodes[span] + within * (np.diff(nodes) / counts)[span], nodes[-1])
-        table, element = piece_table(self.coefficients, self.uniform, kind, start, end, lengths / self.length_unit)
+        return self.in_pieces(counts.astype(np.intp), highest)
+
+    def in_pieces(self, counts: IntArray, highest: float) -> Chain:
+        """Chain with every span in so many equal pieces, (s,)."""
+        from .line_kernels import cut_spans
+
+        nodes, index, element, kind, middle, half, lengths = cut_spans(
+            counts, self.nodes, self.kind, self.start, self.end, self.lengths, self.uniform
+        )
+        given = self.coefficients[kind]
+        if given.shape[2] > 1:
+            given = restricted(given, middle, half)
         return Chain(
             nodes=nodes,
-            table=table,
+            table=PieceTable(lengths / self.length_unit, given),
             element=element,
-            node_inertia=spread(nodes, self.nodes, self.node_inertia),
-            node_stiffness=spread(nodes, self.nodes, self.node_stiffness),
-            node_polar=spread(nodes, self.nodes, self.node_polar),
+            node_inertia=spread(nodes.size, index, self.node_inertia),
+            node_stiffness=spread(nodes.size, index, self.node_stiffness),
+            node_polar=spread(nodes.size, index, self.node_polar),
             length_unit=self.length_unit,
             displacement_unit=self.displacement_unit,
             highest=highest,
-            is_station=spread(nodes, self.nodes, self.is_station.astype(np.float64)) > 0.0,
+            is_station=spread(nodes.size, index, self.is_station),
         )
 
-    def _longest(self, highest: float) -> FloatArray:
-        """Longest piece of every kind, m, (k,)."""
-        squared = highest**2
-        with np.errstate(divide="ignore"):
-            if self.stiffness.shape[1] == 1:
-                return np.asarray(np.pi * np.sqrt(self.stiffness[:, 0] / (squared * self.inertia[:, 0])))
-            shear, bending = self.stiffness[:, 0], self.stiffness[:, 1]
-            mass, rotary = squared * self.inertia[:, 0], squared * self.inertia[:, 1]
-            # Tension counts as compression does: the fields it makes grow as fast.
-            linear = rotary + 2.0 * np.abs(self.force)
-            by_bending = 2.0 * bending / (linear + np.sqrt(linear**2 + 8.0 * mass * bending))
-            by_shear = (0.5 * shear - np.maximum(-self.force, 0.0)) / mass
-            return np.asarray(np.pi * np.sqrt(np.minimum(by_shear, by_bending)))
+    def held(self, places: Sequence[float], stiffness: Sequence[tuple[float, ...]]) -> "Line":
+        """The same line with springs to ground at some places (m), n stiffnesses (in scaled units) each."""
+        if not places:
+            return self
+        nodes = merged_positions(self.nodes, places)
+        line = self if nodes.size == self.nodes.size else self.with_nodes(nodes)
+        node_stiffness, is_station = line.node_stiffness.copy(), line.is_station.copy()
+        for place, spring in zip(places, stiffness, strict=True):
+            node = station_index(nodes, place)
+            node_stiffness[node] += spring
+            is_station[node] = True
+        return replace(line, node_stiffness=node_stiffness, is_station=is_station)
 
-
-def piece_table(
-    coefficients: FloatArray,
-    uniform: npt.NDArray[np.bool_],
-    kind: IntArray,
-    start: FloatArray,
-    end: FloatArray,
-    lengths: FloatArray,
-) -> tuple[PieceTable, IntArray]:
-    """The different ones among pieces (p,) of some kinds, and which of them each piece is."""
-    centre = np.where(uniform[kind], 0.0, start + end - 1.0)
-    known: dict[tuple[int, float, float], int] = {}
-    keys = zip(kind.tolist(), centre.tolist(), lengths.tolist(), strict=True)
-    element = np.array([known.setdefault(key, len(known)) for key in keys], dtype=np.intp)
-    first = np.unique(element, return_index=True)[1]
-    chosen = kind[first]
-    given = coefficients[chosen]
-    if coefficients.shape[2] > 1:
-        half = np.where(uniform[chosen], 1.0, (end - start)[first])
-        given = restricted(given, centre[first], half)
-    return PieceTable(lengths[first], given), element
+    def with_nodes(self, nodes: FloatArray) -> "Line":
+        """The same line cut at nodes (m) that include its own; new ones are bare, and no stations."""
+        span = np.clip(np.searchsorted(self.nodes, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, self.kind.size - 1)
+        left, width = self.nodes[span], np.diff(self.nodes)[span]
+        # Places within the span, and from them within the kind's own span.
+        first, last = (nodes[:-1] - left) / width, (nodes[1:] - left) / width
+        reach = (self.end - self.start)[span]
+        whole = (first == 0.0) & (last == 1.0)
+        index = np.searchsorted(nodes, self.nodes)
+        return replace(
+            self,
+            nodes=nodes,
+            is_station=spread(nodes.size, index, self.is_station),
+            kind=self.kind[span],
+            start=self.start[span] + first * reach,
+            end=self.start[span] + last * reach,
+            lengths=np.where(whole, self.lengths[span], np.diff(nodes)),
+            node_inertia=spread(nodes.size, index, self.node_inertia),
+            node_stiffness=spread(nodes.size, index, self.node_stiffness),
+            node_polar=spread(nodes.size, index, self.node_polar),
+        )

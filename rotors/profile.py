@@ -22,6 +22,7 @@ IntArray = npt.NDArray[np.intp]
 
 DEGREE = 16
 TAIL = 2e-15
+ROUNDING = 2e-15
 MOST_HALVINGS = 40
 
 _ANGLES = np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)
@@ -150,16 +151,21 @@ def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
 
 def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:
     """Start and end (fractions of the cone), coefficients and extremes of pieces mild enough."""
-    samples = [_segment_values(part, start + fraction * (end - start)) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
+    fractions = [start + fraction * (end - start) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
+    samples = [_segment_values(part, fraction) for fraction in fractions]
     values, rows = np.array([value for value, _ in samples[:-2]]), np.array([row for _, row in samples])
     chebyshev = _TO_CHEBYSHEV @ values
-    size = np.abs(chebyshev).max(axis=0)
-    if not bool((np.abs(chebyshev[-2:]) <= TAIL * size).all()):
+    # Towards a tip or a thin wall, the diameters themselves are rounded to a part of the largest.
+    walls = [part.section(fraction) for fraction in (start, end)]
+    thinnest = min(section.outer_diameter - section.inner_diameter for section in walls)
+    largest = max(outer for outer, _ in part.end_diameters)
+    tolerance = max(TAIL, ROUNDING * largest / thinnest) * np.abs(chebyshev).max(axis=0)
+    if not bool((np.abs(chebyshev[-2:]) <= tolerance).all()):
         if halvings == MOST_HALVINGS:
             raise RotorError(f"segment {part!r} tapers too sharply; expected diameters further from zero")
         middle = 0.5 * (start + end)
         return _taper(part, start, middle, halvings + 1) + _taper(part, middle, end, halvings + 1)
     # Rounding in the high coefficients would be all that is left of them.
-    chebyshev[np.abs(chebyshev) < 0.1 * TAIL * size] = 0.0
+    chebyshev[np.abs(chebyshev) < 0.1 * tolerance] = 0.0
     extremes = np.array([*rows[:, :2].min(axis=0), *rows[:, 2:4].max(axis=0), part.axial_force])
     return [(start, end, (chebyshev.T @ _TO_POWERS), extremes)]

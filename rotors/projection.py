@@ -32,10 +32,11 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 DEFAULT_COUNT = 12
-LEAST_MODES = 12
+LEAST_MODES = 8
+SPARE_MODES = 4
 AXIAL_MODES = 8
-# The basis reaches this many times beyond the highest whirl frequency asked for.
-BASIS_REACH = 4.0
+# The basis reaches this many times beyond the highest whirl frequency asked for: it gives starting values only.
+BASIS_REACH = 1.5
 # A massless pedestal weighs this part of the rotor in the basis, where every coordinate has a mass.
 PEDESTAL_MASS = 1e-6
 
@@ -49,8 +50,8 @@ def whirl_basis(
 ) -> LateralModes:
     """Planar basis for whirl: modes at averaged stiffness, well beyond the need, and attachment vectors.
 
-    It holds every mode below four times ``frequency_limit``, or four more than ``count``, and at least
-    twelve; behind them the static responses to a force at each bearing and to a moment at each disc, where
+    It holds every mode below ``frequency_limit`` and half as far again, or four more than half of ``count``, and at
+    least eight; behind them the static responses to a force at each bearing and to a moment at each disc, where
     the compensation and gyroscopic terms act. Build it once to sweep the speed. Of tables over speed it holds
     the stiffness at the middle of the table.
 
@@ -73,7 +74,7 @@ def whirl_basis(
     supports = mean_supports(bearings)
     available = bending_line(rotor, supports).available_modes
     if frequency_limit is None:
-        wanted = (count or DEFAULT_COUNT) + 4
+        wanted = (count or DEFAULT_COUNT) // 2 + SPARE_MODES
         modes = solve_lateral_modes(rotor, supports, count=int(min(max(wanted, LEAST_MODES), available)))
     else:
         require_finite("frequency_limit", frequency_limit, positive=True)
@@ -112,6 +113,11 @@ def mean_supports(bearings: Sequence[Bearing]) -> tuple[RadialSupport, ...]:
         else bearing.mean_support
         for bearing in bearings
     )
+
+
+def slowest(bearing: Bearing) -> float:
+    """The lowest speed of a bearing's tables, or zero, rad/s."""
+    return 0.0 if bearing.speeds is None else float(bearing.speeds[0])
 
 
 @dataclass(frozen=True)
@@ -177,10 +183,10 @@ class Projection:
             spread[units.size + np.arange(len(foot)), rows] = 1.0
             first += len(foot)
             # The bearing feels the shaft less its pedestal.
-            relative = spread[: units.size].copy()
+            relative = tie.frame @ spread[: units.size]
             relative[foot] -= spread[units.size :]
-            stiffness += relative.T @ tie.stiffness @ relative
-            damping += relative.T @ tie.damping @ relative
+            stiffness += relative.conj().T @ tie.stiffness @ relative
+            damping += relative.conj().T @ tie.damping @ relative
             if foot:
                 stiffness[np.ix_(rows, rows)] += tie.foot_stiffness
                 damping[np.ix_(rows, rows)] += tie.foot_damping
@@ -236,15 +242,11 @@ class Projection:
         turn = np.eye(order, dtype=np.complex128)
         if len(self.blocks) == 1:
             return turn
-        b = self.basis.count
-        pairs = [(np.arange(b), b + np.arange(b))]
-        lateral = 2 * b + (self.axial_frequencies.size if 0 in self.blocks else 0)
-        # Pedestals come in pairs of + and −.
-        pairs.append((np.arange(lateral, order, 2), np.arange(lateral + 1, order, 2)))
-        root = np.sqrt(0.5)
-        for plus, minus in pairs:
-            turn[plus, plus], turn[plus, minus] = root, 1j * root
-            turn[minus, plus], turn[minus, minus] = root, -1j * root
+        # Pedestals and axial motion are real as they are.
+        b, root = self.basis.count, np.sqrt(0.5)
+        plus, minus = np.arange(b), b + np.arange(b)
+        turn[plus, plus], turn[plus, minus] = root, 1j * root
+        turn[minus, plus], turn[minus, minus] = root, -1j * root
         return turn
 
 

@@ -47,24 +47,19 @@ def chain_arrays(chain: Chain) -> tuple[FloatArray, FloatArray, IntArray, FloatA
     return chain.table.lengths, chain.table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
 
 
-def count_below(chain: Chain, frequencies: npt.ArrayLike) -> IntArray:
-    """Number of natural frequencies strictly below each frequency, with multiplicity.
+def count_below(chain: Chain, frequency: float) -> int:
+    """Number of natural frequencies strictly below one, with multiplicity.
 
     Parameters
     ----------
     chain
         The shaft; its `highest` must not be exceeded.
-    frequencies
-        (b,): positive, rad/s. Rigid motions at zero count as below each.
-
-    Returns
-    -------
-    (b,) integers.
+    frequency
+        Positive, rad/s. Rigid motions at zero count as below.
     """
-    from .count_kernels import counts_below
+    from .count_kernels import count_of
 
-    asked = np.atleast_1d(np.asarray(frequencies, dtype=np.float64))
-    return np.asarray(counts_below(asked, *chain_arrays(chain)))
+    return int(count_of(frequency, *chain_arrays(chain)))
 
 
 def isolate(chain: Chain, wanted: int, limit: float) -> FloatArray:
@@ -86,19 +81,18 @@ def isolate(chain: Chain, wanted: int, limit: float) -> FloatArray:
     IncompleteModesError
         The count does not reach ``wanted`` at the limit, or exceeds the rigid motions even at 1e-16 of it.
     """
-    from .count_kernels import lowest_roots
+    from .root_kernels import lowest_roots
 
     zeros = chain.rigid_shapes.shape[0]
     if wanted <= zeros:
         return np.zeros(wanted)
     lowest = LOWEST * limit
-    first, last = count_below(chain, [lowest, limit]).tolist()
-    if wanted > last or first > zeros:
+    first, last, found = lowest_roots(wanted, zeros, lowest, limit, *chain_arrays(chain))
+    if found.size < wanted - zeros:
         raise IncompleteModesError(
             f"the root count is {first} at {lowest:g} rad/s and {last} at {limit:g} rad/s, but "
             f"{zeros} rigid motions and {wanted} modes were expected between; check support stiffnesses "
             "that are absurdly soft, or stiff beyond a constraint (use an infinite stiffness there)"
         )
-    found = lowest_roots(wanted, zeros, lowest, limit, *chain_arrays(chain))
     # Brackets of one multiple root may end in either order, a rounding apart.
     return np.concatenate([np.zeros(zeros), np.maximum.accumulate(found)])

@@ -1,7 +1,9 @@
 """Lines and chains of a rotor: its bending in one plane, its torsion, its axial motion."""
 
 from collections.abc import Sequence
-from typing import Literal
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -9,136 +11,161 @@ import numpy.typing as npt
 from .axis_spring import AxisSpring
 from .bearing import RadialSupport
 from .chain import Chain
-from .lines import Line, piece_table
+from .lines import Line
 from .lumped import station_inertias
 from .profile import AXIAL, BENDING, TORSION
-from .shaft import Rotor, merged_positions, station_index
+from .shaft import merged_positions
+
+if TYPE_CHECKING:
+    from .shaft import Rotor
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 RodMotion = Literal["torsion", "axial"]
 
 
-def bending_line(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> Line:
-    """A rotor's bending in one plane."""
+@dataclass(frozen=True)
+class FreeLines:
+    """Lines of a rotor without supports, each made when first asked for; a rotor holds its own."""
+
+    rotor: "Rotor"
+
+    @cached_property
+    def bending(self) -> Line:
+        """Bending in one plane."""
+        rotor, profile = self.rotor, self.rotor.profile
+        length, stiffness = rotor.length, profile.extremes[:, :2]
+        force = float(np.exp(np.log(stiffness[profile.kind, 1]).mean())) / length**2
+        distributed = float(rotor.mass_model == "distributed")
+        units = [force, force * length**2, distributed * length**2 / force, distributed / force, 1.0, 1.0 / force]
+        per_node = np.array([length / force, 1.0 / (force * length)])
+        inertias = self._node_inertias
+        return self._line(
+            coefficients=profile.coefficients[:, BENDING] * np.array(units)[:, None],
+            stiffness=stiffness,
+            inertia=distributed * profile.extremes[:, 2:4],
+            force=profile.extremes[:, 4],
+            node_inertia=inertias[:, :2] * per_node,
+            node_polar=inertias[:, 2] * per_node[1],
+            displacement_unit=np.array([length, 1.0]) / np.sqrt(force * length),
+        )
+
+    @cached_property
+    def torsion(self) -> Line:
+        """Torsion."""
+        return self._rod(TORSION, 2)
+
+    @cached_property
+    def axial(self) -> Line:
+        """Axial motion."""
+        return self._rod(AXIAL, 0)
+
+    def _rod(self, rows: slice, inertia_column: int) -> Line:
+        rotor, profile = self.rotor, self.rotor.profile
+        given = profile.coefficients[:, rows]
+        # Compliance at the middle stands for that of a tapering span.
+        force = float(np.exp(-np.log(given[profile.kind, 0, 0]).mean())) / rotor.length
+        distributed = float(rotor.mass_model == "distributed")
+        sides = np.array([-1.0, 0.0, 1.0])[:, None] ** np.arange(given.shape[2])
+        values = np.einsum("kfj,sj->ksf", given, sides)
+        units = [force * rotor.length, distributed * rotor.length / force]
+        return self._line(
+            coefficients=given * np.array(units)[:, None],
+            stiffness=1.0 / values[:, :, :1].max(axis=1),
+            inertia=distributed * values[:, :, 1:].max(axis=1),
+            force=np.zeros(given.shape[0]),
+            node_inertia=self._node_inertias[:, inertia_column, None] / force,
+            node_polar=np.zeros(self._nodes.size),
+            displacement_unit=np.array([1.0 / np.sqrt(force)]),
+        )
+
+    @cached_property
+    def _nodes(self) -> FloatArray:
+        return merged_positions(self.rotor.profile.edges, [disc.at for disc in self.rotor.discs])
+
+    @cached_property
+    def _node_inertias(self) -> FloatArray:
+        return station_inertias(self.rotor, self._nodes)
+
+    def _line(
+        self,
+        *,
+        coefficients: FloatArray,
+        stiffness: FloatArray,
+        inertia: FloatArray,
+        force: FloatArray,
+        node_inertia: FloatArray,
+        node_polar: FloatArray,
+        displacement_unit: FloatArray,
+    ) -> Line:
+        rotor, profile, nodes = self.rotor, self.rotor.profile, self._nodes
+        edges = profile.edges
+        span = np.clip(np.searchsorted(edges, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, edges.size - 2)
+        left, width = edges[span], np.diff(edges)[span]
+        start, end = (nodes[:-1] - left) / width, (nodes[1:] - left) / width
+        whole = (start == 0.0) & (end == 1.0)
+        # A cone's own cuts are no stations, but a disc may sit on one.
+        is_station = np.zeros(nodes.size, dtype=np.bool_)
+        right = np.clip(np.searchsorted(nodes, rotor.stations), 1, nodes.size - 1)
+        is_station[right - (rotor.stations - nodes[right - 1] < nodes[right] - rotor.stations)] = True
+        return Line(
+            label=f"rotor {rotor.name!r}",
+            nodes=nodes,
+            is_station=is_station,
+            kind=profile.kind[span],
+            start=start,
+            end=end,
+            lengths=np.where(whole, profile.lengths[span], np.diff(nodes)),
+            coefficients=np.ascontiguousarray(coefficients),
+            uniform=profile.uniform,
+            stiffness=np.ascontiguousarray(stiffness),
+            inertia=inertia,
+            force=np.ascontiguousarray(force),
+            node_inertia=node_inertia,
+            node_stiffness=np.zeros_like(node_inertia),
+            node_polar=node_polar,
+            length_unit=rotor.length,
+            displacement_unit=displacement_unit,
+        )
+
+
+def bending_line(rotor: "Rotor", supports: Sequence[RadialSupport] = ()) -> Line:
+    """A rotor's bending in one plane on springs."""
     for support in supports:
         rotor.require_on_shaft(f"rotor {rotor.name!r} support", support.at)
-    profile = rotor.profile
-    length, bending = rotor.length, profile.extremes[:, 1]
-    force = float(np.exp(np.log(bending[profile.kind]).mean())) / length**2
-    distributed = float(rotor.mass_model == "distributed")
-    line, inertias = _spans(rotor, [support.at for support in supports])
-    stiffness = np.zeros((line[0].size, 2))
-    for support in supports:
-        stiffness[station_index(line[0], support.at)] += support.stiffness, support.tilt_stiffness
-    per_node = np.array([length / force, 1.0 / (force * length)])
-    units = [force, force * length**2, distributed * length**2 / force, distributed / force, 1.0, 1.0 / force]
-    return Line(
-        f"rotor {rotor.name!r}",
-        *line,
-        coefficients=profile.coefficients[:, BENDING] * np.array(units)[:, None],
-        uniform=profile.uniform,
-        stiffness=profile.extremes[:, :2],
-        inertia=distributed * profile.extremes[:, 2:4],
-        force=profile.extremes[:, 4],
-        node_inertia=inertias[:, :2] * per_node,
-        node_stiffness=stiffness * per_node,
-        node_polar=inertias[:, 2] * per_node[1],
-        length_unit=length,
-        displacement_unit=np.array([length, 1.0]) / np.sqrt(force * length),
-    )
+    free = rotor.free_lines.bending
+    # A displacement unit squared is the reciprocal of a unit of stiffness.
+    shift, tilt = (free.displacement_unit**2).tolist()
+    springs = [(support.stiffness * shift, support.tilt_stiffness * tilt) for support in supports]
+    return free.held([support.at for support in supports], springs)
 
 
-def bending_chain(rotor: Rotor, supports: Sequence[RadialSupport], highest: float) -> Chain:
+def bending_chain(rotor: "Rotor", supports: Sequence[RadialSupport], highest: float) -> Chain:
     """Chain of a rotor's bending in one plane, good up to ``highest`` rad/s."""
     return bending_line(rotor, supports).cut(highest)
 
 
-def rod_line(rotor: Rotor, springs: Sequence[AxisSpring], motion: RodMotion) -> Line:
-    """A rotor's torsion, or its axial motion."""
+def rod_line(rotor: "Rotor", springs: Sequence[AxisSpring], motion: RodMotion) -> Line:
+    """A rotor's torsion, or its axial motion, on springs."""
     for spring in springs:
         rotor.require_on_shaft(f"rotor {rotor.name!r} spring", spring.at)
-    profile = rotor.profile
-    rows, inertia_column = (TORSION, 2) if motion == "torsion" else (AXIAL, 0)
-    length, given = rotor.length, profile.coefficients[:, rows]
-    # Compliance at the middle stands for that of a tapering span.
-    force = float(np.exp(-np.log(given[profile.kind, 0, 0]).mean())) / length
-    distributed = float(rotor.mass_model == "distributed")
-    line, inertias = _spans(rotor, [spring.at for spring in springs])
-    stiffness = np.zeros((line[0].size, 1))
-    for spring in springs:
-        stiffness[station_index(line[0], spring.at)] += spring.stiffness
-    sides = np.array([-1.0, 0.0, 1.0])[:, None] ** np.arange(given.shape[2])
-    values = np.einsum("kfj,sj->ksf", given, sides)
-    return Line(
-        f"rotor {rotor.name!r}",
-        *line,
-        coefficients=given * np.array([force * length, distributed * length / force])[:, None],
-        uniform=profile.uniform,
-        stiffness=1.0 / values[:, :, :1].max(axis=1),
-        inertia=distributed * values[:, :, 1:].max(axis=1),
-        force=np.zeros(given.shape[0]),
-        node_inertia=inertias[:, inertia_column, None] / force,
-        node_stiffness=stiffness / force,
-        node_polar=np.zeros(line[0].size),
-        length_unit=length,
-        displacement_unit=np.array([1.0 / np.sqrt(force)]),
-    )
+    free = rotor.free_lines.torsion if motion == "torsion" else rotor.free_lines.axial
+    unit = float(free.displacement_unit[0]) ** 2
+    return free.held([spring.at for spring in springs], [(spring.stiffness * unit,) for spring in springs])
 
 
-def axial_chain_on(rotor: Rotor, bending: Chain) -> Chain:
+def axial_chain_on(rotor: "Rotor", bending: Chain) -> Chain:
     """Chain of a rotor's axial motion with the nodes, and the units of length and force, of a chain of its bending.
 
-    It has no springs, and carries at its nodes the mass that the bending chain does.
+    It has no springs, and no other mass at its nodes than the bending chain has.
     """
-    profile, unit = rotor.profile, float(bending.displacement_unit[0])
-    # Displacement unit² is length unit / force unit; scaled compliance is compliance times force unit.
-    force = bending.length_unit / unit**2
-    distributed = float(rotor.mass_model == "distributed")
-    scale = np.array([force, distributed * bending.length_unit**2 / force])
-    span, start, end = _covered(profile.edges, bending.nodes)
-    table, element = piece_table(
-        profile.coefficients[:, AXIAL] * scale[:, None],
-        profile.uniform,
-        profile.kind[span],
-        start,
-        end,
-        bending.lengths,
-    )
-    return Chain(
-        nodes=bending.nodes,
-        table=table,
-        element=element,
-        node_inertia=bending.node_inertia[:, :1],
-        node_stiffness=np.zeros((bending.nodes.size, 1)),
-        node_polar=np.zeros(bending.nodes.size),
-        length_unit=bending.length_unit,
+    free = rotor.free_lines.axial.with_nodes(bending.nodes)
+    # A displacement unit squared is the reciprocal of a unit of stiffness, by which compliance and inertia are scaled.
+    ratio = float(free.displacement_unit[0] / bending.displacement_unit[0]) ** 2
+    line = replace(
+        free,
+        coefficients=free.coefficients * np.array([ratio, 1.0 / ratio])[:, None],
+        node_inertia=free.node_inertia / ratio,
         displacement_unit=bending.displacement_unit[:1],
-        highest=bending.highest,
-        is_station=bending.is_station,
     )
-
-
-Spans = tuple[FloatArray, npt.NDArray[np.bool_], IntArray, FloatArray, FloatArray, FloatArray]
-
-
-def _spans(rotor: Rotor, places: Sequence[float]) -> tuple[Spans, FloatArray]:
-    """The first six fields of a line after its label, and the inertias at its nodes (s + 1, 3)."""
-    profile = rotor.profile
-    others = [*(disc.at for disc in rotor.discs), *places]
-    nodes = merged_positions(profile.edges, others)
-    is_station = np.ones(nodes.size, dtype=np.bool_)
-    if profile.edges.size > rotor.joints.size:
-        stations = merged_positions(rotor.joints, others)
-        is_station = np.abs(nodes[:, None] - stations).min(axis=1) == 0.0
-    span, start, end = _covered(profile.edges, nodes)
-    whole = (start == 0.0) & (end == 1.0)
-    lengths = np.where(whole, profile.lengths[span], np.diff(nodes))
-    return (nodes, is_station, profile.kind[span], start, end, lengths), station_inertias(rotor, nodes)
-
-
-def _covered(edges: FloatArray, nodes: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Span that holds each interval between nodes, and the fractions of it between which it lies, each (s,)."""
-    span = np.clip(np.searchsorted(edges, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, edges.size - 2)
-    left, width = edges[span], edges[span + 1] - edges[span]
-    return span, (nodes[:-1] - left) / width, (nodes[1:] - left) / width
+    return line.in_pieces(np.ones(bending.element.size, dtype=np.intp), bending.highest)

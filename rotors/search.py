@@ -42,23 +42,7 @@ def find_modes(line: Line, frequency_limit: float | None, count: int | None) -> 
     if frequency_limit is not None:
         require_finite("frequency_limit", frequency_limit, positive=True)
         chain = line.cut(frequency_limit)
-        limit, expected = frequency_limit, int(count_below(chain, frequency_limit)[0])
-        frequencies = isolate(chain, expected, limit)
-    else:
-        chain, wanted = _chain_that_holds(line, count)
-        frequencies = isolate(chain, wanted, chain.highest)
-        # Certify a little above the last mode, and take in its twins, if it has any.
-        limit = min(max(float(frequencies[-1]) * (1.0 + 2.0 * SAME_ROOT), 1e-12 * chain.highest), chain.highest)
-        expected = int(count_below(chain, limit)[0])
-        if expected > wanted:
-            frequencies = isolate(chain, expected, chain.highest)
-    fields, mixture = mode_fields(chain, frequencies)
-    certificate = certify(limit, expected, frequencies, *fields.energies(mixture))
-    return FoundModes(frequencies, fields, mixture, certificate)
-
-
-def _chain_that_holds(line: Line, count: int | None) -> tuple[Chain, int]:
-    """A chain whose highest frequency exceeds the wanted modes, and how many modes are wanted."""
+        return certified_modes(chain, count_below(chain, frequency_limit), frequency_limit)
     available = line.available_modes
     if count is None:
         wanted = int(min(DEFAULT_COUNT, available))
@@ -66,11 +50,36 @@ def _chain_that_holds(line: Line, count: int | None) -> tuple[Chain, int]:
         require_count("count of modes", count)
         require(count <= available, "count of modes", count, f"at most {available:g}, all this lumped rotor has")
         wanted = count
+    return certified_modes(chain_that_holds(line, wanted), wanted)
+
+
+def certified_modes(chain: Chain, wanted: int, limit: float | None = None) -> FoundModes:
+    """The lowest ``wanted`` modes of a chain: all below a limit (rad/s), or else with all twins of the last.
+
+    Raises
+    ------
+    IncompleteModesError
+        The modes fail their own proof.
+    """
+    expected, frequencies = wanted, isolate(chain, wanted, limit or chain.highest)
+    if limit is None:
+        # Certify a little above the last mode, and take in its twins, if it has any.
+        limit = min(max(float(frequencies[-1]) * (1.0 + 2.0 * SAME_ROOT), 1e-12 * chain.highest), chain.highest)
+        expected = count_below(chain, limit)
+        if expected > wanted:
+            frequencies = isolate(chain, expected, chain.highest)
+    fields, mixture = mode_fields(chain, frequencies)
+    certificate = certify(limit, expected, frequencies, *fields.energies(mixture))
+    return FoundModes(frequencies, fields, mixture, certificate)
+
+
+def chain_that_holds(line: Line, wanted: int) -> Chain:
+    """A chain with at least so many modes below the highest frequency that it is good for."""
     highest = line.likely_frequency(wanted)
     for _ in range(MOST_DOUBLINGS):
         chain = line.cut(highest)
-        if count_below(chain, highest)[0] >= wanted:
-            return chain, wanted
+        if count_below(chain, highest) >= wanted:
+            return chain
         highest *= 2.0
     raise RotorError(f"{wanted} modes are not found below {highest:g} rad/s; expected a rotor with fewer")
 

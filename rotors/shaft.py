@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,9 @@ from .material import ShaftMaterial
 from .profile import Profile, profile_of
 from .segment import Segment
 from .shaft_coupling import Coupling
+
+if TYPE_CHECKING:
+    from .rotor_lines import FreeLines
 
 FloatArray = npt.NDArray[np.float64]
 MassModel = Literal["distributed", "lumped"]
@@ -113,6 +116,13 @@ class Rotor:
     def profile(self) -> Profile:
         """Stiffness and inertia along the shaft, as its transfer matrices take them."""
         return profile_of(self.segments, self.joints)
+
+    @cached_property
+    def free_lines(self) -> "FreeLines":
+        """The shaft without supports, as solvers cut it; made once, for solving again on other supports."""
+        from .rotor_lines import FreeLines
+
+        return FreeLines(self)
 
     @property
     def length(self) -> float:

@@ -198,28 +198,44 @@ def shooting_responses(
 
 
 @njit(cache=True, nogil=True)
-def inside_states(
+def energy_rows(
     squared: FloatArray,
     states: FloatArray,
     fractions: FloatArray,
     lengths: FloatArray,
     given: FloatArray,
     element: IntArray,
-) -> FloatArray:
-    """States at fractions (g,) of every piece, of fields with node states (k, p + 1, 2n), (k, p, g, 2n)."""
+    motion: FloatArray,
+    strain: FloatArray,
+) -> None:
+    """Fill in what the energies of fields with node states (k, p + 1, 2n) are sums of squares of.
+
+    Piece by piece and at every fraction (g,) of it, ``motion`` (k, p g n + ...) takes the displacements and
+    ``strain`` (k, p g (2n − 1) + ...) the rotation (of a beam) and the forces; both end with the displacements of
+    the nodes, n each.
+    """
     size, pieces = states.shape[2], element.size
-    inside = np.empty((squared.size, pieces, fractions.size, size))
+    n = size // 2
     transfers = np.empty((lengths.size, fractions.size, size, size))
+    state = np.empty(size)
     for k in range(squared.size):
         if k == 0 or squared[k] != squared[k - 1]:
             for e in range(lengths.size):
                 piece_transfers(lengths[e], given[e], squared[k], squared[k], fractions, transfers[e])
+        at_motion, at_strain = 0, 0
         for piece in range(pieces):
             for g in range(fractions.size):
                 transfer = transfers[element[piece], g]
                 for row in range(size):
-                    total = 0.0
+                    state[row] = 0.0
                     for column in range(size):
-                        total += transfer[row, column] * states[k, piece, column]
-                    inside[k, piece, g, row] = total
-    return inside
+                        state[row] += transfer[row, column] * states[k, piece, column]
+                motion[k, at_motion : at_motion + n] = state[:n]
+                strain[k, at_strain : at_strain + size - 1] = state[1:]
+                at_motion += n
+                at_strain += size - 1
+        for node in range(pieces + 1):
+            motion[k, at_motion : at_motion + n] = states[k, node, :n]
+            strain[k, at_strain : at_strain + n] = states[k, node, :n]
+            at_motion += n
+            at_strain += n

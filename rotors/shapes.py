@@ -21,7 +21,10 @@ from .root_count import chain_arrays
 
 FloatArray = npt.NDArray[np.float64]
 
-# Roots closer than this share one null space; the frequencies themselves are good to 1e-12.
+# Roots closer than this share one null space, at their mean: the frequencies themselves are good to 1e-12. Shapes
+# err by as much, which beside a heavy disc counts many times.
+ONE_NULL_SPACE = 2e-12
+# Roots closer than this are twins, of which a count of modes takes in both or none.
 SAME_ROOT = 1e-10
 # Shapes of roots closer than this mix in rounding, and are separated again by their energies.
 NEAR_ROOT = 1e-4
@@ -90,17 +93,22 @@ def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArr
 
     zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
     shared, elastic = frequencies.copy(), frequencies[zeros:]
-    for group in groups(elastic, SAME_ROOT):
+    # Most roots have no neighbours.
+    near = groups(elastic, NEAR_ROOT) if (elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]).any() else []
+    for group in groups(elastic, ONE_NULL_SPACE) if near else []:
         shared[zeros:][group] = elastic[group].mean()
     states = null_states(shared[zeros:] ** 2, *chain_arrays(chain))
-    fields = Fields(chain, shared**2, np.concatenate([rigid_states(chain)[:zeros], states]))
+    if zeros:
+        states = np.concatenate([rigid_states(chain)[:zeros], states])
+    fields = Fields(chain, shared**2, states)
     mass, stiffness = fields.energies()
-    mixture = np.diag(1.0 / np.sqrt(np.diag(mass)))
-    mixture[:zeros, :zeros] = np.eye(zeros)
-    for group in groups(elastic, NEAR_ROOT):
+    scale = 1.0 / np.sqrt(mass.diagonal())
+    scale[:zeros] = 1.0
+    mixture = np.diag(scale)
+    for group in near:
         if group.stop - group.start > 1:
-            near = slice(group.start + zeros, group.stop + zeros)
-            mixture[near, near] = ritz_vectors(mass[near, near], stiffness[near, near])[1].T
+            part = slice(group.start + zeros, group.stop + zeros)
+            mixture[part, part] = ritz_vectors(mass[part, part], stiffness[part, part])[1].T
     return fields, mixture
 
 

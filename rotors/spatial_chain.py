@@ -13,17 +13,18 @@ equations of `rotors.timoshenko` with
 So the exact transfer matrices of both senses are at hand for any λ, with no modal truncation; the bearings alone
 tie them, and tie the shaft's axial motion where their five-by-five matrices do. At λ = iω forward whirl is r+.
 
-The unknowns are the states (displacements u, forces f to the right) at all nodes, and the displacements p of
-pedestals; the equations are those of multiple shooting,
+The unknowns are the states (displacements u, forces f to the right) at all nodes, the forces g of bearings and the
+displacements p of pedestals; the equations are those of multiple shooting,
 
     u_{i+1} = T₁₁ u_i + T₁₂ f_i
-    f_{i+1} = T₂₁ u_i + T₂₂ f_i + (λ² M + λ G + Z_b) u_{i+1} − Z_b p
-    0 = (Z_p + Z_b) p − Z_b u,          Z_b = K_b + λ C_b,   Z_p = K_p + λ C_p + λ² M_p
+    f_{i+1} = T₂₁ u_i + T₂₂ f_i + (λ² M + λ G) u_{i+1} + Fᴴ g
+    g = (K_b + λ C_b) (F u − p),        (K_p + λ C_p + λ² M_p) p = g
 
-and no force beyond the right end. Every entry is an entire function of λ, the pedestals' resonances included, and
-so is the determinant; its zeros are the eigenvalues, each with its multiplicity. (Elimination of the states shows
-it: the equations of the pieces have unit diagonal, and what is left is the map from the displacements of the
-left end and of the pedestals to the forces on the right end and the pedestals.)
+with the forces g in a node's bearings along directions F u of their own, and no force beyond the right end. Every
+entry is an entire function of λ, the pedestals' resonances included, and so is the determinant; its zeros are the
+eigenvalues, each with its multiplicity. (Elimination of the states shows it: the equations of the pieces and of
+the bearings' forces have unit diagonal, and what is left is the map from the displacements of the left end and of
+the pedestals to the forces on the right end and the pedestals.)
 
 Forces are scaled by the inertia forces of the frequency at hand, so that a nearly rigid shaft on soft
 bearings loses no digits to its own stiffness.
@@ -50,7 +51,7 @@ IntArray = npt.NDArray[np.intp]
 # Relative step of the central difference that gives slopes of the entries: good to about 1e-10, which costs
 # the refined roots nothing, as their residual is exact.
 SLOPE_STEP = 1e-5
-# The least unit of force, as a part of what the stiffest bearing takes per unit displacement.
+# The least unit of force of a response, as a part of what the stiffest bearing takes per unit displacement.
 STATIC_FORCE = 1e-6
 
 
@@ -94,27 +95,27 @@ class SpatialChain:
 
     @cached_property
     def starts(self) -> IntArray:
-        """Index of every node's first unknown, (p + 1,); pedestals of a node follow its states."""
+        """Index of every node's first unknown, (p + 1,); forces in its ties and their pedestals follow its states."""
         sizes = np.full(self.bending.nodes.size, 2 * self.size)
         for tie in self.ties:
-            sizes[tie.node] += len(tie.foot)
-        return np.concatenate([[0], np.cumsum(sizes)[:-1]])
+            sizes[tie.node] += len(tie.directions) + len(tie.foot)
+        return np.concatenate([[0], np.cumsum(sizes)])
 
     @cached_property
-    def feet(self) -> tuple[IntArray, ...]:
-        """Unknowns of every tie's pedestal."""
+    def tie_unknowns(self) -> tuple[tuple[IntArray, IntArray], ...]:
+        """Unknowns of every tie's forces (m,) and of its pedestal's displacements (f,)."""
         used = self.starts + 2 * self.size
-        feet = []
+        unknowns = []
         for tie in self.ties:
-            feet.append(used[tie.node] + np.arange(len(tie.foot)))
-            used[tie.node] += len(tie.foot)
-        return tuple(feet)
+            first, m, f = int(used[tie.node]), len(tie.directions), len(tie.foot)
+            unknowns.append((first + np.arange(m), first + m + np.arange(f)))
+            used[tie.node] += m + f
+        return tuple(unknowns)
 
     @cached_property
     def pattern(self) -> BandPattern:
         """Places of the entries that `values` gives."""
-        n, starts = self.size, self.starts
-        order = int(starts[-1]) + 2 * n + sum(len(t.foot) for t in self.ties if t.node == starts.size - 1)
+        n, starts, order = self.size, self.starts[:-1], int(self.starts[-1])
         rows, columns = [], []
         # Equations stand n above the unknowns: the first node has no piece to its left.
         first = 0
@@ -131,27 +132,34 @@ class SpatialChain:
         columns += [(starts[1:, None] + across).ravel(), (starts[:, None] + n + across).ravel()]
         rows.append((starts[:, None] + across).ravel())
         columns.append(rows[-1])
-        for tie, foot in zip(self.ties, self.feet, strict=True):
+        for tie, (force, foot) in zip(self.ties, self.tie_unknowns, strict=True):
             own = starts[tie.node] + across
-            # A pedestal's equations follow the force balance of its node: n above its unknowns.
-            for row, column in ((own, own), (own, foot), (foot - n, own), (foot - n, foot)):
+            shared = force[list(tie.foot)]
+            # A tie's equations follow the force balance of its node: n above its unknowns.
+            for row, column in ((own, force), (force - n, own), (force - n, foot), (foot - n, foot)):
                 rows.append(np.repeat(row, column.size))
                 columns.append(np.tile(column, row.size))
+            rows += [force - n, foot - n]
+            columns += [force, shared]
         last = order - n + across
         rows.append(last)
         columns.append(starts[-1] + n + across)
         return BandPattern.of(np.concatenate(rows), np.concatenate(columns), order)
 
     def force_scale(self, eigenvalues: ComplexArray) -> FloatArray:
-        """Unit of forces at each λ: those of inertia, within what the bearings and the shaft have to offer."""
-        held = max((float(np.abs(tie.stiffness).max()) for tie in self.ties), default=1.0)
-        least = min(max(STATIC_FORCE * held, 1e-30), 1.0)
-        return np.asarray(np.clip(np.abs(eigenvalues) ** 2 * self.total_mass, least, 1.0))
+        """Unit of forces for roots near every λ: the inertia forces, or the shaft's own where they are less."""
+        return np.asarray(np.clip(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30, 1.0))
+
+    def response_scale(self, eigenvalues: ComplexArray) -> FloatArray:
+        """Unit of forces for a response at every λ, zero included, where bearings may carry more than inertia."""
+        held = max((float(np.abs(tie.stiffness).max(initial=0.0)) for tie in self.ties), default=1.0)
+        least = np.full(eigenvalues.size, min(max(STATIC_FORCE * held, 1e-30), 1.0))
+        return np.asarray(np.maximum(self.force_scale(eigenvalues), least))
 
     def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Entries of the equations at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
         chain, batch = self.bending, eigenvalues.size
-        parts = [
+        parts: list[npt.NDArray[np.complex128] | FloatArray] = [
             -np.moveaxis(self._transfers(block, eigenvalues, speeds, scale), 1, 0).reshape(batch, -1)
             for block in self.blocks
         ]
@@ -160,10 +168,19 @@ class SpatialChain:
         parts.append(-(self.node_terms(eigenvalues, speeds) / scale[:, None, None]).reshape(batch, -1))
         for tie in self.ties:
             bearing, ground = (matrix / scale[:, None, None] for matrix in tie.dynamic_stiffness(eigenvalues))
+            # Rows of one size, by factors that do not vary with λ: stiff directions and soft ones count alike.
+            row = 1.0 / (1.0 + np.abs(tie.stiffness).max(axis=1, initial=0.0) / scale[:, None])
+            held = row[:, :, None] * bearing
             foot = list(tie.foot)
-            parts += [-bearing.reshape(batch, -1), bearing[:, :, foot].reshape(batch, -1)]
-            whole = ground + bearing[:, foot][:, :, foot]
-            parts += [-bearing[:, foot].reshape(batch, -1), whole.reshape(batch, -1)]
+            ground_row = 1.0 / (1.0 + np.abs(tie.foot_stiffness).max(axis=1, initial=0.0) / scale[:, None])
+            parts += [
+                np.broadcast_to(-tie.frame.conj().T.ravel(), (batch, tie.frame.size)),
+                -(held @ tie.frame).reshape(batch, -1),
+                held[:, :, foot].reshape(batch, -1),
+                (ground_row[:, :, None] * ground).reshape(batch, -1),
+                row,
+                -ground_row,
+            ]
         parts.append(np.ones((batch, n)))
         return np.ascontiguousarray(np.concatenate(parts, axis=1), dtype=np.complex128)
 
@@ -207,7 +224,7 @@ class SpatialChain:
     def states(self, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Node states (b, p + 1, 2n) in scaled units of solutions (b, order) of the equations."""
         n = self.size
-        states = solutions[:, self.starts[:, None] + np.arange(2 * n)].copy()
+        states = solutions[:, self.starts[:-1, None] + np.arange(2 * n)].copy()
         states[:, :, n:] *= scale[:, None, None]
         return np.asarray(states)
 

@@ -98,7 +98,7 @@ class SpatialMotion:
         points, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
         pieces = np.repeat(np.arange(chain.element.size), GAUSS_POINTS)
         fractions = np.tile(0.5 * (points + 1.0), chain.element.size)
-        along = chain.coefficients_at(pieces, fractions)[:, chain.inertia_rows]
+        along = chain.coefficients_at(pieces, fractions)[:, 2:4]
         along *= (0.5 * chain.lengths[:, None] * weights).reshape(-1, 1)
         shares = []
         for block, states in ((1, self.forward), (-1, self.backward)):

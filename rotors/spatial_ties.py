@@ -32,27 +32,39 @@ CIRCULAR = np.array(
 ) / np.sqrt(2.0)
 # Members of the five circular coordinates by kind of block: forward, backward, axial.
 MEMBERS = {1: (0, 1), -1: (2, 3), 0: (4,)}
+# Lateral displacements among the five coordinates: Cartesian and circular.
+RADIAL = {False: (0, 1), True: (0, 2)}
 # Terms this small beside a matrix's largest come from rounding in the change of coordinates.
 NO_COUPLING = 1e-14
 
 
 @dataclass(frozen=True)
 class Tie:
-    """A bearing at a node, in circular coordinates and scaled units, over the blocks of a chain.
+    """A bearing at a node of a chain, in scaled units, along directions of its own.
+
+    Where it ties forward to backward motion, its directions are x, y and the like: circular coordinates would mix a
+    stiff direction with a soft one, and lose the soft one's digits. Directions in which it does nothing are left out.
 
     Attributes
     ----------
     node
         Where it holds the shaft.
+    directions
+        (m,): indices into x, y, z and the rotations about x and y, or into r+, β+, r−, β−, z where it is ``circular``.
+    frame
+        (m, n) complex: displacements along the directions from those of the node.
     stiffness, damping
-        (n, n) complex: force on what carries it.
+        (m, m) complex: force on what carries it.
     foot
-        Indices of those coordinates that its pedestal shares, (f,); empty on a rigid one.
+        (f,): positions in ``directions`` that its pedestal shares; empty on a rigid one.
     foot_stiffness, foot_damping, foot_mass
         (f, f) complex: of the pedestal against the ground.
     """
 
     node: int
+    directions: tuple[int, ...]
+    circular: bool
+    frame: ComplexArray
     stiffness: ComplexArray
     damping: ComplexArray
     foot: tuple[int, ...]
@@ -61,7 +73,7 @@ class Tie:
     foot_mass: ComplexArray
 
     def dynamic_stiffness(self, eigenvalues: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """K + λC of the bearing, (b, n, n), and K + λC + λ²M of its pedestal, (b, f, f), at every λ (b,)."""
+        """K + λC of the bearing, (b, m, m), and K + λC + λ²M of its pedestal, (b, f, f), at every λ (b,)."""
         at = eigenvalues[:, None, None]
         bearing = self.stiffness + at * self.damping
         return bearing, self.foot_stiffness + at * self.foot_damping + at**2 * self.foot_mass
@@ -98,24 +110,25 @@ def block_sets(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
 def make_tie(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatArray) -> Tie:
     """The tie of a bearing of constant coefficients to some blocks; ``units`` are those of their coordinates, (n,)."""
     members = [member for block in blocks for member in MEMBERS[block]]
-
-    def taken(matrix: FloatArray, rows: list[int]) -> ComplexArray:
-        return np.asarray((CIRCULAR @ matrix @ CIRCULAR.conj().T)[np.ix_(rows, rows)])
-
-    scale = np.outer(units, units)
-    foot = tuple(members.index(member) for member in (0, 2) if member in members) if bearing.pedestal else ()
-    empty = np.zeros((5, 5))
-    radial = []
-    for what in ("stiffness", "damping", "mass"):
-        whole = empty.copy()
-        if bearing.pedestal is not None:
-            given = getattr(bearing.pedestal, what)
-            whole[:2, :2] = given * np.eye(2) if what == "mass" else given
-        radial.append(taken(whole, [members[f] for f in foot]) * scale[np.ix_(foot, foot)])
-    return Tie(
-        node,
-        taken(bearing.spatial_stiffness, members) * scale,
-        taken(bearing.spatial_damping, members) * scale,
-        foot,
-        *radial,
-    )
+    circular = len(blocks) == 1
+    if circular:
+        turn, known, names = CIRCULAR, dict(zip(members, units.tolist(), strict=True)), members
+    else:
+        turn, names = np.eye(5, dtype=np.complex128), [0, 1, 2, 3, 4] if 0 in blocks else [0, 1, 3, 4]
+        known = {0: units[0], 1: units[0], 2: units[0], 3: units[1], 4: units[1]}
+    matrices = [turn @ m @ turn.conj().T for m in (bearing.spatial_stiffness, bearing.spatial_damping)]
+    busy = [k for k in names if any(m[k, names].any() or m[names, k].any() for m in matrices)]
+    scale = np.outer([known[k] for k in busy], [known[k] for k in busy])
+    stiffness, damping = (m[np.ix_(busy, busy)] * scale for m in matrices)
+    # Coordinates have one unit in both senses, so that it cancels between the two sets of directions.
+    frame = (turn @ CIRCULAR.conj().T)[np.ix_(busy, members)]
+    pedestal = bearing.pedestal
+    foot = () if pedestal is None else tuple(position for position, k in enumerate(busy) if k in RADIAL[circular])
+    ground = [np.zeros((len(foot), len(foot)), dtype=np.complex128) for _ in range(3)]
+    if pedestal is not None:
+        own = [busy[position] for position in foot]
+        for index, given in enumerate((pedestal.stiffness, pedestal.damping, pedestal.mass * np.eye(2))):
+            whole = np.zeros((5, 5))
+            whole[:2, :2] = given
+            ground[index] = (turn @ whole @ turn.conj().T)[np.ix_(own, own)] * scale[np.ix_(foot, foot)]
+    return Tie(node, tuple(busy), circular, frame, stiffness, damping, foot, *ground)

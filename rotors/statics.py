@@ -160,7 +160,7 @@ def static_deflection(
         solution, scale = _solve(chain, forces, pull)
         chains.append(chain)
         states.append(chain.states(solution, scale)[0])
-        loads += bearing_forces(chain, solution, np.zeros(1, dtype=np.complex128))
+        loads += bearing_forces(chain, solution, scale)
     return StaticDeflection(pull, tuple(b.name for b in bearings), loads[0].real, tuple(chains), tuple(states))
 
 
@@ -183,8 +183,8 @@ def require_held(rotor: Rotor, chain: SpatialChain) -> None:
         column += len(MEMBERS[block])
     whole = np.zeros((n, n), dtype=np.complex128)
     for tie in chain.ties:
-        shape = rigid[:, :, tie.node]
-        whole += shape.T @ tie.stiffness @ shape
+        shape = tie.frame @ rigid[:, :, tie.node]
+        whole += shape.conj().T @ tie.stiffness @ shape
     sizes = np.linalg.svd(whole, compute_uv=False)
     if sizes[-1] <= NOT_HELD * sizes[0] or sizes[0] == 0.0:
         raise RotorError(
@@ -194,8 +194,8 @@ def require_held(rotor: Rotor, chain: SpatialChain) -> None:
 
 def _solve(chain: SpatialChain, forces: Sequence[StaticForce], gravity: FloatArray) -> tuple[ComplexArray, FloatArray]:
     zero = np.zeros(1, dtype=np.complex128)
-    scale = chain.force_scale(zero)
-    n, units, starts = chain.size, chain.units, chain.starts
+    scale = chain.response_scale(zero)
+    n, units, starts = chain.size, chain.units, chain.starts[:-1]
     members = [member for block in chain.blocks for member in MEMBERS[block]]
     sides = np.zeros((1, chain.pattern.order), dtype=np.complex128)
     first = 0

@@ -76,8 +76,8 @@ class PieceTable:
         Parameters
         ----------
         translation, rotation
-            (b,): ω² at the mass and at the rotary inertia, real or complex; of a rod the first alone counts.
-            Without the second, both are the first.
+            (b,): ω² at the mass and at the rotary inertia, real or complex, of a size for which the pieces are
+            short enough; of a rod the first alone counts. Without the second, both are the first.
         fractions
             (k,): of every piece's length; the whole of it if not given.
 

@@ -20,6 +20,7 @@ import numpy.typing as npt
 from .bearing import Bearing
 from .harmonic import HarmonicResponse, finite_values, solve_harmonic
 from .loads import Bow, Unbalance
+from .projection import slowest
 from .rotor_lines import bending_line
 from .segment import Segment
 from .shaft import Rotor
@@ -161,7 +162,7 @@ def unbalance_response(
         straightening[:, :, 0] = own
         places = [*places, *bow.at.tolist()]
         loads = np.concatenate([loads, straightening], axis=1)
-        rolling = [bearing.at_speed(_slowest(bearing)) for bearing in bearings]
+        rolling = [bearing.at_speed(slowest(bearing)) for bearing in bearings]
         slow = solve_harmonic(rotor, rolling, bow.at.tolist(), straightening[:1], np.zeros(1), np.zeros(1))
     response = solve_harmonic(rotor, bearings, places, loads, turning, turning)
     return SynchronousResponse(
@@ -173,10 +174,6 @@ def unbalance_response(
         slow,
         shape,
     )
-
-
-def _slowest(bearing: Bearing) -> float:
-    return 0.0 if bearing.speeds is None else float(bearing.speeds[0])
 
 
 def _unloaded(part: Segment | Coupling) -> Segment | Coupling:

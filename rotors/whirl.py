@@ -89,7 +89,7 @@ class WhirlModes:
         """Whirl at positions z (m), (w, len(z)): 1 circular counter-clockwise, 0 planar, −1 circular clockwise."""
         forward, backward = (np.abs(part[:, :, 0]) ** 2 for part in self.motion.at(z))
         total = forward + backward
-        return np.divide(forward - backward, total, out=np.zeros_like(total), where=total > 0.0)
+        return np.asarray(np.divide(forward - backward, total, out=np.zeros_like(total), where=total > 0.0))
 
 
 def solve_whirl(

@@ -61,7 +61,7 @@ def is_conservative(bearings: Sequence[Bearing]) -> bool:
 
 def negative_count(chain: SpatialChain, frequencies: FloatArray, speed: Speed) -> IntArray:
     """Negative eigenvalues s(D(ω)) of the undamped dynamic stiffness at every ω (rad/s), (b,)."""
-    eigenvalues = 1j * frequencies
+    eigenvalues = (1j * frequencies).astype(np.complex128)
     # One unit of forces for all: at a frequency near zero its own would make every bearing a rigid one.
     speeds, scale = speed(eigenvalues), np.full(frequencies.size, chain.force_scale(eigenvalues).max())
     n, batch = chain.size, frequencies.size
@@ -97,12 +97,13 @@ def _node_matrices(
 
 def _reduced(tie: Tie, eigenvalues: ComplexArray) -> tuple[ComplexArray, IntArray]:
     bearing, ground = tie.dynamic_stiffness(eigenvalues)
+    turned = tie.frame.conj().T
     if not tie.foot:
-        return bearing, np.zeros(eigenvalues.size, dtype=np.intp)
+        return turned @ bearing @ tie.frame, np.zeros(eigenvalues.size, dtype=np.intp)
     foot = list(tie.foot)
     whole = ground + bearing[:, foot][:, :, foot]
     reduced = bearing - bearing[:, :, foot] @ np.linalg.solve(whole, bearing[:, foot])
-    return reduced, _negatives(whole)
+    return turned @ reduced @ tie.frame, _negatives(whole)
 
 
 def _negatives(matrices: ComplexArray) -> IntArray:

@@ -140,7 +140,7 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
 
     edges = [np.linspace(a, b, SIDE_SAMPLES)[:-1] for a, b in zip(corners, np.roll(corners, -1), strict=True)]
     points = np.concatenate([*edges, corners[:1]])
-    logs, slopes = sampled(points[:-1], SLOPE_PART * np.diff(points))
+    logs, slopes = sampled(points[:-1], np.asarray(SLOPE_PART * np.diff(points), dtype=np.complex128))
     logs, slopes = np.append(logs, logs[0]), np.append(slopes, slopes[0])
     samples = 2 * (points.size - 1)
     # The slope along one edge serves the next one too: it is the derivative of an analytic function.
@@ -155,7 +155,7 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
             continued = logs[0] + np.concatenate([[0.0], np.cumsum(change)])
             return Winding(count, samples, points, continued, slopes)
         middles = 0.5 * (points[unsafe] + points[unsafe + 1])
-        new_logs, new_slopes = sampled(middles, 0.5 * SLOPE_PART * h[unsafe])
+        new_logs, new_slopes = sampled(middles, np.asarray(0.5 * SLOPE_PART * h[unsafe], dtype=np.complex128))
         samples += 2 * unsafe.size
         points = np.insert(points, unsafe + 1, middles)
         logs, slopes = np.insert(logs, unsafe + 1, new_logs), np.insert(slopes, unsafe + 1, new_slopes)

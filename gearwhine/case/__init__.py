@@ -7,16 +7,20 @@ What the room offers:
 - :class:`Case` -- the tables of the file as frozen models, attributes named as the keys: :class:`Material`,
   :class:`Housing` (:class:`Box`, :class:`CadFile`, :class:`MeshFile`, :class:`Seat`, :class:`Support`,
   :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, :class:`Sensor`), :class:`Rotor`, :class:`Bearing`,
-  :class:`Gear`, :class:`GearPair`, :class:`Operation`, :class:`Transient`, :class:`Sweep`, :class:`Measured`.
+  :class:`Gear`, :class:`GearPair`, :class:`Operation`, :class:`Transient`, :class:`Sweep`, :class:`RotorAnalysis`,
+  :class:`Measured`.
 - :func:`dump_case` -- the resolved case as TOML that loads back equal.
 - :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques` -- what follows
   without solving anything.
+- :func:`whirl_speeds`, :func:`campbell_speeds`, :func:`response_speeds` -- at which speeds a rotor is looked at.
 - :func:`require` -- the error for what a command needs and a case lacks.
 - :func:`bundled_cases` -- the examples that ship with the package.
 
 Inside, lengths are in m, masses in kg, forces in N, angles in rad, speeds in rad/s; frequencies are in Hz.
 """
 
+from gearwhine.case.analysed_speeds import campbell_speeds, response_speeds, table_range, whirl_speeds
+from gearwhine.case.analysis import Probe, RotorAnalysis, StiffnessMap, UnbalanceResponse
 from gearwhine.case.attachments import (
     AxialDashpots,
     AxialSprings,
@@ -59,20 +63,26 @@ from gearwhine.case.motion import (
 from gearwhine.case.patches import Patch
 from gearwhine.case.problems import CaseError, Problem, did_you_mean
 from gearwhine.case.require import require
+from gearwhine.case.rotors import (
+    Bow,
+    Coupling,
+    CouplingSegment,
+    Disc,
+    Rotor,
+    RoundDisc,
+    Segment,
+    Unbalance,
+)
 from gearwhine.case.running import Measured, Operation, Output, SpeedRange, Sweep, Transient
 from gearwhine.case.shafts import (
     Bearing,
-    Bow,
-    Disc,
     MatrixDamping,
     MatrixStiffness,
+    Pedestal,
     RadialDamping,
     RadialStiffness,
     Rolling,
     RollingStiffness,
-    Rotor,
-    Segment,
-    Unbalance,
 )
 from gearwhine.case.train import shaft_of
 
@@ -88,6 +98,8 @@ __all__ = [
     "CadFile",
     "Case",
     "CaseError",
+    "Coupling",
+    "CouplingSegment",
     "Dashpots",
     "Disc",
     "Feet",
@@ -108,12 +120,16 @@ __all__ = [
     "Operation",
     "Output",
     "Patch",
+    "Pedestal",
+    "Probe",
     "Problem",
     "RadialDamping",
     "RadialStiffness",
     "Rolling",
     "RollingStiffness",
     "Rotor",
+    "RotorAnalysis",
+    "RoundDisc",
     "Seat",
     "Segment",
     "Sensor",
@@ -121,17 +137,20 @@ __all__ = [
     "SixSprings",
     "SpeedRange",
     "Springs",
+    "StiffnessMap",
     "Support",
     "Sweep",
     "TipRelief",
     "ToothStiffness",
     "Transient",
     "Unbalance",
+    "UnbalanceResponse",
     "Walls",
     "amounts",
     "applied_torques",
     "bundled_case",
     "bundled_cases",
+    "campbell_speeds",
     "case_document",
     "did_you_mean",
     "dump_case",
@@ -141,7 +160,10 @@ __all__ = [
     "pair_torques",
     "parse_case",
     "require",
+    "response_speeds",
     "rotor_speeds",
     "shaft_of",
     "speed_ratios",
+    "table_range",
+    "whirl_speeds",
 ]

@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from gearwhine.case.draft import Draft
-from gearwhine.case.problems import UNSAID, Finding
+from gearwhine.case.problems import Finding
 
 _FORMS = {"matrix": "5x5 matrix", "rolling": "rolling geometry"}
 
 
 def check_later(draft: Draft) -> Iterator[Finding]:
-    """Yield bows and bearings by matrix or rolling geometry, sound or not."""
-    for index, rotor in draft.raw_entries("rotor"):
-        if rotor.get("bow"):
-            yield Finding(("rotor", index, "bow"), "no points: residual bow comes in a later version", UNSAID)
+    """Yield bearings by matrix or rolling geometry, sound or not."""
     for index, bearing in draft.raw_entries("bearing"):
         for key, forms in (("stiffness", ("matrix", "rolling")), ("damping", ("matrix",))):
             given = bearing.get(key)

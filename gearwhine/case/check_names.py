@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from gearwhine.case.draft import Draft
 from gearwhine.case.problems import NOTHING, Finding, Location, did_you_mean, key_of, look_up, show_value
 
+_PROBES = ("rotor_analysis", "unbalance_response", "probes")
 _NAMED = (
     ("rotor",),
     ("bearing",),
@@ -21,6 +22,7 @@ _NAMED = (
     ("housing", "mass"),
     ("housing", "sensor"),
     ("housing", "region"),
+    _PROBES,
 )
 
 
@@ -42,6 +44,8 @@ def check_names(draft: Draft) -> Iterator[Finding]:
     for index, pair in draft.raw_entries("gear_pair"):
         for key in ("driver", "driven"):
             yield from _check_reference(pair, ("gear_pair", index, key), "gear", gears)
+    for index, probe in draft.raw_entries(*_PROBES):
+        yield from _check_reference(probe, (*_PROBES, index, "rotor"), "rotor", rotors)
     for index, output in draft.raw_entries("operation", "output"):
         shafts = rotors or gears
         yield from _check_reference(output, ("operation", "output", index, "rotor"), "rotor", shafts)
@@ -61,10 +65,10 @@ def _check_materials(draft: Draft) -> Iterator[Finding]:
     for kind in ("rotor", "gear"):
         for index, entry in draft.raw_entries(kind):
             yield from _check_reference(entry, (kind, index, "material"), "material", materials)
-            segments = entry.get("segments")
-            for place, segment in enumerate(segments if isinstance(segments, (list, tuple)) else ()):
-                location = (kind, index, "segments", place, "material")
-                yield from _check_reference(segment, location, "material", materials)
+            for part in ("segments", "discs"):
+                pieces = entry.get(part)
+                for place, piece in enumerate(pieces if isinstance(pieces, (list, tuple)) else ()):
+                    yield from _check_reference(piece, (kind, index, part, place, "material"), "material", materials)
 
 
 def _check_reference(entry: object, location: Location, kind: str, names: Iterable[str]) -> Iterator[Finding]:

@@ -30,6 +30,8 @@ def check_running(draft: Draft) -> Iterator[Finding]:
         yield Finding((), "at least one of [housing], [[rotor]] and [[gear_pair]]", UNSAID)
     if "transient" in document and "operation" not in document:
         yield Finding(("operation",), "a speed to run the [transient] at", NOTHING)
+    if "rotor_analysis" in document and not document.get("rotor"):
+        yield Finding(("rotor",), "at least one [[rotor]] for the [rotor_analysis]", NOTHING)
     if operation is None:
         return
     turning = any(key in document for key in ("rotor", "gear"))

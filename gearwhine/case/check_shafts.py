@@ -1,4 +1,4 @@
-"""Checks of rotors and bearings: stations on the shaft, and shafts through their seats."""
+"""Checks of rotors, and of bearings and probes on them: stations on the shaft, and shafts through their seats."""
 
 from __future__ import annotations
 
@@ -8,10 +8,14 @@ from collections.abc import Iterator
 from gearwhine.case.draft import Draft
 from gearwhine.case.housing import Seat
 from gearwhine.case.problems import Finding, Location
-from gearwhine.case.shafts import Bearing, Rotor
+from gearwhine.case.rotors import Rotor
+from gearwhine.case.shafts import Bearing
 
 LARGEST_OFFSET = 1e-6
 """How far a rotor's axis may pass its seat's centre [m]."""
+
+NEAREST_POINTS = 1e-6
+"""Distance between two points of a bow below which they are one, as a part of the rotor's length."""
 
 
 def millimetres(length: float) -> str:
@@ -20,7 +24,7 @@ def millimetres(length: float) -> str:
 
 
 def check_shafts(draft: Draft) -> Iterator[Finding]:
-    """Yield stations beyond the ends of their rotor, and bearings away from their seats."""
+    """Yield stations beyond the ends of their rotor, bow points in one place, and bearings away from their seats."""
     for index, rotor in draft.rotors:
         stations = {
             "discs": [disc.at for disc in rotor.discs],
@@ -30,6 +34,12 @@ def check_shafts(draft: Draft) -> Iterator[Finding]:
         for kind, places in stations.items():
             for place, at in enumerate(places):
                 yield from check_station(rotor, at, ("rotor", index, kind, place, "at"))
+        yield from _check_bow(index, rotor)
+    for place, probe in enumerate(draft.analysis.unbalance_response.probes if draft.analysis is not None else ()):
+        watched = draft.rotor(probe.rotor)
+        if watched is not None:
+            location = ("rotor_analysis", "unbalance_response", "probes", place, "at")
+            yield from check_station(watched, probe.at, location)
     for index, bearing in draft.bearings:
         supported = draft.rotor(bearing.rotor)
         if supported is None:
@@ -48,6 +58,15 @@ def check_station(rotor: Rotor, at: float, location: Location) -> Iterator[Findi
     """Yield a finding where a station lies beyond the right end of its rotor."""
     if at > rotor.length * (1.0 + 1e-9):
         yield Finding(location, f'a station on rotor "{rotor.name}", which is {millimetres(rotor.length)} long')
+
+
+def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
+    """Yield points of a bow where another one stands already."""
+    for place, point in enumerate(rotor.bow):
+        if any(abs(point.at - other.at) <= NEAREST_POINTS * rotor.length for other in rotor.bow[:place]):
+            yield Finding(
+                ("rotor", index, "bow", place, "at"), "a station of its own; another point of the bow is here"
+            )
 
 
 def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:

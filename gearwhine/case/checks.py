@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from gearwhine.case.check_bearings import check_bearings
 from gearwhine.case.check_gears import check_gears
 from gearwhine.case.check_housing import check_box, check_housing_form
 from gearwhine.case.check_later import check_later
@@ -22,6 +23,7 @@ def check(draft: Draft) -> Iterator[Finding]:
     yield from check_housing_form(draft)
     yield from check_box(draft)
     yield from check_shafts(draft)
+    yield from check_bearings(draft)
     yield from check_gears(draft)
     yield from check_running(draft)
     yield from check_provenance(draft)
@@ -43,6 +45,9 @@ def warnings_of(case: Case) -> tuple[str, ...]:
     if case.operation is not None and case.operation.torque > 0.0 and not case.gear_pair and not case.operation.output:
         found.append("operation.torque has nothing to work against: there are no gear pairs and no outputs")
     for rotor in case.rotor:
-        if not any(bearing.rotor == rotor.name for bearing in case.bearing):
+        if rotor.saved is not None:
+            found += [f'rotor "{rotor.name}": {remark}' for remark in rotor.saved.warnings]
+        held = rotor.saved is not None and rotor.saved.bearings
+        if not held and not any(bearing.rotor == rotor.name for bearing in case.bearing):
             found.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
     return tuple(found)

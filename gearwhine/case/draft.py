@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from gearwhine.case.analysis import RotorAnalysis
 from gearwhine.case.attachments import Joint, LumpedMass, Mount
 from gearwhine.case.box import Box
 from gearwhine.case.fields import Table
@@ -15,8 +16,9 @@ from gearwhine.case.gears import Gear, GearPair
 from gearwhine.case.housing import Seat, Sensor, Support
 from gearwhine.case.model import Case
 from gearwhine.case.problems import look_up
-from gearwhine.case.running import Operation, Transient
-from gearwhine.case.shafts import Bearing, Rotor
+from gearwhine.case.rotors import Rotor
+from gearwhine.case.running import Operation, Sweep, Transient
+from gearwhine.case.shafts import Bearing
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 Entries = tuple[tuple[int, AnyTable], ...]
@@ -33,7 +35,7 @@ class Draft:
         The nested tables and lists of the case file.
     broken
         Top-level tables in which something could not be read; what they lack proves nothing.
-    box, operation, transient
+    box, operation, transient, sweep, analysis
         None where there is none or it could not be read.
     """
 
@@ -52,6 +54,8 @@ class Draft:
     gear_pairs: Entries[GearPair]
     operation: Operation | None
     transient: Transient | None
+    sweep: Sweep | None
+    analysis: RotorAnalysis | None
 
     def rotor(self, name: str | None) -> Rotor | None:
         """Return the rotor of this name, if it could be read."""
@@ -92,6 +96,8 @@ def draft_of_case(case: Case, document: Mapping[str, Any]) -> Draft:
         gear_pairs=tuple(enumerate(case.gear_pair)),
         operation=case.operation,
         transient=case.transient,
+        sweep=case.sweep,
+        analysis=case.rotor_analysis,
     )
 
 
@@ -122,6 +128,8 @@ def draft_of_document(document: Mapping[str, Any], broken: frozenset[str], conte
         gear_pairs=entries(GearPair, "gear_pair"),
         operation=table(Operation, "operation"),
         transient=table(Transient, "transient"),
+        sweep=table(Sweep, "sweep"),
+        analysis=table(RotorAnalysis, "rotor_analysis"),
     )
 
 

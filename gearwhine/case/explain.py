@@ -10,6 +10,7 @@ from pydantic_core import ErrorDetails
 
 from gearwhine.case.fields import Quantity, Table, Whole
 from gearwhine.case.model import Case
+from gearwhine.case.over_speed import OverSpeed
 from gearwhine.case.problems import NOTHING, Finding, Location, did_you_mean
 
 _PLAIN_WORDS = {
@@ -59,6 +60,8 @@ def _unknown_key(key: str, tables: tuple[type[Table], ...]) -> str:
     if any(key in table.later for table in tables):
         return "no such key yet: it comes in a later version"
     known = sorted({info.alias or name for table in tables for name, info in table.model_fields.items()})
+    if key in known:  # of another of the forms that this table may have
+        return "no such key beside those here: it belongs to another form of this table"
     return "no such key" + (did_you_mean(key, known) or f" (known here: {', '.join(known)})")
 
 
@@ -90,7 +93,7 @@ def _describe(meaning: tuple[Any, ...], location: Location) -> str:
     """Say what kind of value belongs where there is none."""
     inside_list = bool(location) and isinstance(location[-1], int)
     for part in meaning:
-        if isinstance(part, (Quantity, Whole)):
+        if isinstance(part, (Quantity, OverSpeed, Whole)):
             return part.expected
         if part is tuple and not inside_list:
             return "a list"

@@ -82,6 +82,14 @@ class Quantity:
             raise wrong(f"a length of at most {LARGEST_LENGTH:g} m{hint_of_millimetres(value)}")
         return number
 
+    def validate_at(self, value: object, *at: str | int) -> float:
+        """Return a quantity that stands in a list, or raise the error with its place there."""
+        try:
+            return self.validate(value)
+        except PydanticCustomError as error:
+            context = error.context or {}
+            raise wrong(context["expected"], *at, note=context["note"]) from None
+
     @property
     def expected(self) -> str:
         """What a user should write here, in words."""

@@ -72,7 +72,7 @@ def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> 
         With everything that is wrong.
     """
     path, content = _read(source)
-    written = _parse(content, path.name)
+    written = _as_case(_parse(content, path.name), path)
     document, sources = apply_overrides(written, overrides)
     document = without_changed(document, written, sources.keys())
     case = parse_case(document, folder=path.parent, source=path.name, sources=sources)
@@ -173,6 +173,13 @@ def _parse(content: bytes, source: str) -> dict[str, Any]:
     except ValueError as error:
         place, message = _place_of(str(error), text)
         raise CaseError([Problem(place, UNSAID, f"TOML ({message})", source=source)]) from None
+
+
+def _as_case(document: dict[str, Any], path: Path) -> dict[str, Any]:
+    """The document, or for a rotor saved by ROSS a case of that rotor alone."""
+    if "ross_version" not in document:
+        return document
+    return {"title": f"{path.name}, a rotor saved by ROSS", "rotor": [{"name": path.stem, "file": path.name}]}
 
 
 def _check_depth(document: object, source: str) -> None:

@@ -7,11 +7,13 @@ from typing import Annotated, Protocol, TypeVar
 
 from pydantic import Field
 
+from gearwhine.case.analysis import RotorAnalysis
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table
 from gearwhine.case.gears import Gear, GearPair
 from gearwhine.case.housing import Housing, Material, Seat
+from gearwhine.case.rotors import Rotor
 from gearwhine.case.running import Measured, Operation, Sweep, Transient
-from gearwhine.case.shafts import Bearing, Rotor
+from gearwhine.case.shafts import Bearing
 
 Text = Annotated[str, Field(max_length=10_000)]
 
@@ -44,7 +46,7 @@ class Case(Table):
         Text for people.
     material
         Materials by name.
-    housing, operation, transient, sweep, measured
+    housing, operation, transient, sweep, rotor_analysis, measured
         None where the case has no such table.
     rotor, bearing, gear, gear_pair
         Empty where the case has none.
@@ -63,6 +65,7 @@ class Case(Table):
     operation: Operation | None = None
     transient: Transient | None = None
     sweep: Sweep | None = None
+    rotor_analysis: RotorAnalysis | None = None
     measured: Measured | None = None
     provenance: dict[str, Text] = Field(default={}, max_length=MOST_ENTRIES)
 

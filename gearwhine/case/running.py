@@ -89,22 +89,31 @@ def _range_or_list(value: Any) -> str:
     return "~table" if isinstance(value, (dict, Table)) else "~list"
 
 
+Speeds = Annotated[
+    Annotated[SpeedRange, Tag("~table")]
+    | Annotated[tuple[SpeedFromZero, ...], Tag("~list"), Field(min_length=1, max_length=MOST_ENTRIES)],
+    Discriminator(_range_or_list),
+]
+"""Speeds as a range or as a list [rad/s]."""
+
+
+def listed(speeds: SpeedRange | tuple[float, ...]) -> tuple[float, ...]:
+    """Return every speed of a range or list [rad/s], in order."""
+    if not isinstance(speeds, SpeedRange):
+        return speeds
+    count = math.floor((speeds.to - speeds.start) / speeds.step + 1e-9) + 1
+    return tuple(speeds.start + index * speeds.step for index in range(count))
+
+
 class Sweep(Table):
     """`[sweep]`: the speeds to go through, as a range or a list."""
 
-    speed: Annotated[
-        Annotated[SpeedRange, Tag("~table")]
-        | Annotated[tuple[SpeedFromZero, ...], Tag("~list"), Field(min_length=1, max_length=MOST_ENTRIES)],
-        Discriminator(_range_or_list),
-    ]
+    speed: Speeds
 
     @property
     def speeds(self) -> tuple[float, ...]:
         """Every speed of the sweep [rad/s], in order."""
-        if not isinstance(self.speed, SpeedRange):
-            return self.speed
-        count = math.floor((self.speed.to - self.speed.start) / self.speed.step + 1e-9) + 1
-        return tuple(self.speed.start + index * self.speed.step for index in range(count))
+        return listed(self.speed)
 
 
 class Measured(Table):

@@ -1,22 +1,18 @@
-"""The `[[rotor]]` and `[[bearing]]` entries of a case. Attributes are named as the keys and are in SI."""
+"""The `[[bearing]]` entries of a case. Attributes are named as the keys and are in SI."""
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
-from pydantic_core import PydanticCustomError
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
     MOST_ENTRIES,
-    Angle,
     Damping,
     DampingFromZero,
-    DampingRatio,
     Force,
-    Imbalance,
-    Inertia,
     Length,
     LengthFromZero,
     Mass,
@@ -24,94 +20,64 @@ from gearwhine.case.fields import (
     PositiveLength,
     PositiveStiffness,
     Quantity,
+    SpeedFromZero,
     Stiffness,
     Table,
     Whole,
     wrong,
 )
+from gearwhine.case.over_speed import Coefficient, OverSpeed
 from gearwhine.case.units import Dimension
-
-
-class Segment(Table):
-    """A cylindrical piece of shaft [m]; its own material where it differs from the rotor's."""
-
-    length: PositiveLength
-    diameter: PositiveLength
-    bore: LengthFromZero = 0.0
-    material: Name | None = None
-
-    @model_validator(mode="after")
-    def _hollow(self) -> Segment:
-        if self.bore >= self.diameter:
-            raise wrong(f"a bore smaller than the diameter of {self.diameter:g} m", "bore")
-        return self
-
-
-class Disc(Table):
-    """A rigid disc at a station [m from the rotor's left end]: mass [kg] and inertias [kg m²]."""
-
-    at: LengthFromZero
-    mass: Mass
-    polar_inertia: Inertia = 0.0
-    diametral_inertia: Inertia = 0.0
-
-
-class Unbalance(Table):
-    """An unbalance at a station: mass times eccentricity [kg m] and its angle from x at rest [rad]."""
-
-    at: LengthFromZero
-    moment: Imbalance
-    phase: Angle = 0.0
-
-
-class Bow(Table):
-    """A point of the residual bow: run-out of the unloaded centre line [m] and its angle from x [rad]."""
-
-    at: LengthFromZero
-    amplitude: LengthFromZero
-    phase: Angle = 0.0
-
-
-class Rotor(Table):
-    """`[[rotor]]`: a shaft along z at `axis` (x, y), its left end at z = `start`, all in m.
-
-    `damping_ratio` is that of the shaft's own modes; `shear_coefficient` names a formula.
-    """
-
-    name: Name
-    axis: tuple[Length, Length] = (0.0, 0.0)
-    start: Length = 0.0
-    material: Name
-    mass: Literal["distributed", "lumped"] = "distributed"
-    damping_ratio: DampingRatio = 0.005
-    shear_coefficient: Literal["cowper", "hutchinson"] = "cowper"
-    segments: tuple[Segment, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
-    discs: tuple[Disc, ...] = Field(default=(), max_length=MOST_ENTRIES)
-    unbalance: tuple[Unbalance, ...] = Field(default=(), max_length=MOST_ENTRIES)
-    bow: tuple[Bow, ...] = Field(default=(), max_length=MOST_ENTRIES)
-
-    @property
-    def length(self) -> float:
-        """Length of the shaft [m]."""
-        return sum(segment.length for segment in self.segments)
 
 
 class RadialStiffness(Table):
     """A 2×2 radial stiffness [N/m]: force against the shaft's motion relative to its seat."""
+
+    xx: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS, above=0.0))]
+    yy: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS, above=0.0))]
+    xy: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS))] = 0.0
+    yx: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS))] = 0.0
+
+
+class RadialDamping(Table):
+    """A 2×2 radial damping [N s/m]."""
+
+    xx: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING, at_least=0.0))] = 0.0
+    yy: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING, at_least=0.0))] = 0.0
+    xy: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING))] = 0.0
+    yx: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING))] = 0.0
+
+
+class PedestalStiffness(Table):
+    """A 2×2 stiffness to the ground [N/m]."""
 
     xx: PositiveStiffness
     yy: PositiveStiffness
     xy: Stiffness = 0.0
     yx: Stiffness = 0.0
 
+    @model_validator(mode="after")
+    def _holds(self) -> PedestalStiffness:
+        if self.xy * self.yx >= self.xx * self.yy:
+            raise wrong(f"a product with yx below xx times yy, {self.xx * self.yy:g} N²/m², so that it holds", "xy")
+        return self
 
-class RadialDamping(Table):
-    """A 2×2 radial damping [N s/m]."""
+
+class PedestalDamping(Table):
+    """A 2×2 damping to the ground [N s/m]."""
 
     xx: DampingFromZero = 0.0
     yy: DampingFromZero = 0.0
     xy: Damping = 0.0
     yx: Damping = 0.0
+
+
+class Pedestal(Table):
+    """What a bearing on the ground stands on: a mass [kg] on springs and dashpots, free to move in x and y."""
+
+    mass: Mass = 0.0
+    stiffness: PedestalStiffness
+    damping: PedestalDamping = PedestalDamping()
 
 
 MatrixRows = tuple[tuple[float, ...], ...]
@@ -126,18 +92,9 @@ def _read_matrix(value: Any, kinds: tuple[Dimension, Dimension, Dimension]) -> M
     if len(rows) != 5 or any(not isinstance(row, (list, tuple)) or len(row) != 5 for row in rows):
         raise wrong("five rows of five, over x, y, z and the tilts about x and y")
     return tuple(
-        tuple(_read_entry(entry, i, j, kinds[(i >= 3) + (j >= 3)]) for j, entry in enumerate(row))
+        tuple(Quantity(kinds[(i >= 3) + (j >= 3)]).validate_at(entry, i, j) for j, entry in enumerate(row))
         for i, row in enumerate(value)
     )
-
-
-def _read_entry(value: object, row: int, column: int, dimension: Dimension) -> float:
-    """Validate one entry of a matrix, naming its place in the error."""
-    try:
-        return Quantity(dimension).validate(value)
-    except PydanticCustomError as error:
-        context = error.context or {}
-        raise wrong(context["expected"], row, column, note=context["note"]) from None
 
 
 class MatrixStiffness(Table):
@@ -205,24 +162,18 @@ def _damping_form(value: Any) -> str:
     return "~matrix" if _stiffness_form(value) == "~matrix" else "~radial"
 
 
-Matrix2 = tuple[tuple[float, float], tuple[float, float]]
-
-
-def _radial(given: RadialStiffness | RadialDamping | MatrixStiffness | MatrixDamping) -> Matrix2:
-    """Return the 2×2 block over x, y."""
-    if isinstance(given, (RadialStiffness, RadialDamping)):
-        return (given.xx, given.xy), (given.yx, given.yy)
-    (xx, xy, *_), (yx, yy, *_) = given.matrix[:2]
-    return (xx, xy), (yx, yy)
-
-
 class Bearing(Table):
-    """`[[bearing]]`: between a rotor at a station [m from its left end] and a seat, or "ground"."""
+    """`[[bearing]]`: between a rotor at a station [m from its left end] and a seat, or "ground".
+
+    Stiffness and damping may be tables over `speeds` of rotation [rad/s], in whichever sense.
+    """
 
     name: Name
     rotor: Name
     at: LengthFromZero
     seat: Name = "ground"
+    speeds: tuple[SpeedFromZero, ...] | None = Field(default=None, min_length=2, max_length=MOST_ENTRIES)
+    pedestal: Pedestal | None = None
     stiffness: Annotated[
         Annotated[RadialStiffness, Tag("~radial")]
         | Annotated[MatrixStiffness, Tag("~matrix")]
@@ -234,15 +185,12 @@ class Bearing(Table):
         Discriminator(lambda value: "~radial" if _stiffness_form(value) == "~rolling" else _stiffness_form(value)),
     ] = RadialDamping()
 
-    @property
-    def radial_stiffness(self) -> Matrix2 | None:
-        """The 2×2 stiffness over x, y [N/m], of a 5×5 its first block; None where it follows from a load."""
-        return None if isinstance(self.stiffness, RollingStiffness) else _radial(self.stiffness)
-
-    @property
-    def radial_damping(self) -> Matrix2:
-        """The 2×2 damping over x, y [N s/m], of a 5×5 its first block."""
-        return _radial(self.damping)
+    @model_validator(mode="after")
+    def _ascending(self) -> Bearing:
+        for place, (lower, upper) in enumerate(pairwise(self.speeds or ()), start=1):
+            if upper <= lower:
+                raise wrong("a speed above the one before it", "speeds", place)
+        return self
 
     @property
     def grounded(self) -> bool:

@@ -73,6 +73,7 @@ COUPLED_DAMPING = Dimension("a damping force per angular rate", "N*s/rad", "1 N*
 TILT_DAMPING = Dimension("a tilting damping", "N*m*s/rad", "0.1 N*m*s/rad")
 FORCE = Dimension("a force", "N", "1 kN")
 TORQUE = Dimension("a torque", "N*m", "71.77 N*m")
+ACCELERATION = Dimension("an acceleration", "m/s^2", "9.81 m/s^2")
 ANGLE = Dimension("an angle", "rad", "24 deg", display="deg")
 FREQUENCY = Dimension("a frequency", "Hz", "3.2 kHz")
 SPEED = Dimension("an angular speed", "rad/s", "5500 rpm", display="rpm")
@@ -80,7 +81,7 @@ RATIO = Dimension("a plain number", "", "0.01")
 
 _DIMENSIONS = (
     *(LENGTH, MASS, DENSITY, STRESS, INERTIA, IMBALANCE, STIFFNESS, COUPLED_STIFFNESS, DAMPING, TILT_DAMPING),
-    *(TORQUE, ANGLE, FREQUENCY, SPEED),
+    *(TORQUE, ACCELERATION, ANGLE, FREQUENCY, SPEED),
 )
 
 

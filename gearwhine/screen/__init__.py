@@ -2,7 +2,8 @@
 
 from gearwhine.screen.case import show_check, show_examples, show_mesh
 from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail
-from gearwhine.screen.machine import show_gears, show_rotors, show_run, show_system
+from gearwhine.screen.machine import show_gears, show_run, show_system
+from gearwhine.screen.rotors import show_rotors
 
 __all__ = [
     "show_check",

@@ -26,8 +26,8 @@ def _parts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if "housing" in document:
         yield from _named("housing", _housing_lines(document["housing"]))
     yield from _named("rotors", [_rotor_line(rotor) for rotor in document.get("rotors", ())])
-    bearings = [f"{one['name']}: {one['rotor']} on {one['seat']}" for one in document.get("bearings", ())]
-    yield from _named("bearings", bearings)
+    yield from _named("bearings", [_bearing_line(bearing) for bearing in document.get("bearings", ())])
+    yield from _named("analysis", [line for one in document.get("rotor_analysis", ()) for line in _analysis_lines(one)])
     yield from _named("gear pairs", [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair)])
     if "operation" in document:
         operation = document["operation"]
@@ -103,7 +103,25 @@ def _bore_line(bore: dict[str, Any]) -> str:
 
 def _rotor_line(rotor: dict[str, Any]) -> str:
     speed = "" if rotor["speed_rpm"] is None else f", {rotor['speed_rpm']:+.6g} rpm"
-    return f"{rotor['name']}: {1e3 * rotor['length_m']:g} mm, {rotor['mass_kg']:.4g} kg, {rotor['mass_model']}{speed}"
+    length = f"{1e3 * rotor['length_m']:g} mm"
+    parts = f" with {counted(rotor['couplings'], 'coupling')}" if rotor["couplings"] else ""
+    return f"{rotor['name']}: {length}{parts}, {rotor['mass_kg']:.4g} kg, {rotor['mass_model']}{speed}"
+
+
+def _bearing_line(bearing: dict[str, Any]) -> str:
+    line = f"{bearing['name']}: {bearing['rotor']} on {bearing['seat']}"
+    if bearing["pedestal_kg"] is not None:
+        line += f", by a pedestal of {bearing['pedestal_kg']:g} kg"
+    if bearing["table_rpm"] is not None:
+        line += ", tables over {:.6g} to {:.6g} rpm".format(*bearing["table_rpm"])
+    return line
+
+
+def _analysis_lines(analysis: dict[str, Any]) -> Iterator[str]:
+    for key, what in (("campbell_rpm", "Campbell diagram"), ("response_rpm", "response to unbalance and bow")):
+        if analysis[key] is not None:
+            low, high, count = analysis[key]
+            yield f"{analysis['rotor']}: {what} at {counted(count, 'speed')}, {low:.6g} to {high:.6g} rpm"
 
 
 def _pair_lines(pair: dict[str, Any]) -> list[str]:

@@ -1,4 +1,4 @@
-"""Rotors, gears, the coupled system, and the main job that runs them all."""
+"""Gears, the coupled system, and the main job that runs everything."""
 
 from typing import Any
 
@@ -10,8 +10,6 @@ from rich.text import Text
 from gearwhine.screen.console import counted, open_console, percent, show_origin, show_written
 from gearwhine.screen.health import static_error_line
 from gearwhine.screen.housing import comparison_table, modes_line
-
-_PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 
 
 def show_run(document: dict[str, Any]) -> None:
@@ -49,37 +47,6 @@ def _sensors(console: Console, document: dict[str, Any]) -> None:
         )
         table.add_row(sensor["name"], f"{sensor['rms_m_per_s2']:.3g}", lines)
     console.print(table)
-
-
-def show_rotors(document: dict[str, Any]) -> None:
-    """Each rotor's frequencies."""
-    console = open_console()
-    for rotor in document["rotors"]:
-        console.print(Text.assemble((rotor["name"], "bold"), f"  {rotor['mass_kg']:.3f} kg"))
-        rows = [("lateral at rest [Hz]", rotor["lateral_hz"]), ("torsional [Hz]", rotor["torsional_hz"])]
-        rows += [(f"whirl at {whirl['speed_rpm']:.0f} rpm [Hz]", whirl["frequency_hz"]) for whirl in rotor["whirl"]]
-        for name, values in rows:
-            console.print(f"  {name:26s} {'  '.join(f'{value:.5g}' for value in values[:10])}")
-        console.print(_critical_speeds(rotor))
-        console.print(f"  {_rotor_proof(rotor['certificate'])}")
-    show_written(console, document)
-
-
-def _rotor_proof(certificate: dict[str, Any]) -> str:
-    if certificate["expected"] is None:
-        return "no count: the bearings' stiffness couples the planes"
-    found, counted = certificate["found"], certificate["expected"]
-    return f"complete below {certificate['limit_hz']:.5g} Hz: {found} found, {counted} counted"
-
-
-def _critical_speeds(rotor: dict[str, Any]) -> str:
-    """Critical speeds on one line; those of backward whirl carry a mark, since unbalance hardly excites them."""
-    speeds = rotor["critical_speeds_rpm"][:10]
-    directions = rotor.get("critical_directions") or [0.0] * len(speeds)
-    backward = [direction < -_PLANAR for direction in directions[: len(speeds)]]
-    marked = [f"{speed:.5g}{' (b)' if back else ''}" for speed, back in zip(speeds, backward, strict=True)]
-    note = "   (b): backward whirl" if any(backward) else ""
-    return f"  {'critical speeds [rpm]':26s} {'  '.join(marked)}{note}"
 
 
 def show_gears(document: dict[str, Any]) -> None:

@@ -1,12 +1,28 @@
 """The parts of a case as the rooms' own inputs: gears, rotors, bearings."""
 
 import numpy as np
+import numpy.typing as npt
 
 import coupling.gears as gear_room
 import rotors as rotor_room
-from gearwhine.case import Case, CaseError, Problem, RadialDamping, RadialStiffness, RollingStiffness
+from gearwhine.case import (
+    Case,
+    CaseError,
+    CouplingSegment,
+    Disc,
+    Pedestal,
+    Problem,
+    RadialDamping,
+    RadialStiffness,
+    RollingStiffness,
+    RoundDisc,
+    Segment,
+)
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import Rotor as GivenRotor
+from gearwhine.case.shafts import PedestalDamping, PedestalStiffness
+
+FloatArray = npt.NDArray[np.float64]
 
 
 def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
@@ -52,31 +68,69 @@ def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
 
 def build_rotor(case: Case, given: GivenRotor) -> rotor_room.Rotor:
     """A rotor of the case, its gears on it as discs."""
-    discs = [rotor_room.Disc(disc.at, disc.mass, disc.polar_inertia, disc.diametral_inertia) for disc in given.discs]
+    discs = build_discs(case, given)
     for gear in case.gear:
         if gear.rotor == given.name and gear.at is not None:
             mass, polar, diametral = gear_inertia(case, gear)
             if mass or polar or diametral:
                 discs.append(rotor_room.Disc(gear.at, mass, polar, diametral))
-    segments = []
-    for segment in given.segments:
-        steel = case.material[segment.material or given.material]
-        material = rotor_room.ShaftMaterial(steel.youngs_modulus, steel.shear_modulus, steel.density)
-        segments.append(
-            rotor_room.Segment(segment.length, segment.diameter, segment.bore, material, given.shear_coefficient)
-        )
+    if given.saved is not None:
+        of_file = given.saved.rotor
+        return rotor_room.Rotor(given.name, of_file.segments, [*of_file.discs, *discs], given.mass)
+    segments = [_segment(case, given, segment) for segment in given.segments]
     return rotor_room.Rotor(given.name, segments, discs, given.mass)
 
 
+def _segment(
+    case: Case, rotor: GivenRotor, given: Segment | CouplingSegment
+) -> rotor_room.Segment | rotor_room.Coupling:
+    if isinstance(given, CouplingSegment):
+        return rotor_room.Coupling(given.length, **given.coupling.model_dump())
+    steel = case.material[_material(given.material, rotor)]
+    return rotor_room.Segment(
+        length=given.length,
+        outer_diameter=given.diameter,
+        inner_diameter=given.bore,
+        material=rotor_room.ShaftMaterial(steel.youngs_modulus, steel.shear_modulus, steel.density),
+        shear_coefficient=given.shear_coefficient or rotor.shear_coefficient,
+        right_outer_diameter=given.right_diameter,
+        right_inner_diameter=given.right_bore,
+        axial_force=rotor.axial_force if given.axial_force is None else given.axial_force,
+    )
+
+
+def _material(own: str | None, rotor: GivenRotor) -> str:
+    """The name of a part's material: its own, or the rotor's."""
+    name = own or rotor.material
+    assert name is not None
+    return name
+
+
+def build_discs(case: Case, given: GivenRotor) -> list[rotor_room.Disc]:
+    """The discs of a rotor without its gears, in the order of the file."""
+    return [_disc(case, given, disc) for disc in given.discs]
+
+
+def _disc(case: Case, rotor: GivenRotor, given: Disc | RoundDisc) -> rotor_room.Disc:
+    if isinstance(given, Disc):
+        return rotor_room.Disc(given.at, given.mass, given.polar_inertia, given.diametral_inertia)
+    density = given.density or case.material[_material(given.material, rotor)].density
+    return rotor_room.Disc.from_dimensions(given.at, given.width, given.diameter, given.bore, density)
+
+
 def build_bearings(case: Case, rotor: str) -> tuple[rotor_room.Bearing, ...]:
-    """The bearings of one rotor, in the order of the file.
+    """The bearings of one rotor, in the order of the file; first those of the rotor's own file.
+
+    A bearing of the case takes the place of one of the same name in the rotor's file.
 
     Raises
     ------
     CaseError
         For stiffness given in a form that comes in a later version.
     """
-    bearings = []
+    saved = case.rotor_named(rotor).saved
+    replaced = {given.name for given in case.bearing if given.rotor == rotor}
+    bearings = [bearing for bearing in (saved.bearings if saved else ()) if bearing.name not in replaced]
     for index, given in enumerate(case.bearing):
         if given.rotor != rotor:
             continue
@@ -89,11 +143,23 @@ def build_bearings(case: Case, rotor: str) -> tuple[rotor_room.Bearing, ...]:
             rotor_room.Bearing(
                 given.name,
                 given.at,
-                np.array([[stiffness.xx, stiffness.xy], [stiffness.yx, stiffness.yy]]),
-                np.array([[damping.xx, damping.xy], [damping.yx, damping.yy]]),
+                _radial(stiffness),
+                _radial(damping),
+                None if given.speeds is None else np.array(given.speeds),
+                None if given.pedestal is None else _pedestal(given.pedestal),
             )
         )
     return tuple(bearings)
+
+
+def _radial(given: RadialStiffness | RadialDamping | PedestalStiffness | PedestalDamping) -> FloatArray:
+    """The matrix over x, y, (2, 2), or with lists in it one for each speed, (s, 2, 2)."""
+    entries = np.broadcast_arrays(given.xx, given.xy, given.yx, given.yy)
+    return np.stack(entries, axis=-1).reshape(*entries[0].shape, 2, 2)
+
+
+def _pedestal(given: Pedestal) -> rotor_room.Pedestal:
+    return rotor_room.Pedestal(_radial(given.stiffness), _radial(given.damping), given.mass)
 
 
 def _gear_material(case: Case, given: GivenGear) -> str | None:

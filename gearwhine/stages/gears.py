@@ -12,7 +12,7 @@ from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, pair_torq
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.build import build_gear, build_rotor, gear_inertia
+from gearwhine.stages.build import build_discs, build_gear, build_rotor, gear_inertia
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -182,7 +182,8 @@ def _inertia_at(case: Case, given: GivenGear) -> float:
     inertia = gear_inertia(case, given)[1]
     if given.rotor is not None and given.at is not None:
         rotor = case.rotor_named(given.rotor)
-        inertia += sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - given.at) < 1e-6 * rotor.length)
+        discs = build_discs(case, rotor)
+        inertia += sum(disc.polar_inertia for disc in discs if abs(disc.at - given.at) < 1e-6 * rotor.length)
         if inertia == 0.0:
             inertia = build_rotor(case, rotor).polar_inertia
     return inertia if inertia > 0.0 else build_gear(case, given).polar_inertia

@@ -20,7 +20,6 @@ _HERTZ = 2.0 * np.pi
 # what lies above answers statically, through attachment vectors at bearings and gears.
 _LATERAL_LIMIT_HZ = 8000.0
 _LIMIT_FACTOR = 2.5
-_FEWEST_TORSIONAL = 4
 
 
 def build_machine(
@@ -36,24 +35,31 @@ def build_machine(
     require(case, "rotor", "operation", command="system")
     assert case.operation is not None
     speeds = rotor_speeds(case)
-    _check_bows(case)
+    require_no_bow(case)
     components = []
     bearings: list[room.MountedBearing] = []
     for given in case.rotor:
         progress(f"modes of rotor {given.name}")
         rotor, held = build_rotor(case, given), build_bearings(case, given.name)
+        limit, count = _kept(case, given.name)
         gears_at = [gear.at for gear in case.gear if gear.rotor == given.name and gear.at is not None]
         components.append(
             room.rotor_component(
                 given.name,
-                _lateral_basis(case, rotor, held, gears_at),
-                _torsional_basis(case, rotor),
+                rotor_room.modal_rotor(
+                    rotor,
+                    [bearing.at_speed(speeds[given.name]) for bearing in held],
+                    frequency_limit=limit,
+                    count=count,
+                    gears_at=gears_at,
+                ),
                 start=given.start,
                 damping_ratio=given.damping_ratio,
             )
         )
-        seats = {entry.name: None if entry.grounded else entry.seat for entry in case.bearing}
-        bearings += [room.MountedBearing(bearing, given.name, seats[bearing.name]) for bearing in held]
+        # Those of the rotor's own file stand on the ground.
+        seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
+        bearings += [room.MountedBearing(bearing, given.name, seats.get(bearing.name)) for bearing in held]
     return room.couple(
         components,
         None if housing is None else _housing_component(case, housing),
@@ -81,6 +87,7 @@ def solve_machine(
     ``folder`` and ``fresh`` are those of :func:`gearwhine.stages.housing.solve_housing`.
     """
     require(case, "rotor", "operation", command="system")
+    require_no_bow(case)
     pairs = solve_gears(case, progress) if case.gear_pair else ()
     housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     return housing, pairs, build_machine(case, housing, pairs, progress)
@@ -115,27 +122,15 @@ def system_document(
     }
 
 
-def _lateral_basis(
-    case: Case, rotor: rotor_room.Rotor, bearings: tuple[rotor_room.Bearing, ...], gears_at: list[float]
-) -> rotor_room.LateralModes:
-    supports = [bearing.mean_support for bearing in bearings]
-    limit = _basis_limit(case)
-    modes = rotor_room.solve_lateral_modes(rotor, supports, frequency_limit=_HERTZ * limit)
-    if modes.count < 4:
-        modes = rotor_room.solve_lateral_modes(rotor, supports)
-    if rotor.mass_model == "lumped":
-        return modes
-    return rotor_room.attach_loads(modes, forces_at=[bearing.at for bearing in bearings] + gears_at)
-
-
-def _torsional_basis(case: Case, rotor: rotor_room.Rotor) -> rotor_room.TorsionalModes:
-    modes = rotor_room.solve_torsional_modes(rotor, frequency_limit=_HERTZ * _basis_limit(case))
-    return modes if modes.count >= _FEWEST_TORSIONAL else rotor_room.solve_torsional_modes(rotor)
-
-
-def _basis_limit(case: Case) -> float:
+def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
+    """What is kept of a rotor: a frequency limit [rad/s], or a number of modes of each kind."""
+    given = case.rotor_named(rotor)
+    if given.modes is not None:
+        return None, given.modes
+    if given.frequency_limit is not None:
+        return _HERTZ * given.frequency_limit, None
     limit = (case.housing.frequency_limit or 0.0) if case.housing else 0.0
-    return max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit)
+    return _HERTZ * max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit), None
 
 
 def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingComponent:
@@ -160,8 +155,14 @@ def _mesh(case: Case, pair: SolvedPair) -> room.GearMesh:
     return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, pair.given.backlash)
 
 
-def _check_bows(case: Case) -> None:
+def require_no_bow(case: Case) -> None:
+    """Raise for residual bows, which so far only the analysis of a rotor by itself knows.
+
+    Raises
+    ------
+    CaseError
+    """
     for index, rotor in enumerate(case.rotor):
         if rotor.bow:
-            expected = "nothing: residual bow comes in a later version"
+            expected = "no bow for the coupled system, which takes it in a later version; 'gearwhine rotors' does now"
             raise CaseError([Problem(f"rotor[{index}].bow", "a bow", expected, label=f'rotor "{rotor.name}"')])

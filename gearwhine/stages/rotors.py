@@ -1,20 +1,16 @@
-"""The rotors of a case: modes at rest, whirl at speed, critical speeds."""
+"""The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, weight, unbalance and bow."""
 
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
+from pathlib import Path
 
 import rotors as room
-from gearwhine.case import Case, require, rotor_speeds
+from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
+from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.build import build_bearings, build_rotor
+from gearwhine.stages.rotor_loads import SolvedResponse, SolvedWeight, solve_response, solve_weight
 
-FloatArray = npt.NDArray[np.float64]
-
-_HERTZ = 2.0 * np.pi
-_RPM = 60.0 / (2.0 * np.pi)
+Bearings = tuple[room.Bearing, ...]
 
 
 @dataclass(frozen=True)
@@ -25,23 +21,47 @@ class SolvedRotor:
     ----------
     rotor : rotors.Rotor
         With its gears as discs.
-    bearings : tuple of rotors.Bearing
+    bearings, resting : tuple of rotors.Bearing
+        As given, with their tables over speed; and as they hold the rotor at rest.
+    rest_speed : float or None
+        The speed of their tables that stands for rest, the lowest that all of them hold [rad/s]; None without tables.
     rest : rotors.RestFrequencies
     lateral : rotors.LateralModes
         In one plane at averaged support stiffness.
     torsional : rotors.TorsionalModes
     whirl : tuple of rotors.WhirlModes
         At the speed of operation, then at those of the sweep.
+    campbell : rotors.Campbell or None
+        None without speeds.
+    crossings : tuple of rotors.Crossing or str
+        Damped critical speeds within the Campbell diagram; or why they are not known.
     critical : rotors.CriticalSpeeds
+        Undamped; with tables, within the speeds that they hold.
+    operation : float or None
+        Speed of operation [rad/s].
+    weight : SolvedWeight or str
+        Deflection under gravity at operation, else at rest; or why there is none.
+    response : SolvedResponse or None
+        To unbalance and bow; None where there is neither.
+    stiffness_map : rotors.CriticalSpeedMap or None
+        Where the case asks for it.
     """
 
     rotor: room.Rotor
-    bearings: tuple[room.Bearing, ...]
+    bearings: Bearings
+    resting: Bearings
+    rest_speed: float | None
     rest: room.RestFrequencies
     lateral: room.LateralModes
     torsional: room.TorsionalModes
     whirl: tuple[room.WhirlModes, ...]
+    campbell: room.Campbell | None
+    crossings: tuple[room.Crossing, ...] | str
     critical: room.CriticalSpeeds
+    operation: float | None
+    weight: SolvedWeight | str
+    response: SolvedResponse | None
+    stiffness_map: room.CriticalSpeedMap | None
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
@@ -53,71 +73,56 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         Where the case has no rotors, or one cannot be solved as it stands.
     """
     require(case, "rotor", command="rotors")
+    analysis = case.rotor_analysis or RotorAnalysis()
     solved = []
     for given in case.rotor:
         progress(f"rotor {given.name}")
         rotor, bearings = build_rotor(case, given), build_bearings(case, given.name)
-        basis = room.whirl_basis(rotor, bearings)
+        lowest, _ = table_range(case, given.name)
+        resting = tuple(bearing.at_speed(lowest) for bearing in bearings)
+        speeds = whirl_speeds(case, given.name)
+        operation = speeds[0] if case.operation is not None else None
+        reference = lowest if operation is None else operation
+        weight = solve_weight(analysis, rotor, bearings, reference)
+        progress(f"rotor {given.name}: whirl over speed")
+        diagram = campbell_speeds(case, given.name)
+        campbell = room.campbell(rotor, bearings, diagram, count=analysis.modes) if diagram else None
+        held = not isinstance(weight, str)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
                 bearings=bearings,
-                rest=room.rest_frequencies(rotor, bearings),
-                lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in bearings]),
+                resting=resting,
+                rest_speed=lowest if any(bearing.speeds is not None for bearing in bearings) else None,
+                rest=room.rest_frequencies(rotor, resting, count=analysis.modes),
+                lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
                 torsional=room.solve_torsional_modes(rotor),
-                whirl=tuple(
-                    room.solve_whirl(rotor, bearings, speed, basis=basis) for speed in _speeds(case, given.name)
-                ),
-                critical=room.critical_speeds(rotor, bearings, basis=basis),
+                whirl=tuple(room.solve_whirl(rotor, bearings, speed, count=analysis.modes) for speed in speeds),
+                campbell=campbell,
+                crossings=() if campbell is None else _crossings(campbell),
+                critical=room.critical_speeds(rotor, bearings, count=analysis.modes),
+                operation=operation,
+                weight=weight,
+                response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
+                stiffness_map=None
+                if analysis.stiffness_map is None or not bearings
+                else room.critical_speed_map(rotor, bearings, analysis.stiffness_map.stiffnesses),
             )
         )
     return tuple(solved)
 
 
-def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
-    """The rotors as the command's JSON."""
-    return {
-        "rotors": [
-            {
-                "name": one.rotor.name,
-                "mass_kg": one.rotor.mass,
-                "lateral_hz": (one.rest.frequencies / _HERTZ).tolist(),
-                "torsional_hz": (one.torsional.frequencies / _HERTZ).tolist(),
-                "whirl": [
-                    {
-                        "speed_rpm": whirl.speed * _RPM,
-                        "frequency_hz": (whirl.frequencies / _HERTZ).tolist(),
-                        "damping_ratio": whirl.damping_ratios.tolist(),
-                        "direction": whirl.direction.tolist(),
-                    }
-                    for whirl in one.whirl
-                ],
-                "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
-                "critical_directions": one.critical.direction.round(6).tolist(),
-                "damping": "of the bearings; the shaft's own acts in the coupled system",
-                "certificate": _certificate(one),
-            }
-            for one in solved
-        ]
-    }
+def _crossings(campbell: room.Campbell) -> tuple[room.Crossing, ...] | str:
+    """Damped critical speeds; a diagram of few speeds may not separate them, which is no reason to show nothing."""
+    try:
+        return campbell.crossings()
+    except room.IncompleteModesError as error:
+        return str(error)
 
 
-def _certificate(one: SolvedRotor) -> dict[str, Any]:
-    """The count's proof; for stiffness that couples the planes there is no count, and nothing is claimed."""
-    certificate = one.rest.certificate
-    coupled = any(bearing.has_cross_stiffness for bearing in one.bearings)
-    return {
-        "limit_hz": None if coupled else certificate.limit / _HERTZ,
-        "expected": None if coupled else certificate.expected,
-        "found": len(one.rest.frequencies),
-        "complete": None if coupled else certificate.complete,
-        "max_residual": certificate.max_residual,
-    }
-
-
-def _speeds(case: Case, rotor: str) -> list[float]:
-    """Speeds of one rotor at operation and through the sweep [rad/s]."""
-    speeds = [] if case.operation is None else [rotor_speeds(case).get(rotor, 0.0)]
-    for speed in case.sweep.speeds if case.sweep else ():
-        speeds.append(rotor_speeds(case, speed).get(rotor, 0.0))
-    return speeds
+def write_ross_files(folder: Path, solved: tuple[SolvedRotor, ...]) -> tuple[str, ...]:
+    """Write every rotor as ``<name>.ross.toml``, and return what ROSS has no place for."""
+    remarks: list[str] = []
+    for one, stem in zip(solved, file_stems([one.rotor.name for one in solved]), strict=True):
+        remarks += room.write_ross(folder / f"{stem}.ross.toml", one.rotor, one.bearings)
+    return tuple(remarks)

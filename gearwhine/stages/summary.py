@@ -4,7 +4,20 @@ from typing import Any
 
 import numpy as np
 
-from gearwhine.case import Case, Joint, Mount, amounts, applied_torques, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.case import (
+    Bearing,
+    Case,
+    CouplingSegment,
+    Joint,
+    Mount,
+    amounts,
+    applied_torques,
+    campbell_speeds,
+    mesh_frequencies,
+    pair_torques,
+    response_speeds,
+    rotor_speeds,
+)
 from gearwhine.progress import Progress, silent
 from gearwhine.stages import mesh_health
 from gearwhine.stages.build import build_rotor
@@ -22,10 +35,9 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
         document["warnings"] = warnings
     if case.rotor:
         document["rotors"] = _rotors(case)
-    if case.bearing:
-        document["bearings"] = [
-            {"name": bearing.name, "rotor": bearing.rotor, "seat": bearing.seat} for bearing in case.bearing
-        ]
+        document["rotor_analysis"] = _analysis(case)
+    if bearings := _bearings(case):
+        document["bearings"] = bearings
     if case.gear_pair:
         document["gear_pairs"] = _pairs(case)
     if case.operation is not None:
@@ -91,6 +103,17 @@ def _bushing(given: Mount | Joint) -> dict[str, Any]:
     return document
 
 
+def _bearings(case: Case) -> list[dict[str, Any]]:
+    """Every bearing and where it stands, those of the rotors' own files on the ground."""
+    own = {(bearing.rotor, bearing.name) for bearing in case.bearing}
+    return [_bearing(bearing) for bearing in case.bearing] + [
+        {"name": bearing.name, "rotor": rotor.name, "seat": "ground"}
+        for rotor in case.rotor
+        for bearing in (rotor.saved.bearings if rotor.saved else ())
+        if (rotor.name, bearing.name) not in own
+    ]
+
+
 def _rotors(case: Case) -> list[dict[str, Any]]:
     speeds = rotor_speeds(case) if case.operation is not None else {}
     rows = []
@@ -101,12 +124,37 @@ def _rotors(case: Case) -> list[dict[str, Any]]:
             {
                 "name": given.name,
                 "length_m": rotor.length,
+                "segments": len(rotor.segments),
+                "couplings": sum(isinstance(segment, CouplingSegment) for segment in given.segments),
                 "mass_kg": rotor.mass,
                 "polar_inertia_kg_m2": rotor.polar_inertia,
                 "speed_rpm": None if speed is None else speed * _RPM,
                 "mass_model": given.mass,
             }
         )
+    return rows
+
+
+def _bearing(bearing: Bearing) -> dict[str, Any]:
+    table = None if bearing.speeds is None else [speed * _RPM for speed in (bearing.speeds[0], bearing.speeds[-1])]
+    return {
+        "name": bearing.name,
+        "rotor": bearing.rotor,
+        "seat": bearing.seat,
+        "table_rpm": table,
+        "pedestal_kg": None if bearing.pedestal is None else bearing.pedestal.mass,
+    }
+
+
+def _analysis(case: Case) -> list[dict[str, Any]]:
+    """At which speeds `gearwhine rotors` looks at each rotor, where it does."""
+    rows = []
+    for rotor in case.rotor:
+        row: dict[str, Any] = {"rotor": rotor.name}
+        response = response_speeds(case, rotor.name) if rotor.unbalance or rotor.bow else ()
+        for key, speeds in (("campbell_rpm", campbell_speeds(case, rotor.name)), ("response_rpm", response)):
+            row[key] = [min(speeds) * _RPM, max(speeds) * _RPM, len(speeds)] if speeds else None
+        rows.append(row)
     return rows
 
 

@@ -25,6 +25,7 @@ from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_cont
 from rotors import (
     Bearing,
     Disc,
+    ModalRotor,
     Rotor,
     Segment,
     ShaftMaterial,
@@ -56,7 +57,7 @@ def free_rotor(name: str, disc: float) -> RotorComponent:
     at = GEAR_AT[name]
     shaft = Rotor(name, [Segment(0.1, 0.04, 0.0, STEEL)] * 3, [Disc(at, disc, 0.004 * disc, 0.0025 * disc)])
     lateral = attach_loads(solve_lateral_modes(shaft, count=5), forces_at=[*BEARINGS_AT, at])
-    return rotor_component(name, lateral, solve_torsional_modes(shaft, count=4), start=START[name])
+    return rotor_component(name, ModalRotor(lateral, solve_torsional_modes(shaft, count=4)), start=START[name])
 
 
 ROTORS = (free_rotor("input", 2.0), free_rotor("output", 5.0))
@@ -119,7 +120,7 @@ def rigid_motion(parts: Machine, translation: FloatArray, rotation: FloatArray) 
     axes = {gear.rotor: gear.axis for gear in (parts.meshes[0].driver, parts.meshes[0].driven)}
     for rotor in parts.rotors:
         axis = axes[rotor.name]
-        places = np.linspace(0.0, LENGTH, 7)
+        places = np.linspace(0.0, LENGTH, 15)
         rows, wanted = [], []
         for at in places:
             moved = translation + np.cross(rotation, [*axis, rotor.start + at])
@@ -171,8 +172,8 @@ def rolling(parts: Machine) -> FloatArray:
     rows[1, driver.size : driver.size + driven.size] = driven.rotation(GEAR_AT["output"])
     q = np.zeros(parts.system.size)
     # The rigid rotation of each is its first torsional mode.
-    first = 2 * driver.lateral.count
-    second = driver.size + 2 * driven.lateral.count
+    first = 2 * driver.modal.lateral.count
+    second = driver.size + 2 * driven.modal.lateral.count
     q[first], q[second] = 1.0 / rows[0, first], -1.0 / PAIR.ratio / rows[1, second]
     return q
 
@@ -275,7 +276,7 @@ def test_gap_in_between() -> None:
     np.testing.assert_allclose(q, 0.0, atol=1e-20)
     # Turning the driver alone through the gap closes the back flanks and opens the drive flanks by as much.
     driver = ROTORS[0]
-    first = 2 * driver.lateral.count
+    first = 2 * driver.modal.lateral.count
     q[first] = -BACKLASH / PAIR.driver.base_radius / driver.rotation(GEAR_AT["input"])[first]
     np.testing.assert_allclose(compression(parts, q), [-BACKLASH, 0.0], atol=1e-18)
 

@@ -68,7 +68,7 @@ def component(modes: ModeSet, ports: tuple[sparse.csr_array, sparse.csr_array]) 
 
 def on_bearing(housing: HousingComponent) -> CoupledSystem:
     """The housing's seat on a bearing to the ground, pulled."""
-    directions = np.array([housing.seat_direction("seat", axis, 0.0) for axis in (0, 1)]).T
+    directions = housing.seat_motions("seat", 0.0)[:2].T
     bearing = LinearConnector("bearing", directions, BEARING, np.zeros((2, 2)))
     return CoupledSystem((housing,), (0.0,), linear=(bearing,), load=directions @ PULL)
 
@@ -141,7 +141,7 @@ def with_shaft(housing: HousingComponent, turning: float) -> CoupledSystem:
     """A rigid shaft of 3 kg in the bearing, pulled around by a turning force."""
     mass, zeros = 3.0, np.zeros((2, 2))
     shaft = Component("shaft", ("rotor",) * 2, zeros, zeros, zeros)
-    seat = np.array([housing.seat_direction("seat", axis, 0.0) for axis in (0, 1)]).T
+    seat = housing.seat_motions("seat", 0.0)[:2].T
     directions = np.vstack([np.eye(2) / np.sqrt(mass), -seat])
     bearing = LinearConnector("bearing", directions, BEARING, 2e-6 * BEARING)
     load = HarmonicLoad(turning, np.concatenate([[100.0, -100.0j], np.zeros(housing.size)]) / np.sqrt(mass))

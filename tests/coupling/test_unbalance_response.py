@@ -19,6 +19,7 @@ from coupling import (
 from rotors import (
     Bearing,
     Disc,
+    ModalRotor,
     Rotor,
     Segment,
     ShaftMaterial,
@@ -50,7 +51,7 @@ def machine(stiffness: FloatArray, damping: FloatArray, speed: float, *, count: 
     lateral = solve_lateral_modes(SHAFT, supports, count=count)
     if not free:
         lateral = attach_loads(lateral, forces_at=[0.0, LENGTH], moments_at=DISCS_AT)
-    rotor = rotor_component("shaft", lateral, solve_torsional_modes(SHAFT, count=1), start=0.0)
+    rotor = rotor_component("shaft", ModalRotor(lateral, solve_torsional_modes(SHAFT, count=1)), start=0.0)
     mounted = [] if free else [MountedBearing(bearing, "shaft", None) for bearing in bearings]
     return couple([rotor], None, speeds={"shaft": speed}, bearings=mounted, unbalances=[UNBALANCE])
 
@@ -159,7 +160,7 @@ def rigid_on_cross_coupling(cross: float) -> Machine:
     shaft = Rotor("stiff", [Segment(0.1, 0.1, 0.0, STEEL)] * 2)
     bearings = [Bearing(name, at, stiffness, np.zeros((2, 2))) for name, at in (("left", 0.0), ("right", 0.2))]
     lateral = solve_lateral_modes(shaft, [bearing.mean_support for bearing in bearings], count=2)
-    rotor = rotor_component("stiff", lateral, solve_torsional_modes(shaft, count=1), start=0.0)
+    rotor = rotor_component("stiff", ModalRotor(lateral, solve_torsional_modes(shaft, count=1)), start=0.0)
     mounted = [MountedBearing(bearing, "stiff", None) for bearing in bearings]
     return couple([rotor], None, speeds={"stiff": 0.0}, bearings=mounted)
 

@@ -82,7 +82,6 @@ ONE_WRONG = {
     "unknown table": ("gaer", [], "gaer", "did you mean 'gear'?"),
     "later key": ("gear.0.fault", {}, "gear[0].fault", "comes in a later version"),
     "rim": ("gear.0.rim", "5 mm", "gear[0].rim", "comes in a later version"),
-    "bow": ("rotor.0.bow", [{"at": 0, "amplitude": "1 um"}], "rotor[0].bow", "residual bow comes in a later version"),
     "stiffness by matrix": (
         "bearing.0.stiffness",
         {"matrix": [[1.0] * 5] * 5},

@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearwhine.case import Bearing, Case, CaseError, bundled_cases, dump_case, load_case, parse_case
+from gearwhine.case import Bearing, Case, CaseError, MatrixDamping, bundled_cases, dump_case, load_case, parse_case
 
-EXAMPLES = ("friswell-rotor", "gear-62-62", "small-gearbox", "spur-pair", "steel-box")
+EXAMPLES = ("friswell-rotor", "gear-62-62", "overhung-fan", "small-gearbox", "spur-pair", "steel-box")
 
 
 def document_of(name: str) -> dict[str, Any]:
@@ -152,7 +152,8 @@ def test_forms_for_later_versions_are_read_and_written_already() -> None:
     rows = [[1e5 * (row == column) for column in range(5)] for row in range(5)]
     given = {"name": "b", "rotor": "r", "at": "3 mm", "stiffness": {"matrix": rows}, "damping": {"matrix": rows}}
     bearing = Bearing.model_validate(given)
-    assert bearing.radial_damping == ((1e5, 0.0), (0.0, 1e5))
+    assert isinstance(bearing.damping, MatrixDamping)
+    assert bearing.damping.matrix[3] == (0.0, 0.0, 0.0, 1e5, 0.0)
     assert Bearing.model_validate(bearing.model_dump(mode="json", exclude_none=True)) == bearing
 
 
@@ -195,20 +196,6 @@ def test_values_are_in_si_inside() -> None:
         case.rotor_named("none")
 
 
-FRISWELL_DISCS = [(0.280, 0.5), (0.350, 1.0)]
-
-
-def test_friswell_discs_are_those_of_the_book() -> None:
-    """Steel discs 70 mm thick on a 50 mm bore, density 7810: mass and inertias by the solid's formulas."""
-    discs = load_case("friswell-rotor").case.rotor[0].discs
-    for disc, (outer, at) in zip(discs, FRISWELL_DISCS, strict=True):
-        mass = 7810 * math.pi / 4 * (outer**2 - 0.05**2) * 0.07
-        assert disc.at == at
-        assert disc.mass == pytest.approx(mass, rel=1e-6)
-        assert disc.polar_inertia == pytest.approx(mass * (outer**2 + 0.05**2) / 8, rel=1e-6)
-        assert disc.diametral_inertia == pytest.approx(mass * ((outer**2 + 0.05**2) / 16 + 0.07**2 / 12), rel=1e-6)
-
-
 def test_a_damping_table_is_sorted_by_frequency() -> None:
     document = document_of("steel-box")
     document["housing"]["damping_ratio"] = {"3 kHz": 0.02, "658 Hz": 0.01}
@@ -223,16 +210,3 @@ def test_what_is_likely_not_meant_is_a_warning() -> None:
     from gearwhine.case.checks import warnings_of
 
     assert any("no [[housing.sensor]]" in warning for warning in warnings_of(parse_case(document)))
-
-
-def test_the_radial_part_of_a_bearing_is_given_for_either_form() -> None:
-    document = document_of("spur-pair")
-    document["bearing"][0]["stiffness"] = {"xx": 1.0, "xy": 2.0, "yx": 3.0, "yy": 4.0}
-    document["bearing"][1]["stiffness"] = {"matrix": [[10.0 * row + column for column in range(5)] for row in range(5)]}
-    rolling = {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}
-    document["bearing"][2]["stiffness"] = {"rolling": rolling}
-    bearings = [Bearing.model_validate(bearing) for bearing in document["bearing"]]
-    assert bearings[0].radial_stiffness == ((1.0, 2.0), (3.0, 4.0))
-    assert bearings[1].radial_stiffness == ((0.0, 1.0), (10.0, 11.0))
-    assert bearings[2].radial_stiffness is None
-    assert bearings[0].radial_damping == ((500.0, 0.0), (0.0, 500.0))

@@ -19,12 +19,6 @@ def _said(show: Callable[[Document], None], document: Document) -> str:
     return out.getvalue()
 
 
-def _rotors(**more: Any) -> Document:
-    certificate = {"limit_hz": 500.0, "found": 2, "expected": 2}
-    rotor = {"name": "shaft [left]", "mass_kg": 2.0, "lateral_hz": [10.0], "torsional_hz": [0.0], "whirl": []}
-    return {"rotors": [rotor | {"critical_speeds_rpm": [600.0, 640.0, 900.0], "certificate": certificate} | more]}
-
-
 def _run(loss: float = 0.0) -> Document:
     pair = {"driver": "a", "driven": "b", "mean_force_n": 100.0, "peak_force_n": 150.0, "contact_loss_fraction": loss}
     sensor = {"name": "top", "rms_m_per_s2": 1.5, "peaks": [{"frequency_hz": 100.0, "amplitude_m_per_s2": 2.0}]}
@@ -60,9 +54,7 @@ def _comparison(gap: float | None) -> Document:
 
 
 def test_brackets_are_printed_as_they_stand() -> None:
-    rotors, run = _said(screen.show_rotors, _rotors()), _said(screen.show_run, _run())
-    for unit in ("lateral at rest [Hz]", "torsional [Hz]", "critical speeds [rpm]", "shaft [left]"):
-        assert unit in rotors
+    run = _said(screen.show_run, _run())
     assert "rms [m/s²]" in run
     assert "case [bold] :warning: [/nothing]" in run
     assert "measured [Hz]" in _said(screen.show_comparison, _comparison(0.5))
@@ -105,12 +97,6 @@ def test_a_gap_to_nothing_is_said_in_words(gap: float | None) -> None:
     assert "no other mode in the band" in out
     assert "coin toss" not in out
     assert "ln 0.050 (below 0.1 the choice is a coin toss)" in _said(screen.show_comparison, _comparison(0.05))
-
-
-def test_backward_critical_speeds_are_marked() -> None:
-    out = _said(screen.show_rotors, _rotors(critical_directions=[-1.0, 1.0, -0.0]))
-    assert "600 (b)  640  900   (b): backward whirl" in out
-    assert "(b)" not in _said(screen.show_rotors, _rotors())
 
 
 def test_the_hunting_period_has_its_own_line() -> None:

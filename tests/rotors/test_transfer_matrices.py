@@ -1,4 +1,4 @@
-"""The transfer matrix of a piece against scipy's matrix exponential of its differential equation, and its integration."""
+"""Transfer matrices of pieces against scipy's matrix exponential and its integration of their equations."""
 
 import math
 

@@ -1,7 +1,6 @@
 """Uniform shafts against closed-form Timoshenko and rod solutions, however they are cut into segments."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -42,40 +41,47 @@ def pinned_closed_form(length: float, diameter: float, bore: float, count: int) 
     return np.sqrt(np.sort(roots)[:count])
 
 
-def free_closed_form(length: float, diameter: float, bore: float, count: int) -> np.ndarray:
-    """Free-free roots below the cut-off, symmetric and antisymmetric about the middle, by brentq.
+# What vanishes at an end: of x, β, moment, shear.
+ENDS = {"free": (2, 3), "pinned": (0, 2), "clamped": (0, 1)}
+HELD = {"free": None, "pinned": (math.inf, 0.0), "clamped": (math.inf, math.inf)}
 
-    With λ² = p², −q² the roots of the wave equation, symmetric fields are combinations of cosh pz and
-    cos qz, whose rotations follow from the force balance κGA (x'' − β') = −ω² ρA x; both moment and shear
-    vanish at z = L/2.
+
+def determinants(omega: np.ndarray, left: str, right: str, length: float, diameter: float, bore: float) -> np.ndarray:
+    """Determinant of the end conditions over x = e^{p(z−L)}, e^{−pz}, cos qz, sin qz, or cos pz, sin pz beyond cut-off.
+
+    For e^{λz} the force balance κGA (x'' − β') = −ω² ρA x gives β = (λ² + s)/λ e^{λz}, s = ω² ρA/κGA.
     """
     bending, shear, mass, rotary = section(length, diameter, bore)
-    end = length / 2
+    s, d = omega**2 * mass / shear, omega**2 * rotary / bending
+    root = np.sqrt((s - d) ** 2 / 4 + omega**2 * mass / bending)
+    matrix = np.empty((omega.size, 4, 4))
+    first_square, second_square = root - (s + d) / 2, -root - (s + d) / 2
+    waves = ((first_square, 1), (first_square, -1), (second_square, 1), (second_square, -1))
+    for column, (square, sign) in enumerate(waves):
+        wave = np.sqrt(square.astype(complex)) * sign
+        growing = (square > 0) & (sign > 0)
+        for first, (end, place) in ((0, (left, 0.0)), (2, (right, length))):
+            field = np.exp(wave * (place - np.where(growing, length, 0.0)))
+            beta = (square + s) / wave
+            values = np.stack([np.ones_like(wave), beta, beta * wave, wave - beta]) * field
+            # Of a conjugate pair of waves the real part and the imaginary part; e^{−pz} is taken with the sign that
+            # keeps the determinant's through the cut-off, where the pair is degenerate.
+            rows = np.where(square > 0, sign * values.real, values.real if sign > 0 else values.imag)
+            matrix[:, first : first + 2, column] = rows[list(ENDS[end])].T
+    size = np.abs(matrix).max(axis=2, keepdims=True)
+    return np.linalg.det(matrix / size)
 
-    def determinant(omega: float, odd: bool) -> float:
-        s, d = omega**2 * mass / shear, omega**2 * rotary / bending
-        root = math.sqrt((s - d) ** 2 / 4 + omega**2 * mass / bending)
-        p, q = math.sqrt(root - (s + d) / 2), math.sqrt(root + (s + d) / 2)
-        # β of x = cosh pz is a sinh pz with a p = p² + s; of x = cos qz it is b sin qz with b q = s − q².
-        a, b = (p**2 + s) / p, (s - q**2) / q
-        grow = math.tanh(p * end)
-        if not odd:
-            moment = (a * p, b * q * math.cos(q * end))
-            force = ((p - a) * grow, (-q - b) * math.sin(q * end))
-        else:
-            moment = (a * p * grow, b * q * math.sin(q * end))
-            force = (p - a, (q + b) * math.cos(q * end))
-        return moment[0] * force[1] - moment[1] * force[0]
 
-    cut_off = math.sqrt(shear / rotary)
-    grid = np.geomspace(1e-3, 0.999, 4000) * cut_off
-    found = []
-    for odd in (False, True):
-        values = [determinant(omega, odd) for omega in grid]
-        for (left, f_left), (right, f_right) in pairwise(zip(grid, values, strict=True)):
-            if f_left * f_right < 0:
-                found.append(brentq(determinant, left, right, args=(odd,), xtol=1e-13 * left, rtol=1e-14))
-    return np.sort(found)[:count]
+def closed_form(left: str, right: str, shaft: tuple[float, float, float], below: float) -> np.ndarray:
+    """Every root of the end conditions below a frequency, by a fine grid and brentq."""
+    grid = np.concatenate([np.geomspace(1e-4, 2e-2, 400), np.linspace(2.01e-2, 1.0, 20_000)]) * below
+    values = determinants(grid, left, right, *shaft)
+    changes = np.flatnonzero(values[1:] * values[:-1] < 0)
+
+    def at(omega: float) -> float:
+        return float(determinants(np.array([omega]), left, right, *shaft)[0])
+
+    return np.array([brentq(at, grid[k], grid[k + 1], xtol=1e-13 * grid[k], rtol=1e-14) for k in changes])
 
 
 SHAFTS = [(1.0, 0.05, 0.0), (0.3, 0.1, 0.04), (0.1, 0.2, 0.0)]
@@ -92,11 +98,26 @@ def test_pinned_shaft(shaft: tuple[float, float, float], pieces: int) -> None:
 
 
 @pytest.mark.parametrize("shaft", SHAFTS[:2])
-@pytest.mark.parametrize("pieces", [1, 7, 400])
-def test_free_shaft(shaft: tuple[float, float, float], pieces: int) -> None:
-    modes = solve_lateral_modes(uniform(*shaft, pieces), count=5)
-    np.testing.assert_array_equal(modes.frequencies[:2], 0.0)
-    np.testing.assert_allclose(modes.frequencies[2:], free_closed_form(*shaft, 3), rtol=1e-11)
+@pytest.mark.parametrize(
+    ("left", "right"), [("free", "free"), ("pinned", "pinned"), ("clamped", "clamped"), ("clamped", "free")]
+)
+def test_forty_modes_of_any_ends(left: str, right: str, shaft: tuple[float, float, float]) -> None:
+    # Both shafts' fortieth modes lie beyond their cut-off frequencies.
+    supports = [
+        RadialSupport(place, *held) for place, held in ((0.0, HELD[left]), (shaft[0], HELD[right])) if held is not None
+    ]
+    rigid = 2 if left == right == "free" else 0
+    whole = solve_lateral_modes(uniform(*shaft, 1), supports, count=40 + rigid)
+    np.testing.assert_array_equal(whole.frequencies[:rigid], 0.0)
+    elastic = whole.frequencies[rigid:]
+    _, shear, _, rotary = section(*shaft)
+    assert elastic[-1] > math.sqrt(shear / rotary)
+    expected = closed_form(left, right, shaft, elastic[-1] * (1 + 1e-6))
+    np.testing.assert_allclose(elastic, expected, rtol=1e-9)
+    for pieces in (7, 400):
+        cut = solve_lateral_modes(uniform(*shaft, pieces), supports, count=40 + rigid)
+        np.testing.assert_allclose(cut.frequencies, whole.frequencies, rtol=1e-10)
+        assert cut.certificate.complete
 
 
 def test_pinned_shape_is_a_sine() -> None:
@@ -125,37 +146,14 @@ def test_slenderness_of_two_thousand_keeps_its_digits(pieces: int) -> None:
     modes = solve_lateral_modes(uniform(*shaft, pieces), ends, count=20)
     np.testing.assert_allclose(modes.frequencies, pinned_closed_form(*shaft, 20), rtol=1e-11)
     free = solve_lateral_modes(uniform(*shaft, pieces), count=8)
+    exact = closed_form("free", "free", shaft, free.frequencies[-1] * (1 + 1e-6))
+    np.testing.assert_allclose(free.frequencies[2:], exact, rtol=1e-10)
     # At this slenderness the Euler–Bernoulli roots of cos x cosh x = 1 hold to (d/L)² = 2.5e-7 times n².
     for n, omega in enumerate(free.frequencies[2:], start=1):
         root = brentq(lambda x: math.cos(x) - 1 / math.cosh(x), (n + 0.3) * math.pi, (n + 0.7) * math.pi)
         euler = (root / 10.0) ** 2 * 0.00125 * math.sqrt(207e9 / 7850.0)
         assert omega == pytest.approx(euler, rel=5e-5)
         assert omega < euler
-
-
-def test_cantilever_against_its_transcendental_equation() -> None:
-    # Timoshenko fields c₁ cosh pz + … clamped at 0 and free at L, as a 4 × 4 determinant written out here.
-    shaft = (0.3, 0.06, 0.02)
-    bending, shear, mass, rotary = section(*shaft)
-
-    def determinant(omega: float) -> float:
-        s, d = omega**2 * mass / shear, omega**2 * rotary / bending
-        root = math.sqrt((s - d) ** 2 / 4 + omega**2 * mass / bending)
-        p, q = math.sqrt(root - (s + d) / 2), math.sqrt(root + (s + d) / 2)
-        a, b, end = (p**2 + s) / p, (s - q**2) / q, 0.3
-        ch, sh, co, si = math.cosh(p * end), math.sinh(p * end), math.cos(q * end), math.sin(q * end)
-        rows = [
-            [1, 0, 1, 0],
-            [0, a, 0, -b],
-            [a * p * ch, a * p * sh, b * q * co, b * q * si],
-            [(p - a) * sh, (p - a) * ch, (-q - b) * si, (q + b) * co],
-        ]
-        return float(np.linalg.det(rows))
-
-    clamp = [RadialSupport(0.0, math.inf, math.inf)]
-    for omega in solve_lateral_modes(uniform(*shaft, 5), clamp, count=4).frequencies:
-        root = brentq(determinant, omega * 0.999, omega * 1.001, rtol=1e-14)
-        assert omega == pytest.approx(root, rel=1e-11)
 
 
 @pytest.mark.parametrize("pieces", [1, 7, 400])

@@ -39,6 +39,7 @@ from coupling.gears import (
 from rotors import (
     Bearing,
     Disc,
+    ModalRotor,
     Rotor,
     Segment,
     ShaftMaterial,
@@ -85,7 +86,7 @@ def turbo_generator(sense: int = 1, centre_line: float = 0.0, lateral: float = 3
             moments_at=[disc.at for disc in discs[i]],
         )
         twist = solve_torsional_modes(rotor, frequency_limit=torsion)
-        components.append(rotor_component(name, basis, twist, start=0.0))
+        components.append(rotor_component(name, ModalRotor(basis, twist), start=0.0))
         bearings += [MountedBearing(bearing, name, None) for bearing in held]
     angle = np.radians(22.5)
     wheels = [

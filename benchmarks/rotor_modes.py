@@ -1,0 +1,139 @@
+"""Modes, whirl and a Campbell diagram of rotors against ROSS on the same rotors, in one run.
+
+    python benchmarks/rotor_modes.py
+
+The rotor is that of Friswell's example 5.9.2 with damped bearings, once for each number of ROSS's elements; it has a
+segment for each of them, so that both programs are given the same file. Both are warm: compiled code is compiled, and
+every call has a speed of its own, because ROSS keeps what it solved before.
+"""
+
+import contextlib
+import io
+import statistics
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from timing import arguments, machine, timed
+
+from rotors import (
+    Bearing,
+    Disc,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    campbell,
+    read_ross,
+    rest_frequencies,
+    solve_whirl,
+    write_ross,
+)
+
+STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
+LENGTH = 1.5
+SPEED = 4000 * 2 * np.pi / 60
+CAMPBELL_SPEEDS = 100
+
+
+@dataclass(frozen=True)
+class Row:
+    """One thing that both programs do, at a speed of rotation (rad/s)."""
+
+    name: str
+    ours: Callable[[float], Any]
+    theirs: Callable[[float], Any]
+    repeats: int
+
+
+def written_rotor(elements: int, damping: float, folder: Path) -> Path:
+    """The rotor as a file with so many elements, its bearings of so many N s/m in x and two thirds of it in y."""
+    discs = [
+        Disc.from_dimensions(at, 0.07, diameter, 0.05, STEEL.density) for at, diameter in ((0.5, 0.28), (1.0, 0.35))
+    ]
+    bearings = [
+        Bearing(name, at, np.diag([1e6, 8e5]), damping * np.diag([1.0, 2.0 / 3.0]))
+        for name, at in (("left", 0.0), ("right", LENGTH))
+    ]
+    file = folder / f"rotor-{elements}-{damping:g}.toml"
+    rotor = Rotor("rotor", [Segment(LENGTH, 0.05, 0.0, STEEL)], discs)
+    write_ross(file, rotor, bearings, element_length=LENGTH / elements)
+    return file
+
+
+def rows(ross: Any, elements: int, modes: int, repeats: int, folder: Path) -> list[Row]:
+    """What is compared; ROSS returns half as many frequencies as it is asked for eigenvalues."""
+    files = [written_rotor(elements, damping, folder) for damping in (0.0, 300.0)]
+    (rotor, undamped, _), (_, damped, _) = map(read_ross, files)
+    at_rest, turning = map(ross.Rotor.load, files)
+
+    return [
+        Row(
+            "modes at rest",
+            lambda speed: rest_frequencies(rotor, undamped, count=modes).frequencies,
+            # A speed too small to matter, but not one that was solved before.
+            lambda speed: at_rest.run_modal(1e-6 * speed, num_modes=2 * modes).wn,
+            repeats,
+        ),
+        Row(
+            "whirl at speed",
+            lambda speed: solve_whirl(rotor, damped, speed, count=modes).frequencies,
+            lambda speed: turning.run_modal(speed, num_modes=2 * modes).wn,
+            repeats,
+        ),
+        Row(
+            f"Campbell, {CAMPBELL_SPEEDS} speeds",
+            lambda speed: campbell(rotor, damped, np.linspace(0.0, speed, CAMPBELL_SPEEDS), count=modes),
+            lambda speed: turning.run_campbell(np.linspace(1e-6, 1.0, CAMPBELL_SPEEDS) * speed, frequencies=modes),
+            1,
+        ),
+    ]
+
+
+def median_seconds(work: Callable[[float], Any], speeds: Iterator[float], repeats: int) -> float:
+    """The median of some runs, after one that does not count where there is more than one."""
+    if repeats > 1:
+        work(next(speeds))
+    return statistics.median(timed(lambda: work(next(speeds)))[1] for _ in range(repeats))
+
+
+def apart(row: Row, speed: float) -> float:
+    """Largest relative difference of our frequencies from the nearest of ROSS's, which hold torsion as well."""
+    mine, found = row.ours(speed), row.theirs(speed)
+    return float(max(np.abs(found / frequency - 1.0).min() for frequency in mine[mine < found.max()]))
+
+
+def imported_ross() -> Any:
+    """ROSS, without what it has to say on the way."""
+    warnings.simplefilter("ignore")
+    with contextlib.redirect_stdout(io.StringIO()):
+        import ross
+    return ross
+
+
+def main() -> None:
+    options = arguments(
+        __doc__.splitlines()[0],
+        modes=(int, 6, "frequencies of both planes together"),
+        repeats=(int, 5, "runs of each, of which the median is shown; ROSS runs its Campbell diagram once"),
+    )
+    ross = imported_ross()
+    speeds = (SPEED * (1.0 + 1e-5 * number) for number in count())
+    print(f"{machine()}\n{options.modes} frequencies; the difference is ROSS's discretisation\n")
+    print(f"{'elements':>8}  {'':24}{'ours':>12}{'ROSS':>12}{'ratio':>9}{'difference':>13}")
+    with tempfile.TemporaryDirectory() as folder:
+        for elements in (6, 24, 60):
+            for row in rows(ross, elements, options.modes, options.repeats, Path(folder)):
+                mine = median_seconds(row.ours, speeds, options.repeats)
+                found = median_seconds(row.theirs, speeds, row.repeats)
+                line = f"{elements:8d}  {row.name:24}{1e3 * mine:9.2f} ms{1e3 * found:9.2f} ms{found / mine:9.1f}"
+                difference = f"{apart(row, next(speeds)):.1e}" if row.repeats > 1 else ""
+                print(f"{line}{difference:>13}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

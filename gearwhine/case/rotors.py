@@ -1,0 +1,250 @@
+"""The `[[rotor]]` entries of a case. Attributes are named as the keys and are in SI."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import (
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    PrivateAttr,
+    SerializerFunctionWrapHandler,
+    Tag,
+    model_serializer,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError, core_schema
+
+from gearwhine.case import units
+from gearwhine.case.fields import (
+    MOST_ENTRIES,
+    Angle,
+    CaseFile,
+    DampingRatio,
+    Density,
+    Force,
+    Imbalance,
+    Inertia,
+    Length,
+    LengthFromZero,
+    Mass,
+    Name,
+    PositiveFrequency,
+    PositiveLength,
+    PositiveStiffness,
+    Quantity,
+    Table,
+    Whole,
+    wrong,
+)
+
+if TYPE_CHECKING:
+    from rotors import RossModel
+
+
+@dataclass(frozen=True)
+class _ShearRule:
+    """Validates a shear coefficient: a formula by its name, or the number itself."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.validate)
+
+    def validate(self, value: object) -> ShearFormula | float:
+        if value == "cowper" or value == "hutchinson":
+            return value
+        try:
+            return Quantity(units.RATIO, above=0.0, at_most=1.0).validate(value)
+        except PydanticCustomError:
+            raise wrong("'cowper', 'hutchinson', or a number above 0 and of at most 1") from None
+
+
+ShearFormula = Literal["cowper", "hutchinson"]
+ShearCoefficient = Annotated[ShearFormula | float, _ShearRule()]
+PositiveTiltStiffness = Annotated[float, Quantity(units.TILT_STIFFNESS, above=0.0)]
+
+
+class Segment(Table):
+    """A piece of shaft [m], a cone where `right_diameter` or `right_bore` differ from those at its left end.
+
+    `material`, `shear_coefficient` and `axial_force` [N, tension positive] where they differ from the rotor's.
+    """
+
+    length: PositiveLength
+    diameter: PositiveLength
+    bore: LengthFromZero = 0.0
+    right_diameter: PositiveLength | None = None
+    right_bore: LengthFromZero | None = None
+    material: Name | None = None
+    shear_coefficient: ShearCoefficient | None = None
+    axial_force: Force | None = None
+
+    @model_validator(mode="after")
+    def _hollow(self) -> Segment:
+        if self.bore >= self.diameter:
+            raise wrong(f"a bore smaller than the diameter of {self.diameter:g} m", "bore")
+        diameter = self.diameter if self.right_diameter is None else self.right_diameter
+        if self.right_bore is None and self.bore >= diameter:
+            raise wrong(f"a diameter larger than the bore of {self.bore:g} m, or a 'right_bore'", "right_diameter")
+        if self.right_bore is not None and self.right_bore >= diameter:
+            raise wrong(f"a bore smaller than the diameter of {diameter:g} m at the right end", "right_bore")
+        return self
+
+
+class Coupling(Table):
+    """A flexible coupling: stiffness across the axis and along it [N/m], against an angle between the axes and about
+    them [N m/rad]; mass [kg] and inertias [kg m²] of the whole.
+    """
+
+    lateral_stiffness: PositiveStiffness
+    tilt_stiffness: PositiveTiltStiffness
+    torsional_stiffness: PositiveTiltStiffness
+    axial_stiffness: PositiveStiffness
+    mass: Mass = 0.0
+    polar_inertia: Inertia = 0.0
+    diametral_inertia: Inertia = 0.0
+
+
+class CouplingSegment(Table):
+    """A coupling in the row of segments: its length from hub to hub [m]."""
+
+    length: PositiveLength
+    coupling: Coupling
+
+
+class Disc(Table):
+    """A rigid disc at a station [m from the left end]: mass [kg] and inertias [kg m²]; without these a point mass."""
+
+    at: LengthFromZero
+    mass: Mass
+    polar_inertia: Inertia = 0.0
+    diametral_inertia: Inertia = 0.0
+
+
+class RoundDisc(Table):
+    """A rigid disc by its sizes [m], its middle at a station: of a material (None: the rotor's) or density [kg/m³]."""
+
+    at: LengthFromZero
+    width: PositiveLength
+    diameter: PositiveLength
+    bore: LengthFromZero = 0.0
+    material: Name | None = None
+    density: Density | None = None
+
+    @model_validator(mode="after")
+    def _solid(self) -> RoundDisc:
+        if self.bore >= self.diameter:
+            raise wrong(f"a bore smaller than the diameter of {self.diameter:g} m", "bore")
+        if self.material is not None and self.density is not None:
+            raise wrong("either 'material' or 'density', not both", "density")
+        return self
+
+
+def _segment_form(value: Any) -> str:
+    coupled = "coupling" in value if isinstance(value, dict) else isinstance(value, CouplingSegment)
+    return "~coupling" if coupled else "~shaft"
+
+
+def _disc_form(value: Any) -> str:
+    sized = {"width", "diameter", "bore", "material", "density"}
+    by_size = not sized.isdisjoint(value) if isinstance(value, dict) else isinstance(value, RoundDisc)
+    return "~sizes" if by_size else "~inertia"
+
+
+AnySegment = Annotated[
+    Annotated[Segment, Tag("~shaft")] | Annotated[CouplingSegment, Tag("~coupling")], Discriminator(_segment_form)
+]
+AnyDisc = Annotated[Annotated[Disc, Tag("~inertia")] | Annotated[RoundDisc, Tag("~sizes")], Discriminator(_disc_form)]
+
+
+class Unbalance(Table):
+    """An unbalance at a station: mass times eccentricity [kg m] and its angle from x at rest [rad]."""
+
+    at: LengthFromZero
+    moment: Imbalance
+    phase: Angle = 0.0
+
+
+class Bow(Table):
+    """A point of the residual bow: run-out of the unloaded centre line [m] and its angle from x [rad]."""
+
+    at: LengthFromZero
+    amplitude: LengthFromZero
+    phase: Angle = 0.0
+
+
+_OF_THE_SHAFT = ("segments", "shear_coefficient", "axial_force")
+"""Keys that a rotor's file stands for."""
+
+
+class Rotor(Table):
+    """`[[rotor]]`: a shaft along z at `axis` (x, y), its left end at z = `start`, all in m.
+
+    `damping_ratio` is that of the shaft's own modes. `shear_coefficient` (a formula or a number) and `axial_force`
+    [N, tension positive] hold for segments that have none of their own. Of its modes the coupled system keeps the
+    lowest so many (`modes`) or those below a frequency (`frequency_limit`, Hz). Where a `file` of ROSS holds the shaft,
+    with its discs and grounded bearings, there are no `segments` here.
+    """
+
+    name: Name
+    axis: tuple[Length, Length] = (0.0, 0.0)
+    start: Length = 0.0
+    file: CaseFile | None = None
+    material: Name | None = None
+    mass: Literal["distributed", "lumped"] = "distributed"
+    damping_ratio: DampingRatio = 0.005
+    shear_coefficient: ShearCoefficient = "cowper"
+    axial_force: Force = 0.0
+    modes: Annotated[int, Whole(1, 1000)] | None = None
+    frequency_limit: PositiveFrequency | None = None
+    segments: tuple[AnySegment, ...] = Field(default=(), min_length=1, max_length=MOST_ENTRIES)
+    discs: tuple[AnyDisc, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    unbalance: tuple[Unbalance, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    bow: tuple[Bow, ...] = Field(default=(), max_length=MOST_ENTRIES)
+
+    _saved: RossModel | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _described(self) -> Rotor:
+        if self.file is None:
+            for key, what in (("material", "the name of a material"), ("segments", "a list")):
+                if not getattr(self, key):
+                    raise wrong(f"{what}, or a rotor's file instead", key)
+            return self
+        for key in _OF_THE_SHAFT:
+            if key in self.model_fields_set:
+                raise wrong("no such key beside file, which holds the shaft", key)
+        from rotors import RotorError, read_ross
+
+        try:
+            self._saved = read_ross(self.file)
+        except RotorError as error:
+            raise wrong(f"a rotor saved by ROSS ({error})", "file") from None
+        return self
+
+    @model_serializer(mode="wrap")
+    def _without_what_the_file_holds(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        written: dict[str, Any] = write(self)
+        if self.file is not None:
+            for key in _OF_THE_SHAFT:
+                del written[key]
+        return written
+
+    @model_validator(mode="after")
+    def _one_measure(self) -> Rotor:
+        if self.modes is not None and self.frequency_limit is not None:
+            raise wrong("either 'modes' or 'frequency_limit', not both", "frequency_limit")
+        return self
+
+    @property
+    def saved(self) -> RossModel | None:
+        """What the file holds; None where the shaft is described here."""
+        return self._saved
+
+    @property
+    def length(self) -> float:
+        """Length of the shaft [m]."""
+        if self._saved is not None:
+            return self._saved.rotor.length
+        return sum(segment.length for segment in self.segments)

@@ -1,0 +1,155 @@
+"""The undamped critical-speed map: critical speeds over the stiffness of the bearings, with the bearings themselves."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from gearwhine.figures.labels import Label, arrange, draw_row
+from gearwhine.figures.style import BLUE, FOOT, HEAD, INK, PANEL_WIDTH, RPM, SERIES, legend, panel, sheet, shortened
+from rotors import Bearing
+
+FloatArray = npt.NDArray[np.float64]
+
+_HEIGHT = 92.0  # of the panel [mm of paper]
+_SAMPLES = 80  # of a bearing's table over speed
+_LINES = (("k_xx", "-"), ("k_yy", (0, (5, 2))))
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """A bearing's own stiffness (n,), N/m, at speeds (n,), rad/s, and how it is drawn."""
+
+    name: str
+    color: str
+    line: Any
+    turning: FloatArray
+    own: FloatArray
+
+
+def draw_critical_map(
+    title: str,
+    stiffnesses: npt.ArrayLike,
+    critical_speeds: npt.ArrayLike,
+    *,
+    bearings: Sequence[Bearing] = (),
+    operating_speed: float | None = None,
+) -> Figure:
+    """Draw critical speeds over bearing stiffness on logarithmic axes; where a bearing's own line meets them is marked.
+
+    Parameters
+    ----------
+    title
+        Of the sheet.
+    stiffnesses
+        (k,): of every bearing in every direction, N/m, ascending and positive.
+    critical_speeds
+        (k, c): rad/s, each branch down a column; zero (a rigid motion) and NaN are not drawn.
+    bearings
+        Whose k_xx and k_yy, over speed where they have tables, are laid over the map.
+    operating_speed
+        rad/s, drawn as a line.
+
+    Raises
+    ------
+    ValueError
+        Arrays whose shapes do not fit, or stiffnesses that are not positive and ascending.
+    """
+    springs, speeds = np.asarray(stiffnesses, dtype=np.float64), np.asarray(critical_speeds, dtype=np.float64)
+    ascending = springs.ndim == 1 and springs.size > 1 and bool((springs[0] > 0.0) & (np.diff(springs) > 0.0).all())
+    if not ascending or speeds.ndim != 2 or speeds.shape[0] != springs.size:
+        raise ValueError(
+            f"stiffnesses {springs.shape} and critical speeds {speeds.shape} are not two or more ascending positive "
+            "stiffnesses (k,) and an array (k, c)"
+        )
+    speeds = np.where(speeds > 0.0, speeds, np.nan)
+    low, high = _limits(speeds, operating_speed)
+    curves = _curves(bearings, low, high)
+    labels = [Label(one.name, float(one.own[-1]), RPM * float(one.turning[-1])) for one in curves]
+    inside = [label for label in labels if springs[0] <= label.x <= springs[-1]]
+    span = np.log(springs[-1] / springs[0])
+    row = arrange(inside, [PANEL_WIDTH * np.log(label.x / springs[0]) / span for label in inside], PANEL_WIDTH)
+
+    note = "undamped critical speeds, all bearings of one stiffness; ○ where a bearing's own stiffness meets them"
+    figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + FOOT, title, note if curves else note.partition(";")[0])
+    axes = panel(figure, FOOT, _HEIGHT)
+    axes.set(xscale="log", yscale="log", xlim=(springs[0], springs[-1]), ylim=(RPM * low, RPM * high))
+    axes.set(xlabel="bearing stiffness [N/m]", ylabel="critical speed [rpm]")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    for branch in speeds.T:
+        axes.plot(springs, RPM * branch, color=BLUE, lw=1.2, zorder=3, label="critical speed")
+    for curve in curves:
+        axes.plot(curve.own, RPM * curve.turning, color=curve.color, ls=curve.line, lw=1.0, zorder=2, label=curve.name)
+        for stiffness, speed in meetings(springs, speeds, curve.turning, curve.own):
+            axes.plot(
+                stiffness, RPM * speed, marker="o", ms=4.0, color=curve.color, mfc="white", zorder=4, label="meeting"
+            )
+    if operating_speed is not None:
+        at = RPM * abs(operating_speed)
+        line = axes.axhline(at, color=INK, lw=0.8, ls=":", zorder=1, label="operation")
+        legend(figure, [line])
+    draw_row(axes, row, _HEIGHT + 1.0)
+    return figure
+
+
+def meetings(
+    stiffnesses: FloatArray, critical_speeds: FloatArray, turning: FloatArray, own: FloatArray
+) -> list[tuple[float, float]]:
+    """Where a bearing's own stiffness meets critical speeds: stiffness (N/m) and speed (rad/s) of each point.
+
+    Both are straight between their points on logarithmic axes.
+
+    Parameters
+    ----------
+    stiffnesses, critical_speeds
+        (k,) and (k, c), as in :func:`draw_critical_map`.
+    turning, own
+        (n,): ascending speeds (rad/s) and the bearing's stiffness (N/m) at them.
+    """
+    met = []
+    for branch in critical_speeds.T:
+        known = np.flatnonzero(branch > 0.0)
+        x, y = np.log(stiffnesses[known]), np.log(branch[known])
+        # How much stiffer the bearing is, at a critical speed, than that speed supposes.
+        excess = np.interp(y, np.log(turning), np.log(own), left=np.nan, right=np.nan) - x
+        for index in np.flatnonzero((excess[1:] <= 0.0) & (excess[:-1] > 0.0)):
+            part = excess[index] / (excess[index] - excess[index + 1])
+            met.append(tuple(np.exp(line[index] + part * (line[index + 1] - line[index])).item() for line in (x, y)))
+    return met
+
+
+def _limits(speeds: FloatArray, operating: float | None) -> tuple[float, float]:
+    """Ends of the axis of speeds, rad/s."""
+    values = speeds[np.isfinite(speeds)].tolist() + ([abs(operating)] if operating else [])
+    return (0.8 * min(values), 1.25 * max(values)) if values else (1.0, 10.0)
+
+
+def _curves(bearings: Sequence[Bearing], low: float, high: float) -> list[_Curve]:
+    """What the bearings have in x and y between two speeds (rad/s); those alike are one."""
+    named: dict[tuple[bytes, bytes], tuple[list[str], FloatArray, FloatArray]] = {}
+    for bearing in bearings:
+        turning = np.geomspace(low, high, _SAMPLES)
+        if bearing.speeds is not None:
+            begin, end = max(low, float(bearing.speeds[0])), min(high, float(bearing.speeds[-1]))
+            if end <= begin:
+                continue
+            turning = np.geomspace(begin, end, _SAMPLES)
+        stiffness = np.array([np.diag(bearing.at_speed(speed).radial_stiffness) for speed in turning])
+        key = turning.tobytes(), stiffness.tobytes()
+        named.setdefault(key, ([], turning, stiffness))[0].append(bearing.name)
+    curves = []
+    for number, (names, turning, stiffness) in enumerate(named.values()):
+        alike = bool((stiffness[:, 0] == stiffness[:, 1]).all())
+        label = shortened(", ".join(names), 18)
+        color = SERIES[1 + number % (len(SERIES) - 1)]
+        for column, (symbol, line) in enumerate(_LINES):
+            if (stiffness[:, column] > 0.0).all() and not (alike and column):
+                name = f"{label}: k_xx = k_yy" if alike else f"{label}: {symbol}"
+                curves.append(_Curve(name, color, line, turning, stiffness[:, column]))
+    return curves

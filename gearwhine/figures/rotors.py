@@ -1,0 +1,160 @@
+"""The pictures of a case's rotors: which there are, and the files they go to."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.figure import Figure
+
+import rotors as room
+from gearwhine.case import Case, RollingStiffness, Segment
+from gearwhine.figures.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
+from gearwhine.figures.campbell import draw_campbell
+from gearwhine.figures.critical_map import draw_critical_map
+from gearwhine.figures.mode_shapes import draw_lateral_modes, draw_torsional_modes
+from gearwhine.figures.shaft import draw_shaft
+from gearwhine.figures.static_deflection import draw_static_deflection
+from gearwhine.figures.style import save, shortened
+from gearwhine.figures.unbalance import ProbeResponse, draw_unbalance_response
+from gearwhine.figures.whirl_shapes import draw_whirl_modes
+from gearwhine.output import file_stems
+from gearwhine.progress import Progress, silent
+from gearwhine.stages.build import gear_inertia
+from gearwhine.stages.rotors import SolvedRotor
+
+FloatArray = npt.NDArray[np.float64]
+
+_CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
+_MODES = 6  # drawn of each kind
+_ADDENDUM, _DEDENDUM, _WIDTH = 1.0, 1.25, 10.0  # of a drawn tooth and of a gear without a face width, in modules
+
+
+def draw_rotors(folder: Path, case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> list[str]:
+    """Draw each rotor: the shaft, its modes, its whirl at speed, and what its analyses gave.
+
+    These are the Campbell diagram, the critical-speed map, the response to unbalance and bow, and the static
+    deflection, each where the case has what it takes.
+
+    Parameters
+    ----------
+    folder : path
+        Where the files go, as ``rotor-NAME-shaft.png`` and so on.
+    case : Case
+    solved : sequence of SolvedRotor
+        Of the case.
+    progress : callable
+        Told which rotor is drawn.
+
+    Returns
+    -------
+    list of str
+        The files' names.
+    """
+    files = []
+    stems = file_stems([one.rotor.name for one in solved], "rotor-")
+    for stem, one in zip(stems, solved, strict=True):
+        progress(f"drawing rotor {one.rotor.name}")
+        files += [save(figure, folder / f"{stem}-{kind}.png") for kind, figure in _figures(case, one)]
+    return files
+
+
+def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
+    """A solved rotor as it is drawn: its gears by their size rather than as discs."""
+    name = one.rotor.name
+    given = case.rotor_named(name)
+    gears = []
+    for gear in case.gear:
+        if gear.rotor != name or gear.at is None:
+            continue
+        module, shift = gear.tooth_module, gear.profile_shift
+        gears.append(
+            DrawnGear(
+                name=gear.name,
+                at=gear.at,
+                face_width=gear.face_width or _WIDTH * module,
+                tip_diameter=2.0 * (gear.pitch_radius + (_ADDENDUM + shift) * module),
+                pitch_diameter=2.0 * gear.pitch_radius,
+                root_diameter=2.0 * (gear.pitch_radius - (_DEDENDUM - shift) * module),
+                teeth=gear.teeth,
+                disc=room.Disc(gear.at, *gear_inertia(case, gear)),
+            )
+        )
+    on_it = [bearing for bearing in case.bearing if bearing.rotor == name]
+    # The materials of a rotor's own file have no names in the case.
+    rows = zip(one.rotor.segments, given.segments, strict=True) if given.saved is None else ()
+    return RotorAssembly(
+        rotor=one.rotor,
+        bearings=one.bearings,
+        gears=gears,
+        unbalances=[DrawnUnbalance(at.at, at.moment, at.phase) for at in given.unbalance],
+        rolling={bearing.name for bearing in on_it if isinstance(bearing.stiffness, RollingStiffness)},
+        seats={bearing.name: bearing.seat for bearing in on_it if not bearing.grounded},
+        materials={
+            part.material: segment.material or given.material or ""
+            for part, segment in rows
+            if isinstance(part, room.Segment) and isinstance(segment, Segment)
+        },
+    )
+
+
+def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
+    assembly = rotor_assembly(case, one)
+    figures = [
+        ("shaft", draw_shaft(assembly)),
+        ("modes", draw_lateral_modes(assembly, one.lateral, most=_MODES)),
+        ("torsion", draw_torsional_modes(assembly, one.torsional, most=_MODES)),
+    ]
+    operation = one.operation
+    if operation is not None and one.whirl[0].frequencies.size:
+        figures.append(("whirl", draw_whirl_modes(assembly, one.whirl[0], most=_MODES)))
+    critical, directions = _critical_speeds(one)
+    name = f"Rotor {shortened(one.rotor.name, 20)}"
+    if one.campbell is not None and one.campbell.eigenvalues.size:
+        eigenvalues = one.campbell.eigenvalues
+        campbell = draw_campbell(
+            f"{name}: Campbell diagram",
+            one.campbell.speeds,
+            one.campbell.frequencies,
+            one.campbell.direction,
+            -eigenvalues.real / np.abs(eigenvalues),
+            critical_speeds=critical,
+            critical_directions=directions,
+            operating_speed=operation,
+        )
+        figures.append(("campbell", campbell))
+    if one.stiffness_map is not None:
+        sheet = draw_critical_map(
+            f"{name}: undamped critical-speed map",
+            one.stiffness_map.stiffnesses,
+            one.stiffness_map.speeds,
+            bearings=one.bearings,
+            operating_speed=operation,
+        )
+        figures.append(("critical-map", sheet))
+    if one.response is not None and one.response.response.speeds.size > 1:
+        readings = [ProbeResponse(read.probe.name, read.amplitude, read.major_axis) for read in one.response.readings]
+        running = None if operation is None else (abs(operation), abs(operation))
+        response = draw_unbalance_response(
+            f"{name}: response to unbalance" + (" and bow" if case.rotor_named(one.rotor.name).bow else ""),
+            np.abs(one.response.response.speeds),
+            readings,
+            critical_speeds=critical[directions > _CIRCULAR_BACKWARD],
+            operating_range=running,
+        )
+        figures.append(("unbalance", response))
+    if not isinstance(one.weight, str):
+        # What the bearings carry presses on them; the arrows show what holds the rotor.
+        holding = -one.weight.deflection.bearing_loads[:, :2]
+        sheet = draw_static_deflection(assembly, one.weight.places, one.weight.displacement.T, holding)
+        figures.append(("static", sheet))
+    return figures
+
+
+def _critical_speeds(one: SolvedRotor) -> tuple[FloatArray, FloatArray]:
+    """Critical speeds and their directions: damped, where the Campbell diagram meets 1×, or else undamped."""
+    if one.campbell is None or isinstance(one.crossings, str):
+        return one.critical.speeds, one.critical.direction
+    sense = -1.0 if one.campbell.speeds.min() < 0.0 else 1.0
+    speeds = np.array([abs(crossing.speed) for crossing in one.crossings])
+    return speeds, sense * np.array([crossing.direction for crossing in one.crossings])

@@ -1,0 +1,165 @@
+"""Unbalance response over speed: amplitude and phase at probes, with critical speeds and the operating range."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+
+from gearwhine.figures.labels import Label, arrange, draw_row
+from gearwhine.figures.style import (
+    FOOT,
+    GREY,
+    HEAD,
+    INK,
+    NOTE,
+    PANEL_WIDTH,
+    RPM,
+    SERIES,
+    legend,
+    panel,
+    sheet,
+    shortened,
+)
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_AMPLITUDE, _PHASE, _BETWEEN = 70.0, 40.0, 4.0  # heights of the panels and the room between them [mm of paper]
+_PEAK_TO_PEAK = 2e6  # µm of a displacement amplitude of one metre
+_IN_HEAD = 4  # so many lines are explained beside the title
+_DECADES = 5.0  # of a logarithmic amplitude, below its highest
+
+
+@dataclass(frozen=True)
+class ProbeResponse:
+    """What a probe reads over speed.
+
+    Parameters
+    ----------
+    name
+        Of the probe.
+    amplitude
+        (s,) complex, m: the displacement along the probe is Re(amplitude e^{iΩt}), with the unbalance's angle at
+        Ωt from x.
+    major_axis
+        (s,): semi-major axis of the orbit there, m, where known.
+    """
+
+    name: str
+    amplitude: ComplexArray
+    major_axis: FloatArray | None = None
+
+
+def draw_unbalance_response(
+    title: str,
+    speeds: npt.ArrayLike,
+    probes: Sequence[ProbeResponse],
+    *,
+    critical_speeds: npt.ArrayLike = (),
+    operating_range: tuple[float, float] | None = None,
+    logarithmic: bool = False,
+) -> Figure:
+    """Draw peak-to-peak amplitude and phase lag over speed (a Bode plot, as API 617 asks for).
+
+    Parameters
+    ----------
+    title
+        Of the sheet.
+    speeds
+        (s,): two or more, ascending, rad/s.
+    probes
+        What they read, each (s,).
+    critical_speeds
+        (c,): rad/s, marked where they are in the range.
+    operating_range
+        Lowest and highest speed of operation, rad/s, shaded; a single speed given twice is a line.
+    logarithmic
+        Whether the amplitude has a logarithmic axis.
+
+    Raises
+    ------
+    ValueError
+        Fewer than two speeds, or a response of another length.
+    """
+    turning = np.asarray(speeds, dtype=np.float64)
+    wrong = [probe.name for probe in probes if np.shape(probe.amplitude) != turning.shape]
+    if turning.ndim != 1 or turning.size < 2 or not bool((np.diff(turning) > 0.0).all()) or wrong:
+        raise ValueError(f"speeds {turning.shape} are not two or more ascending ones, or do not fit the probes {wrong}")
+    low, high = float(turning[0]), float(turning[-1])
+    marked = [speed for speed in np.atleast_1d(critical_speeds).tolist() if low <= speed <= high]
+
+    moving = max((_largest(probe) for probe in probes), default=0.0)
+    # A logarithmic axis has no place for what does not move at all.
+    logarithmic, top = logarithmic and moving > 0.0, moving or 1.0
+    ceiling = 2.0 * top if logarithmic else 1.08 * top
+    labels = [Label(f"{RPM * speed:.4g}", RPM * speed, ceiling) for speed in marked]
+    row = arrange(labels, [(label.x / RPM - low) / (high - low) * PANEL_WIDTH for label in labels], PANEL_WIDTH)
+    notes = ["peak to peak", "phase lag behind the unbalance"]
+    notes += ["dashed: major axis of the orbit"] * any(probe.major_axis is not None for probe in probes)
+    notes += ["above: critical speeds in rpm"] * bool(marked)
+    notes += [f"{row.left_out} of them not named"] * bool(row.left_out)
+    figure = sheet(HEAD + row.height + 2.0 + _AMPLITUDE + _BETWEEN + _PHASE + FOOT, title, "; ".join(notes))
+    upper, lower = panel(figure, FOOT + _PHASE + _BETWEEN, _AMPLITUDE), panel(figure, FOOT, _PHASE)
+    handles: list[Artist] = []
+    for axes in (upper, lower):
+        axes.set_xlim(RPM * low, RPM * high)
+        for speed in marked:
+            axes.axvline(RPM * speed, color=GREY, lw=0.7, zorder=1, label="critical speed")
+        if operating_range is not None:
+            begin, end = (RPM * abs(speed) for speed in operating_range)
+            if begin == end:
+                mark: Artist = axes.axvline(begin, color=INK, lw=0.8, ls=":", zorder=1, label="operation")
+            else:
+                mark = axes.axvspan(begin, end, color=GREY, alpha=0.14, lw=0.0, zorder=0.2, label="operation")
+            handles = [mark]
+    for number, probe in enumerate(probes):
+        color = SERIES[number % len(SERIES)]
+        size = _PEAK_TO_PEAK * np.abs(probe.amplitude)
+        name = shortened(probe.name, 16).replace("$", r"\$")
+        handles += upper.plot(RPM * turning, size, color=color, lw=1.2, zorder=3, label=name)
+        if probe.major_axis is not None:
+            axis = _PEAK_TO_PEAK * np.asarray(probe.major_axis)
+            upper.plot(RPM * turning, axis, color=color, lw=0.9, ls=(0, (4, 2)), zorder=2.5, label="_major axis")
+        lower.plot(RPM * turning, phase_lag(probe.amplitude), color=color, lw=1.2, zorder=3)
+    if logarithmic:
+        least = min((_least(probe) for probe in probes), default=top)
+        upper.set(yscale="log", ylim=(max(0.7 * least, top * 10.0**-_DECADES), ceiling))
+    else:
+        upper.set_ylim(0.0, ceiling)
+    upper.tick_params(labelbottom=False)
+    upper.set_ylabel("amplitude [µm peak to peak]")
+    lower.set(xlabel="speed of rotation [rpm]", ylabel="phase lag [°]")
+    lower.yaxis.set_major_locator(MultipleLocator(90.0))
+    if len(handles) <= _IN_HEAD:
+        legend(figure, handles)
+    else:
+        upper.legend(handles=handles, loc="best", ncols=2, framealpha=0.9, edgecolor="none", fontsize=NOTE)
+    draw_row(upper, row, _AMPLITUDE + 1.0)
+    return figure
+
+
+def phase_lag(amplitude: ComplexArray) -> FloatArray:
+    """Lag of a response behind the unbalance, degrees, without jumps over speed and from −90 to 270 at its first.
+
+    Where there is no motion there is no phase: NaN.
+    """
+    moving = np.abs(amplitude) > 0.0
+    lag = np.full(np.shape(amplitude), np.nan)
+    if moving.any():
+        turned = np.degrees(np.unwrap(-np.angle(amplitude[moving])))
+        lag[moving] = turned - 360.0 * np.floor((turned[0] + 90.0) / 360.0)
+    return lag
+
+
+def _largest(probe: ProbeResponse) -> float:
+    readings = [np.abs(probe.amplitude)] + ([np.asarray(probe.major_axis)] if probe.major_axis is not None else [])
+    return _PEAK_TO_PEAK * max(float(np.nanmax(reading)) for reading in readings)
+
+
+def _least(probe: ProbeResponse) -> float:
+    size = _PEAK_TO_PEAK * np.abs(probe.amplitude)
+    return float(size[size > 0.0].min(initial=np.inf))

@@ -1,0 +1,56 @@
+"""How the sense of a whirl is told from another in every picture: by colour, by line, by word."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.lines import Line2D
+
+from gearwhine.figures.style import BLUE, RED
+
+FloatArray = npt.NDArray[np.float64]
+
+# Below this part of a circular whirl the sense is no longer that of the mode as a whole.
+PLANAR = 0.05
+
+
+@dataclass(frozen=True)
+class Sense:
+    """A sense of whirl: its name, its colour, and the line that tells it where there is no colour."""
+
+    name: str
+    color: str
+    line: Any
+
+
+FORWARD = Sense("forward", BLUE, "-")
+BACKWARD = Sense("backward", RED, (0, (5, 2)))
+MIXED = Sense("planar or mixed", "#6b747c", (0, (6, 2, 1.2, 2)))
+
+
+def sense_of(direction: float) -> Sense:
+    """The sense for a whirl direction from −1 (circular backward) to 1 (circular forward)."""
+    if abs(direction) < PLANAR:
+        return MIXED
+    return FORWARD if direction > 0.0 else BACKWARD
+
+
+def with_rotation(directions: npt.ArrayLike, speeds: npt.ArrayLike) -> FloatArray:
+    """Directions about +z, (s, ...), as directions in the sense of rotation at speeds (s,); at rest as they are."""
+    values, turning = np.asarray(directions, dtype=np.float64), np.asarray(speeds, dtype=np.float64)
+    sign = np.where(turning < 0.0, -1.0, 1.0)
+    # A run-up against +z begins at rest, and the sense of its rest is that of its run.
+    if bool((turning <= 0.0).all()) and bool((turning < 0.0).any()):
+        sign = -np.ones_like(turning)
+    return np.asarray(values * sign.reshape(-1, *(1,) * (values.ndim - 1)))
+
+
+def legend_lines(senses: Sequence[Sense], *, solid: bool = False) -> list[Line2D]:
+    """A line for each of the senses that occur, in the order forward, backward, mixed; ``solid`` for colour alone."""
+    return [
+        Line2D([], [], color=sense.color, ls="-" if solid else sense.line, lw=1.3, label=sense.name)
+        for sense in (FORWARD, BACKWARD, MIXED)
+        if sense in senses
+    ]

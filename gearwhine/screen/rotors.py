@@ -1,0 +1,234 @@
+"""What `gearwhine rotors` says of each rotor: what it does at rest and at speed, and how far from trouble it runs."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from gearwhine.screen.console import counted, open_console, show_written
+
+_MOST = 12  # rows of a table
+_MAP_ROWS = 5  # of the critical-speed map
+_REACH = 2.0  # critical speeds beyond so many times the speed of operation are only counted
+_PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
+_NEUTRAL = 1e-9  # a damping ratio this near to zero neither grows nor decays
+_SAME = 1e-9  # two frequencies nearer than this part of them are one that both planes have
+
+
+def show_rotors(document: dict[str, Any]) -> None:
+    """Each rotor: what it does at rest and at speed, its critical speeds, and what proves the list complete."""
+    console = open_console()
+    for rotor in document["rotors"]:
+        title = f"  {rotor['mass_kg']:.5g} kg, {1e3 * rotor['length_m']:.5g} mm long"
+        console.print(Text.assemble((rotor["name"], "bold"), title))
+        _at_rest(console, rotor)
+        _whirl(console, rotor)
+        _critical_speeds(console, rotor)
+        _weight(console, rotor["static"])
+        if rotor["unbalance_response"] is not None:
+            _response(console, rotor["unbalance_response"])
+        if rotor["stiffness_map"] is not None:
+            _stiffness_map(console, rotor["stiffness_map"])
+        if rotor["campbell"]:
+            console.print(f"  {_stability(rotor['campbell'])}")
+        console.print(f"  {_proof(rotor['certificate'])}")
+    show_written(console, document)
+
+
+def _at_rest(console: Console, rotor: dict[str, Any]) -> None:
+    """Frequencies at rest with their kind, ascending as far as both kinds are listed."""
+    bending, torsion = list(_bending(rotor["lateral_hz"])), list(_torsion(rotor["torsional_hz"]))
+    known = min(rows[-1][0] for rows in (bending, torsion) if rows) if bending or torsion else 0.0
+    rows = [row for row in sorted([*bending, *torsion], key=lambda row: row[0]) if row[0] <= known]
+    title = f"At rest{_with_bearings_at(rotor['rest_bearings_at_rpm'])}"
+    _show(console, title, ("frequency [Hz]", "kind"), [(f"{f:.5g}", kind) for f, kind in rows[:_MOST]])
+
+
+def _with_bearings_at(speed: float | None) -> str:
+    """Which of their tables' speeds bearings are taken at; None: they have no tables."""
+    return "" if speed is None else f", with the bearings' coefficients at {speed:.6g} rpm"
+
+
+def _bending(frequencies: Sequence[float]) -> Iterator[tuple[float, str]]:
+    place = 0
+    while place < len(frequencies):
+        frequency = frequencies[place]
+        double = place + 1 < len(frequencies) and frequencies[place + 1] - frequency <= _SAME * frequencies[place + 1]
+        kind = "bending" if frequency > 0.0 else "moves freely"
+        yield frequency, f"{kind}, both planes" if double else f"{kind}, one plane"
+        place += 2 if double else 1
+
+
+def _torsion(frequencies: Sequence[float]) -> Iterator[tuple[float, str]]:
+    for frequency in frequencies:
+        yield frequency, "torsion" if frequency > 0.0 else "turns freely"
+
+
+def _whirl(console: Console, rotor: dict[str, Any]) -> None:
+    """Whirl at operation, which comes first; without operation, at the last speed of the sweep."""
+    if not rotor["whirl"]:
+        return
+    whirl = rotor["whirl"][0 if rotor["operation_rpm"] is not None else -1]
+    rows = []
+    keys = ("frequency_hz", "direction", "log_decrement", "damping_ratio")
+    for frequency, direction, decrement, damping in zip(*(whirl[key] for key in keys), strict=True):
+        turning = math.copysign(1.0, whirl["speed_rpm"]) * direction
+        state = "GROWS" if damping < -_NEUTRAL else "undamped" if damping <= _NEUTRAL else "decays"
+        rows.append(
+            (f"{frequency:.5g}", _whirl_name(turning), "0" if state == "undamped" else f"{decrement:.3g}", state)
+        )
+    head = ("frequency [Hz]", "whirl", "log decrement", "")
+    _show(console, f"Turning at {whirl['speed_rpm']:.6g} rpm", head, rows[:_MOST])
+
+
+def _critical_speeds(console: Console, rotor: dict[str, Any]) -> None:
+    """Critical speeds: where the Campbell diagram has them, damped; without a diagram, undamped."""
+    campbell = rotor["campbell"]
+    if campbell is not None and campbell["critical_speeds"] is not None:
+        _crossings(console, rotor, campbell)
+    else:
+        _undamped(console, rotor)
+        if campbell is not None:
+            console.print(f"  No damped critical speeds: {campbell['why_no_critical_speeds']}")
+
+
+def _crossings(console: Console, rotor: dict[str, Any], campbell: dict[str, Any]) -> None:
+    """Damped critical speeds, which way they whirl, how fast that decays, and how far they are from operation."""
+    turning = -1.0 if min(campbell["speed_rpm"]) < 0.0 else 1.0
+    title = f"Critical speeds from {_span(campbell)}"
+    head, rows = ("speed [rpm]", "whirl", "log decrement", "from operation"), []
+    excited = []
+    for one in campbell["critical_speeds"]:
+        speed, way, margin = abs(one["speed_rpm"]), turning * one["direction"], one["margin"]
+        decrement = f"{one['log_decrement']:.3g}" if abs(one["log_decrement"]) > _NEUTRAL else "0"
+        rows.append((f"{speed:.5g}", _whirl_name(way), decrement, "" if margin is None else _beside(margin)))
+        if margin is not None and way >= -1.0 + _PLANAR:  # circular backward whirl takes no work from unbalance
+            excited.append((abs(margin), speed, margin))
+    if rows:
+        _show(console, title, head if rotor["operation_rpm"] is not None else head[:3], rows[:_MOST])
+    else:
+        lowest = (
+            f"; undamped, the lowest is {rotor['critical_speeds_rpm'][0]:.5g} rpm"
+            if rotor["critical_speeds_rpm"]
+            else ""
+        )
+        console.print(f"  No critical speed from {_span(campbell)}{lowest}")
+    if excited:
+        _nearest(console, excited)
+
+
+def _undamped(console: Console, rotor: dict[str, Any]) -> None:
+    """Undamped critical speeds, which way they whirl, and how far they are from the speed of operation."""
+    speeds, directions, margins = (rotor[f"critical_{key}"] for key in ("speeds_rpm", "directions", "margins"))
+    title = "Undamped critical speeds"
+    if margins is None:
+        listed = [(f"{speed:.5g}", _whirl_name(way)) for speed, way in zip(speeds, directions, strict=True)]
+        _show(console, title, ("speed [rpm]", "whirl"), listed[:_MOST])
+        return
+    reach = sum(margin <= _REACH - 1.0 for margin in margins) + 1  # and the first beyond
+    rows = [
+        (f"{speed:.5g}", _whirl_name(way), _beside(margin))
+        for speed, way, margin in list(zip(speeds, directions, margins, strict=True))[: min(reach, _MOST)]
+    ]
+    _show(console, title, ("speed [rpm]", "whirl", "from operation"), rows)
+    excited = [
+        (abs(margin), speed, margin)
+        for speed, way, margin in zip(speeds, directions, margins, strict=True)
+        if way >= -1.0 + _PLANAR  # circular backward whirl takes no work from unbalance
+    ]
+    if excited:
+        _nearest(console, excited)
+
+
+def _nearest(console: Console, excited: Sequence[tuple[float, float, float]]) -> None:
+    """The critical speed nearest to operation of some, each with its distance, speed and margin."""
+    _, speed, margin = min(excited)
+    console.print(f"  Of those that unbalance excites, {speed:.5g} rpm is nearest: {_beside(margin)} operation")
+
+
+def _weight(console: Console, static: dict[str, Any]) -> None:
+    """What the bearings carry of the rotor's weight, and how far it sags."""
+    if static["bearings"] is None:
+        console.print(f"  No static deflection: {static['why_not']}")
+        return
+    rows = [(bearing["name"], *(f"{load:z.5g}" for load in bearing["load_n"][:2])) for bearing in static["bearings"]]
+    title = f"Under its weight{_with_bearings_at(static['bearings_at_rpm'])}"
+    _show(console, title, ("bearing carries", "x [N]", "y [N]"), rows)
+    sag, place = 1e6 * static["largest_deflection_m"], 1e3 * static["largest_deflection_at_m"]
+    console.print(f"  It sags most at {place:.5g} mm, by {sag:.3g} µm")
+
+
+def _response(console: Console, response: dict[str, Any]) -> None:
+    """What each probe reads of unbalance and bow, at operation and at its largest."""
+    rows = []
+    for probe in response["probes"][:_MOST]:
+        at_operation = ("", "")
+        if probe["operation_amplitude_m"] is not None:
+            at_operation = (
+                f"{1e6 * probe['operation_amplitude_m']:.3g}",
+                f"{probe['operation_phase_lag_deg']:.0f}°",
+            )
+        largest = f"{1e6 * probe['largest_amplitude_m']:.3g} at {probe['largest_at_rpm']:.5g} rpm"
+        place = f"{probe['name']}, {1e3 * probe['at_m']:.5g} mm, {probe['angle_deg']:.0f}°"
+        rows.append((place, *at_operation, largest))
+    _show(
+        console,
+        "Response to unbalance and bow",
+        ("probe", "at operation [µm, peak]", "lag", "largest [µm, peak]"),
+        rows,
+    )
+
+
+def _stiffness_map(console: Console, given: dict[str, Any]) -> None:
+    """Forward critical speeds from the softest to the stiffest bearings; the rest is in the files."""
+    stiffnesses, speeds = given["stiffness_n_per_m"], given["forward_critical_speeds_rpm"]
+    chosen = sorted({round(part * (len(stiffnesses) - 1) / (_MAP_ROWS - 1)) for part in range(_MAP_ROWS)})
+    rows = [
+        (f"{stiffnesses[row]:.3g}", "  ".join(f"{speed:.5g}" for speed in speeds[row] if math.isfinite(speed)))
+        for row in chosen
+    ]
+    _show(console, "Over the stiffness of all bearings", ("stiffness [N/m]", "forward critical speeds [rpm]"), rows)
+
+
+def _beside(margin: float) -> str:
+    """How far a critical speed is from operation, which it exceeds by ``margin`` times operation."""
+    if margin > _REACH - 1.0:
+        return f"{1.0 + margin:.3g} times"
+    return f"{100.0 * abs(margin):.3g} % {'above' if margin > 0.0 else 'below'}"
+
+
+def _whirl_name(direction: float) -> str:
+    if abs(direction) <= _PLANAR:
+        return "in a plane"
+    return "forward" if direction > 0.0 else "backward"
+
+
+def _stability(campbell: dict[str, Any]) -> str:
+    """Up to which speed no mode grows."""
+    span = f"{counted(len(campbell['speed_rpm']), 'speed')} from {_span(campbell)}"
+    onset = campbell["unstable_from_rpm"]
+    return f"Stable at {span}" if onset is None else f"UNSTABLE from {onset:.6g} rpm on, of {span}"
+
+
+def _span(campbell: dict[str, Any]) -> str:
+    speeds = [abs(speed) for speed in campbell["speed_rpm"]]
+    return f"{min(speeds):.6g} to {max(speeds):.6g} rpm"
+
+
+def _proof(certificate: dict[str, Any]) -> str:
+    found, expected = certificate["found"], certificate["expected"]
+    return f"Bending at rest complete below {certificate['limit_hz']:.5g} Hz: {found} found, {expected} counted"
+
+
+def _show(console: Console, title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    table = Table(*head, box=SIMPLE_HEAD, show_edge=False)
+    table.columns[0].justify = "right" if "[" in head[0] else "left"  # numbers have a unit
+    for row in rows:
+        table.add_row(*row)
+    console.print(f"  {title}")
+    console.print(Padding(table, (0, 0, 1, 2), expand=False))

@@ -1,0 +1,182 @@
+"""What is known of the rotors, as the command's JSON: each key with its unit."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import rotors as room
+from gearwhine.stages.rotor_loads import SolvedResponse
+from gearwhine.stages.rotors import SolvedRotor
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_RPM = 60.0 / (2.0 * np.pi)
+
+# A damping ratio nearer to zero than this is rounding: the mode neither grows nor decays.
+NEUTRAL = 1e-9
+
+
+def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
+    """The rotors as the command's JSON."""
+    return {
+        "rotors": [
+            {
+                "name": one.rotor.name,
+                "mass_kg": one.rotor.mass,
+                "length_m": one.rotor.length,
+                "lateral_hz": (one.rest.frequencies / _HERTZ).tolist(),
+                "torsional_hz": (one.torsional.frequencies / _HERTZ).tolist(),
+                "rest_bearings_at_rpm": _in_rpm(one.rest_speed),
+                "operation_rpm": _in_rpm(one.operation),
+                "whirl": [{"speed_rpm": whirl.speed * _RPM} | _modes(whirl) for whirl in one.whirl],
+                "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
+                "critical_directions": one.critical.direction.round(6).tolist(),
+                "critical_margins": _margins(one),
+                "campbell": _campbell(one),
+                "static": _static(one),
+                "unbalance_response": None if one.response is None else _response(one.response),
+                "damping": "of the bearings; the shaft's own acts in the coupled system",
+                "stiffness_map": None
+                if one.stiffness_map is None
+                else {
+                    "stiffness_n_per_m": one.stiffness_map.stiffnesses.tolist(),
+                    "forward_critical_speeds_rpm": (one.stiffness_map.speeds * _RPM).tolist(),
+                },
+                "certificate": _certificate(one),
+            }
+            for one in solved
+        ]
+    }
+
+
+def log_decrement(damping_ratio: FloatArray) -> FloatArray:
+    """Natural logarithm of the ratio of two amplitudes one period apart, δ = 2πζ / √(1 − ζ²)."""
+    return np.asarray(2.0 * np.pi * damping_ratio / np.sqrt(1.0 - damping_ratio**2))
+
+
+def is_stable(whirl: room.WhirlModes) -> bool:
+    """Whether no mode grows by itself."""
+    return bool((whirl.damping_ratios >= -NEUTRAL).all())
+
+
+def _in_rpm(speed: float | None) -> float | None:
+    return None if speed is None else speed * _RPM
+
+
+def _modes(whirl: room.WhirlModes) -> dict[str, Any]:
+    return {
+        "frequency_hz": (whirl.frequencies / _HERTZ).tolist(),
+        "damping_ratio": whirl.damping_ratios.tolist(),
+        "log_decrement": log_decrement(whirl.damping_ratios).tolist(),
+        "direction": whirl.direction.tolist(),
+        "stable": is_stable(whirl),
+    }
+
+
+def _campbell(one: SolvedRotor) -> dict[str, Any] | None:
+    """Whirl over speed, a row for each speed and a column for each branch; None without speeds.
+
+    ``unstable_from_rpm`` is the lowest speed looked at, without its sense, at which a mode grows.
+    """
+    if one.campbell is None:
+        return None
+    diagram, crossings = one.campbell, one.crossings
+    # Branches that do not oscillate at a speed are not a number there, which compares as stable.
+    grows = (diagram.log_decrements < -2.0 * np.pi * NEUTRAL).any(axis=1)
+    return {
+        "speed_rpm": (diagram.speeds * _RPM).tolist(),
+        "frequency_hz": (diagram.frequencies / _HERTZ).tolist(),
+        "log_decrement": diagram.log_decrements.tolist(),
+        "direction": diagram.direction.tolist(),
+        "unstable_from_rpm": float(np.abs(diagram.speeds[grows]).min()) * _RPM if grows.any() else None,
+        "proved_at_rpm": (diagram.speeds[diagram.proved] * _RPM).tolist(),
+        "critical_speeds": None if isinstance(crossings, str) else [_crossing(one, each) for each in crossings],
+        "why_no_critical_speeds": crossings if isinstance(crossings, str) else None,
+    }
+
+
+def _crossing(one: SolvedRotor, crossing: room.Crossing) -> dict[str, Any]:
+    """A damped critical speed."""
+    return {
+        "speed_rpm": crossing.speed * _RPM,
+        "direction": crossing.direction,
+        "log_decrement": crossing.log_decrement,
+        "margin": abs(crossing.speed / one.operation) - 1.0 if one.operation else None,
+    }
+
+
+def _static(one: SolvedRotor) -> dict[str, Any]:
+    """Bearing loads under gravity and the shaft's sag; or why there are none."""
+    if isinstance(one.weight, str):
+        return {"bearings": None, "why_not": one.weight}
+    deflection = one.weight.deflection
+    sag = np.hypot(*one.weight.displacement)
+    lowest = int(sag.argmax())
+    return {
+        "gravity_m_per_s2": deflection.gravity.tolist(),
+        "bearings_at_rpm": None if one.rest_speed is None else _in_rpm(one.weight.speed),
+        "bearings": [
+            {"name": name, "load_n": load[:3].tolist(), "moment_n_m": load[3:].tolist()}
+            for name, load in zip(deflection.bearings, deflection.bearing_loads, strict=True)
+        ],
+        "largest_deflection_m": float(sag[lowest]),
+        "largest_deflection_at_m": float(one.weight.places[lowest]),
+        "place_m": one.weight.places.tolist(),
+        "deflection_m": one.weight.displacement.tolist(),
+    }
+
+
+def _response(solved: SolvedResponse) -> dict[str, Any]:
+    """What each probe reads over speed, at its largest and at operation; forces on the bearings over x and y."""
+    response = solved.response
+    rows = []
+    for place, reading in enumerate(solved.readings):
+        amplitude = np.abs(reading.amplitude)
+        largest = int(amplitude.argmax())
+        at_operation = solved.at_operation[place] if solved.at_operation else None
+        rows.append(
+            {
+                "name": reading.probe.name,
+                "at_m": reading.probe.at,
+                "angle_deg": float(np.degrees(reading.probe.angle)),
+                "amplitude_m": amplitude.tolist(),
+                "phase_lag_deg": np.degrees(reading.phase_lag).tolist(),
+                "major_axis_m": reading.major_axis.tolist(),
+                "largest_amplitude_m": float(amplitude[largest]),
+                "largest_at_rpm": float(response.speeds[largest]) * _RPM,
+                "operation_amplitude_m": None if at_operation is None else float(abs(at_operation.amplitude[0])),
+                "operation_phase_lag_deg": None
+                if at_operation is None
+                else float(np.degrees(at_operation.phase_lag[0])),
+            }
+        )
+    forces = np.abs(response.bearing_forces[:, :, :2])
+    return {
+        "speed_rpm": (response.speeds * _RPM).tolist(),
+        "amplitude_convention": "zero to peak",
+        "probes": rows,
+        "bearings": [
+            {"name": name, "force_n": forces[:, place].T.tolist()} for place, name in enumerate(response.bearings)
+        ],
+    }
+
+
+def _margins(one: SolvedRotor) -> list[float] | None:
+    """How far each critical speed lies from the speed of operation, as a part of that; None where nothing turns."""
+    if not one.operation:
+        return None
+    return [float(speed) / abs(one.operation) - 1.0 for speed in one.critical.speeds]
+
+
+def _certificate(one: SolvedRotor) -> dict[str, Any]:
+    """The count's proof, of the frequencies at rest."""
+    certificate = one.rest.certificate
+    return {
+        "limit_hz": certificate.limit / _HERTZ,
+        "expected": certificate.expected,
+        "found": certificate.found,
+        "complete": certificate.complete,
+        "max_residual": certificate.max_residual,
+    }

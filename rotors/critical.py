@@ -1,0 +1,130 @@
+"""Critical speeds of a rotor: where its whirl meets its rotation."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .bearing import Bearing, undamped
+from .campbell import campbell
+from .errors import require
+from .exact_roots import ACCEPTED, synchronous_speed
+from .lateral import LateralModes
+from .projection import DEFAULT_COUNT, Projection, basis_for
+from .shaft import Rotor
+from .spatial_field import SpatialMotion
+from .spatial_ties import block_sets
+from .whirl import certified_whirl
+from .whirl_certificate import NO_OSCILLATION, WhirlCertificate
+
+# Speeds at which tables are looked at for critical ones, and how far beyond them branches are followed.
+TABLE_SPEEDS = 60
+TABLE_REACH = 1.2
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CriticalSpeeds:
+    """Speeds at which the rotor whirls once per turn.
+
+    Attributes
+    ----------
+    speeds
+        (c,): ascending, rad/s.
+    direction
+        (c,): 1 circular forward, −1 circular backward, 0 planar, as in `rotors.WhirlModes`.
+    certificate
+        Proof that none is missing.
+    """
+
+    speeds: FloatArray
+    direction: FloatArray
+    certificate: WhirlCertificate
+
+    @property
+    def forward(self) -> FloatArray:
+        """The speeds that unbalance excites: those whose whirl is not purely backward."""
+        return np.asarray(self.speeds[self.direction > -1.0 + 1e-6])
+
+
+def critical_speeds(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    *,
+    speed_limit: float | None = None,
+    count: int | None = None,
+    basis: LateralModes | None = None,
+) -> CriticalSpeeds:
+    """Undamped critical speeds: where a whirl frequency equals the speed of rotation.
+
+    With Ω = ω the gyroscopic term joins the mass, and all of them are roots of one eigenproblem,
+
+        K q = ω² [[M, −i G], [i G, M]] q
+
+    over both planes; a disc whose polar inertia exceeds its diametral one takes its forward root away.
+    Where bearings have tables over speed, these are the crossings of a diagram of 60 speeds in the range that the
+    tables share. With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying
+    whirl), and the real part of ω is given. Damping is left out, which is the usual definition; the damped whirl
+    frequency crosses a little elsewhere, where `rotors.Campbell.crossings` has it.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and what holds it.
+    speed_limit
+        rad/s: all critical speeds strictly below.
+    count
+        How many, instead of a limit; with neither, 12.
+    basis
+        From `rotors.whirl_basis`, to spare building it.
+
+    Raises
+    ------
+    RotorError, IncompleteModesError
+        As `rotors.solve_whirl`.
+    """
+    chosen = basis_for(rotor, bearings, speed_limit, count, basis)
+    free = [undamped(bearing) for bearing in bearings]
+    if any(bearing.speeds is not None for bearing in free):
+        return _tabled_critical_speeds(rotor, free, speed_limit, count, chosen)
+    sets = [Projection.of(rotor, free, blocks, chosen) for blocks in block_sets(free)]
+    motion, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
+    shares = motion.shares()
+    order = np.argsort(motion.eigenvalues.imag)
+    direction = (shares[:, 0] - shares[:, 1]) / shares.sum(axis=1)
+    return CriticalSpeeds(motion.eigenvalues.imag[order], direction[order], certificate)
+
+
+def _tabled_critical_speeds(
+    rotor: Rotor, bearings: Sequence[Bearing], limit: float | None, count: int | None, basis: LateralModes
+) -> CriticalSpeeds:
+    """Crossings of a Campbell diagram whose stiffness follows the speed, within all tables."""
+    tables = [bearing.speeds for bearing in bearings if bearing.speeds is not None]
+    low, high = max(float(table[0]) for table in tables), min(float(table[-1]) for table in tables)
+    high = min(high, limit or np.inf)
+    require(low < high, "speeds of the bearings' tables", (low, high), "a range of speeds that they share")
+    diagram = campbell(
+        rotor, bearings, np.linspace(low, high, TABLE_SPEEDS), frequency_limit=TABLE_REACH * high, basis=basis
+    )
+    found = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
+    speeds = np.array([crossing.speed for crossing in found])
+    proof = WhirlCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
+    return CriticalSpeeds(speeds, np.array([crossing.direction for crossing in found]), proof)
+
+
+def certified_criticals(
+    rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[Projection], limit: float | None, count: int | None
+) -> tuple[SpatialMotion, WhirlCertificate]:
+    """Synchronous whirl of undamped bearings below a limit, or the lowest few, for some sets of tied motions."""
+    return certified_whirl(
+        rotor,
+        bearings,
+        [(one.blocks, one.critical(bearings)) for one in sets],
+        synchronous_speed,
+        None,
+        NO_OSCILLATION * sets[0].floor,
+        limit,
+        None if limit is not None else count or DEFAULT_COUNT,
+    )

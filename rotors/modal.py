@@ -1,0 +1,166 @@
+"""The rotor as the component that a coupled model is made of: its modes, and what its bearings add in modal form.
+
+Both planes share the bending modes Φ at averaged bearing stiffness k̄ (TM-101442 Eqs. 7 to 13), so that q = (q_x, q_y)
+obeys
+
+    q̈ + [Ω (J ⊗ G) + C_b] q̇ + [I ⊗ diag(ω²) + K_s + K_c] q = Φᵀ f,        J = [[0, 1], [-1, 0]],
+
+with the gyroscopic matrix G = ∫ Φ' dI_p Φ'ᵀ and, summed over the bearings, the compensation
+
+    K_s = Σ diag(k_xx - k̄, k_yy - k̄) ⊗ Φ_b Φ_bᵀ
+
+and the cross-coupling K_c = Σ [[0, k_xy], [k_yx, 0]] ⊗ Φ_b Φ_bᵀ (TM-104434 Eqs. 11 to 15). The rows of a bearing's tilt
+stiffness do the same with the slopes. Behind the modes stand residual attachment vectors for a force at every bearing
+and gear, for a moment where a bearing resists tilting, and for a torque at every gear: the static response that the
+modes left out carry (Craig 2000), without which a gear's or a bearing's place is too stiff.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .attachment import attach_loads, attach_motions
+from .axial import AxialModes, solve_axial_modes
+from .bearing import Bearing
+from .errors import require
+from .lateral import LateralModes, solve_lateral_modes
+from .shaft import Rotor
+from .torsion import TorsionalModes, solve_torsional_modes
+
+FloatArray = npt.NDArray[np.float64]
+
+_FEWEST = 4  # modes, below which a frequency limit is too low to be meant
+
+
+@dataclass(frozen=True)
+class ModalRotor:
+    """A rotor reduced to modes and attachment vectors.
+
+    Attributes
+    ----------
+    lateral : LateralModes
+        b bending modes and vectors, for the x and for the y plane.
+    torsional : TorsionalModes
+        Free to turn; the rigid rotation first.
+    axial : AxialModes or None
+        Free along the axis; the rigid motion first. Where no bearing resists motion along it, there are none.
+    bearings : tuple of Bearing
+        Those whose averaged stiffness the bending modes hold.
+    ports : tuple of float
+        Places of bearings and gears, m from the left end.
+    """
+
+    lateral: LateralModes
+    torsional: TorsionalModes
+    axial: AxialModes | None = None
+    bearings: tuple[Bearing, ...] = ()
+    ports: tuple[float, ...] = ()
+
+    @property
+    def gyroscopic(self) -> FloatArray:
+        """J ⊗ G over (q_x, q_y), (2 b, 2 b): times the speed of rotation [rad/s] it joins the damping."""
+        return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), self.lateral.polar_inertia_matrix)
+
+    @property
+    def compensation(self) -> FloatArray:
+        """K_s over (q_x, q_y), (2 b, 2 b) [1/s²]."""
+        return self._bearing_sum("stiffness", np.eye(2)) - np.kron(np.eye(2), self.lateral.support_matrix)
+
+    @property
+    def cross_coupling(self) -> FloatArray:
+        """K_c over (q_x, q_y), (2 b, 2 b) [1/s²]; not symmetric where the bearings' is not."""
+        return self._bearing_sum("stiffness", 1.0 - np.eye(2))
+
+    @property
+    def bearing_damping(self) -> FloatArray:
+        """C_b over (q_x, q_y), (2 b, 2 b) [1/s]."""
+        return self._bearing_sum("damping", np.ones((2, 2)))
+
+    @property
+    def static_error(self) -> float:
+        """Largest part of the static compliance at a port that the modes alone, without the vectors, lack.
+
+        Zero for a rotor that its bearings leave free, which has no static compliance.
+        """
+        frequencies, proper = self.lateral.frequencies, self.lateral.certificate.found
+        if not self.ports or bool((frequencies <= 0.0).any()):
+            return 0.0
+        shares = (self.lateral.evaluate(self.ports)[0] / frequencies[:, None]) ** 2
+        return float((shares[proper:].sum(axis=0) / shares.sum(axis=0)).max())
+
+    def _bearing_sum(self, what: str, chosen: FloatArray) -> FloatArray:
+        """Σ of the chosen entries, (2, 2), of the bearings' matrices, on displacements and on slopes."""
+        size = 2 * self.lateral.count
+        total = np.zeros((size, size))
+        for bearing in self.bearings:
+            spatial = bearing.spatial_stiffness if what == "stiffness" else bearing.spatial_damping
+            displacement, slope = (part[:, 0] for part in self.lateral.evaluate([bearing.at]))
+            # Motions x, y, rotation about x (minus the slope in y) and about y (the slope in x), by plane.
+            none = np.zeros_like(displacement)
+            motions = np.array([[displacement, none], [none, displacement], [none, -slope], [slope, none]]).reshape(
+                4, size
+            )
+            kept = spatial[np.ix_([0, 1, 3, 4], [0, 1, 3, 4])]
+            # The plane that each of the four motions belongs to.
+            plane = np.array([0, 1, 1, 0])
+            total += motions.T @ (kept * chosen[np.ix_(plane, plane)]) @ motions
+        return total
+
+
+def modal_rotor(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+    gears_at: Sequence[float] = (),
+) -> ModalRotor:
+    """Reduce a rotor to the modes that a coupled model keeps, and the vectors that make its ports' compliance exact.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and what holds it; bearings with tables, at their speed (`Bearing.at_speed`).
+    frequency_limit : float
+        rad/s: every bending and torsional mode below it is kept, and at least four bending modes.
+    count : int
+        How many bending modes in each plane and how many torsional modes, the rigid rotation included, instead.
+    gears_at : sequence of float
+        Where forces and torques of gears act, m from the left end.
+
+    Raises
+    ------
+    RotorError
+        Both or neither of a limit and a count, or places off the shaft.
+    IncompleteModesError
+        The modes fail their proof.
+    """
+    one = (frequency_limit is None) != (count is None)
+    require(one, "frequency_limit and count", (frequency_limit, count), "one of the two")
+    supports = tuple(bearing.mean_support for bearing in bearings)
+    lateral = solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)
+    torsional = solve_torsional_modes(rotor, frequency_limit=frequency_limit, count=count)
+    ports = (*(bearing.at for bearing in bearings), *gears_at)
+    if frequency_limit is not None and lateral.count < _FEWEST:
+        lateral = solve_lateral_modes(rotor, supports)
+    if frequency_limit is not None and torsional.count < _FEWEST:
+        torsional = solve_torsional_modes(rotor)
+    # A lumped rotor has no more motions than its modes.
+    if rotor.mass_model == "distributed":
+        tilted = [support.at for support in supports if support.tilt_stiffness > 0.0]
+        lateral = attach_loads(lateral, forces_at=ports, moments_at=tilted)
+        torsional = attach_motions(torsional, gears_at)
+    return ModalRotor(lateral, torsional, _axial(rotor, bearings, frequency_limit, count), tuple(bearings), ports)
+
+
+def _axial(
+    rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
+) -> AxialModes | None:
+    """Free axial modes with vectors for forces at the bearings that hold the shaft along its axis, if any do."""
+    thrust = [b.at for b in bearings if b.spatial_stiffness[2].any() or b.spatial_damping[2].any()]
+    if not thrust:
+        return None
+    modes = solve_axial_modes(rotor, frequency_limit=frequency_limit, count=count)
+    return modes if rotor.mass_model == "lumped" else attach_motions(modes, thrust)

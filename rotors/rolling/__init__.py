@@ -1,0 +1,43 @@
+"""Rolling bearings from their geometry: what they carry, element by element, and how stiff they are under a load.
+
+    row = BallRow(count=7, ball_diameter=11.5e-3, pitch_diameter=43.5e-3)
+    state = rolling_equilibrium(RollingBearing([row]), [1000.0, 0.0, 0.0, 0.0, 0.0])
+    bearing = bearing_from(state, "drive end", at=0.02)
+
+A state carries the displacement, the 5×5 tangent stiffness, each element's load, contact angles and pressures, and the
+residual of its equilibrium. `catalogue_row` estimates a row from bore, outer diameter and width; `paired` sets two
+against each other. Coordinates are x, y, z and the rotations about x and y of the inner ring against the outer.
+"""
+
+from .arrangements import paired, preload_offset
+from .catalogue import catalogue_row, static_rating
+from .elasticity import STEEL, ContactElasticity
+from .energy import ElementLoads
+from .equilibrium import LARGEST_APPROACH, rolling_equilibrium, rolling_reaction
+from .hertz import PointContact, point_contact
+from .mounting import bearing_from, kramer_ball_stiffness, kramer_roller_stiffness
+from .rows import BallRow, RollerRow, RollingBearing
+from .state import COORDINATES, RollingState
+
+__all__ = [
+    "COORDINATES",
+    "LARGEST_APPROACH",
+    "STEEL",
+    "BallRow",
+    "ContactElasticity",
+    "ElementLoads",
+    "PointContact",
+    "RollerRow",
+    "RollingBearing",
+    "RollingState",
+    "bearing_from",
+    "catalogue_row",
+    "kramer_ball_stiffness",
+    "kramer_roller_stiffness",
+    "paired",
+    "point_contact",
+    "preload_offset",
+    "rolling_equilibrium",
+    "rolling_reaction",
+    "static_rating",
+]

@@ -1,0 +1,135 @@
+"""The elastic energy of a row of balls and its derivatives.
+
+At the azimuth ψ the centre of the inner groove's curvature stands from that of the outer one by the vector v in the
+ball's own plane (radial, axial), v = v₀ + B q, with σ the row's direction, A the distance of the centres when a ball
+just touches both grooves, s the clearance, e the axial offset and (R, z) the radius and place of the inner centres:
+
+    v₀ = (A cos α − s/2,  σ (A sin α + e))
+    B  = [[cos ψ, sin ψ, 0, −z sin ψ,  z cos ψ],
+          [0,     0,     1,  R sin ψ, −R cos ψ]]
+
+(De Mul, Vree and Maas 1989; ISO 16281 for one plane). A ball without inertia feels two forces in one line, its contacts
+in series, and the approach is δ = |v| − A:
+
+    φ = ⅖ K δ^{5/2},  ∂φ/∂v = K δ^{3/2} n,  ∂²φ/∂v² = 3/2 K δ^{1/2} n nᵀ + (K δ^{3/2} / |v|) (I − n nᵀ),  n = v / |v|
+
+for δ > 0 and nothing otherwise. The length of a vector is convex, and so is an increasing convex function of it: the
+energy is convex in q. Friction is left out.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from .energy import ElementLoads, RowEnergy
+from .rows import BallRow
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def ball_kinematics(row: BallRow, azimuths: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """v₀, (2,), and B, (balls, 2, 5)."""
+    angle, sense = row.contact_angle, row.direction
+    radial = row.groove_distance * math.cos(angle) - 0.5 * row.clearance
+    start = np.array([radial, sense * (row.groove_distance * math.sin(angle) + row.axial_offset)])
+    arm = (row.inner_groove - 0.5) * row.ball_diameter
+    radius = 0.5 * row.pitch_diameter + arm * math.cos(angle)
+    place = row.position + sense * arm * math.sin(angle)
+    cosine, sine, zero = np.cos(azimuths), np.sin(azimuths), np.zeros_like(azimuths)
+    motion = np.array(
+        [
+            [cosine, sine, zero, -place * sine, place * cosine],
+            [zero, zero, zero + 1.0, radius * sine, -radius * cosine],
+        ]
+    )
+    return start, np.moveaxis(motion, 2, 0)
+
+
+@dataclass(frozen=True)
+class BallsAtRest:
+    """A row whose balls have no inertia: every ball's contacts in series."""
+
+    row: BallRow
+    azimuths: FloatArray
+
+    def energy(self, q: FloatArray) -> RowEnergy:
+        """Energy and its derivatives over q."""
+        v, motion, approach = self._state(q)
+        distance = np.linalg.norm(v, axis=1)
+        return row_energy(motion, *_spring(self.row.stiffness, v, approach, distance))
+
+    def loads(self, q: FloatArray) -> ElementLoads:
+        """What every ball carries."""
+        v, _, approach = self._state(q)
+        load = self.row.stiffness * np.maximum(approach, 0.0) ** 1.5
+        return ball_loads(self.row, self.azimuths, (load, load), (v, v), approach)
+
+    @cached_property
+    def _kinematics(self) -> tuple[FloatArray, FloatArray]:
+        return ball_kinematics(self.row, self.azimuths)
+
+    def _state(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        start, motion = self._kinematics
+        moved = motion @ q
+        v, nominal = start + moved, self.row.groove_distance
+        # |v₀|² − A² by its terms: |v| − A itself would lose the digits that A has and δ has not.
+        angle, clearance, offset = self.row.contact_angle, self.row.clearance, self.row.axial_offset
+        before = 0.25 * clearance**2 - nominal * clearance * math.cos(angle)
+        before += 2.0 * nominal * offset * math.sin(angle) + offset**2
+        excess = before + 2.0 * moved @ start + (moved**2).sum(axis=1)
+        return v, motion, excess / (np.linalg.norm(v, axis=1) + nominal)
+
+
+def _spring(
+    stiffness: float, vectors: FloatArray, approach: FloatArray, length: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """⅖ K δ^{5/2} of every contact, (n,), and its first and second derivatives by the vector, (n, 2) and (n, 2, 2)."""
+    safe = np.where(approach > 0.0, length, 1.0)
+    normal, deep = vectors / safe[:, None], np.maximum(approach, 0.0)
+    load = stiffness * deep**1.5
+    along = normal[:, :, None] * normal[:, None, :]
+    hessian = (1.5 * stiffness * np.sqrt(deep))[:, None, None] * along
+    hessian = hessian + (load / safe)[:, None, None] * (np.eye(2) - along)
+    return 0.4 * load * deep, load[:, None] * normal, hessian
+
+
+def row_energy(motion: FloatArray, value: FloatArray, force: FloatArray, hessian: FloatArray) -> RowEnergy:
+    """From every ball's plane to the ring's coordinates."""
+    return RowEnergy(
+        value=float(value.sum()),
+        gradient=np.einsum("bi,bij->j", force, motion),
+        hessian=np.einsum("bik,bij,bjl->kl", motion, hessian, motion),
+        force=float(np.linalg.norm(force, axis=1).sum()),
+    )
+
+
+def ball_loads(
+    row: BallRow,
+    azimuths: FloatArray,
+    loads: tuple[FloatArray, FloatArray],
+    vectors: tuple[FloatArray, FloatArray],
+    approach: FloatArray,
+) -> ElementLoads:
+    """The result of a row from the inner and outer loads and their lines of action."""
+    contacts = (row.inner_contact, row.outer_contact)
+    angles = [np.arctan2(row.direction * vector[:, 1], vector[:, 0]) for vector in vectors]
+    roots = [np.cbrt(load) for load in loads]
+    pressures = [contact.unit_pressure * root for contact, root in zip(contacts, roots, strict=True)]
+    semi_axes = [
+        np.outer(root, [contact.semi_major, contact.semi_minor]) for contact, root in zip(contacts, roots, strict=True)
+    ]
+    return ElementLoads(
+        azimuths=azimuths,
+        inner_load=loads[0],
+        outer_load=loads[1],
+        inner_angle=angles[0],
+        outer_angle=angles[1],
+        inner_pressure=pressures[0],
+        outer_pressure=pressures[1],
+        inner_semi_axes=semi_axes[0],
+        outer_semi_axes=semi_axes[1],
+        approach=np.maximum(approach, 0.0),
+    )

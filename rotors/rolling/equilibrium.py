@@ -1,0 +1,218 @@
+"""The place that the inner ring of a rolling bearing takes under a load.
+
+With the energy φ(q) of all elements and the load f, the potential
+
+    Π(q) = φ(q) − fᵀ q
+
+is convex (see `rotors.rolling.ball_contacts` and `rotors.rolling.roller_contacts`) and grows faster than linearly in
+every direction that the bearing holds. So it has a minimum for every load along those, which is the equilibrium, and a
+trust region finds it from any start. The tangent stiffness is the Hessian of φ there.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.errors import EquilibriumError, RotorError, require, require_finite
+
+from .ball_contacts import BallsAtRest
+from .balls_in_motion import BallsInMotion
+from .energy import ElementLoads, RowContacts, RowEnergy
+from .roller_contacts import RollerSlices
+from .rows import BallRow, RollingBearing, Row
+from .state import COORDINATES, RollingState
+from .trust_region import Local, minimise
+
+FloatArray = npt.NDArray[np.float64]
+
+# Approach of the rings over the element's diameter beyond which Hertz's small contacts, and the steel, have ended:
+# about five times the static load rating of ISO 76.
+LARGEST_APPROACH = 0.02
+# Parts of the loads at work that may be out of balance: aimed at, and refused. A ring that nothing loads is measured
+# against a small part of E* D² instead, a hundredth of a newton for a ball of 10 mm.
+_TOLERANCE = 1e-14
+_ACCEPTED = 1e-10
+_LEAST_FORCE = 1e-9
+
+
+def rolling_equilibrium(
+    bearing: RollingBearing,
+    load: Sequence[float] | FloatArray,
+    *,
+    held: Mapping[str, float] | None = None,
+    speed: float = 0.0,
+    cage_angle: float = 0.0,
+) -> RollingState:
+    """Equilibrium of the inner ring under a load, some of its coordinates held where asked.
+
+    Parameters
+    ----------
+    bearing
+        By its geometry.
+    load
+        (5,): force x, y, z (N) and moment about x and y (N·m) on the inner ring at the bearing's centre. What falls on
+        a held coordinate is carried by what holds it.
+    held
+        Displacement of the coordinates that are not free, by their names in `COORDINATES`, m and rad. The rotations
+        held at zero are a stiff shaft in line with its seat.
+    speed
+        Of the inner ring, rad/s, the outer at rest: balls are thrown outwards.
+    cage_angle
+        Azimuth of the first element of every row, rad.
+
+    Returns
+    -------
+    RollingState
+        Without play, the only equilibrium; along a coordinate that play leaves loose, one of them.
+
+    Raises
+    ------
+    RotorError
+        Wrong arguments, such as an axial load on cylindrical rollers.
+    EquilibriumError
+        Contacts that leave their groove, a load beyond what the theory holds for, or a result that fails its own proof.
+    """
+    applied = np.array(load, dtype=np.float64)
+    finite = applied.shape == (5,) and bool(np.isfinite(applied).all())
+    require(finite, f"load on {bearing.name}", applied.tolist(), "five finite numbers: x, y, z, moments about x and y")
+    fixed = dict(held or {})
+    for name, value in fixed.items():
+        require(name in COORDINATES, f"held coordinate of {bearing.name}", name, f"one of {', '.join(COORDINATES)}")
+        require_finite(f"displacement {name} of {bearing.name}", value)
+    require_finite("speed", speed)
+    require_finite("cage angle", cage_angle)
+    pushed = applied[2] != 0.0 and "z" not in fixed and not bearing.has_axial_stiffness
+    require(
+        not pushed,
+        f"axial load on {bearing.name}",
+        float(applied[2]),
+        "none, or z held: cylindrical rollers carry none",
+    )
+
+    contacts = [_contacts(row, speed, cage_angle) for row in bearing.rows]
+    # Rotations as motions of the pitch circle, so that all five are lengths.
+    size = np.array([1.0, 1.0, 1.0, bearing.reach, bearing.reach])
+    force = applied + bearing.axial_preload * np.eye(5)[2]
+    free = np.array([name not in fixed for name in COORDINATES])
+    start = np.array([fixed.get(name, 0.0) for name in COORDINATES])
+
+    largest = max(row.element_diameter for row in bearing.rows)
+
+    def displaced(lengths: FloatArray) -> FloatArray:
+        q = start.copy()
+        q[free] = lengths / size[free]
+        return q
+
+    def potential(lengths: FloatArray) -> Local:
+        q = displaced(lengths)
+        energy = _total([part.energy(q) for part in contacts])
+        work = float(force[free] @ q[free])
+        return Local(
+            value=energy.value - work,
+            gradient=((energy.gradient - force) / size)[free],
+            hessian=(energy.hessian / np.outer(size, size))[np.ix_(free, free)],
+            # Contacts are as deep as the rounded difference of two lengths of a tenth of an element or less.
+            noise=energy.value + abs(work) + 0.1 * energy.force * largest,
+            force=energy.force + float(np.abs(force / size).sum()) + _LEAST_FORCE * bearing.force_scale,
+        )
+
+    found = minimise(potential, np.zeros(int(free.sum())), 1e-3 * largest, _TOLERANCE)
+    q = displaced(found.place)
+    energy = _total([part.energy(q) for part in contacts])
+    state = RollingState(
+        bearing=bearing,
+        displacement=q,
+        load=np.where(free, applied, energy.gradient - force + applied),
+        reaction=energy.gradient,
+        stiffness=0.5 * (energy.hessian + energy.hessian.T),
+        rows=tuple(part.loads(q) for part in contacts),
+        speed=speed,
+        residual=found.residual,
+        iterations=found.iterations,
+    )
+    _require_proof(state)
+    return state
+
+
+def rolling_reaction(
+    bearing: RollingBearing,
+    displacement: Sequence[float] | FloatArray,
+    *,
+    speed: float = 0.0,
+    cage_angle: float = 0.0,
+) -> RollingState:
+    """What the bearing does when its inner ring is displaced by five given amounts (m and rad).
+
+    Raises
+    ------
+    RotorError, EquilibriumError
+        As `rolling_equilibrium`.
+    """
+    given = np.array(displacement, dtype=np.float64)
+    require(given.shape == (5,), f"displacement of {bearing.name}", given.tolist(), "five numbers: x, y, z, rx, ry")
+    held = dict(zip(COORDINATES, given.tolist(), strict=True))
+    return rolling_equilibrium(bearing, np.zeros(5), held=held, speed=speed, cage_angle=cage_angle)
+
+
+def _contacts(row: Row, speed: float, cage_angle: float) -> RowContacts:
+    azimuths = cage_angle + 2.0 * math.pi * np.arange(row.count) / row.count
+    if isinstance(row, BallRow):
+        thrown = row.centrifugal_force(speed)
+        return BallsInMotion(row, azimuths, thrown) if thrown > 0.0 else BallsAtRest(row, azimuths)
+    if speed != 0.0:
+        raise RotorError(f"speed is {speed!r}; expected 0 for rollers, whose centrifugal forces are left out")
+    return RollerSlices(row, azimuths)
+
+
+def _total(rows: Sequence[RowEnergy]) -> RowEnergy:
+    """Rows that share their rings."""
+    return RowEnergy(
+        value=math.fsum(row.value for row in rows),
+        gradient=np.sum([row.gradient for row in rows], axis=0),
+        hessian=np.sum([row.hessian for row in rows], axis=0),
+        force=math.fsum(row.force for row in rows),
+    )
+
+
+def _require_proof(state: RollingState) -> None:
+    """Raise unless the state is an equilibrium, stable, and within what the theory holds for."""
+    name = state.bearing.name
+    for number, (row, loads) in enumerate(zip(state.bearing.rows, state.rows, strict=True), start=1):
+        deepest = float(loads.approach.max()) / row.element_diameter
+        if deepest > LARGEST_APPROACH:
+            raise EquilibriumError(
+                f"{name}: the elements of row {number} are pressed by {100 * deepest:.3g} % of their diameter; "
+                f"expected at most {100 * LARGEST_APPROACH:g} %: less load, preload, interference or tilt, or a larger "
+                "bearing"
+            )
+        if isinstance(row, BallRow):
+            _require_grooves(name, number, row, loads)
+    if state.residual > _ACCEPTED:
+        raise EquilibriumError(
+            f"{name}: no equilibrium after {state.iterations} steps, {state.residual:.3g} of the loads is left; "
+            f"expected {_ACCEPTED:g}: check that load and geometry are in N, N·m and m"
+        )
+    values = np.linalg.eigvalsh(state.even_stiffness)
+    if values[0] < -1e-9 * max(values[-1], 1.0):
+        raise EquilibriumError(
+            f"{name}: its tangent stiffness has the eigenvalue {values[0]:.3g}; expected none below 0"
+        )
+
+
+def _require_grooves(name: str, number: int, row: BallRow, loads: ElementLoads) -> None:
+    low, high = row.groove_limits
+    slack = 1e-9
+    for ring, angle, load in (
+        ("inner", loads.inner_angle, loads.inner_load),
+        ("outer", loads.outer_angle, loads.outer_load),
+    ):
+        outside = (load > 0.0) & ((angle < low - slack) | (angle > high + slack))
+        if outside.any():
+            worst = math.degrees(float(angle[np.argmax(np.where(outside, load, -1.0))]))
+            raise EquilibriumError(
+                f"{name}: balls of row {number} touch the {ring} ring at {worst:.4g}°, beyond its groove; "
+                f"expected contact angles of {math.degrees(low):.4g}° to {math.degrees(high):.4g}°: more axial load or "
+                "preload along the row's direction keeps them there, or less of it where they climb the shoulder"
+            )

@@ -1,0 +1,129 @@
+"""Minimum of a convex function with its exact Hessian, from any start."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+FloatArray = npt.NDArray[np.float64]
+
+MOST_ITERATIONS = 500
+# Eigenvalues below this part of the largest are directions in which the function is flat.
+_FLAT = 1e-14
+_EPSILON = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True)
+class Local:
+    """A function about a point.
+
+    Attributes
+    ----------
+    value
+        The function.
+    gradient, hessian
+        (n,) and (n, n), symmetric and positive semidefinite.
+    noise
+        Size of the terms whose difference ``value`` is: what rounding is a part of.
+    force
+        Size of the terms whose sum ``gradient`` is.
+    """
+
+    value: float
+    gradient: FloatArray
+    hessian: FloatArray
+    noise: float
+    force: float
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Where the iteration stopped, and the largest component of the gradient over ``force`` there."""
+
+    place: FloatArray
+    residual: float
+    iterations: int
+
+
+def minimise(function: Callable[[FloatArray], Local], start: FloatArray, radius: float, tolerance: float) -> Minimum:
+    """Newton's method within a trust region (Conn, Gould and Toint 2000, algorithms 6.1.1 and 7.3.4).
+
+    On a convex function every step is the exact minimiser of the local quadratic within the radius, so the iteration
+    converges from any start if the function is bounded below, quadratically where its Hessian is positive definite at
+    the minimum. Steps along directions without any stiffness or force are not taken.
+
+    Parameters
+    ----------
+    function
+        Value, gradient and Hessian at a point, (n,).
+    start
+        (n,).
+    radius
+        Length of the first step at most; it adapts.
+    tolerance
+        Of the gradient over the size of its terms; rounding may stop the iteration above it.
+    """
+    here, place, stalled = function(start), start, 0
+    best = Minimum(place, _residual(here), 0)
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        if best.residual <= tolerance or stalled == 3:
+            break
+        step, predicted = _step(here, radius)
+        if not step.any():
+            break
+        there = function(place + step)
+        # In the noise of rounding the decrease says nothing, and the ratio tends to one.
+        noise = 10.0 * _EPSILON * max(here.noise, there.noise)
+        ratio = (here.value - there.value + noise) / (predicted + noise)
+        length = float(np.linalg.norm(step))
+        if ratio < 0.25:
+            radius = 0.25 * length
+        elif ratio > 0.75:
+            radius = max(radius, 2.5 * length)
+        if ratio > 1e-4:
+            place, here = place + step, there
+            if _residual(here) < best.residual:
+                best, stalled = Minimum(place, _residual(here), iteration), 0
+            elif predicted <= noise:
+                stalled += 1
+    return best
+
+
+def _residual(local: Local) -> float:
+    worst = float(np.abs(local.gradient).max(initial=0.0))
+    return worst / local.force if local.force > 0.0 else 0.0
+
+
+def _step(local: Local, radius: float) -> tuple[FloatArray, float]:
+    """Minimiser of the local quadratic within the radius, and by how much it lowers that."""
+    values, vectors = linalg.eigh(local.hessian)
+    values = np.maximum(values, 0.0)
+    slope = vectors.T @ local.gradient
+    flat = (values <= _FLAT * values[-1]) & (np.abs(slope) <= 100.0 * _EPSILON * local.force)
+    slope = np.where(flat, 0.0, slope)
+    if not slope.any():
+        return np.zeros_like(slope), 0.0
+    values = np.where(flat, max(float(values[-1]), 1.0), values)
+    # |step| falls with the shift; a shift of |slope| / radius is always enough, as values are not negative.
+    low, high = 0.0, float(np.linalg.norm(slope)) / radius
+    shift = 0.0
+    if values.min() <= _EPSILON * high or _length(slope, values, 0.0) > radius:
+        shift = high
+        for _ in range(60):
+            # Newton on 1/|step| − 1/radius, which is concave in the shift, kept within its bracket.
+            length = _length(slope, values, shift)
+            if 0.9 * radius <= length <= radius:
+                break
+            low, high = (shift, high) if length > radius else (low, shift)
+            curve = float((slope**2 / (values + shift) ** 3).sum())
+            shift += (length - radius) / radius * length**2 / curve
+            if not low < shift < high:
+                shift = 0.5 * (low + high)
+    own = -slope / (values + shift)
+    return np.asarray(vectors @ own), -float(slope @ own + 0.5 * (values * own**2).sum())
+
+
+def _length(slope: FloatArray, values: FloatArray, shift: float) -> float:
+    return float(np.linalg.norm(slope / (values + shift)))

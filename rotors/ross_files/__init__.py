@@ -1,0 +1,6 @@
+"""Rotors to and from the files of ROSS (Rotordynamic Open Source Software), which need not be installed."""
+
+from .reading import RossModel, read_ross
+from .writing import write_ross
+
+__all__ = ["RossModel", "read_ross", "write_ross"]

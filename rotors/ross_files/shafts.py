@@ -1,0 +1,215 @@
+"""The shaft of a rotor on file: its elements in a row, cylinders, cones and couplings, and its nodes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from rotors.errors import RotorError
+from rotors.material import ShaftMaterial, ShearFormula
+from rotors.segment import Segment
+from rotors.shaft import Disc
+from rotors.shaft_coupling import Coupling
+
+from .remarks import Remarks
+from .shear import RIGID_IN_SHEAR, ross_hutchinson
+from .tables import Entry
+
+SHAFT = "ShaftElement"
+COUPLING = "CouplingElement"
+
+_SHAFT_KEYS = frozenset(
+    ("L", "idl", "odl", "idr", "odr", "material", "n", "axial_force", "torque", "shear_effects", "rotary_inertia")
+    + ("gyroscopic", "shear_method_calc", "tag", "alpha", "beta", "color")
+)
+_STIFFNESSES = ("kt_x", "kt_y", "kt_z", "kr_x", "kr_y", "kr_z")
+_DAMPINGS = ("ct_x", "ct_y", "ct_z", "cr_x", "cr_y", "cr_z")
+_COUPLING_KEYS = frozenset(
+    ("m_l", "m_r", "Ip_l", "Ip_r", "Id_l", "Id_r", "o_d", "L", "n", "tag", "scale_factor", "color")
+    + _STIFFNESSES
+    + _DAMPINGS
+)
+# ROSS draws a coupling of no given length this long, and sets its nodes so far apart.
+_COUPLING_LENGTH = 0.2
+
+
+@dataclass(frozen=True)
+class ReadShaft:
+    """A row of segments, and where the file's nodes are on it.
+
+    Attributes
+    ----------
+    segments
+        From the left end.
+    discs
+        At the ends of couplings whose halves differ.
+    first_node
+        Number of the node at the left end.
+    positions
+        (segments + 1,): of the nodes, m.
+    """
+
+    segments: tuple[Segment | Coupling, ...]
+    discs: tuple[Disc, ...]
+    first_node: int
+    positions: tuple[float, ...]
+
+    @property
+    def last_node(self) -> int:
+        """Number of the node at the right end."""
+        return self.first_node + len(self.segments)
+
+    def position(self, node: int) -> float:
+        """Distance of a node from the left end, m."""
+        return self.positions[node - self.first_node]
+
+
+def read_shaft(entries: Sequence[Entry], remarks: Remarks) -> ReadShaft:
+    """Read the shaft's elements and couplings, one or more, given in the order of the file.
+
+    Raises
+    ------
+    RotorError
+        Elements that are not one row, or one that cannot be a segment.
+    """
+    row = _in_a_row(entries)
+    segments: list[Segment | Coupling] = []
+    halves = []
+    for entry in row:
+        try:
+            if entry.kind == COUPLING:
+                coupling, ends = _coupling(entry, remarks)
+                segments.append(coupling)
+                halves.append((len(segments), ends))
+            else:
+                segments.append(_segment(entry, remarks))
+        except RotorError as error:
+            raise error if entry.file in str(error) else RotorError(f"{entry.file}: {entry.key}: {error}") from None
+    lengths = np.array([0.0, *(segment.length for segment in segments)], dtype=np.longdouble)
+    positions = tuple(np.cumsum(lengths).astype(np.float64).tolist())
+    discs = [
+        Disc(positions[number - 1 + side], mass, polar, diametral)
+        for number, ends in halves
+        for side, (mass, polar, diametral) in enumerate(ends)
+    ]
+    return ReadShaft(tuple(segments), tuple(discs), row[0].node() or 0, positions)
+
+
+def _in_a_row(entries: Sequence[Entry]) -> list[Entry]:
+    """The elements by their left node; where none says so, as they stand."""
+    nodes = [entry.node() for entry in entries]
+    if all(node is None for node in nodes):
+        return list(entries)
+    for entry, node in zip(entries, nodes, strict=True):
+        if node is None:
+            raise entry.error("n", "a node, since other elements of the shaft have one")
+    row = sorted(entries, key=Entry.required_node)
+    for left, right in pairwise(row):
+        if right.node() == left.node():
+            beside = f"a node of its own; {left.key} is there too, and elements side by side have no place here"
+            raise right.error("n", beside)
+        if right.required_node() != left.required_node() + 1:
+            gap = f"{left.required_node() + 1}: one shaft, its elements end to end"
+            raise right.error("n", gap)
+    return row
+
+
+def _segment(entry: Entry, remarks: Remarks) -> Segment:
+    _note_unknown(entry, _SHAFT_KEYS, remarks)
+    outer, inner = entry.number("odl"), entry.number("idl")
+    right_outer, right_inner = entry.number("odr", outer), entry.number("idr", inner)
+    material = _material(entry.inner("material"))
+    return Segment(
+        length=entry.number("L"),
+        outer_diameter=outer,
+        inner_diameter=inner,
+        material=material,
+        shear_coefficient=_shear(entry, material, (outer, inner, right_outer, right_inner), remarks),
+        right_outer_diameter=None if right_outer == outer else right_outer,
+        right_inner_diameter=None if right_inner == inner else right_inner,
+        axial_force=entry.number("axial_force", 0.0),
+    )
+
+
+def _material(entry: Entry) -> ShaftMaterial:
+    """Of E, G and Poisson's ratio two are enough, as in ROSS."""
+    density = entry.number("rho")
+    if "E" not in entry.values:
+        shear = entry.number("G_s")
+        return ShaftMaterial(2.0 * shear * (1.0 + entry.number("Poisson")), shear, density)
+    if "G_s" not in entry.values:
+        return ShaftMaterial.from_poisson_ratio(entry.number("E"), entry.number("Poisson"), density)
+    return ShaftMaterial(entry.number("E"), entry.number("G_s"), density)
+
+
+def _shear(
+    entry: Entry, material: ShaftMaterial, diameters: tuple[float, float, float, float], remarks: Remarks
+) -> float | ShearFormula:
+    """The shear coefficient that ROSS would take, and what it would leave out and the exact segment cannot."""
+    for flag, kept in (("rotary_inertia", "rotary inertia"), ("gyroscopic", "gyroscopic moment")):
+        if not entry.flag(flag):
+            remarks.add(entry.place, f"{flag} is false; the segment keeps its {kept}")
+    for name, what in (("torque", "torque"), ("alpha", "mass-proportional damping"), ("beta", "internal damping")):
+        if (value := entry.number(name, 0.0)) != 0.0:
+            remarks.add(entry.place, f"{name} is {value:g}; the shaft's {what} is left out")
+    if not entry.flag("shear_effects"):
+        return RIGID_IN_SHEAR
+    method = entry.values.get("shear_method_calc", "cowper")
+    if method == "hutchinson":
+        outer, inner, right_outer, right_inner = diameters
+        factor = ross_hutchinson((inner + right_inner) / (outer + right_outer), material.poisson_ratio)
+        remarks.add(
+            entry.place,
+            "shear_method_calc is 'hutchinson', in which ROSS leaves out a factor 1 + ν; taken as ROSS computes it, "
+            f"{factor:.6g}",
+        )
+        return factor
+    if method != "cowper":
+        raise entry.error("shear_method_calc", "'cowper' or 'hutchinson'")
+    return "cowper"
+
+
+def _coupling(entry: Entry, remarks: Remarks) -> tuple[Coupling, tuple[tuple[float, float, float], ...]]:
+    """A coupling, and mass, polar and diametral inertia of its two halves where these differ."""
+    _note_unknown(entry, _COUPLING_KEYS, remarks)
+    for name in _DAMPINGS:
+        if (value := entry.number(name, 0.0)) != 0.0:
+            remarks.add(entry.place, f"{name} is {value:g}; the coupling's damping is left out")
+    for x, y in (("kt_x", "kt_y"), ("kr_x", "kr_y")):
+        if entry.number(x, 0.0) != entry.number(y, 0.0):
+            raise entry.error(y, f"{entry.number(x, 0.0):g}, the value of {x}: a coupling turns with the shaft")
+    for name in ("kt_x", "kt_z", "kr_x", "kr_z"):
+        if entry.number(name, 0.0) <= 0.0:
+            raise entry.error(name, "a positive stiffness: shafts not connected in a direction are rotors of their own")
+    length = entry.number("L", _COUPLING_LENGTH)
+    remarks.add(
+        entry.place,
+        f"is read as a springy piece of {length:g} m, in equilibrium under its shear force; the spring of ROSS has no "
+        "length, and resists a tilt of the whole shaft",
+    )
+    ends = []
+    for side in ("l", "r"):
+        polar = entry.number(f"Ip_{side}")
+        # As in ROSS, a diametral inertia of zero is half the polar one.
+        ends.append((entry.number(f"m_{side}"), polar, entry.number(f"Id_{side}", 0.0) or 0.5 * polar))
+    alike = ends[0] == ends[1]
+    mass, polar, diametral = (2.0 * value if alike else 0.0 for value in ends[0])
+    coupling = Coupling(
+        length=length,
+        lateral_stiffness=entry.number("kt_x"),
+        tilt_stiffness=entry.number("kr_x"),
+        torsional_stiffness=entry.number("kr_z"),
+        axial_stiffness=entry.number("kt_z"),
+        mass=mass,
+        polar_inertia=polar,
+        diametral_inertia=diametral,
+    )
+    return coupling, () if alike else tuple(ends)
+
+
+def _note_unknown(entry: Entry, known: frozenset[str], remarks: Remarks) -> None:
+    """Remark on keys that no ROSS element of this class has."""
+    for name in entry.values:
+        if name not in known:
+            remarks.add(entry.place, f"{name} is not read")

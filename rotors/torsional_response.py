@@ -1,0 +1,170 @@
+"""Steady torsional response of a rotor to harmonic torques, by the exact transfer matrices of its pieces.
+
+Material damping is a complex shear modulus G (1 + 2iζ): at every frequency a piece loses the part of its energy
+that a mode of damping ratio ζ loses. With c = 1 + 2iζ a piece's equations θ' = τ/(c GJ), τ' = −ω²ρJ θ are those of
+`rotors.timoshenko` for ω²/c with torques counted in units of c. Springs to ground carry k (1 + 2iζ), dashpots iωc.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from .axis_spring import AxisSpring
+from .banded import BandPattern
+from .chain import Chain
+from .errors import require, require_finite
+from .harmonic import finite_values
+from .rotor_lines import rod_line
+from .search import require_positions
+from .shaft import Rotor
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Torque:
+    """A torque Re[T e^{iωt}] about the axis at a place (m); ``amplitude`` is complex, N·m."""
+
+    at: float
+    amplitude: complex
+
+    def __post_init__(self) -> None:
+        require_finite("torque position", self.at, minimum=0.0)
+        require(bool(np.isfinite(self.amplitude)), "torque amplitude", self.amplitude, "a finite complex number")
+
+
+@dataclass(frozen=True)
+class TorsionalDashpot:
+    """A dashpot between the shaft at a place (m) and ground; ``coefficient`` in N·m·s/rad."""
+
+    at: float
+    coefficient: float
+
+    def __post_init__(self) -> None:
+        require_finite("dashpot position", self.at, minimum=0.0)
+        require_finite("dashpot coefficient", self.coefficient, minimum=0.0)
+
+
+@dataclass(frozen=True)
+class TorsionalResponse:
+    """Steady torsion Re[θ e^{iωt}], one for each frequency.
+
+    Attributes
+    ----------
+    frequencies
+        (b,): ω, rad/s.
+    damping_ratio
+        ζ of the shaft.
+    """
+
+    frequencies: FloatArray
+    damping_ratio: float
+    chain: Chain = field(repr=False)
+    states: ComplexArray = field(repr=False)
+
+    def angle(self, z: npt.ArrayLike) -> ComplexArray:
+        """Complex angle at positions z (m), (b, len(z)), rad."""
+        return np.asarray(self._at(z)[:, :, 0] * self.chain.displacement_unit[0])
+
+    def torque(self, z: npt.ArrayLike) -> ComplexArray:
+        """Complex torque that the shaft carries, right of positions z (m), (b, len(z)), N·m."""
+        return np.asarray(self._at(z)[:, :, 1] / self.chain.displacement_unit[0])
+
+    def _at(self, z: npt.ArrayLike) -> ComplexArray:
+        pieces, fractions = self.chain.places(require_positions(self.chain.nodes, z))
+        modulus = 1.0 + 2j * self.damping_ratio
+        transfers = self.chain.transfers_to(pieces, fractions, self.frequencies**2 / modulus)
+        transfers = in_units_of(transfers, modulus)
+        return np.asarray(np.einsum("zbij,bzj->bzi", transfers, self.states[:, pieces]))
+
+
+def torsional_response(
+    rotor: Rotor,
+    torques: Sequence[Torque],
+    frequencies: npt.ArrayLike,
+    *,
+    springs: Sequence[AxisSpring] = (),
+    dashpots: Sequence[TorsionalDashpot] = (),
+    damping_ratio: float = 0.0,
+) -> TorsionalResponse:
+    """Response of a rotor's torsion to harmonic torques.
+
+    Parameters
+    ----------
+    rotor
+        The shaft and its discs.
+    torques
+        Their places and complex amplitudes.
+    frequencies
+        (b,): ω, rad/s; positive, as a free shaft has no steady answer to a constant torque.
+    springs, dashpots
+        To ground.
+    damping_ratio
+        ζ of the shaft's material and of the springs.
+
+    Raises
+    ------
+    RotorError
+        A place off the shaft, a negative damping ratio, or a frequency that is not positive.
+    """
+    omega = finite_values("frequencies", frequencies)
+    require(bool((omega > 0.0).all()), "frequencies", omega.tolist(), "positive frequencies")
+    require_finite("damping_ratio", damping_ratio, minimum=0.0)
+    places = [*(torque.at for torque in torques), *(dashpot.at for dashpot in dashpots)]
+    for place in places:
+        rotor.require_on_shaft("torque or dashpot", place)
+    bare = [AxisSpring(place, 0.0) for place in places]
+    chain = rod_line(rotor, [*springs, *bare], "torsion").cut(float(omega.max()))
+    modulus, unit = 1.0 + 2j * damping_ratio, float(chain.displacement_unit[0])
+    dashed = np.zeros(chain.nodes.size)
+    for dashpot in dashpots:
+        dashed[chain.node_at(dashpot.at)] += dashpot.coefficient * unit**2
+    terms = modulus * chain.finite_stiffness[:, 0] + 1j * omega[:, None] * dashed
+    terms = terms - omega[:, None] ** 2 * chain.node_inertia[:, 0]
+    transfers = in_units_of(chain.transfers(omega**2 / modulus), modulus)
+    order = 2 * chain.nodes.size
+    sides = np.zeros((omega.size, 1, order), dtype=np.complex128)
+    for torque in torques:
+        node = chain.node_at(torque.at)
+        if not chain.constrained[node, 0]:
+            sides[:, 0, 2 * node] -= torque.amplitude * unit
+    solved = _pattern(chain.nodes.size).solve(_values(chain, terms, transfers), sides)
+    return TorsionalResponse(omega, damping_ratio, chain, solved.reshape(omega.size, -1, 2))
+
+
+def in_units_of(transfers: ComplexArray, unit: complex) -> ComplexArray:
+    """Transfer matrices of a rod (..., 2, 2) whose forces were counted in a complex unit, in plain forces."""
+    plain = transfers.astype(np.complex128)
+    plain[..., 0, 1] /= unit
+    plain[..., 1, 0] *= unit
+    return plain
+
+
+def _pattern(nodes: int) -> BandPattern:
+    """Rows of multiple shooting: force balance 2i of node i, and displacement 2i − 1."""
+    node, piece = np.arange(nodes), np.arange(nodes - 1)
+    last = np.array([2 * nodes - 1])
+    rows = [2 * node, 2 * node, 2 * piece + 1, *[2 * piece + 1] * 2, *[2 * piece + 2] * 2, last]
+    columns = [2 * node, 2 * node + 1, 2 * piece + 2, 2 * piece, 2 * piece + 1, 2 * piece, 2 * piece + 1]
+    return BandPattern.of(np.concatenate(rows), np.concatenate([*columns, last]), 2 * nodes)
+
+
+def _values(chain: Chain, terms: ComplexArray, transfers: ComplexArray) -> ComplexArray:
+    """Entries for `_pattern`; a node that is held has its displacement for an equation."""
+    held, batch = chain.constrained[:, 0], terms.shape[0]
+    moved = np.moveaxis(transfers, 1, 0)
+    free = np.where(held[1:], 0.0, 1.0)
+    parts = [
+        np.where(held, 1.0, -terms),
+        np.broadcast_to(np.where(held, 0.0, 1.0), terms.shape),
+        np.ones((batch, held.size - 1)),
+        -moved[:, :, 0, 0],
+        -moved[:, :, 0, 1],
+        -moved[:, :, 1, 0] * free,
+        -moved[:, :, 1, 1] * free,
+        np.ones((batch, 1)),
+    ]
+    return np.ascontiguousarray(np.concatenate(parts, axis=1), dtype=np.complex128)

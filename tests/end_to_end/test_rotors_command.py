@@ -1,0 +1,249 @@
+"""`gearwhine rotors` on cases of its own: what is new in the JSON, and each key of the case doing what it says."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+RPM = math.pi / 30.0
+
+# A shaft so short and thick that it is rigid beside its bearings, which makes a Jeffcott rotor of it.
+JEFFCOTT = """
+title = "Rigid rotor between two alike bearings"
+
+[material.stiff]
+youngs_modulus = "21 TPa"
+poisson_ratio = 0.3
+density = "7850 kg/m^3"
+
+[[rotor]]
+name = "shaft"
+material = "stiff"
+segments = [{ length = "100 mm", diameter = "80 mm" }]
+discs = [{ at = "50 mm", mass = "10 kg", polar_inertia = "0.04 kg*m^2", diametral_inertia = "0.02 kg*m^2" }]
+
+[[bearing]]
+name = "left"
+rotor = "shaft"
+at = "0 mm"
+speeds = ["1000 rpm", "2000 rpm", "3000 rpm"]
+stiffness = { xx = ["1e6 N/m", "2e6 N/m", "4e6 N/m"], yy = ["1e6 N/m", "2e6 N/m", "4e6 N/m"] }
+damping = { xx = "200 N*s/m", yy = "200 N*s/m" }
+
+[[bearing]]
+name = "right"
+rotor = "shaft"
+at = "100 mm"
+speeds = ["1000 rpm", "2000 rpm", "3000 rpm"]
+stiffness = { xx = ["1e6 N/m", "2e6 N/m", "4e6 N/m"], yy = ["1e6 N/m", "2e6 N/m", "4e6 N/m"] }
+damping = { xx = "200 N*s/m", yy = "200 N*s/m" }
+
+[operation]
+speed = "2000 rpm"
+
+[rotor_analysis]
+modes = 4
+speed = ["1000 rpm", "2000 rpm"]
+"""
+MASS = 10.0 + 7850.0 * math.pi / 4.0 * 0.08**2 * 0.1
+
+
+@pytest.fixture
+def jeffcott(tmp_path: Path) -> str:
+    (tmp_path / "jeffcott.toml").write_text(JEFFCOTT, encoding="utf-8")
+    return "jeffcott.toml"
+
+
+def solved(gearwhine: Any, case: str, *settings: str) -> dict[str, Any]:
+    changes = [part for setting in settings for part in ("--set", setting)]
+    outcome = gearwhine("rotors", case, "--json", "-q", *changes)
+    assert outcome.code == 0, outcome.err
+    (rotor,) = outcome.document["rotors"]
+    return rotor
+
+
+def test_tables_hold_at_their_own_speeds(gearwhine: Any, jeffcott: str) -> None:
+    """Bouncing at ω² = 2k / m with k of the speed, damped by ζ = c / √(k m / 2) / 2 of two alike bearings."""
+    rotor = solved(gearwhine, jeffcott, "sweep={speed=['1000 rpm','3000 rpm']}")
+    for whirl, stiffness in zip(rotor["whirl"], (2e6, 1e6, 4e6), strict=True):
+        frequency = math.sqrt(2.0 * stiffness / MASS)
+        ratio = 2.0 * 200.0 / (2.0 * MASS * frequency)
+        bounce = [place for place, f in enumerate(whirl["frequency_hz"]) if abs(f * 2 * math.pi / frequency - 1) < 1e-4]
+        assert len(bounce) == 2  # both planes
+        for place in bounce:
+            assert whirl["damping_ratio"][place] == pytest.approx(ratio, rel=1e-4)
+            expected = 2.0 * math.pi * ratio / math.sqrt(1.0 - ratio**2)
+            assert whirl["log_decrement"][place] == pytest.approx(expected, rel=1e-4)
+    assert rotor["rest_bearings_at_rpm"] == pytest.approx(1000.0)
+    assert rotor["static"]["bearings_at_rpm"] == pytest.approx(2000.0)
+    assert rotor["lateral_hz"][0] * 2 * math.pi == pytest.approx(math.sqrt(2e6 / MASS), rel=1e-4)
+
+
+def test_a_campbell_diagram_stands_without_being_asked_for(gearwhine: Any, jeffcott: str) -> None:
+    campbell = solved(gearwhine, "friswell-rotor", "sweep=", "rotor_analysis.modes=2")["campbell"]
+    assert campbell["speed_rpm"] == pytest.approx(np.linspace(0.0, 6000.0, 51).tolist(), abs=1e-9)
+    assert campbell["unstable_from_rpm"] is None
+    assert len(campbell["frequency_hz"]) == len(campbell["log_decrement"]) == len(campbell["direction"]) == 51
+    assert solved(gearwhine, jeffcott, "operation=", "rotor_analysis.speed=")["campbell"] is None
+    chosen = solved(gearwhine, jeffcott)["campbell"]
+    assert chosen["speed_rpm"] == pytest.approx([1000.0, 2000.0])
+
+
+def test_the_onset_of_instability_is_that_of_the_cross_coupled_jeffcott_rotor(gearwhine: Any, jeffcott: str) -> None:
+    """Forward whirl of the bounce grows where the cross stiffness exceeds c ω, ω² = 2k / m."""
+    threshold = 200.0 * math.sqrt(2.0 * 1e6 / MASS)
+    cross = f"['{0.9 * threshold} N/m', '{0.9 * threshold} N/m', '{4.0 * threshold} N/m']"
+    negative = cross.replace("['", "['-").replace(" '", " '-")
+    springs = f"{{xx='1e6 N/m', yy='1e6 N/m', xy={cross}, yx={negative}}}"
+    settings = [f"bearing.{name}.stiffness={springs}" for name in ("left", "right")]
+    loud = solved(gearwhine, jeffcott, *settings, "rotor_analysis.speed=['3000 rpm', '2000 rpm', '2900 rpm']")
+    assert loud["campbell"]["unstable_from_rpm"] == pytest.approx(2900.0)
+    assert [whirl["stable"] for whirl in loud["whirl"]] == [True]
+    assert solved(gearwhine, jeffcott, *settings)["campbell"]["unstable_from_rpm"] is None
+
+
+def test_bearings_carry_the_weight_in_equal_shares_and_sag_by_it(gearwhine: Any, jeffcott: str) -> None:
+    static = solved(gearwhine, jeffcott)["static"]
+    share = MASS * 9.80665 / 2.0
+    for bearing in static["bearings"]:
+        assert bearing["load_n"] == pytest.approx([0.0, -share, 0.0], abs=1e-6)
+    assert static["largest_deflection_m"] == pytest.approx(share / 2e6, rel=1e-4)
+    sideways = solved(gearwhine, jeffcott, "rotor_analysis.gravity=['9.81 m/s^2', 0, 0]")["static"]
+    assert sideways["bearings"][0]["load_n"] == pytest.approx([MASS * 9.81 / 2.0, 0.0, 0.0], abs=1e-6)
+    free = solved(gearwhine, "friswell-rotor", "bearing=[]", "provenance=", "rotor_analysis.modes=6")
+    assert "free to move" in free["static"]["why_not"]
+
+
+def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(gearwhine: Any, jeffcott: str) -> None:
+    """m e Ω² / (2k − M Ω² + 2 i c Ω): amplitude and lag of a disc that does not tilt, through resonance."""
+    settings = (
+        "rotor.shaft.unbalance=[{at='50 mm', moment='1e-4 kg*m', phase='30 deg'}]",
+        "rotor_analysis.unbalance_response={speed=['1000 rpm', '3000 rpm'], probes=["
+        "{name='x', rotor='shaft', at='50 mm'}, {name='y', rotor='shaft', at='50 mm', angle='90 deg'}]}",
+    )
+    response = solved(gearwhine, jeffcott, *settings)["unbalance_response"]
+    along_x, along_y = response["probes"]
+
+    def expected(rpm: float, stiffness: float) -> complex:
+        speed = rpm * RPM
+        return complex(1e-4 * speed**2 / (2 * stiffness - MASS * speed**2 + 2j * 200.0 * speed))
+
+    for place, (rpm, stiffness) in enumerate([(1000.0, 1e6), (3000.0, 4e6)]):
+        motion = expected(rpm, stiffness)
+        lag = (-math.degrees(np.angle(motion)) - 30.0) % 360.0
+        assert along_x["amplitude_m"][place] == pytest.approx(abs(motion), rel=1e-4)
+        assert along_x["major_axis_m"][place] == pytest.approx(abs(motion), rel=1e-4)
+        assert along_x["phase_lag_deg"][place] == pytest.approx(lag, abs=0.01)
+        assert along_y["phase_lag_deg"][place] == pytest.approx((lag + 90.0) % 360.0, abs=0.01)
+        force = abs(motion) * abs(stiffness + 200j * rpm * RPM)
+        assert response["bearings"][0]["force_n"][0][place] == pytest.approx(force, rel=1e-4)
+    assert along_x["operation_amplitude_m"] == pytest.approx(abs(expected(2000.0, 2e6)), rel=1e-4)
+    assert solved(gearwhine, jeffcott)["unbalance_response"] is None
+
+
+def test_probes_stand_at_bearings_and_unbalances_unless_named(gearwhine: Any) -> None:
+    quick = ("rotor_analysis.modes=2", "sweep={speed=['1000 rpm', '2000 rpm']}")
+    response = solved(gearwhine, "friswell-rotor", *quick)["unbalance_response"]
+    assert [(probe["name"], probe["at_m"]) for probe in response["probes"]] == [
+        ("left", 0.0),
+        ("unbalance 1", 0.5),
+        ("right", 1.5),
+    ]
+    assert len(response["speed_rpm"]) == 301
+
+
+def test_a_bow_is_read_as_it_is_where_the_rotor_turns_slowly(gearwhine: Any) -> None:
+    bow = "rotor.shaft.bow=[{at='0 m', amplitude=0}, {at='0.5 m', amplitude='10 um'}, {at='1.5 m', amplitude=0}]"
+    slow = "rotor_analysis={modes=2, speed=['1 rpm', '2 rpm'], unbalance_response={speed=['1 rpm']}}"
+    response = solved(gearwhine, "friswell-rotor", "sweep=", bow, slow)["unbalance_response"]
+    reading = next(probe for probe in response["probes"] if probe["at_m"] == 0.5)
+    assert reading["amplitude_m"][0] == pytest.approx(10e-6, rel=1e-4)
+
+
+def test_the_stiffness_map_of_a_rigid_rotor_rises_with_the_root_of_the_stiffness(gearwhine: Any, jeffcott: str) -> None:
+    """The bounce's √(2k / M) at every stiffness; the disc's polar inertia takes the forward tilting mode away."""
+    settings = "rotor_analysis.stiffness_map={from='1e5 N/m', to='1e7 N/m', points=3}"
+    given = solved(gearwhine, jeffcott, settings)["stiffness_map"]
+    assert given["stiffness_n_per_m"] == pytest.approx([1e5, 1e6, 1e7])
+    for stiffness, speeds in zip(given["stiffness_n_per_m"], given["forward_critical_speeds_rpm"], strict=True):
+        assert speeds[0] * RPM == pytest.approx(math.sqrt(2.0 * stiffness / MASS), rel=1e-4)
+    assert solved(gearwhine, jeffcott)["stiffness_map"] is None
+
+
+def test_the_results_file_holds_diagram_and_response_with_units(gearwhine: Any) -> None:
+    quick = ("--set", "rotor_analysis.modes=3", "--set", "sweep={speed=['0 rpm', '1000 rpm', '2000 rpm']}")
+    document = gearwhine("rotors", "friswell-rotor", "--json", "-q", "-o", "out", *quick).document
+    (rotor,) = document["rotors"]
+    with xr.open_dataset("out/results.nc") as data:
+        assert data.campbell_frequency.dims == ("rotor", "campbell_step", "whirl_branch")
+        assert data.campbell_frequency.attrs["units"] == "Hz"
+        assert data.campbell_frequency.values[0].tolist() == rotor["campbell"]["frequency_hz"]
+        assert (
+            data.probe_amplitude.sel(probe="shaft: unbalance 1").values.tolist()
+            == (rotor["unbalance_response"]["probes"][1]["amplitude_m"])
+        )
+        assert data.response_speed.values[0].tolist() == rotor["unbalance_response"]["speed_rpm"]
+
+
+def test_margins_are_of_the_critical_speeds_beside_operation(gearwhine: Any) -> None:
+    rotor = solved(gearwhine, "friswell-rotor")
+    expected = np.array(rotor["critical_speeds_rpm"]) / 4000.0 - 1.0
+    assert rotor["critical_margins"] == pytest.approx(expected.tolist(), rel=1e-9)
+    assert solved(gearwhine, "friswell-rotor", "operation=")["critical_margins"] is None
+
+
+def test_as_many_lateral_modes_are_shown_as_are_asked_for(gearwhine: Any) -> None:
+    rotor = solved(gearwhine, "friswell-rotor", "rotor_analysis.modes=4")
+    assert len(rotor["lateral_hz"]) == len(rotor["whirl"][0]["frequency_hz"]) == 4
+    assert rotor["certificate"]["complete"] is True
+
+
+def test_a_bow_is_for_the_rotor_alone_so_far(gearwhine: Any) -> None:
+    bow = ("--set", "rotor.shaft.bow=[{at='0.5 m', amplitude='10 um'}, {at='0 m', amplitude=0}]")
+    assert gearwhine("check", "friswell-rotor", *bow).code == 0
+    assert gearwhine("rotors", "friswell-rotor", "-q", *bow).code == 0
+    for command in ("run", "system"):
+        refused = gearwhine(command, "friswell-rotor", "-q", *bow)
+        assert refused.code == 2
+        assert 'rotor[0].bow (rotor "shaft"): expected no bow for the coupled system' in refused.err
+
+
+def test_the_coupled_system_keeps_what_the_rotor_says(gearwhine: Any) -> None:
+    def coordinates(*settings: str) -> int:
+        changes = [part for setting in settings for part in ("--set", setting)]
+        return int(gearwhine("system", "spur-pair", "--json", "-q", *changes).document["coordinates"])
+
+    few, more = coordinates("rotor.input.modes=3"), coordinates("rotor.input.modes=5")
+    assert more - few == 2 * 2 + 2  # two bending modes in each of two planes, and two torsional ones
+    # The shaft's bending modes lie at 1.4, 3.1, 4.2, 7.3, 12.6 kHz, its elastic torsional ones at 8.0 and 9.1 kHz.
+    low, high = (coordinates(f"rotor.input.frequency_limit='{limit} kHz'") for limit in (12, 14))
+    assert high - low == 2
+
+
+def test_the_overhung_fan_has_all_of_it(gearwhine: Any) -> None:
+    """Its bearings carry what it weighs, the fan side's more than the impeller; its modes are all found."""
+    few = (
+        "rotor_analysis.speed=['1000 rpm', '1400 rpm', '1800 rpm']",
+        "rotor_analysis.stiffness_map.points=2",
+        "rotor_analysis.unbalance_response.speed=['1000 rpm', '2000 rpm']",
+        "rotor_analysis.modes=4",
+    )
+    fan = solved(gearwhine, "overhung-fan", *few)
+    loads = {bearing["name"]: bearing["load_n"][1] for bearing in fan["static"]["bearings"]}
+    assert sum(loads.values()) == pytest.approx(-fan["mass_kg"] * 9.80665, rel=1e-9)
+    assert loads["fan side"] < -250.0 * 9.80665
+    assert fan["static"]["largest_deflection_at_m"] == 0.0
+    assert fan["certificate"]["complete"] is True
+    assert [len(row) for row in fan["stiffness_map"]["forward_critical_speeds_rpm"]] == [4, 4]
+    assert len(fan["unbalance_response"]["probes"]) == 5
+
+
+def test_check_says_what_a_rotor_and_its_bearings_are_made_of(gearwhine: Any) -> None:
+    out = gearwhine("check", "overhung-fan").out
+    assert "fan: 2570 mm with 1 coupling" in out
+    assert "by a pedestal of 150 kg, tables over 200 to 2500 rpm" in out
+    assert "Campbell diagram at 47 speeds, 200 to 2500 rpm" in out
+    assert "response to unbalance and bow at 231 speeds" in out

@@ -1,0 +1,172 @@
+"""Rotors, bearings and their analysis from the case file to the rotor room's own inputs, in SI."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotors as room
+from gearwhine.case import (
+    Case,
+    campbell_speeds,
+    dump_case,
+    load_case,
+    parse_case,
+    response_speeds,
+    table_range,
+    whirl_speeds,
+)
+from gearwhine.stages.build import build_bearings, build_rotor
+
+RPM = math.pi / 30.0
+STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
+BRONZE = {"youngs_modulus": "110 GPa", "poisson_ratio": 0.34, "density": "8800 kg/m^3"}
+SHAFT: dict[str, Any] = {"name": "shaft", "material": "steel", "segments": [{"length": "1 m", "diameter": "50 mm"}]}
+SPRING: dict[str, Any] = {"name": "spring", "rotor": "shaft", "at": 0, "stiffness": {"xx": 1e7, "yy": 2e7}}
+
+
+def case_of(rotor: dict[str, Any] | None = None, bearing: dict[str, Any] | None = None, **tables: Any) -> Case:
+    """Return a case of one shaft on one bearing, with these keys changed."""
+    document = {"material": {"steel": STEEL, "bronze": BRONZE}, "rotor": [SHAFT | (rotor or {})]}
+    return parse_case(document | {"bearing": [SPRING | (bearing or {})]} | tables)
+
+
+def built(**keys: Any) -> room.Rotor:
+    case = case_of(keys)
+    return build_rotor(case, case.rotor[0])
+
+
+def test_a_segment_has_its_own_values_where_it_has_them_and_the_rotors_where_not() -> None:
+    plain = {"length": "0.5 m", "diameter": "50 mm", "bore": "10 mm"}
+    own = {"material": "bronze", "shear_coefficient": "hutchinson", "axial_force": 0}
+    rotor = built(segments=[plain, plain | own], axial_force="-3 kN", shear_coefficient=0.85)
+    first, second = rotor.segments
+    assert isinstance(first, room.Segment)
+    assert isinstance(second, room.Segment)
+    assert (first.axial_force, second.axial_force) == (-3000.0, 0.0)
+    assert (first.shear_coefficient, second.shear_coefficient) == (0.85, "hutchinson")
+    assert first.material == room.ShaftMaterial.from_poisson_ratio(210e9, 0.3, 7850.0)
+    assert second.material == room.ShaftMaterial.from_poisson_ratio(110e9, 0.34, 8800.0)
+    assert not first.is_conical
+
+
+def test_a_cone_is_a_frustum() -> None:
+    """Volume of a frustum π h (D² + D d + d²) / 12, of the shaft less that of the bore."""
+    (cone,) = built(
+        segments=[{"length": "0.3 m", "diameter": "60 mm", "bore": "20 mm", "right_diameter": "90 mm"}]
+    ).segments
+    volume = math.pi * 0.3 / 12.0 * (0.06**2 + 0.06 * 0.09 + 0.09**2 - 3.0 * 0.02**2)
+    assert cone.mass == pytest.approx(7850.0 * volume, rel=1e-13)
+    (tube,) = built(
+        segments=[{"length": "0.3 m", "diameter": "60 mm", "bore": "20 mm", "right_bore": "30 mm"}]
+    ).segments
+    volume = math.pi * 0.3 / 12.0 * (3.0 * 0.06**2 - 0.02**2 - 0.02 * 0.03 - 0.03**2)
+    assert tube.mass == pytest.approx(7850.0 * volume, rel=1e-13)
+
+
+def test_a_coupling_stands_in_the_row_with_its_own_numbers() -> None:
+    numbers = {"lateral_stiffness": "2 N/um", "tilt_stiffness": "5 kN*m/rad", "torsional_stiffness": 2e4}
+    coupling = numbers | {"axial_stiffness": "1e6 N/m", "mass": "2 kg", "polar_inertia": "0.02 kg*m^2"}
+    piece = {"length": "100 mm", "diameter": "50 mm"}
+    rotor = built(segments=[piece, {"length": "60 mm", "coupling": coupling}, piece])
+    assert rotor.segments[1] == room.Coupling(0.06, 2e6, 5e3, 2e4, 1e6, 2.0, 0.02, 0.0)
+    assert rotor.length == pytest.approx(0.26)
+
+
+def test_the_discs_of_the_friswell_rotor_are_those_of_the_book() -> None:
+    """Discs 70 mm thick, 280 and 350 mm across, on a 50 mm bore, density 7810: the solid's formulas."""
+    case = load_case("friswell-rotor").case
+    for disc, (outer, at) in zip(build_rotor(case, case.rotor[0]).discs, [(0.28, 0.5), (0.35, 1.0)], strict=True):
+        mass = 7810.0 * math.pi / 4.0 * (outer**2 - 0.05**2) * 0.07
+        assert disc.at == at
+        assert disc.mass == pytest.approx(mass, rel=1e-13)
+        assert disc.polar_inertia == pytest.approx(mass * (outer**2 + 0.05**2) / 8.0, rel=1e-13)
+        assert disc.diametral_inertia == pytest.approx(mass * ((outer**2 + 0.05**2) / 16.0 + 0.07**2 / 12.0), rel=1e-12)
+
+
+def test_a_disc_is_of_its_own_material_its_own_density_or_the_rotors_material() -> None:
+    ring = {"at": 0, "width": "40 mm", "diameter": "200 mm"}
+    of_rotor, of_bronze, light = built(discs=[ring, ring | {"material": "bronze"}, ring | {"density": 1000.0}]).discs
+    volume = math.pi / 4.0 * 0.2**2 * 0.04
+    assert [disc.mass for disc in (of_rotor, of_bronze, light)] == pytest.approx(
+        [7850.0 * volume, 8800.0 * volume, 1000.0 * volume], rel=1e-13
+    )
+
+
+def test_constants_and_lists_over_speed_make_one_table() -> None:
+    stiffness = {"xx": ["1e7 N/m", "2e7 N/m"], "yy": "3e7 N/m", "yx": ["-1e6 N/m", 0]}
+    case = case_of(bearing={"speeds": ["300 rpm", "900 rpm"], "stiffness": stiffness, "damping": {"xx": "5 N*s/mm"}})
+    (bearing,) = build_bearings(case, "shaft")
+    assert bearing.speeds is not None
+    assert bearing.speeds.tolist() == pytest.approx([300.0 * RPM, 900.0 * RPM])
+    assert bearing.stiffness.tolist() == [[[1e7, 0.0], [-1e6, 3e7]], [[2e7, 0.0], [0.0, 3e7]]]
+    assert bearing.damping.tolist() == [[5e3, 0.0], [0.0, 0.0]]
+    assert table_range(case, "shaft") == pytest.approx((300.0 * RPM, 900.0 * RPM))
+
+
+def test_a_pedestal_stands_under_its_bearing() -> None:
+    pedestal = {"mass": "40 kg", "stiffness": {"xx": 1e8, "yy": 2e8, "xy": 1e6}, "damping": {"yy": "200 N*s/m"}}
+    (bearing,) = build_bearings(case_of(bearing={"pedestal": pedestal}), "shaft")
+    assert bearing.pedestal is not None
+    assert bearing.pedestal.mass == 40.0
+    assert bearing.pedestal.stiffness.tolist() == [[1e8, 1e6], [0.0, 2e8]]
+    assert bearing.pedestal.damping.tolist() == [[0.0, 0.0], [0.0, 200.0]]
+
+
+def test_all_of_it_loads_back_equal() -> None:
+    case = load_case("overhung-fan").case
+    again = parse_case(tomllib.loads(dump_case(case)))
+    assert again == case
+    assert build_bearings(again, "fan") == build_bearings(case, "fan")
+
+
+def in_rpm(speeds: tuple[float, ...]) -> list[float]:
+    return [speed / RPM for speed in speeds]
+
+
+def test_a_campbell_diagram_has_its_own_speeds_else_the_sweeps_else_those_around_operation() -> None:
+    operation, sweep = {"speed": "1000 rpm"}, {"speed": ["100 rpm", "700 rpm"]}
+    assert campbell_speeds(case_of(), "shaft") == ()
+    around = in_rpm(campbell_speeds(case_of(operation=operation), "shaft"))
+    assert around == pytest.approx(np.linspace(0.0, 1500.0, 51).tolist(), abs=1e-9)
+    swept = case_of(operation=operation, sweep=sweep)
+    assert in_rpm(campbell_speeds(swept, "shaft")) == pytest.approx([100.0, 700.0])
+    assert in_rpm(whirl_speeds(swept, "shaft")) == pytest.approx([1000.0, 100.0, 700.0])
+    own = {"speed": {"from": "0 rpm", "to": "300 rpm", "step": "150 rpm"}}
+    case = case_of(operation=operation, sweep=sweep, rotor_analysis=own)
+    assert in_rpm(campbell_speeds(case, "shaft")) == pytest.approx([0.0, 150.0, 300.0])
+    finer = in_rpm(response_speeds(case, "shaft"))
+    assert finer == pytest.approx(np.linspace(0.0, 300.0, 301).tolist(), abs=1e-9)
+    chosen = own | {"unbalance_response": {"speed": ["5 rpm"]}}
+    case = case_of(operation=operation, rotor_analysis=chosen)
+    assert in_rpm(response_speeds(case, "shaft")) == pytest.approx([5.0])
+
+
+def test_speeds_that_nobody_named_stay_within_the_tables() -> None:
+    table = {"speeds": ["300 rpm", "1200 rpm"], "stiffness": {"xx": [1e7, 2e7], "yy": 1e7}}
+    speeds = in_rpm(campbell_speeds(case_of(bearing=table, operation={"speed": "-1000 rpm"}), "shaft"))
+    assert (speeds[0], speeds[-1], len(speeds)) == (pytest.approx(-1200.0), pytest.approx(-300.0), 51)
+    (bearing,) = build_bearings(case_of(bearing=table), "shaft")
+    for speed in speeds:
+        assert bearing.at_speed(speed * RPM).speeds is None  # the table holds it
+
+
+def test_a_driven_rotor_has_the_speeds_that_its_gears_give_it() -> None:
+    case = load_case("spur-pair", ["gear.wheel.teeth=56", "rotor.output.axis=['88.9 mm', '0 mm']"]).case
+    assert in_rpm(whirl_speeds(case, "output")) == pytest.approx([-2750.0])
+    assert in_rpm(campbell_speeds(case, "output"))[0] == pytest.approx(-4125.0)
+    assert in_rpm(campbell_speeds(case, "input"))[-1] == pytest.approx(8250.0)
+
+
+def test_a_stiffness_map_goes_in_equal_ratios_and_ends_where_it_says() -> None:
+    given = {"stiffness_map": {"from": "1e5 N/m", "to": "1e9 N/m", "points": 9}}
+    analysis = case_of(rotor_analysis=given).rotor_analysis
+    assert analysis is not None
+    assert analysis.stiffness_map is not None
+    stiffnesses = np.array(analysis.stiffness_map.stiffnesses)
+    assert stiffnesses[1:] / stiffnesses[:-1] == pytest.approx(np.full(8, math.sqrt(10.0)), rel=1e-12)
+    assert stiffnesses[-1] == 1e9

@@ -1,0 +1,218 @@
+"""Pictures over speed: Campbell diagram, critical-speed map, unbalance response."""
+
+import math
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import rotors
+from gearwhine.figures import ProbeResponse, draw_campbell, draw_critical_map, draw_unbalance_response
+from gearwhine.figures.campbell import stability_onset
+from gearwhine.figures.critical_map import meetings
+from gearwhine.figures.unbalance import phase_lag
+
+RPM = 60.0 / (2.0 * math.pi)
+SPEEDS = np.linspace(0.0, 400.0, 21)
+
+
+def drawn(axes: Axes, label: str) -> list[np.ndarray]:
+    return [np.array(line.get_data()) for line in axes.get_lines() if line.get_label() == label]
+
+
+def texts(figure: Figure) -> set[str]:
+    return {text.get_text() for axes in figure.axes for text in axes.texts}
+
+
+def branches() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A backward and a forward branch of made-up slopes, and one whose sense changes halfway."""
+    frequencies = np.column_stack([200.0 - 0.1 * SPEEDS, 200.0 + 0.1 * SPEEDS, np.full_like(SPEEDS, 500.0)])
+    directions = np.column_stack([-np.ones(21), np.ones(21), np.where(SPEEDS < 199.0, -1.0, 1.0)])
+    return frequencies, directions, np.zeros((21, 3))
+
+
+def test_campbell_lines_hold_the_branches_in_their_senses() -> None:
+    figure = draw_campbell("t", SPEEDS, *branches(), orders=(1.0, 2.0), operating_speed=-300.0)
+    (axes,) = figure.axes  # without damping there is no second panel
+    lines = [line for line in axes.get_lines() if line.get_label() == "branch"]
+    rpm, hertz = (np.array(data) for data in lines[0].get_data())
+    assert rpm == pytest.approx(RPM * SPEEDS)
+    assert hertz == pytest.approx((200.0 - 0.1 * SPEEDS) / (2.0 * math.pi))
+    backward, forward = lines[0].get_color(), lines[1].get_color()
+    # The third is backward, a step of neither, and forward, and leaves no gap.
+    assert [line.get_color() for line in lines[2:]][::2] == [backward, forward]
+    assert np.unique(np.concatenate([line.get_xdata() for line in lines[2:]])) == pytest.approx(RPM * SPEEDS)
+    ((_, twice),) = drawn(axes, "2×")
+    assert twice[-1] == pytest.approx(2.0 * 400.0 / (2.0 * math.pi))
+    ((at, _),) = drawn(axes, "operation")
+    assert at[0] == pytest.approx(300.0 * RPM)
+    assert axes.get_xlabel() == "speed of rotation [rpm]"
+    assert axes.get_ylabel() == "whirl frequency [Hz]"
+
+
+def test_campbell_of_a_rotor_that_turns_the_other_way_is_the_same_picture() -> None:
+    frequencies, directions, ratios = branches()
+    one = draw_campbell("t", SPEEDS, frequencies, directions, ratios)
+    other = draw_campbell("t", -SPEEDS[::-1], frequencies[::-1], -directions[::-1], ratios[::-1])
+    for here, there in zip(one.axes[0].get_lines(), other.axes[0].get_lines(), strict=True):
+        assert here.get_color() == there.get_color()
+        assert np.array(here.get_data()) == pytest.approx(np.array(there.get_data()))
+
+
+def test_campbell_marks_critical_speeds_on_the_line_of_once_per_turn() -> None:
+    figure = draw_campbell(
+        "t", SPEEDS, *branches(), critical_speeds=[180.0, 222.0, 900.0], critical_directions=[-1.0, 1.0, 1.0]
+    )
+    marks = drawn(figure.axes[0], "critical")
+    assert np.array(marks)[:, :, 0] == pytest.approx(np.array([[s * RPM, s / (2 * math.pi)] for s in (180.0, 222.0)]))
+    assert {f"{180.0 * RPM:.4g}", f"{222.0 * RPM:.4g}"} <= texts(figure)  # and none beyond the axis
+
+
+def test_campbell_shows_the_decrement_and_where_stability_ends() -> None:
+    frequencies, directions, _ = branches()
+    ratios = np.column_stack([np.full(21, 0.05), 0.03 - 1e-4 * SPEEDS, np.full(21, 0.02)])
+    figure = draw_campbell("t", SPEEDS, frequencies, directions, ratios)
+    upper, lower = figure.axes
+    assert upper.get_xlim() == lower.get_xlim()
+    assert lower.get_ylabel() == "log. decrement [1]"
+    decrement = drawn(lower, "branch")[1][1]
+    # Definition: the logarithm of the ratio of successive amplitudes of e^{λt}.
+    assert decrement[0] == pytest.approx(2.0 * math.pi * 0.03 / math.sqrt(1.0 - 0.03**2))
+    assert f"unstable above {300.0 * RPM:.4g}" in texts(figure)
+    assert stability_onset(SPEEDS, ratios) == pytest.approx((300.0, 1))
+    assert stability_onset(SPEEDS, np.abs(ratios)) is None
+    assert stability_onset(SPEEDS, -np.abs(ratios)) == pytest.approx((0.0, 0))
+
+
+def test_campbell_leaves_gaps_where_a_branch_is_not_known() -> None:
+    frequencies, directions, ratios = branches()
+    frequencies[5, 0] = np.nan
+    frequencies[:, 2] = np.nan
+    (axes,) = draw_campbell("t", SPEEDS, frequencies, directions, ratios).axes
+    lines = drawn(axes, "branch")
+    assert len(lines) == 2
+    assert np.isnan(lines[0][1]).sum() == 1
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_campbell_refuses_what_is_no_curve(count: int) -> None:
+    with pytest.raises(ValueError, match="two or more speeds"):
+        draw_campbell("t", SPEEDS[:count], *(array[:count] for array in branches()))
+
+
+def test_forty_branches_and_forty_critical_speeds() -> None:
+    values = 50.0 + 10.0 * np.arange(40)
+    frequencies = np.tile(values, (21, 1))
+    figure = draw_campbell(
+        "t", SPEEDS, frequencies, np.ones((21, 40)), np.zeros((21, 40)),
+        critical_speeds=values, critical_directions=np.ones(40), frequency_limit=500.0,
+    )  # fmt: skip
+    (axes,) = figure.axes
+    assert len(drawn(axes, "branch")) == 40
+    extents = [text.get_window_extent() for text in axes.texts if text.get_text() != "1×"]
+    assert len(extents) > 20
+    assert not any(a.overlaps(b) for place, a in enumerate(extents) for b in extents[:place])
+
+
+def test_critical_map_with_the_bearings_own_stiffness() -> None:
+    springs = np.geomspace(1e5, 1e9, 41)
+    mass = 10.0
+    # A rigid rotor on two springs: ω = √(2 k / m), a straight line on logarithmic axes.
+    critical = np.sqrt(2.0 * springs / mass)[:, None]
+    table = np.array([np.diag([4e6, 8e6]), np.diag([4e6, 8e6])])
+    bearings = [
+        rotors.Bearing.isotropic("left", 0.0, 1e6),
+        rotors.Bearing.isotropic("right", 1.0, 1e6),
+        rotors.Bearing("film", 0.5, table, np.zeros((2, 2)), speeds=np.array([1.0, 1e6])),
+    ]
+    figure = draw_critical_map("t", springs, critical, bearings=bearings, operating_speed=500.0)
+    (axes,) = figure.axes
+    assert axes.get_xscale() == axes.get_yscale() == "log"
+    ((x, y),) = drawn(axes, "critical speed")
+    assert x == pytest.approx(springs)
+    assert y == pytest.approx(RPM * critical[:, 0])
+    # Bearings alike are one line.
+    assert texts(figure) == {"left, right: k_xx = k_yy", "film: k_xx", "film: k_yy"}
+    met = sorted(point[:, 0].tolist() for point in drawn(axes, "meeting"))
+    assert np.array(met) == pytest.approx(
+        np.array([[k, RPM * math.sqrt(2.0 * k / mass)] for k in (1e6, 4e6, 8e6)]), rel=1e-9
+    )
+    ((_, operation),) = drawn(axes, "operation")
+    assert operation[0] == pytest.approx(500.0 * RPM)
+
+
+def test_meetings_with_a_stiffness_that_grows_with_speed() -> None:
+    springs = np.geomspace(1e4, 1e8, 9)
+    turning = np.geomspace(1.0, 1e4, 50)
+    # Critical at √k, the bearing has 1e3 Ω: they meet at k = 1e6.
+    (met,) = meetings(springs, np.sqrt(springs)[:, None], turning, 1e3 * turning)
+    assert met == pytest.approx((1e6, 1e3))
+
+
+def test_critical_map_of_a_free_rotor_leaves_rigid_motions_out() -> None:
+    springs = np.array([1e5, 1e6])
+    (axes,) = draw_critical_map("t", springs, np.array([[0.0, 100.0], [np.nan, 200.0]])).axes
+    assert [np.isfinite(line[1]).sum() for line in drawn(axes, "critical speed")] == [0, 2]
+    with pytest.raises(ValueError, match="ascending positive"):
+        draw_critical_map("t", springs[::-1], np.ones((2, 1)))
+
+
+def jeffcott(speeds: np.ndarray, natural: float, ratio: float, eccentricity: float) -> np.ndarray:
+    turns = speeds / natural
+    return eccentricity * turns**2 / (1.0 - turns**2 + 2j * ratio * turns)
+
+
+def test_unbalance_response_of_a_jeffcott_rotor() -> None:
+    speeds = np.linspace(1.0, 300.0, 300)
+    response = jeffcott(speeds, 100.0, 0.05, 1e-5)
+    probe = ProbeResponse("disc, $45°$", response, np.abs(response))
+    figure = draw_unbalance_response(
+        "t", speeds, [probe], critical_speeds=[100.0, 900.0], operating_range=(250.0, 280.0)
+    )
+    upper, lower = figure.axes
+    curve = next(line for line in upper.get_lines() if line.get_label() == r"disc, \$45°\$")
+    rpm, size = (np.array(data) for data in curve.get_data())
+    # At resonance e / 2ζ, twice that peak to peak; a quarter turn behind.
+    assert size[np.argmin(np.abs(rpm - 100.0 * RPM))] == pytest.approx(2e6 * 1e-5 / 0.1)
+    assert lower.get_lines()[-1].get_ydata()[99] == pytest.approx(90.0)
+    assert [line[0][0] for line in drawn(upper, "critical speed")] == pytest.approx([100.0 * RPM])
+    assert f"{100.0 * RPM:.4g}" in texts(figure)
+    assert (upper.get_ylabel(), lower.get_ylabel()) == ("amplitude [µm peak to peak]", "phase lag [°]")
+    assert len(figure.legends[0].get_lines()) == 1
+    logarithmic = draw_unbalance_response("t", speeds, [probe], operating_range=(250.0, 250.0), logarithmic=True)
+    assert logarithmic.axes[0].get_yscale() == "log"
+
+
+def test_phase_goes_on_through_two_resonances() -> None:
+    speeds = np.linspace(1.0, 600.0, 2000)
+    both = jeffcott(speeds, 100.0, 0.02, 1e-5) - jeffcott(speeds, 400.0, 0.02, 1e-5)
+    lag = phase_lag(both)
+    assert np.abs(np.diff(lag)).max() < 30.0
+    assert lag[0] == pytest.approx(0.0, abs=1.0)
+    assert lag[-1] == pytest.approx(360.0, abs=15.0)
+    assert np.isnan(phase_lag(np.zeros(3, dtype=complex))).all()
+
+
+def test_unbalance_response_without_probes_or_motion() -> None:
+    assert len(draw_unbalance_response("t", SPEEDS, []).axes) == 2
+    still = ProbeResponse("still", np.zeros(21, dtype=complex))
+    assert len(draw_unbalance_response("t", SPEEDS, [still], logarithmic=True).axes) == 2
+    with pytest.raises(ValueError, match="do not fit the probes"):
+        draw_unbalance_response("t", SPEEDS, [ProbeResponse("short", np.zeros(3, dtype=complex))])
+
+
+def test_the_branches_that_are_drawn_stay_themselves_where_they_cross() -> None:
+    """On isotropic bearings a whirl is circular, so that a branch keeps its sense through every crossing."""
+    steel = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
+    discs = [rotors.Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0), rotors.Disc(1.0, 51.5, 0.8, 0.42)]
+    rotor = rotors.Rotor("two discs", [rotors.Segment(1.5, 0.05, 0.0, steel)], discs)
+    bearings = [rotors.Bearing.isotropic("left", 0.0, 1e6), rotors.Bearing.isotropic("right", 1.5, 1e6)]
+    diagram = rotors.campbell(rotor, bearings, np.linspace(50.0, 2000.0, 40), count=8)
+    known = np.isfinite(diagram.frequencies)
+    assert (known.sum(axis=1) >= 8).all()
+    whole = known.all(axis=0)
+    assert (np.diff(np.argsort(diagram.frequencies[:, whole], axis=1), axis=0) != 0).any()  # some do cross
+    for sense, seen in zip(diagram.direction.T, known.T, strict=True):
+        assert (np.abs(sense[seen]) > 0.999).all()
+        assert len(set(np.sign(sense[seen]))) == 1

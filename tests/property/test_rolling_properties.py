@@ -1,0 +1,184 @@
+"""What holds of every rolling bearing: it finds its equilibrium or says why not, and its stiffness is a tangent."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from rotors import EquilibriumError
+from rotors.rolling import COORDINATES, BallRow, RollerRow, RollingBearing, rolling_equilibrium, rolling_reaction
+
+FloatArray = npt.NDArray[np.float64]
+
+SIGN = st.sampled_from([-1.0, 0.0, 1.0])
+
+
+def logarithmic(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers even in their logarithm, between powers of ten."""
+    return st.floats(low, high).map(lambda power: float(10.0**power))
+
+
+@st.composite
+def ball_rows(draw: st.DrawFn) -> BallRow:
+    diameter, count = draw(logarithmic(-3.0, -1.4)), draw(st.integers(3, 24))
+    pitch = diameter / math.sin(math.pi / count) * draw(st.floats(1.05, 2.0))
+    return BallRow(
+        count,
+        diameter,
+        pitch,
+        contact_angle=draw(st.sampled_from([0.0, 0.2, 0.45, 0.7, 1.2])),
+        inner_groove=0.5 + draw(logarithmic(-2.3, -1.0)),
+        outer_groove=0.5 + draw(logarithmic(-2.3, -1.0)),
+        clearance=diameter * draw(SIGN) * draw(logarithmic(-6.0, -2.4)),
+    )
+
+
+@st.composite
+def bearings(draw: st.DrawFn) -> RollingBearing:
+    kind = draw(st.sampled_from(["one", "two", "rollers"]))
+    row = draw(ball_rows())
+    if kind == "rollers":
+        length = row.ball_diameter * draw(st.floats(0.8, 4.0))
+        profile = draw(st.sampled_from(["straight", "logarithmic"]))
+        size = (row.count, row.ball_diameter, length, row.pitch_diameter)
+        return RollingBearing([RollerRow(*size, clearance=row.clearance, profile=profile)])
+    preload = draw(SIGN) * draw(logarithmic(-6.0, -3.5)) * 1e10 * row.ball_diameter**2
+    if kind == "one":
+        return RollingBearing([row], axial_preload=preload)
+    offset, half = row.ball_diameter * draw(logarithmic(-5.0, -3.0)), row.ball_diameter * draw(st.floats(0.5, 1.5))
+    directions = draw(st.sampled_from([(1, -1), (-1, 1), (1, 1)]))
+    rows = [
+        replace(row, position=side * half, direction=direction, axial_offset=offset)
+        for side, direction in zip((-1.0, 1.0), directions, strict=True)
+    ]
+    return RollingBearing(rows, axial_preload=preload)
+
+
+@st.composite
+def loads(draw: st.DrawFn, bearing: RollingBearing) -> FloatArray:
+    """Up to ten times a common load, in any of five directions."""
+    diameter = min(row.element_diameter for row in bearing.rows)
+    force = np.array([draw(SIGN) * draw(logarithmic(-3.0, 1.0)) * 1e7 * diameter**2 for _ in range(5)])
+    force[3:] *= bearing.reach
+    force[2] *= bearing.has_axial_stiffness
+    return force
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data())
+def test_equilibrium_is_found_or_it_is_said_why_not(data: st.DataObject) -> None:
+    """For every load, clearance, preload, tilt and speed: the elements' forces, summed here, balance the load."""
+    bearing = data.draw(bearings())
+    load = data.draw(loads(bearing))
+    held = {
+        name: data.draw(SIGN) * data.draw(logarithmic(-6.0, -2.5))
+        for name in data.draw(st.sets(st.sampled_from(COORDINATES[3:])))
+    }
+    speed = data.draw(SIGN) * data.draw(logarithmic(-2.0, 3.0)) if bearing.has_axial_stiffness else 0.0
+    try:
+        state = rolling_equilibrium(bearing, load, held=held, speed=speed)
+    except EquilibriumError as error:
+        if "beyond its groove" not in str(error) and "of their diameter" not in str(error):
+            raise
+        return
+    total, size = np.zeros(3), 0.0
+    for row, elements in zip(bearing.rows, state.rows, strict=True):
+        sense = row.direction if isinstance(row, BallRow) else 1
+        radial = elements.inner_load * np.cos(elements.inner_angle)
+        total += [
+            float((radial * np.cos(elements.azimuths)).sum()),
+            float((radial * np.sin(elements.azimuths)).sum()),
+            float(sense * (elements.inner_load * np.sin(elements.inner_angle)).sum()),
+        ]
+        size += float(elements.inner_load.sum())
+    expected = load[:3] + np.array([0.0, 0.0, bearing.axial_preload])
+    moments = float(np.abs(load[3:]).sum()) / bearing.reach
+    np.testing.assert_allclose(total, expected, rtol=0.0, atol=1e-9 * (size + np.abs(expected).sum() + moments) + 1e-9)
+    values = np.linalg.eigvalsh(state.even_stiffness)
+    np.testing.assert_array_equal(state.stiffness, state.stiffness.T)
+    assert values[0] >= -1e-9 * max(values[-1], 1.0)
+
+
+@settings(max_examples=25, deadline=None)
+@given(ball_rows(), st.floats(0.0, 2.0 * math.pi), st.booleans(), logarithmic(-4.0, -2.6))
+def test_stiffness_is_the_derivative_of_the_reaction(row: BallRow, angle: float, turning: bool, depth: float) -> None:
+    """By central differences, at a place where no ball is about to touch or leave."""
+    bearing = RollingBearing([row])
+    speed = 300.0 if turning else 0.0
+    shift = depth * row.ball_diameter
+    push = max(row.clearance, 0.0)
+    place = np.array([(shift + push) * math.cos(angle), (shift + push) * math.sin(angle), shift, 0.0, 0.0])
+    place[3:] = 0.2 * shift / bearing.reach
+    try:
+        state = rolling_reaction(bearing, place, speed=speed)
+    except EquilibriumError:
+        assume(False)
+    elements = state.rows[0]
+    deep = (elements.inner_load[elements.inner_load > 0.0] / row.stiffness) ** (2.0 / 3.0)
+    assume(deep.size > 0 and deep.min() > 0.02 * shift)
+    step = 2e-4 * float(deep.min())
+    tangent = np.empty((5, 5))
+    for i in range(5):
+        change = np.zeros(5)
+        change[i] = step / (1.0 if i < 3 else bearing.reach)
+        # Fourth order, so that the step can stay well above rounding.
+        shares = [
+            weight * rolling_reaction(bearing, place + times * change, speed=speed).reaction
+            for times, weight in ((2, -1), (1, 8), (-1, -8), (-2, 1))
+        ]
+        tangent[:, i] = np.sum(shares, axis=0) / (12.0 * change[i])
+    size = np.array([1.0, 1.0, 1.0, bearing.reach, bearing.reach])
+    even = tangent / np.outer(size, size)
+    assert np.abs(even - state.even_stiffness).max() <= 1e-6 * np.abs(state.even_stiffness).max()
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.data())
+def test_a_turn_by_one_element_turns_the_answer(data: st.DataObject) -> None:
+    bearing = data.draw(bearings())
+    load = data.draw(loads(bearing))
+    angle = 2.0 * math.pi / bearing.rows[0].count
+    cosine, sine = math.cos(angle), math.sin(angle)
+    turn = np.eye(5)
+    turn[:2, :2] = turn[3:, 3:] = [[cosine, -sine], [sine, cosine]]
+    try:
+        state = rolling_equilibrium(bearing, load)
+    except EquilibriumError:
+        with pytest.raises(EquilibriumError):
+            rolling_equilibrium(bearing, turn @ load)
+        return
+    turned = rolling_equilibrium(bearing, turn @ load)
+    assume(not state.loose)
+    size = np.array([1.0, 1.0, 1.0, bearing.reach, bearing.reach])
+    # How far the residual lets either stray is the flattest direction's.
+    slack = 1e-8 * max(np.abs(state.displacement * size).max(), 1e-3 * bearing.rows[0].element_diameter)
+    assert np.abs((turned.displacement - turn @ state.displacement) * size).max() <= slack
+    np.testing.assert_allclose(
+        turned.reaction / size, (turn @ state.reaction) / size, rtol=1e-6, atol=1e-7 * np.abs(load / size).max() + 1e-9
+    )
+
+
+@settings(max_examples=15, deadline=None)
+@given(ball_rows(), st.floats(0.0, 2.0 * math.pi), logarithmic(-3.0, 0.0))
+def test_the_work_of_a_closed_path_is_none(row: BallRow, angle: float, size: float) -> None:
+    """Betti: the stiffness between any two states is symmetric because their reactions have a potential."""
+    bearing = RollingBearing([replace(row, clearance=-abs(row.clearance))])
+    shift = 1e-3 * size * row.ball_diameter
+    corners = [np.zeros(5), np.zeros(5), np.zeros(5)]
+    corners[1][:3] = shift * np.array([math.cos(angle), math.sin(angle), 0.0])
+    corners[2][2:] = shift * np.array([1.0, 0.3 / bearing.reach, -0.5 / bearing.reach])
+    points, weights = np.polynomial.legendre.leggauss(12)
+    work, total = 0.0, 0.0
+    for begin, end in zip(corners, corners[1:] + corners[:1], strict=True):
+        for point, weight in zip(points, weights, strict=True):
+            try:
+                reaction = rolling_reaction(bearing, begin + 0.5 * (point + 1.0) * (end - begin)).reaction
+            except EquilibriumError:
+                assume(False)
+            part = 0.5 * weight * float(reaction @ (end - begin))
+            work, total = work + part, total + abs(part)
+    assert abs(work) <= 1e-3 * total

@@ -1,0 +1,112 @@
+"""The rotor reduced to modes and vectors: exact at its ports, and in modal form what its bearings are."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rotors import (
+    Bearing,
+    Disc,
+    Rotor,
+    RotorError,
+    Segment,
+    ShaftMaterial,
+    attach_motions,
+    modal_rotor,
+    solve_torsional_modes,
+    solve_whirl,
+)
+
+STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
+BAR = Segment(0.25, 0.05, 0.0, STEEL)
+SHAFT = Rotor("shaft", [BAR] * 4, [Disc(0.25, 12.0, 0.09, 0.05), Disc(1.0, 8.0, 0.05, 0.03)])
+CROSSED = np.array([[4e7, 6e6], [-3e6, 5e7]])
+TILTING = np.diag([4e7, 5e7, 2e7, 3e4, 2e4])
+BEARINGS = (
+    Bearing("left", 0.0, CROSSED, np.diag([800.0, 500.0])),
+    Bearing("right", 0.75, TILTING, np.diag([300.0, 400.0, 0.0, 2.0, 3.0])),
+)
+
+
+def test_modal_matrices_give_the_whirl_of_the_whole_rotor() -> None:
+    """Assembled by hand from its parts, the modal rotor has the eigenvalues of the exact solution."""
+    speed = 300.0
+    reduced = modal_rotor(SHAFT, BEARINGS, count=14, gears_at=[0.25])
+    squared = np.tile(reduced.lateral.frequencies**2, 2)
+    stiffness = np.diag(squared) + reduced.compensation + reduced.cross_coupling
+    damping = speed * reduced.gyroscopic + reduced.bearing_damping
+    size = len(squared)
+    values = np.linalg.eigvals(np.block([[np.zeros((size, size)), np.eye(size)], [-stiffness, -damping]]))
+    found = np.sort_complex(values[values.imag > 1.0])[np.argsort(np.abs(np.sort_complex(values[values.imag > 1.0])))]
+    exact = solve_whirl(SHAFT, BEARINGS, speed, count=6).eigenvalues
+    assert np.abs(found[:6] - exact).max() < 2e-5 * np.abs(exact[-1])
+
+
+def test_compensation_and_averaged_stiffness_are_the_bearings_own() -> None:
+    """The springs that the modes hold and the compensation make up the bearings' direct stiffness."""
+    reduced = modal_rotor(SHAFT, BEARINGS, count=6)
+    lateral = reduced.lateral
+    whole = reduced.compensation + reduced.cross_coupling + np.kron(np.eye(2), lateral.support_matrix)
+    expected = np.zeros_like(whole)
+    for bearing in BEARINGS:
+        displacement, slope = (part[:, 0] for part in lateral.evaluate([bearing.at]))
+        k = bearing.spatial_stiffness
+        expected += np.kron(k[:2, :2], np.outer(displacement, displacement))
+        # Slope in x is the rotation about y, in y minus that about x.
+        tilt = np.array([[k[4, 4], -k[4, 3]], [-k[3, 4], k[3, 3]]])
+        expected += np.kron(tilt, np.outer(slope, slope))
+    assert np.abs(whole - expected).max() < 1e-9 * np.abs(expected).max()
+    assert np.array_equal(reduced.gyroscopic, -reduced.gyroscopic.T)
+
+
+def test_static_error_is_what_the_vectors_repair() -> None:
+    """A simply supported bar: the compliance under its middle is L³/48EI + L/4κGA with the vectors."""
+    pins = [Bearing.isotropic(name, at, 1e14) for name, at in (("left", 0.0), ("right", 1.0))]
+    reduced = modal_rotor(Rotor("bar", [BAR] * 4), pins, count=3, gears_at=[0.5])
+    section = BAR.section(0.5)
+    exact = 1.0 / (48.0 * section.bending_stiffness) + 1.0 / (4.0 * section.shear_stiffness)
+    shares = (reduced.lateral.evaluate([0.5])[0][:, 0] / reduced.lateral.frequencies) ** 2
+    assert shares.sum() == pytest.approx(exact, rel=1e-8)
+    # At the pins the modes lack nearly everything.
+    assert reduced.static_error > 0.9
+    assert 1.0 - shares[:3].sum() / exact < reduced.static_error
+
+
+def test_attached_torques_make_the_static_twist_exact() -> None:
+    """Opposite torques at two places of a free shaft twist the length between them by M L / GJ."""
+    shaft = Rotor("shaft", [BAR] * 4, [Disc(0.0, 1.0, 0.02, 0.01), Disc(1.0, 1.0, 0.05, 0.02)])
+    modes = solve_torsional_modes(shaft, count=3)
+    attached = attach_motions(modes, [0.25, 0.75])
+    assert attached.count == 5
+    assert np.array_equal(attached.frequencies[:3], modes.frequencies)
+
+    def twist(count: int) -> float:
+        angles = attached.evaluate([0.25, 0.75])[1:count]
+        return float((((angles[:, 1] - angles[:, 0]) / attached.frequencies[1:count]) ** 2).sum())
+
+    exact = 0.5 / BAR.section(0.0).torsional_stiffness
+    assert twist(3) < 0.99 * exact
+    assert twist(5) == pytest.approx(exact, rel=1e-8)
+
+
+def test_torsional_set_stays_orthonormal_with_its_vectors() -> None:
+    attached = attach_motions(solve_torsional_modes(SHAFT, count=4), [0.3, 0.9, 0.9])
+    mass, stiffness = attached.fields.energies(attached.mixture)
+    assert np.abs(mass - np.eye(attached.count)).max() < 1e-9
+    off = stiffness - np.diag(np.diag(stiffness))
+    assert np.abs(off).max() < 1e-7 * np.diag(stiffness).max()
+
+
+def test_limit_keeps_every_mode_below_it() -> None:
+    reduced = modal_rotor(SHAFT, BEARINGS, frequency_limit=2.0 * math.pi * 3000.0)
+    assert reduced.lateral.certificate.complete
+    assert reduced.torsional.certificate.complete
+    assert reduced.lateral.certificate.limit == pytest.approx(2.0 * math.pi * 3000.0)
+
+
+def test_a_limit_or_a_count() -> None:
+    with pytest.raises(RotorError, match="one of the two"):
+        modal_rotor(SHAFT, BEARINGS)
+    with pytest.raises(RotorError, match="one of the two"):
+        modal_rotor(SHAFT, BEARINGS, count=3, frequency_limit=1e4)

@@ -1,0 +1,281 @@
+"""Rotors read from files in the form of ROSS's: what each key becomes, what is remarked on, what is refused.
+
+The tables follow what ``Rotor.save`` of ROSS 2.3 writes; `tests/validation/test_against_ross.py` has ROSS itself.
+"""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+
+from rotors import (
+    Coupling,
+    Disc,
+    RotorError,
+    Segment,
+    ShaftMaterial,
+    read_ross,
+    rest_frequencies,
+    shear_coefficient,
+)
+
+Document = dict[str, Any]
+
+STEEL = {"name": "Steel", "rho": 7810.0, "E": 211e9, "G_s": 81.2e9, "color": "#525252"}
+OURS = ShaftMaterial(211e9, 81.2e9, 7810.0)
+
+
+def element(node: int, **changes: Any) -> Document:
+    """As ROSS writes one, with changes; those to None are left out."""
+    plain = {"L": 0.25, "idl": 0.0, "odl": 0.05, "idr": 0.0, "odr": 0.05, "n": node, "axial_force": 0, "torque": 0}
+    flags = {"shear_effects": True, "rotary_inertia": True, "gyroscopic": True, "shear_method_calc": "cowper"}
+    rest = {"tag": f"Shaft Element {node}", "alpha": 0.0, "beta": 0.0, "material": dict(STEEL)}
+    return {key: value for key, value in (plain | flags | rest | changes).items() if value is not None}
+
+
+def bearing(n: int, tag: str, **changes: Any) -> Document:
+    """All fifteen coefficients are always written, each as a list."""
+    size = len(changes.get("frequency", [0]))
+    names = [letter + place for letter in "kcm" for place in ("xx", "xy", "yx", "yy", "zz")]
+    zeros = {name: [0.0] * size for name in names}
+    return (
+        zeros
+        | {"n": n, "tag": tag, "color": "#355d7a", "scale_factor": 1, "kxx": [1e6] * size, "kyy": [1e6] * size}
+        | changes
+    )
+
+
+def document(*shaft: Document, **others: Document) -> Document:
+    elements = {f"ShaftElement_{one.get('tag', number)}": one for number, one in enumerate(shaft)}
+    return {"ross_version": "2.3.0", "parameters": {}} | elements | others
+
+
+def saved(folder: Path, content: Document, name: str = "rotor.toml") -> Path:
+    path = folder / name
+    path.write_text(tomli_w.dumps(content), encoding="utf-8")
+    return path
+
+
+def two_elements(**others: Document) -> Document:
+    return document(element(0), element(1), **others)
+
+
+def test_each_element_becomes_a_segment_with_its_own_ends_and_material(tmp_path: Path) -> None:
+    cone = element(1, L=0.1, idl=0.01, odl=0.05, idr=0.02, odr=0.08, axial_force=2500.0)
+    other = element(2, material={"rho": 4500.0, "E": 110e9, "Poisson": 0.3}, idr=None, odr=None)
+    rotor, bearings, remarks = read_ross(saved(tmp_path, document(element(0), cone, other), "fan.toml"))
+    titanium = ShaftMaterial.from_poisson_ratio(110e9, 0.3, 4500.0)
+    assert rotor.name == "fan"
+    assert rotor.segments == (
+        Segment(0.25, 0.05, 0.0, OURS),
+        Segment(0.1, 0.05, 0.01, OURS, "cowper", 0.08, 0.02, 2500.0),
+        Segment(0.25, 0.05, 0.0, titanium),
+    )
+    assert bearings == ()
+    assert remarks == ()
+
+
+def test_elements_stand_in_the_order_of_their_nodes_or_of_the_file(tmp_path: Path) -> None:
+    lengths = [0.3, 0.1, 0.2]
+    by_node = document(*(element(n, L=lengths[n]) for n in (2, 0, 1)))
+    unnumbered = document(*(element(n, L=length, n=None) for n, length in enumerate(lengths)))
+    for content in (by_node, unnumbered):
+        assert [segment.length for segment in read_ross(saved(tmp_path, content)).rotor.segments] == lengths
+
+
+def test_disks_gears_and_masses_become_discs_at_their_nodes(tmp_path: Path) -> None:
+    rotor, _, remarks = read_ross(
+        saved(
+            tmp_path,
+            two_elements(
+                **{
+                    "DiskElement_Disk 0": {"n": 1, "m": 12.0, "Id": 0.1, "Ip": 0.2, "tag": "Disk 0"},
+                    "GearElement_g": {"n": 2, "m": 3.0, "Id": 0.01, "Ip": 0.02, "n_teeth": 20},
+                    "PointMass_p": {"n": 0, "m": 1.5},
+                }
+            ),
+        )
+    )
+    assert rotor.discs == (Disc(0.25, 12.0, 0.2, 0.1), Disc(0.5, 3.0, 0.02, 0.01), Disc(0.0, 1.5))
+    assert remarks == ("rotor.toml: GearElement_g: is read as a disc; its teeth are left out",)
+
+
+def test_bearings_keep_their_matrices_tables_and_names(tmp_path: Path) -> None:
+    content = two_elements(
+        BearingElement_a=bearing(0, "left", kxy=[2e5], kyx=[-1e5], kyy=[8e5], cxx=[300.0], cyy=[200.0]),
+        SealElement_b=bearing(1, "seal", seal_leakage=0.1),
+        BearingElement_c=bearing(
+            2, "thrust", frequency=[0.0, 100.0], kxx=[1e6, 2e6], kyy=[3e6, 4e6], kzz=[5e6, 6e6], czz=[7.0, 8.0]
+        ),
+        # As a user may write it by hand: y like x.
+        BearingElement_d={"n": 2, "kxx": 1e5, "cxx": 50},
+    )
+    _, (left, seal, thrust, plain), remarks = read_ross(saved(tmp_path, content))
+    np.testing.assert_array_equal(left.stiffness, [[1e6, 2e5], [-1e5, 8e5]])
+    np.testing.assert_array_equal(left.damping, np.diag([300.0, 200.0]))
+    assert (left.name, left.at, seal.name, seal.at) == ("left", 0.0, "seal", 0.25)
+    np.testing.assert_array_equal(thrust.speeds, [0.0, 100.0])
+    np.testing.assert_array_equal(thrust.stiffness, [np.diag([1e6, 3e6, 5e6, 0, 0]), np.diag([2e6, 4e6, 6e6, 0, 0])])
+    np.testing.assert_array_equal(thrust.damping[:, 2, 2], [7.0, 8.0])
+    np.testing.assert_array_equal(plain.stiffness, 1e5 * np.eye(2))
+    np.testing.assert_array_equal(plain.damping, 50.0 * np.eye(2))
+    assert remarks == ()
+
+
+def test_a_linked_bearing_stands_on_a_pedestal(tmp_path: Path) -> None:
+    content = two_elements(
+        BearingElement_a=bearing(0, "left"),
+        BearingElement_b=bearing(2, "right", n_link=3, kzz=[1e5]),
+        BearingElement_c=bearing(3, "foot", kxx=[1e8], kyy=[2e8], cxx=[500.0]),
+        PointMass_d={"n": 3, "m": 8.0, "mx": 8.0, "my": 8.0, "mz": 8.0},
+    )
+    _, (left, right), remarks = read_ross(saved(tmp_path, content))
+    assert left.pedestal is None
+    assert right.pedestal is not None
+    assert right.pedestal.mass == 8.0
+    np.testing.assert_array_equal(right.pedestal.stiffness, np.diag([1e8, 2e8]))
+    np.testing.assert_array_equal(right.pedestal.damping, np.diag([500.0, 0.0]))
+    assert len(remarks) == 1
+    assert "BearingElement_b: kzz stands on the ground" in remarks[0]
+
+
+def test_a_coupling_keeps_its_stiffness_and_what_its_halves_weigh(tmp_path: Path) -> None:
+    halves = {"m_l": 2.0, "m_r": 2.0, "Ip_l": 0.02, "Ip_r": 0.02, "Id_l": 0.0, "Id_r": 0.0}
+    springs = {"kt_x": 1e8, "kt_y": 1e8, "kt_z": 2e7, "kr_x": 1e5, "kr_y": 1e5, "kr_z": 3e5}
+    content = document(element(0), element(2, tag="last"), CouplingElement_c={"n": 1, "L": 0.1} | springs | halves)
+    rotor, _, remarks = read_ross(saved(tmp_path, content))
+    # A diametral inertia of zero is half the polar one to ROSS.
+    assert rotor.segments[1] == Coupling(0.1, 1e8, 1e5, 3e5, 2e7, mass=4.0, polar_inertia=0.04, diametral_inertia=0.02)
+    assert rotor.discs == ()
+    assert len(remarks) == 1
+    content["CouplingElement_c"] |= {"m_r": 5.0}
+    rotor, _, _ = read_ross(saved(tmp_path, content))
+    assert rotor.segments[1].mass == 0.0
+    assert rotor.discs == (Disc(0.25, 2.0, 0.02, 0.01), Disc(0.35, 5.0, 0.02, 0.01))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"alpha": 1.5}, "alpha is 1.5; the shaft's mass-proportional damping is left out"),
+        ({"beta": 1e-5}, "beta is 1e-05; the shaft's internal damping is left out"),
+        ({"torque": 10.0}, "torque is 10; the shaft's torque is left out"),
+        ({"rotary_inertia": False}, "rotary_inertia is false; the segment keeps its rotary inertia"),
+        ({"gyroscopic": False}, "gyroscopic is false; the segment keeps its gyroscopic moment"),
+        ({"colour": "red"}, "colour is not read"),
+    ],
+)
+def test_what_a_segment_cannot_hold_is_said_once(change: Document, said: str, tmp_path: Path) -> None:
+    content = document(element(0), element(1, **change), element(2, **change))
+    assert read_ross(saved(tmp_path, content)).warnings == (
+        f"rotor.toml: ShaftElement_Shaft Element 1 and 1 more: {said}",
+    )
+
+
+def test_added_mass_of_a_seal_is_remarked_on(tmp_path: Path) -> None:
+    (said,) = read_ross(saved(tmp_path, two_elements(SealElement_s=bearing(1, "s", mxx=[0.25])))).warnings
+    assert said == "rotor.toml: SealElement_s: mxx is up to 0.25 kg; the added mass is left out"
+
+
+def test_a_shaft_rigid_in_shear_is_that_of_rayleigh(tmp_path: Path) -> None:
+    """A pinned-pinned shaft without shear: ω² = (n π / L)⁴ EI / (ρA + ρI (n π / L)²), in closed form."""
+    content = document(*(element(n, shear_effects=False) for n in range(4)))
+    content |= {f"BearingElement_{n}": bearing(n, str(n), kxx=[1e14], kyy=[1e14]) for n in (0, 4)}
+    rotor, bearings, remarks = read_ross(saved(tmp_path, content))
+    area, second = math.pi / 4 * 0.05**2, math.pi / 64 * 0.05**4
+    waves = (np.arange(1, 4) * math.pi) ** 2
+    expected = waves * np.sqrt(211e9 * second / (7810.0 * (area + second * waves)))
+    np.testing.assert_allclose(rest_frequencies(rotor, bearings, count=6).frequencies[::2], expected, rtol=1e-6)
+    assert remarks == ()
+
+
+def test_hutchinson_is_taken_as_ross_computes_it(tmp_path: Path) -> None:
+    rotor, _, (said,) = read_ross(
+        saved(tmp_path, document(element(0, shear_method_calc="hutchinson", idl=0.02, idr=0.02)))
+    )
+    # ROSS leaves out a factor 1 + ν of Hutchinson's formula, which is coded independently in `shear_coefficient`.
+    expected = shear_coefficient("hutchinson", 0.4, OURS.poisson_ratio) / (1.0 + OURS.poisson_ratio)
+    assert rotor.segments[0].shear_coefficient == pytest.approx(expected, rel=1e-12)
+    assert "leaves out a factor 1 + ν" in said
+
+
+def without(content: Document, *path: str) -> Document:
+    inner = content
+    for step in path[:-1]:
+        inner = inner[step]
+    del inner[path[-1]]
+    return content
+
+
+FIRST = "ShaftElement_Shaft Element 0"
+COUPLED = {"n": 2, "m_l": 1.0, "m_r": 1.0, "Ip_l": 0.1, "Ip_r": 0.1, "kr_z": 1e5}
+WRONG: dict[str, tuple[Document, str]] = {
+    "no length": (without(two_elements(), FIRST, "L"), f"{FIRST}.L is 'missing'; expected a finite number"),
+    "text for a number": (document(element(0, L="0.25")), f"{FIRST}.L is '0.25'; expected a finite number"),
+    "a flag for a number": (document(element(0, odl=True)), f"{FIRST}.odl is True"),
+    "not finite": (document(element(0, odl=math.nan)), f"{FIRST}.odl is nan"),
+    "too large an integer": (document(element(0, odl=10**400)), f"{FIRST}.odl is 1000"),
+    "bore as large as the shaft": (document(element(0, idl=0.05)), f"{FIRST}: segment inner_diameter is 0.05"),
+    "negative length": (document(element(0, L=-0.25)), f"{FIRST}: segment length is -0.25"),
+    "no material": (without(two_elements(), FIRST, "material"), f"{FIRST}.material is 'missing'; expected a table"),
+    "no modulus": (without(two_elements(), FIRST, "material", "E"), f"{FIRST}.material.Poisson is 'missing'"),
+    "unknown shear formula": (document(element(0, shear_method_calc="x")), f"{FIRST}.shear_method_calc is 'x'"),
+    "flag that is none": (document(element(0, gyroscopic=1)), f"{FIRST}.gyroscopic is 1; expected true or false"),
+    "side by side": (document(element(0), element(1), element(1, tag="b")), "ShaftElement_b.n is 1; expected a node"),
+    "two shafts": (document(element(0), element(2)), "Shaft Element 2.n is 2; expected 1: one shaft"),
+    "one unnumbered": (document(element(0), element(1, n=None)), "Shaft Element 1.n is 'missing'"),
+    "half a node": (document(element(0, n=0.5)), f"{FIRST}.n is 0.5; expected a node: a whole number from 0"),
+    "no shaft": ({"DiskElement_d": {"n": 0, "m": 1.0, "Id": 0.0, "Ip": 0.0}}, "no ShaftElement"),
+    "disk off the shaft": (two_elements(DiskElement_d={"n": 3, "m": 1.0, "Id": 0.0, "Ip": 0.0}), "Element_d.n is 3"),
+    "negative inertia": (two_elements(DiskElement_d={"n": 0, "m": 1.0, "Id": -1.0, "Ip": 0.0}), "_d: disc diametral"),
+    "unknown class": (two_elements(RodElement_d={"n": 0}), "RodElement_d is an element of class 'RodElement'"),
+    "no damping": (without(two_elements(BearingElement_b=bearing(0, "b")), "BearingElement_b", "cxx"), "b.cxx is"),
+    "tables that differ": (two_elements(BearingElement_b=bearing(0, "b", frequency=[0.0, 1.0], kxy=[1.0, 2.0, 3.0])),
+                           "b.kxy is [1.0, 2.0, 3.0]; expected 2 values"),
+    "list without speeds": (two_elements(BearingElement_b=bearing(0, "b", kxx=[1.0, 2.0])), "expected one value"),
+    "speeds that fall": (two_elements(BearingElement_b=bearing(0, "b", frequency=[1.0, 0.0])), "bearing 'b' speeds"),
+    "negative stiffness": (two_elements(BearingElement_b=bearing(0, "b", kxx=[-1.0])), "b: bearing 'b' stiff"),
+    "bearing in the air": (two_elements(BearingElement_b=bearing(5, "b")), "b.n is 5; expected a node of"),
+    "bearing between shafts": (two_elements(BearingElement_b=bearing(0, "b", n_link=1)), "b.n_link is 1; expected"),
+    "link to nothing": (two_elements(BearingElement_b=bearing(0, "b", n_link=3)), "BearingElement_b.n_link is 3"),
+    "two on one support": (two_elements(BearingElement_b=bearing(0, "b", n_link=3), BearingElement_s=bearing(3, "s"),
+                                        BearingElement_c=bearing(2, "c", n_link=3)), "BearingElement_c.n_link is 3"),
+    "support on a support": (two_elements(BearingElement_b=bearing(0, "b", n_link=3),
+                                          BearingElement_s=bearing(3, "s", n_link=4)), "BearingElement_s.n_link is 4"),
+    "table of a support": (two_elements(BearingElement_b=bearing(0, "b", n_link=3),
+                                        BearingElement_s=bearing(3, "s", frequency=[0.0, 1.0])), "s.frequency is"),
+    "mass unlike in y": (two_elements(PointMass_p={"n": 0, "mx": 1.0, "my": 2.0}), "PointMass_p.my is 2.0; expected 1"),
+    "loose coupling": (two_elements(CouplingElement_c=dict(COUPLED)), "CouplingElement_c.kt_x is 'missing'; expected"),
+    "coupling unlike in y": (two_elements(CouplingElement_c=COUPLED | {"kt_x": 1e5, "kt_y": 2e5}), "c.kt_y is 200000"),
+    "a value at the top": ({"shaft": 3}, "shaft is 3; expected a table"),
+    "nothing": ({}, "no elements; expected a rotor saved by ROSS"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_files_name_file_key_and_value(name: str, tmp_path: Path) -> None:
+    content, said = WRONG[name]
+    with pytest.raises(RotorError) as raised:
+        read_ross(saved(tmp_path, content, "wrong.toml"))
+    assert said in str(raised.value)
+    assert str(raised.value).startswith("wrong.toml: ")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("rotor.toml", b"[parameters\n", "expected TOML"),
+        ("rotor.json", b"[1, 2", "expected JSON"),
+        ("rotor.json", b"[1, 2]", "expected a table of elements"),
+        ("rotor.toml", b"\xff\xfe", "is not UTF-8"),
+    ],
+)
+def test_what_is_no_such_file_is_said(name: str, content: bytes, said: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(RotorError, match=said):
+        read_ross(tmp_path / name)
+    with pytest.raises(RotorError, match="expected a rotor saved by ROSS"):
+        read_ross(tmp_path / "missing.toml")
