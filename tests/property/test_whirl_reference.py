@@ -65,6 +65,12 @@ def bearing_sets(draw: st.DrawFn, rotor: Rotor, kind: str) -> list[Bearing]:
             stiffness[0, 4] = stiffness[4, 0] = draw(numbers(-5e3, 5e3))
             stiffness[1, 3] = stiffness[3, 1] = draw(numbers(-5e3, 5e3))
             damping[3, 3] = damping[4, 4] = draw(numbers(0.0, 20.0))
+        if kind == "thrust":
+            # As of a loaded ball bearing: radial, axial and tilting all coupled, positive definite.
+            stiffness, damping = (_spatial(matrix) for matrix in (stiffness, damping))
+            lever = np.eye(5)
+            lever[2, 0], lever[0, 4], lever[2, 4], lever[1, 3] = (draw(numbers(0.02, 0.2)) for _ in range(4))
+            stiffness = stiffness + lever.T @ np.diag([0.0, 0.0, draw(numbers(1e5, 1e7)), 2e4, 2e4]) @ lever
         bearings.append(Bearing(name, at, stiffness, damping, pedestal=pedestal))
     return bearings
 
@@ -84,7 +90,7 @@ def assert_same(found: npt.NDArray[np.complex128], reference: npt.NDArray[np.com
     assert set(np.flatnonzero(lower)) <= set(columns), f"{found} leave out some of {reference[lower]}"
 
 
-@pytest.mark.parametrize("kind", ["undamped", "crossed", "tilting", "pedestals"])
+@pytest.mark.parametrize("kind", ["undamped", "crossed", "tilting", "thrust", "pedestals"])
 def test_every_eigenvalue_at_speed(kind: str) -> None:
     @SOME
     @given(st.data(), numbers(-1500.0, 1500.0))
@@ -93,7 +99,8 @@ def test_every_eigenvalue_at_speed(kind: str) -> None:
         bearings = data.draw(bearing_sets(rotor, kind))
         found = solve_whirl(rotor, bearings, speed, count=COUNT).eigenvalues
         assert found.size == COUNT
-        reference = spatial_matrices(rotor, bearings, 1.5 * float(np.abs(found).max())).eigenvalues(speed)
+        matrices = spatial_matrices(rotor, bearings, 1.5 * float(np.abs(found).max()), axial=kind == "thrust")
+        reference = matrices.eigenvalues(speed)
         assert_same(found, reference)
 
     holds()

@@ -1,6 +1,6 @@
 """Rotors that random search found to be refused, or to lose digits: each the shortest known of its kind.
 
-Where a mark stands it says what happens so far. None of them misses a root.
+Where a mark stands it says what happens so far.
 """
 
 import math
@@ -10,11 +10,14 @@ import pytest
 from finite_element_rotor import bending_model, rod_model
 
 from rotors import (
+    AxisSpring,
     Disc,
+    IncompleteModesError,
     RadialSupport,
     Rotor,
     Segment,
     ShaftMaterial,
+    solve_axial_modes,
     solve_lateral_modes,
     solve_torsional_modes,
 )
@@ -35,6 +38,16 @@ def test_two_overhangs_of_one_clamp() -> None:
         for side, at in zip(sides, (0.5, 0.0), strict=True)
     ]
     np.testing.assert_allclose(modes.frequencies, np.sort(np.concatenate(alone))[: modes.count], rtol=1e-12)
+
+
+@pytest.mark.parametrize("at", [0.5, 1.0])
+def test_rod_held_elsewhere_than_at_its_left_end(at: float) -> None:
+    # Each side free at one end and held at the other, (n − ½) π c / l.
+    rod = Rotor("rod", [Segment(0.5, 0.1, 0.0, STEEL)] * 2)
+    modes = solve_axial_modes(rod, [AxisSpring(at, math.inf)], frequency_limit=3e4)
+    waves = math.pi * math.sqrt(207e9 / 7850.0) * (np.arange(1, 20) - 0.5)
+    roots = np.sort(np.concatenate([waves / side for side in (at, 1.0 - at) if side > 0.0]))
+    np.testing.assert_allclose(modes.frequencies, roots[roots < 3e4], rtol=1e-12)
 
 
 def test_few_modes_of_a_flat_ring() -> None:
@@ -91,3 +104,25 @@ def test_digits_of_what_a_hair_holds() -> None:
     limit = float(modes.frequencies[-1]) * 1.01
     reference = bending_model(rotor, [], limit).natural_frequencies(limit, floor=1e-12)
     np.testing.assert_allclose(modes.frequencies[2:4], reference[-2:], rtol=1e-10)
+
+
+def test_thin_walled_cone() -> None:
+    tube = Segment(0.4, 0.1, 0.099, STEEL, right_outer_diameter=0.15, right_inner_diameter=0.1485)
+    rotor = Rotor("tube", [tube])
+    modes = solve_lateral_modes(rotor, count=5)
+    limit = 1.01 * float(modes.frequencies[-1])
+    reference = bending_model(rotor, [], limit).natural_frequencies(limit)
+    np.testing.assert_allclose(modes.frequencies, reference, rtol=1e-11, atol=1e-6)
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=IncompleteModesError,
+    reason="a rigid motion nearly all in one disc is not orthonormal to the rest",
+)
+def test_rod_a_million_million_times_lighter_than_its_disc() -> None:
+    rotor = Rotor("flag", [Segment(0.00333, 0.00274, 0.0, RUBBER)], [Disc(0.00333, 450.9, 450.9, 225.45)])
+    modes = solve_torsional_modes(rotor, count=5)
+    limit = 1.01 * float(modes.frequencies[-1])
+    reference = rod_model(rotor, "torsion", limit).natural_frequencies(limit)
+    np.testing.assert_allclose(modes.frequencies, reference, rtol=1e-10, atol=1e-6)
