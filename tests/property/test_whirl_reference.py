@@ -17,7 +17,7 @@ from scipy.optimize import linear_sum_assignment
 
 from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, solve_whirl
 
-CLOSE = 1e-8
+CLOSE = 1e-10
 COUNT = 8
 # No shrinking: a case that fails is short as drawn.
 SOME = settings(

@@ -144,7 +144,7 @@ def rod_model(
     reach: float = REACH,
 ) -> PlaneModel:
     """Torsion ("torsion") or axial motion ("axial"), with springs to ground, each a place (m) and a stiffness."""
-    elements = cut(rotor, [at for at, _ in springs], highest, reach)
+    elements = cut(rotor, [at for at, _ in springs], highest, reach, bends=False)
     stiffness = np.zeros((elements.nodes.size, 1))
     for at, value in springs:
         stiffness[elements.node(at)] += value

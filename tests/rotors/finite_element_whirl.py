@@ -85,7 +85,7 @@ def spatial_matrices(
     gyroscopic[:n, n : 2 * n] = plane.assembled("polar")
     gyroscopic[n : 2 * n, :n] = -gyroscopic[:n, n : 2 * n]
     for bearing in bearings:
-        motion = _motion(plane, bearing.at, total, axial)
+        motion = _motion(plane, rod if axial else None, bearing.at, total)
         if bearing.pedestal is not None:
             foot = np.zeros((2, total))
             foot[[0, 1], [start, start + 1]] = 1.0
@@ -99,12 +99,12 @@ def spatial_matrices(
     return SpatialMatrices(mass, stiffness, damping, gyroscopic)
 
 
-def _motion(plane: PlaneModel, at: float, total: int, axial: bool) -> FloatArray:
+def _motion(plane: PlaneModel, rod: PlaneModel | None, at: float, total: int) -> FloatArray:
     """x, y, z, rotation about x and about y at a place, of the unknowns, (5, total)."""
     motion, n, node = np.zeros((5, total)), plane.held.size, plane.elements.node(at)
     motion[0, 2 * node] = motion[4, 2 * node + 1] = 1.0
     motion[1, n + 2 * node] = 1.0
     motion[3, n + 2 * node + 1] = -1.0
-    if axial:
-        motion[2, 2 * n + node] = 1.0
+    if rod is not None:
+        motion[2, 2 * n + rod.elements.node(at)] = 1.0
     return motion

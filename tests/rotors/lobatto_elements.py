@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 from double_double import DoubleDouble
 
-from rotors import Coupling, Rotor, Segment
+from rotors import Coupling, Rotor, Section, Segment
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -69,8 +69,11 @@ class Matrices:
     polar: DoubleDouble
 
 
-def cut(rotor: Rotor, places: Sequence[float], highest: float, reach: float = REACH) -> Elements:
-    """Elements with nodes at every joint, disc and place, short enough for vibration at ``highest`` rad/s."""
+def cut(rotor: Rotor, places: Sequence[float], highest: float, reach: float = REACH, *, bends: bool = True) -> Elements:
+    """Elements with nodes at every joint, disc and place, short enough for vibration at ``highest`` rad/s.
+
+    Waves of torsion and of axial motion are longer than those of bending: without ``bends`` only they are heeded.
+    """
     slack = SAME_PLACE * rotor.length
     wanted = sorted([*places, *(disc.at for disc in rotor.discs)])
     nodes, segments, fractions, lengths = [0.0], [], [], []
@@ -82,7 +85,7 @@ def cut(rotor: Rotor, places: Sequence[float], highest: float, reach: float = RE
                 stops.append((place - left) / part.length)
         stops.append(1.0)
         for start, stop in itertools.pairwise(stops):
-            for near, far in itertools.pairwise([start, *_edges(part, start, stop, highest, reach)]):
+            for near, far in itertools.pairwise([start, *_edges(part, (start, stop), highest, reach, bends)]):
                 segments.append(index)
                 fractions.append((near, far))
                 lengths.append((far - near) * part.length)
@@ -117,8 +120,11 @@ def rod_matrices(rotor: Rotor, elements: Elements, motion: str, degree: int = DE
     return Matrices(1, _gram(slope, weight * per_length[stiff]), mass, mass - mass)
 
 
-def _edges(part: Segment | Coupling, start: float, stop: float, highest: float, reach: float) -> list[float]:
+def _edges(
+    part: Segment | Coupling, stretch: tuple[float, float], highest: float, reach: float, bends: bool
+) -> list[float]:
     """Right ends of the elements of a stretch of a segment, as fractions of the segment."""
+    start, stop = stretch
     if isinstance(part, Coupling):
         return [stop]
     ends = [part.section(start), part.section(stop)]
@@ -126,18 +132,24 @@ def _edges(part: Segment | Coupling, start: float, stop: float, highest: float, 
     walls = sorted(section.outer_diameter - section.inner_diameter for section in ends)
     if max(diameters[1] / diameters[0], walls[1] / walls[0]) > TAPER:
         middle = 0.5 * (start + stop)
-        return _edges(part, start, middle, highest, reach) + _edges(part, middle, stop, highest, reach)
-    wave = 0.0
-    for section in ends:
-        heavy, rotary = section.mass_per_length, 0.5 * section.polar_inertia_per_length
-        shear, bend = highest**2 * heavy / section.shear_stiffness, highest**2 * rotary / section.bending_stiffness
-        stretched = abs(part.axial_force) / section.bending_stiffness
-        product = highest**2 * heavy / section.bending_stiffness
-        # Of k⁴ − (s + b + n) k² − …, the larger root in size, with the force's part n taken at its worst.
-        root = math.sqrt((shear - bend) ** 2 + stretched**2 + 4.0 * product)
-        wave = max(wave, math.sqrt(0.5 * (shear + bend + stretched + root)))
+        halves = ((start, middle), (middle, stop))
+        return [edge for half in halves for edge in _edges(part, half, highest, reach, bends)]
+    # Torsion is slower than axial motion.
+    wave = highest * math.sqrt(part.material.density / part.material.shear_modulus)
+    if bends:
+        wave = max(_bending_wave(section, part.axial_force, highest) for section in ends)
     count = max(1, math.ceil(wave * (stop - start) * part.length / reach))
     return [*(start + (stop - start) * np.arange(1, count) / count).tolist(), stop]
+
+
+def _bending_wave(section: Section, force: float, omega: float) -> float:
+    """Larger root in size of k⁴ − (s + b + n) k² − …, with the force's part n taken at its worst, 1/m."""
+    heavy, rotary = section.mass_per_length, 0.5 * section.polar_inertia_per_length
+    shear, bend = omega**2 * heavy / section.shear_stiffness, omega**2 * rotary / section.bending_stiffness
+    stretched = abs(force) / section.bending_stiffness
+    product = omega**2 * heavy / section.bending_stiffness
+    root = math.sqrt((shear - bend) ** 2 + stretched**2 + 4.0 * product)
+    return math.sqrt(0.5 * (shear + bend + stretched + root))
 
 
 def _at_gauss_points(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from double_double import DoubleDouble
 from finite_element_rotor import bending_model, rod_model
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import special
 from scipy.optimize import brentq
@@ -25,6 +25,7 @@ def exact(number: DoubleDouble) -> Fraction:
     return Fraction(float(number.high)) + Fraction(float(number.low))
 
 
+@settings(deadline=None)
 @given(NUMBERS, NUMBERS, NUMBERS, NUMBERS)
 def test_arithmetic_of_thirty_one_digits(a: float, b: float, c: float, d: float) -> None:
     x, y = DoubleDouble.product(a, b), DoubleDouble.product(c, d)
