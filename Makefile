@@ -53,7 +53,7 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
 	@touch $@
 
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
-	@echo "Installing with the development tools (about a minute) ..."
+	@echo "Installing with the development tools (some minutes) ..."
 	$(PIP) install -c constraints.txt -e .[dev]
 	@touch $@ $(VENV)/.installed
 
