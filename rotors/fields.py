@@ -69,6 +69,13 @@ class Fields:
         motion = mixture @ self._rows[0]
         return np.asarray((motion * self.chain.energy_weights.polar) @ motion.T)
 
+    def strain_of_pieces(self, mixture: FloatArray) -> FloatArray:
+        """Twice the strain energy in each piece of combinations of the fields, springs left out, (m, p)."""
+        strain, weights = mixture @ self._rows[1], self.chain.energy_weights.strain
+        inside = weights.size - self.chain.finite_stiffness.size
+        pieces = (strain**2 * weights)[:, :inside]
+        return np.asarray(pieces.reshape(mixture.shape[0], self.chain.element.size, -1).sum(axis=2))
+
     def joined(self, other: "Fields") -> "Fields":
         """These fields followed by those of ``other``, on the same chain."""
         return Fields(

@@ -68,6 +68,58 @@ class LateralModes:
         unit = self.fields.chain.displacement_unit
         return states[:, :, 0] * unit[0], states[:, :, 1] * unit[1]
 
+    def section_loads(self, z: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Shear force and bending moment of every mode at positions z (m), both (m, len(z)).
+
+        f = κGA (x' − β) + P x' in N and EI β' in N·m, per unit modal coordinate, just right of a position; at the
+        shaft's right end just left of it.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        positions = require_positions(self.stations, z)
+        states = np.tensordot(self.mixture, self.fields.at(positions)[:, :, 2:], axes=1)
+        unit = self.fields.chain.displacement_unit
+        return states[:, :, 0] / unit[0], states[:, :, 1] / unit[1]
+
+    def strain_energy_shares(self, edges: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Parts of every mode's strain energy in lengths of shaft and in its supports; together one.
+
+        A mode's strain energy is ½ ω² at unit modal coordinate. Rigid motions have none, and zeros here.
+
+        Parameters
+        ----------
+        edges
+            (e + 1,): ascending positions that part the shaft, m: `Rotor.joints` for its segments.
+
+        Returns
+        -------
+        lengths, supports
+            (m, e) and (m, supports); a support that is infinitely stiff stores nothing.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        places = require_positions(self.stations, edges)
+        fields = self.fields.on(self.fields.chain.with_nodes(places))
+        nodes = fields.chain.nodes
+        owner = np.searchsorted(places, 0.5 * (nodes[1:] + nodes[:-1])) - 1
+        pieces = fields.strain_of_pieces(self.mixture)
+        lengths = np.stack([pieces[:, owner == k].sum(axis=1) for k in range(places.size - 1)], axis=1)
+        supports = np.zeros((self.count, len(self.supports)))
+        for k, support in enumerate(self.supports):
+            for stiffness, motion in zip(
+                (support.stiffness, support.tilt_stiffness), self.evaluate([support.at]), strict=True
+            ):
+                if np.isfinite(stiffness):
+                    supports[:, k] += stiffness * motion[:, 0] ** 2
+        whole = np.where(self.frequencies > 0.0, self.frequencies**2, np.inf)[:, None]
+        return lengths / whole, supports / whole
+
     @property
     def support_matrix(self) -> FloatArray:
         """Φᵀ k Φ of the finite supports, (m, m), N/m per unit modal mass."""

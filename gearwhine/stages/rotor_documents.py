@@ -28,6 +28,7 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "mass_kg": one.rotor.mass,
                 "length_m": one.rotor.length,
                 "lateral_hz": (one.rest.frequencies / _HERTZ).tolist(),
+                "strain_energy": _strain_energy(one),
                 "torsional_hz": (one.torsional.frequencies / _HERTZ).tolist(),
                 "rest_bearings_at_rpm": _in_rpm(one.rest_speed),
                 "operation_rpm": _in_rpm(one.operation),
@@ -50,6 +51,16 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
             }
             for one in solved
         ]
+    }
+
+
+def _strain_energy(one: SolvedRotor) -> dict[str, Any]:
+    """Shares of each planar mode's strain energy in the segments and the bearings, a row for each mode."""
+    segments, bearings = one.lateral.strain_energy_shares(one.rotor.joints)
+    return {
+        "frequency_hz": (one.lateral.frequencies / _HERTZ).tolist(),
+        "segments": segments.tolist(),
+        "bearings": bearings.tolist(),
     }
 
 
