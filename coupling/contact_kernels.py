@@ -41,13 +41,12 @@ def law_of(
         contacts.phase[k] + contacts.rate[k] * time,
         delta,
         rate,
-        contacts.ratio[k],
-        contacts.stiffness[k, : contacts.intervals[k]],
         contacts.knots[k, : contacts.pieces[k] + 1],
-        contacts.deviation[k, : contacts.pieces[k]],
+        contacts.curves[k, : contacts.kinds[k], : contacts.pieces[k]],
         contacts.damping[k],
-        contacts.pitch_gaps[k, : contacts.pairs[k]],
         contacts.damping_depth[k],
+        contacts.pair_gaps[k, : contacts.pairs[k]],
+        contacts.pair_kinds[k, : contacts.pairs[k]],
     )
 
 
@@ -66,7 +65,7 @@ def contact_state(contacts: Contacts, time: float, delta: FloatArray, rate: Floa
 def contact_energy(contacts: Contacts, q: FloatArray, v: FloatArray, time: float) -> float:
     """Energy stored in the teeth at a time [J]."""
     energy = 0.0
-    for k in range(contacts.ratio.size):
+    for k in range(contacts.phase.size):
         delta, rate = compression_of(contacts, k, q, v, time)
         energy += law_of(contacts, k, time, delta, rate)[3]
     return energy

@@ -47,20 +47,19 @@ class Contacts(NamedTuple):
     """The tooth contacts, padded to common lengths."""
 
     direction: FloatArray  # (c, n) Dᵀ
-    ratio: FloatArray  # (c,) contact ratio
-    stiffness: FloatArray  # (c, intervals, 4)
-    intervals: IntArray  # (c,)
     knots: FloatArray  # (c, pieces + 1)
-    deviation: FloatArray  # (c, pieces, 4)
+    curves: FloatArray  # (c, kinds of pairs, pieces, 8): cubics of the stiffness and of the gap
     pieces: IntArray  # (c,)
+    kinds: IntArray  # (c,)
     damping: FloatArray  # (c,)
     damping_depth: FloatArray  # (c,)
     phase: FloatArray  # (c,)
     rate: FloatArray  # (c,)
     errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
     clearance: FloatArray  # (c,)
-    pitch_gaps: FloatArray  # (c, pairs)
-    pairs: IntArray  # (c,) pairs of teeth in a hunting period; 0 without pitch deviations
+    pair_gaps: FloatArray  # (c, pairs)
+    pair_kinds: IntArray  # (c, pairs)
+    pairs: IntArray  # (c,) pairs of teeth in a hunting period; 0 where all are alike
 
 
 class Segments(NamedTuple):

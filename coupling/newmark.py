@@ -80,7 +80,7 @@ def march(
     unsettled : int
         Steps whose contact forces Newton's method left unsettled.
     """
-    n, c = q.size, contacts.ratio.size
+    n, c = q.size, contacts.phase.size
     a, before, after = np.zeros(n), np.zeros(n), np.zeros(n)
     start = np.zeros(2 * n)  # q* and v*
     q1, v1 = np.zeros(n), np.zeros(n)
@@ -265,7 +265,7 @@ def _sample(
         for i in range(n):
             x[i] = old * q[i] + slope_old * v[i] + new * q1[i] + slope_new * v1[i]
             y[i] = old * v[i] + slope_old * a[i] + new * v1[i] + slope_new * a1[i]
-        for k in range(contacts.ratio.size):
+        for k in range(contacts.phase.size):
             delta, rate = compression_of(contacts, k, x, y, time)
             samples.compression[number, k] = delta
             samples.force[number, k] = law_of(contacts, k, time, delta, rate)[0]

@@ -150,35 +150,33 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
 def _contacts(system: CoupledSystem) -> Contacts:
     c = len(system.contacts)
     arguments = [contact.contact.kernel_arguments for contact in system.contacts]
-    intervals = [len(argument[1]) for argument in arguments]
-    pieces = [len(argument[3]) for argument in arguments]
+    kinds, pieces = ([argument[1].shape[axis] for argument in arguments] for axis in (0, 1))
+    pairs = [argument[4].size for argument in arguments]
     harmonics = max((len(contact.errors) for contact in system.contacts), default=0)
-    stiffness = np.zeros((c, max(intervals, default=0), 4))
     knots = np.zeros((c, max(pieces, default=0) + 1))
-    deviation = np.zeros((c, max(pieces, default=0), 4))
-    pairs = [len(argument[5]) for argument in arguments]
+    curves = np.zeros((c, max(kinds, default=0), max(pieces, default=0), 8))
     errors = np.zeros((c, harmonics, 3))
-    pitch_gaps = np.zeros((c, max(pairs, default=0)))
-    for k, (contact, (_, curve, places, gaps, _, pitch, _)) in enumerate(zip(system.contacts, arguments, strict=True)):
-        stiffness[k, : intervals[k]] = curve
+    pair_gaps = np.zeros((c, max(pairs, default=0)))
+    pair_kinds = np.zeros((c, max(pairs, default=0)), dtype=np.int64)
+    for k, (contact, (places, cubics, _, _, gaps, numbers)) in enumerate(zip(system.contacts, arguments, strict=True)):
         knots[k, : pieces[k] + 1] = places
-        deviation[k, : pieces[k]] = gaps
+        curves[k, : kinds[k], : pieces[k]] = cubics
         errors[k, : len(contact.errors)] = contact.errors
-        pitch_gaps[k, : pairs[k]] = pitch
+        pair_gaps[k, : pairs[k]] = gaps
+        pair_kinds[k, : pairs[k]] = numbers
     return Contacts(
         direction=np.ascontiguousarray(system.contact_directions.T),
-        ratio=np.array([argument[0] for argument in arguments], dtype=np.float64),
-        stiffness=stiffness,
-        intervals=np.array(intervals, dtype=np.int64),
         knots=knots,
-        deviation=deviation,
+        curves=curves,
         pieces=np.array(pieces, dtype=np.int64),
-        damping=np.array([argument[4] for argument in arguments], dtype=np.float64),
-        damping_depth=np.array([argument[6] for argument in arguments], dtype=np.float64),
+        kinds=np.array(kinds, dtype=np.int64),
+        damping=np.array([argument[2] for argument in arguments], dtype=np.float64),
+        damping_depth=np.array([argument[3] for argument in arguments], dtype=np.float64),
         phase=np.array([contact.phase for contact in system.contacts], dtype=np.float64),
         rate=np.array([contact.rate for contact in system.contacts], dtype=np.float64),
         errors=errors,
         clearance=np.array([contact.clearance for contact in system.contacts], dtype=np.float64),
-        pitch_gaps=pitch_gaps,
+        pair_gaps=pair_gaps,
+        pair_kinds=pair_kinds,
         pairs=np.array(pairs, dtype=np.int64),
     )

@@ -15,8 +15,9 @@ The compiled law is `coupling.gears.kernels.tooth_force`; it alone imports numba
 Positions along the path of contact are in base pitches, phases in mesh periods, everything else in SI.
 """
 
+from coupling.gears.corner_contact import FlankPlaces, corner_reach, flank_places
 from coupling.gears.damping import equivalent_mass, mesh_damping
-from coupling.gears.deviation import tip_relief_deviation
+from coupling.gears.deviation import flank_gap, pair_deviation
 from coupling.gears.errors import (
     ContactAccuracyError,
     GearError,
@@ -27,10 +28,14 @@ from coupling.gears.errors import (
     StiffnessModelError,
     UndercutError,
 )
+from coupling.gears.faults import Fault, MissingTooth, Spall, Wear
+from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
 from coupling.gears.geometry import Gear, module_from_base_radius
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
+from coupling.gears.modifications import RootRelief, TipRelief
+from coupling.gears.pair_curves import PairCurves
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
 from coupling.gears.pitch_gaps import back_flank_pitch_gaps, pitch_gaps
@@ -52,7 +57,6 @@ from coupling.gears.stiffness_models import (
     TableStiffness,
     stiffness_model,
 )
-from coupling.gears.tip_relief import TipRelief
 from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, hertz_compliance, potential_energy
 from coupling.gears.tooth_contact import (
     PairStates,
@@ -64,19 +68,27 @@ __all__ = [
     "STIFFNESS_MODELS",
     "ConstantStiffness",
     "ContactAccuracyError",
+    "Fault",
+    "FlankPlaces",
     "Gear",
     "GearError",
     "GearPairGeometry",
+    "HelixDeviation",
     "InterferenceError",
     "Iso6336Stiffness",
     "Iso6336Values",
     "MismatchedGearsError",
+    "MissingTooth",
     "NoContactError",
+    "PairCurves",
     "PairStates",
     "PiecewiseCubic",
     "PointedToothError",
     "PotentialEnergyStiffness",
+    "ProfileDeviation",
+    "RootRelief",
     "RootSection",
+    "Spall",
     "SquareStiffness",
     "StaticMesh",
     "StiffnessModel",
@@ -87,8 +99,12 @@ __all__ = [
     "ToothContact",
     "ToothModel",
     "UndercutError",
+    "Wear",
     "back_flank_pitch_gaps",
+    "corner_reach",
     "equivalent_mass",
+    "flank_gap",
+    "flank_places",
     "foundation_compliance",
     "hertz_compliance",
     "inverse_involute",
@@ -98,12 +114,12 @@ __all__ = [
     "mesh_period_phases",
     "mesh_stiffness",
     "module_from_base_radius",
+    "pair_deviation",
     "pitch_gaps",
     "potential_energy",
     "runout_error",
     "static_transmission_error",
     "stiffness_model",
-    "tip_relief_deviation",
     "tooth_contact",
     "tooth_outline",
     "within_fitted_range",

@@ -1,50 +1,95 @@
-"""How far a pair of flanks is short of the perfect involute along its path of contact."""
+"""How far a pair of flanks is short of the perfect involutes along its path of contact, and beyond it."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import piecewise
+from coupling.gears.corner_contact import flank_places
+from coupling.gears.faults import Fault
 from coupling.gears.geometry import Gear
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
 
 FloatArray = npt.NDArray[np.float64]
 
+TOLERANCE = 1e-13
+"""What the cubics may miss of a deviation [m]."""
+_APART = 1e-9
+"""Corners nearer to each other than this, in base pitches, are one."""
 
-def tip_relief_deviation(geometry: GearPairGeometry, length: float | None = None) -> PiecewiseCubic:
-    """Gap that the tip reliefs of both gears leave a pair, over [0, contact ratio] [m].
 
-    Linear in roll angle, so linear in position: exact straight lines with knots where a relief begins.
+def flank_gap(gear: Gear, roll_angle: FloatArray) -> FloatArray:
+    """Material that a gear's flank is short of the involute [m], at roll angles [rad]; negative where it has more."""
+    tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
+    gap = np.zeros_like(roll_angle)
+    if gear.tip_relief is not None:
+        gap = gap + gear.tip_relief.depth(roll_angle, tip, gear.base_radius)
+    if gear.root_relief is not None:
+        gap = gap + gear.root_relief.depth(roll_angle, form, gear.base_radius)
+    if gear.profile_deviation is not None:
+        gap = gap - gear.profile_deviation.at(roll_angle, form, tip)
+    return np.asarray(gap, dtype=np.float64)
+
+
+def pair_deviation(
+    geometry: GearPairGeometry,
+    start: float,
+    end: float,
+    *,
+    corner_contact: bool = False,
+    faults: tuple[tuple[Fault, ...], tuple[Fault, ...]] = ((), ()),
+) -> PiecewiseCubic:
+    """Gap between the flanks of a pair in nominal motion, over [start, end] in base pitches [m].
+
+    The sum of what both flanks lack, by their modifications, deviations and faults, and with corner contact of the gap
+    to a corner where the position lies beyond the path of contact.
 
     Parameters
     ----------
     geometry : GearPairGeometry
-    length : float or None
-        End of the range in base pitches; None for the contact ratio.
+    start, end : float
+        Positions; 0 and the contact ratio are the ends of the path.
+    corner_contact : bool
+        Whether teeth meet with their corners beyond it; else as if their flanks went on.
+    faults : pair of tuples
+        Of the driver's tooth and of the driven gear's.
     """
-    end = geometry.contact_ratio if length is None else length
-    starts = [
-        locate(gear.tip_relief.start_roll_angle)
-        for gear, locate in (
-            (geometry.driver, geometry.driver_position),
-            (geometry.driven, geometry.driven_position),
-        )
-        if gear.tip_relief is not None
-    ]
-    # A relief that starts within rounding of an end has no room for a knot of its own.
-    inner = {start for start in starts if 1e-9 < start < end - 1e-9}
-    knots = np.array(sorted({0.0, end} | inner))
-    knots = knots[np.concatenate([[True], np.diff(knots) > 1e-9])]
-    gap = _relief(geometry.driver, geometry.driver_roll_angle(knots))
-    return piecewise.polyline(knots, gap + _relief(geometry.driven, geometry.driven_roll_angle(knots)))
+    gears = (geometry.driver, geometry.driven)
+    pitch_roll = math.tan(geometry.working_pressure_angle)
+
+    def gap(position: FloatArray) -> FloatArray:
+        rolls = geometry.driver_roll_angle(position), geometry.driven_roll_angle(position)
+        total = np.zeros_like(position)
+        if corner_contact:
+            places = flank_places(geometry, position)
+            rolls, total = (places.driver_roll_angle, places.driven_roll_angle), places.gap
+        for gear, roll, own in zip(gears, rolls, faults, strict=True):
+            total = total + flank_gap(gear, roll)
+            for fault in own:
+                total = total + fault.gap(gear, roll, pitch_roll)
+        return np.asarray(total, dtype=np.float64)
+
+    corners = [0.0, geometry.contact_ratio] if corner_contact else []
+    for gear, locate, own in zip(gears, (geometry.driver_position, geometry.driven_position), faults, strict=True):
+        rolls = [*_corners(gear), *(roll for fault in own for roll in fault.corners(gear, pitch_roll))]
+        corners += [locate(roll) for roll in rolls]
+    inner = np.array(sorted(corner for corner in corners if start + _APART < corner < end - _APART))
+    breaks = np.concatenate([[start], inner, [end]])
+    breaks = breaks[np.concatenate([[True], np.diff(breaks) > _APART])]
+    return piecewise.fitted(gap, breaks, TOLERANCE)
 
 
-def _relief(gear: Gear, roll_angle: FloatArray) -> FloatArray:
-    """Depth of a gear's tip relief [m] at roll angles [rad]."""
-    relief = gear.tip_relief
-    if relief is None:
-        return np.zeros_like(roll_angle)
-    span = gear.roll_angle(gear.tip_radius) - relief.start_roll_angle
-    return np.asarray(relief.amount * np.maximum(0.0, (roll_angle - relief.start_roll_angle) / span))
+def _corners(gear: Gear) -> list[float]:
+    """Roll angles where a gear's profile has corners."""
+    corners: list[float] = []
+    if gear.tip_relief is not None:
+        corners.append(gear.tip_relief.start(gear.roll_angle(gear.tip_radius), gear.base_radius))
+    if gear.root_relief is not None:
+        corners.append(gear.root_relief.start(gear.roll_angle(gear.form_radius), gear.base_radius))
+    if gear.profile_deviation is not None:
+        corners += gear.profile_deviation.corners
+    return corners

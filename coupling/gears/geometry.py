@@ -16,8 +16,10 @@ import math
 from dataclasses import dataclass
 
 from coupling.gears.errors import GearError, PointedToothError, UndercutError, require_finite
+from coupling.gears.faults import Fault
+from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
 from coupling.gears.involute import involute
-from coupling.gears.tip_relief import TipRelief
+from coupling.gears.modifications import RootRelief, TipRelief
 
 STEEL_YOUNGS_MODULUS = 207e9
 STEEL_POISSON_RATIO = 0.3
@@ -60,7 +62,8 @@ class Gear:
     youngs_modulus, poisson_ratio, density : float
         Material [Pa], [-], [kg/m^3].
     tip_relief : TipRelief or None
-        Profile modification.
+    root_relief : RootRelief or None
+        Profile modifications.
     eccentricity, eccentricity_phase : float
         Distance from the shaft line to the gear's centre [m], and the angle of that offset from x at
         zero rotation [rad].
@@ -71,6 +74,12 @@ class Gear:
         early: a driver's tooth displaced in the sense of its rotation, a driven gear's against it.  The whole
         tooth is displaced, so its idle flank is behind by as much.  Each mesh of a gear counts from its own
         tooth 0, and reads the signs for its own working flanks.
+    profile_deviation : ProfileDeviation or None
+        How the profile of all flanks differs from its design.
+    helix_deviation : HelixDeviation or None
+        How all flanks differ from it across the face.
+    faults : tuple of Fault
+        Damaged teeth (:mod:`coupling.gears.faults`).
 
     Raises
     ------
@@ -93,9 +102,13 @@ class Gear:
     poisson_ratio: float = STEEL_POISSON_RATIO
     density: float = STEEL_DENSITY
     tip_relief: TipRelief | None = None
+    root_relief: RootRelief | None = None
     eccentricity: float = 0.0
     eccentricity_phase: float = 0.0
     pitch_deviations: tuple[float, ...] = ()
+    profile_deviation: ProfileDeviation | None = None
+    helix_deviation: HelixDeviation | None = None
+    faults: tuple[Fault, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_numbers()
@@ -262,9 +275,28 @@ class Gear:
                 f"{label}the teeth are pointed below the tip circle; reduce profile_shift "
                 f"({self.profile_shift:g}) or addendum ({self.addendum:g})"
             )
-        if self.tip_relief is not None and self.tip_relief.start_roll_angle >= self.roll_angle(self.tip_radius):
-            raise GearError(
-                f"{label}tip relief must start below the tip's roll angle of "
-                f"{math.degrees(self.roll_angle(self.tip_radius)):.4g} degrees, "
-                f"got {math.degrees(self.tip_relief.start_roll_angle):.4g} degrees"
-            )
+        self._check_flanks()
+
+    def _check_flanks(self) -> None:
+        label = f"gear {self.name!r}: "
+        tip, form = self.roll_angle(self.tip_radius), self.roll_angle(self.form_radius)
+        if self.tip_relief is not None:
+            start = self.tip_relief.start(tip, self.base_radius)
+            if not 0.0 <= start < tip:
+                raise GearError(
+                    f"{label}tip relief must start below the tip's roll angle of {math.degrees(tip):.4g} degrees "
+                    f"and on the involute, got {math.degrees(start):.4g} degrees"
+                )
+        if self.root_relief is not None:
+            start = self.root_relief.start(form, self.base_radius)
+            if not form < start <= tip:
+                raise GearError(
+                    f"{label}root relief must start between the roll angles of the form circle and the tip, "
+                    f"{math.degrees(form):.4g} and {math.degrees(tip):.4g} degrees, "
+                    f"got {math.degrees(start):.4g} degrees"
+                )
+        for fault in self.faults:
+            if fault.tooth is not None and fault.tooth >= self.teeth:
+                raise GearError(
+                    f"{label}a fault is on tooth {fault.tooth}; the teeth are numbered 0 to {self.teeth - 1}"
+                )

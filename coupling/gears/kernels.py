@@ -14,6 +14,7 @@ import numpy.typing as npt
 from numba import njit
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 TangentForce = tuple[float, float, float, float, float, int]
 
 
@@ -22,13 +23,12 @@ def tooth_force(
     phase: float,
     compression: float,
     rate: float,
-    contact_ratio: float,
-    stiffness: FloatArray,
-    deviation_knots: FloatArray,
-    deviation: FloatArray,
+    knots: FloatArray,
+    curves: FloatArray,
     damping: float,
-    pitch_gaps: FloatArray,
     damping_depth: float,
+    pair_gaps: FloatArray,
+    pair_kinds: IntArray,
 ) -> TangentForce:
     """Force of the tooth contact, its tangent, and its stored energy.
 
@@ -38,18 +38,20 @@ def tooth_force(
         Mesh periods since the driver's zero, any real number.
     compression, rate : float
         Compression of the contact [m] and its rate [m/s].
-    contact_ratio : float
-        Length of contact in base pitches.
-    stiffness : ndarray, shape (n, 4)
-        Cubic coefficients of a pair's stiffness [N/m] on n equal intervals of [0, contact_ratio].
-    deviation_knots, deviation : ndarray, shapes (m + 1,), (m, 4)
-        Knots and cubic coefficients of a pair's profile deviation [m].
+    knots : ndarray, shape (m + 1,)
+        Positions in base pitches; pairs touch between the first and the last.
+    curves : ndarray, shape (v, m, 8)
+        On every interval and for each kind of pair, the cubic coefficients of its stiffness [N/m] and then those of
+        its gap [m], in a variable that runs from 0 to 1.
     damping : float
         Damping coefficient [N s/m] of a mesh that is pressed together by ``damping_depth`` or more.
-    pitch_gaps : ndarray, shape (h,)
-        What pitch deviations add to the gap of the pair that enters at phase n, at n mod h [m]; empty for none.
     damping_depth : float
         Compression of the deepest pair [m] up to which the damping fades in; 0 for all of it at first touch.
+    pair_gaps : ndarray, shape (h,)
+        What pitch deviations add to the gap of the pair that enters at phase n, at n mod h [m]; empty where all
+        pairs are alike.
+    pair_kinds : ndarray of int, shape (h,)
+        Which kind that pair is.
 
     Returns
     -------
@@ -70,34 +72,37 @@ def tooth_force(
     if position >= 1.0:  # a phase a hair below a whole number rounds up
         position -= 1.0
         number += 1
-    intervals = stiffness.shape[0]
-    width = contact_ratio / intervals
+    pieces = knots.size - 1
+    start, end = knots[0], knots[pieces]
+    per_length = pieces / (end - start)
     force, tangent, energy, slope = 0.0, 0.0, 0.0, 0.0
-    touching, deepest = 0, 0.0
-    while position < contact_ratio:
-        low, high = 0, deviation_knots.size - 1
-        while high - low > 1:
-            middle = (low + high) // 2
-            if deviation_knots[middle] <= position:
-                low = middle
-            else:
-                high = middle
-        span = deviation_knots[low + 1] - deviation_knots[low]
-        u = (position - deviation_knots[low]) / span
-        gap = deviation[low, 0] + u * (deviation[low, 1] + u * (deviation[low, 2] + u * deviation[low, 3]))
-        if pitch_gaps.size > 0:
-            gap += pitch_gaps[number % pitch_gaps.size]
-        approach = compression - gap
+    touching, deepest, kind = 0, 0.0, 0
+    ahead = math.ceil(start - position)
+    position += ahead
+    number -= ahead
+    while position < end:
+        # The knots are nearly uniform: a guess, then a few steps.
+        at = min(int((position - start) * per_length), pieces - 1)
+        while at > 0 and knots[at] > position:
+            at -= 1
+        while at < pieces - 1 and knots[at + 1] <= position:
+            at += 1
+        gap_of_pair = 0.0
+        if pair_gaps.size > 0:
+            pair = number % pair_gaps.size
+            gap_of_pair, kind = pair_gaps[pair], pair_kinds[pair]
+        cubic = curves[kind, at]
+        span = knots[at + 1] - knots[at]
+        u = (position - knots[at]) / span
+        approach = compression - gap_of_pair - (cubic[4] + u * (cubic[5] + u * (cubic[6] + u * cubic[7])))
         if approach > 0.0:
-            gap_slope = deviation[low, 1] + u * (2.0 * deviation[low, 2] + 3.0 * u * deviation[low, 3])
-            at = min(int(position / width), intervals - 1)
-            v = position / width - at
-            k = stiffness[at, 0] + v * (stiffness[at, 1] + v * (stiffness[at, 2] + v * stiffness[at, 3]))
-            k_slope = stiffness[at, 1] + v * (2.0 * stiffness[at, 2] + 3.0 * v * stiffness[at, 3])
+            k = cubic[0] + u * (cubic[1] + u * (cubic[2] + u * cubic[3]))
+            k_slope = cubic[1] + u * (2.0 * cubic[2] + 3.0 * u * cubic[3])
+            gap_slope = cubic[5] + u * (2.0 * cubic[6] + 3.0 * u * cubic[7])
             force += k * approach
             tangent += k
             energy += 0.5 * k * approach * approach
-            slope += 0.5 * k_slope / width * approach * approach - k * approach * gap_slope / span
+            slope += (0.5 * k_slope * approach - k * gap_slope) * approach / span
             touching += 1
             deepest = max(deepest, approach)
         position += 1.0
@@ -118,20 +123,19 @@ def tooth_force_history(
     phase: FloatArray,
     compression: FloatArray,
     rate: FloatArray,
-    contact_ratio: float,
-    stiffness: FloatArray,
-    deviation_knots: FloatArray,
-    deviation: FloatArray,
+    knots: FloatArray,
+    curves: FloatArray,
     damping: float,
-    pitch_gaps: FloatArray,
     damping_depth: float,
+    pair_gaps: FloatArray,
+    pair_kinds: IntArray,
 ) -> FloatArray:
     """`tooth_force` at every sample of a history.
 
     Parameters
     ----------
     phase, compression, rate : ndarray, shape (t,)
-    contact_ratio, stiffness, deviation_knots, deviation, damping, pitch_gaps, damping_depth
+    knots, curves, damping, damping_depth, pair_gaps, pair_kinds
         As for `tooth_force`.
 
     Returns
@@ -145,13 +149,12 @@ def tooth_force_history(
             phase[i],
             compression[i],
             rate[i],
-            contact_ratio,
-            stiffness,
-            deviation_knots,
-            deviation,
+            knots,
+            curves,
             damping,
-            pitch_gaps,
             damping_depth,
+            pair_gaps,
+            pair_kinds,
         )
         history[i, 0], history[i, 1], history[i, 2] = force, tangent, viscous
         history[i, 3], history[i, 4], history[i, 5] = energy, slope, touching

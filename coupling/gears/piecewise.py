@@ -16,6 +16,13 @@ from coupling.gears.errors import ContactAccuracyError, GearError
 
 FloatArray = npt.NDArray[np.float64]
 
+NARROWEST = 1e-7
+"""Intervals this short are split no further."""
+_MOST_INTERVALS = 20_000
+_NODES = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
+_BETWEEN = np.array([1.0 / 6.0, 0.5, 5.0 / 6.0])
+_THROUGH_NODES = np.linalg.inv(np.vander(_NODES, increasing=True))
+
 
 @dataclass(frozen=True, eq=False)
 class PiecewiseCubic:
@@ -59,6 +66,31 @@ class PiecewiseCubic:
         integrals = self.coefficients @ np.array([1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0])
         return float(np.sum(widths * integrals) / np.sum(widths))
 
+    def on_knots(self, knots: FloatArray) -> PiecewiseCubic:
+        """The same function with more knots, or on a wider range, where its ends are held.
+
+        Parameters
+        ----------
+        knots : ndarray
+            Increasing; every knot of this function within their range is among them.
+        """
+        inside = 0.5 * (knots[1:] + knots[:-1])
+        interval = np.clip(np.searchsorted(self.knots, inside, side="right") - 1, 0, self.knots.size - 2)
+        width = np.diff(self.knots)[interval]
+        u = (knots[:-1] - self.knots[interval]) / width
+        part = np.diff(knots) / width
+        c0, c1, c2, c3 = np.moveaxis(self.coefficients[interval], -1, 0)
+        moved = [
+            c0 + u * (c1 + u * (c2 + u * c3)),
+            part * (c1 + u * (2.0 * c2 + 3.0 * u * c3)),
+            part**2 * (c2 + 3.0 * u * c3),
+            part**3 * c3,
+        ]
+        held = (inside < self.knots[0]) | (inside > self.knots[-1])
+        for power, values in enumerate(moved):
+            values[held] = self(inside[held]) if power == 0 else 0.0
+        return PiecewiseCubic(knots, np.column_stack(moved))
+
 
 def constant(value: float, length: float) -> PiecewiseCubic:
     """The same value on ``[0, length]``."""
@@ -75,6 +107,45 @@ def polyline(knots: FloatArray, values: FloatArray) -> PiecewiseCubic:
     """Straight lines between `values` at `knots`, exact at every corner."""
     zeros = np.zeros(knots.size - 1)
     return PiecewiseCubic(knots, np.column_stack([values[:-1], np.diff(values), zeros, zeros]))
+
+
+def fitted(function: Callable[[FloatArray], FloatArray], breaks: FloatArray, tolerance: float) -> PiecewiseCubic:
+    """Cubics through a continuous function, split until they follow it.
+
+    Parameters
+    ----------
+    function : callable
+        From positions (n,) to values (n,).
+    breaks : ndarray
+        Increasing: the ends of the range and the corners of the function. At corners not among them intervals are
+        halved down to `NARROWEST`, where the error is what the function changes over such a length.
+    tolerance : float
+        Largest difference from `function` at points between those that a cubic goes through.
+
+    Raises
+    ------
+    ContactAccuracyError
+        When many thousand intervals do not suffice: the function has a step.
+    """
+    todo_low, todo_high = breaks[:-1], breaks[1:]
+    lows: list[FloatArray] = []
+    pieces: list[FloatArray] = []
+    while todo_low.size:
+        if todo_low.size > _MOST_INTERVALS:
+            raise ContactAccuracyError("a curve has a step where it should be continuous: give it corners of its own")
+        width = todo_high - todo_low
+        nodes = function((todo_low[:, None] + width[:, None] * _NODES).ravel()).reshape(-1, _NODES.size)
+        coefficients = nodes @ _THROUGH_NODES.T
+        between = function((todo_low[:, None] + width[:, None] * _BETWEEN).ravel()).reshape(-1, _BETWEEN.size)
+        error = np.abs(coefficients @ _BETWEEN ** np.arange(4)[:, None] - between).max(axis=1)
+        good = (error <= tolerance) | (width <= NARROWEST)
+        lows.append(todo_low[good])
+        pieces.append(coefficients[good])
+        middle = 0.5 * (todo_low + todo_high)[~good]
+        todo_low, todo_high = np.concatenate([todo_low[~good], middle]), np.concatenate([middle, todo_high[~good]])
+    starts = np.concatenate(lows)
+    order = np.argsort(starts)
+    return PiecewiseCubic(np.append(starts[order], breaks[-1]), np.concatenate(pieces)[order])
 
 
 def tabulated(function: Callable[[FloatArray], FloatArray], length: float, tolerance: float = 1e-9) -> PiecewiseCubic:

@@ -35,20 +35,27 @@ def pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
     -------
     ndarray, shape (h,)
         f_pair of the pair that enters at phase n, at n mod h [m].  h is the least common multiple of the numbers
-        of teeth, of the one gear's alone where the other has no deviations, and 0 where neither has.
+        of teeth, of the one gear's alone where the other's teeth are all alike, and 0 where those of both are.
     """
-    return -_lead(geometry, *geometry.meeting_teeth(_numbers(geometry)))
+    return -_lead(geometry, *geometry.meeting_teeth(hunting_numbers(geometry)))
 
 
 def back_flank_pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
     """The same for the idle flanks, by the phase at which their pairs enter, ``back_flank_offset - p``."""
-    return _lead(geometry, *geometry.meeting_back_teeth(_numbers(geometry)))
+    return _lead(geometry, *geometry.meeting_back_teeth(hunting_numbers(geometry)))
 
 
-def _numbers(geometry: GearPairGeometry) -> IntArray:
-    """0, 1, ... over the hunting period."""
-    deviating = [gear.teeth for gear in (geometry.driver, geometry.driven) if any(gear.pitch_deviations)]
-    return np.arange(math.lcm(*deviating) if deviating else 0)
+def hunting_numbers(geometry: GearPairGeometry) -> IntArray:
+    """Numbers 0, 1, ... of the pairs over the hunting period, after which the same teeth meet again.
+
+    Only gears whose teeth differ count; empty where those of neither do.
+    """
+    differing = [
+        gear.teeth
+        for gear in (geometry.driver, geometry.driven)
+        if any(gear.pitch_deviations) or any(fault.tooth is not None for fault in gear.faults)
+    ]
+    return np.arange(math.lcm(*differing) if differing else 0)
 
 
 def _lead(geometry: GearPairGeometry, driver_teeth: IntArray, driven_teeth: IntArray) -> FloatArray:

@@ -35,8 +35,10 @@ class StaticMesh:
         Mesh periods.
     transmission_error : ndarray, shape (n,)
         Compression of the mesh under the load [m]: how far the driven gear lags, along the line of action.
+    positions : ndarray, shape (n, m)
+        Where the pairs are along the path of contact [base pitches].
     pair_forces : ndarray, shape (n, m)
-        Force of the pair at position frac(phase) + j [N].
+        Force of each [N].
     tangent_stiffness : ndarray, shape (n,)
         Stiffness of the pairs that touch, dF/d delta [N/m].
     secant_stiffness : ndarray, shape (n,)
@@ -46,6 +48,7 @@ class StaticMesh:
     force: float
     phases: FloatArray
     transmission_error: FloatArray
+    positions: FloatArray
     pair_forces: FloatArray
     tangent_stiffness: FloatArray
     secant_stiffness: FloatArray
@@ -148,12 +151,14 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
         )
     beyond = compression - first[:, 0]
     secant = np.where(beyond > 0.0, force / np.where(beyond > 0.0, beyond, 1.0), tangent)
-    return StaticMesh(force, at, compression, forces, tangent, secant)
+    return StaticMesh(force, at, compression, states.position, forces, tangent, secant)
 
 
 def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
     """Stiffness of all pairs on the path of contact, as if none were relieved [N/m], at `phases` (n,)."""
-    return np.asarray(contact.pairs(phases).stiffness.sum(axis=1), dtype=np.float64)
+    states = contact.pairs(phases)
+    on_path = (states.position >= 0.0) & (states.position < contact.contact_ratio)
+    return np.asarray(np.where(on_path, states.stiffness, 0.0).sum(axis=1), dtype=np.float64)
 
 
 def period_mean(phases: FloatArray, values: FloatArray) -> float:

@@ -1,8 +1,8 @@
 r"""The contact law of a gear pair: what its teeth answer to a compression of the mesh.
 
-At phase ``p`` (mesh periods of the driver) the pairs in contact are at ``s_j = frac(p) + j < eps``.  Each has
-a stiffness ``k(s)`` and a profile deviation ``d(s) >= 0``, the gap that tip relief leaves it.  With the
-compression ``delta`` of the mesh along the line of action and its rate ``v``:
+At phase ``p`` (mesh periods of the driver) pairs are at ``s_j = frac(p) + j``, j any whole number that puts them
+between the ends of where they can touch.  Each has a stiffness ``k(s)`` and a profile deviation ``d(s)``, the gap that
+it has in nominal motion.  With the compression ``delta`` of the mesh along the line of action and its rate ``v``:
 
     F = sum_j k(s_j) max(0, delta - d(s_j)) + c r v,    r = min(1, max_j(delta - d(s_j)) / depth)
     U = sum_j 1/2 k(s_j) max(0, delta - d(s_j))^2
@@ -22,8 +22,12 @@ The idle flanks are the same law in a mirror: phase ``back_flank_offset - p``, t
 motion projected on the mirrored line of action, less the backlash), and ``dU/dp`` of opposite sign; their own
 pitch gaps come with `ToothContact.back_flanks`.
 
-Contact is taken on the theoretical path: a deflected tooth without relief comes in and goes out with a
-step in force, as in the sources.  The step stands exactly at `event_phases`.
+Where contact is held to the theoretical path, ``0 <= s < eps``, a deflected tooth without relief comes in and goes
+out with a step in force, as in the sources.  The step stands exactly at `event_phases`.  With corner contact
+(:mod:`coupling.gears.corner_contact`) pairs touch beyond the path too, over a gap that grows with the distance from
+it, and the force has no steps; ``k`` is held there at what it is at the end of the path.
+
+Pairs of damaged teeth (:mod:`coupling.gears.faults`) have a ``k`` and a ``d`` of their own.
 """
 
 from __future__ import annotations
@@ -34,16 +38,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import piecewise
-from coupling.gears.deviation import tip_relief_deviation
 from coupling.gears.errors import GearError
-from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.pair_curves import PairCurves, corners_of, curve_table, pair_kinds
+from coupling.gears.pair_geometry import GearPairGeometry, IntArray
+from coupling.gears.pair_variants import pair_variants
 from coupling.gears.piecewise import PiecewiseCubic
 from coupling.gears.pitch_gaps import back_flank_pitch_gaps, pitch_gaps
 from coupling.gears.stiffness_models import StiffnessModel
 
 FloatArray = npt.NDArray[np.float64]
-KernelArguments = tuple[float, FloatArray, FloatArray, FloatArray, float, FloatArray, float]
+
+KernelArguments = tuple[FloatArray, FloatArray, float, float, FloatArray, IntArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,9 +58,9 @@ class PairStates:
     Attributes
     ----------
     position : ndarray, shape (n, m)
-        Position on the path of contact, base pitches.
+        Position along the path of contact, base pitches.
     present : ndarray of bool, shape (n, m)
-        Whether the pair is on its path of contact.
+        Whether the pair is where it can touch.
     stiffness : ndarray, shape (n, m)
         [N/m], 0 where absent.
     deviation : ndarray, shape (n, m)
@@ -77,9 +82,9 @@ class ToothContact:
     contact_ratio : float
         Length of a pair's contact in base pitches.
     stiffness : PiecewiseCubic
-        Stiffness of one pair [N/m] over [0, contact_ratio], equally spaced knots.
+        Stiffness of one pair [N/m] over the positions where it can touch: [0, contact_ratio], or more with corners.
     deviation : PiecewiseCubic
-        Gap of one pair [m] over [0, contact_ratio], any knots.
+        Gap of one pair [m] over the same range.
     damping : float
         Damping coefficient while the mesh is pressed together [N s/m].
     back_flank_offset : float
@@ -89,6 +94,10 @@ class ToothContact:
         on the idle flanks; empty for none.
     damping_depth : float
         Compression up to which the damping fades in [m]; 0 for all of it at first touch.
+    variants : tuple of PairCurves
+        Of pairs of damaged teeth, numbered from 1; pairs of sound teeth are number 0.
+    pair_variants, back_pair_variants : ndarray of int, shape (h,)
+        Which of them the pair is that enters at phase n, at n mod h; empty where all are alike.
     """
 
     contact_ratio: float
@@ -99,6 +108,9 @@ class ToothContact:
     pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
     back_pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
     damping_depth: float = 0.0
+    variants: tuple[PairCurves, ...] = ()
+    pair_variants: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    back_pair_variants: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
@@ -107,34 +119,60 @@ class ToothContact:
             raise GearError(f"tooth contact: damping must be at least 0 N s/m, got {self.damping!r}")
         if not (math.isfinite(self.damping_depth) and self.damping_depth >= 0.0):
             raise GearError(f"tooth contact: damping_depth must be at least 0 m, got {self.damping_depth!r}")
-        for name, curve in (("stiffness", self.stiffness), ("deviation", self.deviation)):
-            ends = curve.knots[[0, -1]]
-            if not np.allclose(ends, [0.0, self.contact_ratio], rtol=1e-12, atol=1e-12):
-                raise GearError(
-                    f"tooth contact: {name} must cover 0 to {self.contact_ratio:.6g} base pitches, "
-                    f"got {ends[0]:.6g} to {ends[1]:.6g}"
-                )
+        for curves in self.kinds:
+            self._check_curves(curves)
         for name, gaps in (("pitch_gaps", self.pitch_gaps), ("back_pitch_gaps", self.back_pitch_gaps)):
             if gaps.ndim != 1 or not np.all(np.isfinite(gaps)):
                 raise GearError(f"tooth contact: {name} must be a row of finite numbers, got shape {gaps.shape}")
-        spacing = np.diff(self.stiffness.knots)
-        if not np.allclose(spacing, spacing[0], rtol=1e-9, atol=0.0):
-            raise GearError("tooth contact: the stiffness needs equally spaced knots")
-        if np.any(self.stiffness(np.linspace(0.0, self.contact_ratio, 4 * spacing.size + 1)) <= 0.0):
+        for name, numbers in (("pair_variants", self.pair_variants), ("back_pair_variants", self.back_pair_variants)):
+            if numbers.size and not (numbers.min() >= 0 and numbers.max() <= len(self.variants)):
+                raise GearError(f"tooth contact: {name} must be 0 to {len(self.variants)}, got {numbers.max()}")
+
+    def _check_curves(self, curves: PairCurves) -> None:
+        start, end = self.touching_range
+        if not (start <= 1e-12 and end >= self.contact_ratio * (1.0 - 1e-12)):
+            raise GearError(
+                f"tooth contact: the stiffness must cover 0 to {self.contact_ratio:.6g} base pitches, "
+                f"got {start:.6g} to {end:.6g}"
+            )
+        for name, curve in (("stiffness", curves.stiffness), ("deviation", curves.deviation)):
+            ends = curve.knots[[0, -1]]
+            if not np.allclose(ends, [start, end], rtol=1e-12, atol=1e-12):
+                raise GearError(
+                    f"tooth contact: {name} must cover {start:.6g} to {end:.6g} base pitches, "
+                    f"got {ends[0]:.6g} to {ends[1]:.6g}"
+                )
+        knots = curves.stiffness.knots
+        between = np.concatenate([knots[:-1] + part * np.diff(knots) for part in (0.0, 0.25, 0.5, 0.75)])
+        if np.any(curves.stiffness(np.append(between, knots[-1])) <= 0.0):
             raise GearError("tooth contact: the stiffness of a pair must be positive everywhere")
 
     @property
     def kernel_arguments(self) -> KernelArguments:
-        """Everything `coupling.gears.kernels.tooth_force` wants after phase, compression and rate."""
+        """Everything `coupling.gears.kernels.tooth_force` wants after phase, compression and rate.
+
+        Knots (m + 1,), the cubics of stiffness and of gap of every kind of pair (v, m, 8) on them, damping and its
+        depth, and for every pair of the hunting period its gap and its kind, (h,) both.
+        """
+        knots, table = curve_table(self.kinds)
         return (
-            float(self.contact_ratio),
-            np.ascontiguousarray(self.stiffness.coefficients, dtype=np.float64),
-            np.ascontiguousarray(self.deviation.knots, dtype=np.float64),
-            np.ascontiguousarray(self.deviation.coefficients, dtype=np.float64),
+            knots,
+            table,
             float(self.damping),
-            np.ascontiguousarray(self.pitch_gaps, dtype=np.float64),
             float(self.damping_depth),
+            np.zeros(self.hunting_numbers) + (self.pitch_gaps if self.pitch_gaps.size else 0.0),
+            np.zeros(self.hunting_numbers, dtype=np.int64) + (self.pair_variants if self.pair_variants.size else 0),
         )
+
+    @property
+    def kinds(self) -> tuple[PairCurves, ...]:
+        """Every kind of pair, that of sound teeth first."""
+        return (PairCurves(self.stiffness, self.deviation), *self.variants)
+
+    @property
+    def touching_range(self) -> tuple[float, float]:
+        """First and last position where a pair can touch [base pitches]: 0 and the contact ratio, or beyond."""
+        return float(self.stiffness.knots[0]), float(self.stiffness.knots[-1])
 
     @property
     def largest_pair_count(self) -> int:
@@ -142,21 +180,28 @@ class ToothContact:
         return math.ceil(self.contact_ratio)
 
     @property
+    def hunting_numbers(self) -> int:
+        """Pairs that differ, h: 0 where all are alike."""
+        return max(self.pitch_gaps.size, self.pair_variants.size)
+
+    @property
     def hunting_period(self) -> int:
-        """Mesh periods after which the law repeats: 1 but for pitch deviations."""
-        return max(1, self.pitch_gaps.size)
+        """Mesh periods after which the law repeats: 1 where all pairs are alike."""
+        return max(1, self.hunting_numbers)
 
     @property
     def mean_stiffness(self) -> float:
-        """Mean over a mesh period of the stiffness with all pairs touching [N/m]."""
-        return self.stiffness.mean * self.contact_ratio
+        """Mean over a mesh period of the stiffness with all pairs on the path touching [N/m]."""
+        inner = self.stiffness.knots[(self.stiffness.knots > 0.0) & (self.stiffness.knots < self.contact_ratio)]
+        on_path = self.stiffness.on_knots(np.concatenate([[0.0], inner, [self.contact_ratio]]))
+        return on_path.mean * self.contact_ratio
 
     @property
     def event_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) where a pair enters (0) or leaves, ascending.
+        """Phases in [0, 1) where a pair enters its path of contact (0) or leaves it, ascending.
 
         Empty for a mesh that is one unchanging number of pairs, i.e. a whole contact ratio with a stiffness
-        and a deviation that join up at the period's ends in value and slope, and no pitch deviations.
+        and a deviation that join up at the period's ends in value and slope, and all pairs alike.
         """
         leaving = self.contact_ratio % 1.0
         if leaving > 1e-12 and 1.0 - leaving > 1e-12:
@@ -166,7 +211,7 @@ class ToothContact:
             for derivative in (0, 1)
             for curve, floor in ((self.stiffness, 1e-9 * self.stiffness.mean), (self.deviation, 1e-15))
         )
-        return () if steady and not self.pitch_gaps.size else (0.0,)
+        return () if steady and not self.hunting_numbers else (0.0,)
 
     @property
     def back_flank_event_phases(self) -> tuple[float, ...]:
@@ -175,21 +220,25 @@ class ToothContact:
 
     @property
     def corner_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) where a deviation's slope jumps (tip relief begins), ascending."""
-        knots = self.deviation.knots[1:-1]
-        widths = np.diff(self.deviation.knots)
-        coefficients = self.deviation.coefficients
-        after = coefficients[1:, 1] / widths[1:]
-        before = (coefficients[:-1] @ np.array([0.0, 1.0, 2.0, 3.0])) / widths[:-1]
-        jumps = np.abs(after - before) > 1e-9 * max(float(np.max(np.abs(after), initial=0.0)), 1e-30)
-        return tuple(sorted({float(phase) for phase in knots[jumps] % 1.0}))
+        """Phases in [0, 1) where the slope of a deviation or of a stiffness jumps (a relief begins), ascending."""
+        found: set[float] = set()
+        for curves in self.kinds:
+            for curve in (curves.deviation, curves.stiffness):
+                found.update((corners_of(curve) % 1.0).tolist())
+        return tuple(sorted(found))
 
     @property
     def back_flanks(self) -> ToothContact:
-        """The law of the idle flanks by their own phase: the same, with their own pitch gaps."""
-        if not (self.pitch_gaps.size or self.back_pitch_gaps.size):
+        """The law of the idle flanks by their own phase: the same, with the gaps and kinds of their own pairs."""
+        if not self.hunting_numbers:
             return self
-        return replace(self, pitch_gaps=self.back_pitch_gaps, back_pitch_gaps=self.pitch_gaps)
+        return replace(
+            self,
+            pitch_gaps=self.back_pitch_gaps,
+            back_pitch_gaps=self.pitch_gaps,
+            pair_variants=self.back_pair_variants,
+            back_pair_variants=self.pair_variants,
+        )
 
     def with_damping(self, damping: float, depth: float = 0.0) -> ToothContact:
         """The same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
@@ -202,19 +251,20 @@ class ToothContact:
         fraction = phase - number
         number = np.where(fraction >= 1.0, number + 1.0, number)
         fraction = np.where(fraction >= 1.0, 0.0, fraction)
-        behind = np.arange(self.largest_pair_count)
+        start, end = self.touching_range
+        behind = np.arange(math.floor(start), math.ceil(end))
         position = fraction[:, None] + behind
-        present = position < self.contact_ratio
-        deviation = self.deviation(position)
+        present = (position >= start) & (position < end)
+        entered = number.astype(np.int64)[:, None] - behind
+        kind = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
+        stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
+        for variant, curves in enumerate(self.kinds):
+            these = present & (kind == variant)
+            stiffness[these] = curves.stiffness(position[these])
+            deviation[these] = curves.deviation(position[these])
         if self.pitch_gaps.size:
-            entered = number.astype(np.int64)[:, None] - behind
             deviation = deviation + self.pitch_gaps[entered % self.pitch_gaps.size]
-        return PairStates(
-            position=position,
-            present=present,
-            stiffness=np.where(present, self.stiffness(position), 0.0),
-            deviation=np.where(present, deviation, np.inf),
-        )
+        return PairStates(position, present, stiffness, deviation)
 
     def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
         """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
@@ -223,7 +273,9 @@ class ToothContact:
         return np.asarray(states.stiffness * np.maximum(0.0, approach), dtype=np.float64)
 
 
-def tooth_contact(geometry: GearPairGeometry, model: StiffnessModel, damping: float = 0.0) -> ToothContact:
+def tooth_contact(
+    geometry: GearPairGeometry, model: StiffnessModel, damping: float = 0.0, *, corner_contact: bool = False
+) -> ToothContact:
     """Contact law of a gear pair.
 
     Parameters
@@ -235,21 +287,32 @@ def tooth_contact(geometry: GearPairGeometry, model: StiffnessModel, damping: fl
         remain, as if each mesh period were one pair's alone.
     damping : float
         Damping coefficient [N s/m], e.g. from `mesh_damping`.
+    corner_contact : bool
+        Whether pairs touch beyond their path of contact as well, where a load closes the gap to a corner.
 
     Returns
     -------
     ToothContact
+
+    Raises
+    ------
+    GearError
+        Damaged teeth or corner contact with a model of the whole mesh, which has no single pairs.
     """
+    variants = pair_variants(geometry)
     stiffness = model.pair_stiffness(geometry)
-    length = float(stiffness.knots[-1])
-    whole_mesh = length == 1.0
-    deviation = piecewise.constant(0.0, length) if whole_mesh else tip_relief_deviation(geometry, length)
+    kinds = pair_kinds(geometry, stiffness, variants.faults, corner_contact)
+    none = np.zeros(0)
+    deviating = any(geometry.driver.pitch_deviations) or any(geometry.driven.pitch_deviations)
     return ToothContact(
-        length,
-        stiffness,
-        deviation,
+        float(stiffness.knots[-1]),
+        kinds[0].stiffness,
+        kinds[0].deviation,
         damping,
         geometry.back_flank_offset,
-        pitch_gaps(geometry),
-        back_flank_pitch_gaps(geometry),
+        pitch_gaps(geometry) if deviating else none,
+        back_flank_pitch_gaps(geometry) if deviating else none,
+        variants=kinds[1:],
+        pair_variants=variants.of_pair if len(kinds) > 1 else none.astype(np.int64),
+        back_pair_variants=variants.of_back_pair if len(kinds) > 1 else none.astype(np.int64),
     )

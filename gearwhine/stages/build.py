@@ -1,5 +1,7 @@
 """The parts of a case as the rooms' own inputs: gears and rotors."""
 
+from dataclasses import replace
+
 import coupling.gears as gear_room
 import rotors as rotor_room
 from gearwhine.case import Case, CouplingSegment, Disc, RoundDisc, Segment
@@ -16,12 +18,7 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
     if module is None:
         assert given.base_radius is not None
         module = gear_room.module_from_base_radius(given.base_radius, given.teeth, given.pressure_angle)
-    steel = {} if (material := _gear_material(case, given)) is None else {
-        "youngs_modulus": case.material[material].youngs_modulus,
-        "poisson_ratio": case.material[material].poisson_ratio,
-        "density": case.material[material].density,
-    }  # fmt: skip
-    return gear_room.Gear(
+    gear = gear_room.Gear(
         name=given.name,
         teeth=given.teeth,
         module=module,
@@ -36,8 +33,11 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
         eccentricity=given.errors.eccentricity,
         eccentricity_phase=given.errors.phase,
         pitch_deviations=given.errors.pitch,
-        **steel,
     )
+    if (material := _gear_material(case, given)) is None:
+        return gear
+    steel = case.material[material]
+    return replace(gear, youngs_modulus=steel.youngs_modulus, poisson_ratio=steel.poisson_ratio, density=steel.density)
 
 
 def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:

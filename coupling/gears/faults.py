@@ -1,0 +1,182 @@
+"""Teeth that are damaged: worn, spalled, missing.
+
+A fault changes the pairs that its tooth belongs to: it takes material off the flank, makes the contact softer, or
+both. All are given on the gear, by the number of the tooth in the order in which teeth come into mesh.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import GearError, require_finite
+
+if TYPE_CHECKING:
+    from coupling.gears.geometry import Gear
+
+FloatArray = npt.NDArray[np.float64]
+
+NEVER = 1.0
+"""Gap of a tooth that is not there [m]: nothing ever closes it."""
+_EDGE = 0.1
+"""Part of a spall's length over which its edges rise, as a contact of finite width rides over them."""
+
+
+class Fault(Protocol):
+    """What a damaged tooth changes."""
+
+    @property
+    def tooth(self) -> int | None:
+        """Number of the tooth; None for all of them."""
+        ...
+
+    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+        """Material off the flank [m] at roll angles [rad]; `pitch_roll_angle` is the working pitch point's."""
+        ...
+
+    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """What the tooth yields more than a sound one [m/N], for loads at roll angles [rad]."""
+        ...
+
+    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
+        """Roll angles where either has a corner [rad]."""
+        ...
+
+
+@dataclass(frozen=True)
+class Wear:
+    """Material worn off the flank.
+
+    Parameters
+    ----------
+    depth : float
+        Largest depth [m].
+    tooth : int or None
+        Which tooth; None for all.
+    shape : {"sliding", "uniform"}
+        In proportion to the sliding, so nothing at the pitch point and `depth` at that end of the flank which lies
+        farther from it; or the same all over.
+    """
+
+    depth: float
+    tooth: int | None = None
+    shape: Literal["sliding", "uniform"] = "sliding"
+
+    def __post_init__(self) -> None:
+        _check_tooth("wear", self.tooth)
+        require_finite("wear depth", self.depth, minimum=0.0)
+        if self.shape not in ("sliding", "uniform"):
+            raise GearError(f"wear shape must be 'sliding' or 'uniform', got {self.shape!r}")
+
+    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+        """See `Fault`."""
+        if self.shape == "uniform":
+            return np.full_like(roll_angle, self.depth)
+        ends = gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius)
+        farthest = max(abs(end - pitch_roll_angle) for end in ends)
+        return np.asarray(self.depth * np.abs(roll_angle - pitch_roll_angle) / farthest, dtype=np.float64)
+
+    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """None: the depth worn off is small beside the tooth."""
+        return np.zeros_like(roll_angle)
+
+    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
+        """The pitch point."""
+        return () if self.shape == "uniform" else (pitch_roll_angle,)
+
+
+@dataclass(frozen=True)
+class Spall:
+    """A pit in the flank of one tooth, across all of the face or a part of it.
+
+    Across all of the face the contact falls into it by `depth`. Across a part, the rest of the face carries: the
+    flattening of the contact, inversely proportional to the width, grows by ``1 / (1 - width / face_width)``. Its edges
+    rise over a tenth of its length.
+
+    Parameters
+    ----------
+    tooth : int
+    start_roll_angle, end_roll_angle : float
+        Where it begins and ends on the profile [rad].
+    depth : float
+        [m].
+    width : float or None
+        Across the face [m]; None for all of it.
+    """
+
+    tooth: int
+    start_roll_angle: float
+    end_roll_angle: float
+    depth: float
+    width: float | None = None
+
+    def __post_init__(self) -> None:
+        _check_tooth("spall", self.tooth)
+        for quantity in ("start_roll_angle", "end_roll_angle", "depth"):
+            require_finite(f"spall {quantity}", getattr(self, quantity), minimum=0.0)
+        if not self.end_roll_angle > self.start_roll_angle:
+            raise GearError(
+                f"spall end_roll_angle must be above start_roll_angle, {self.start_roll_angle!r} rad, "
+                f"got {self.end_roll_angle!r} rad"
+            )
+        if self.width is not None:
+            require_finite("spall width", self.width, minimum=0.0)
+
+    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+        """See `Fault`."""
+        whole = self._part_of_face(gear) >= 1.0
+        return self.depth * self._inside(roll_angle) if whole else np.zeros_like(roll_angle)
+
+    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """What the contact flattens more, ``4 (1 - nu^2) / (pi E b)`` over the whole face (Yang and Sun, 1985)."""
+        part = self._part_of_face(gear)
+        if part >= 1.0:
+            return np.zeros_like(roll_angle)
+        flattening = 4.0 * (1.0 - gear.poisson_ratio**2) / (math.pi * gear.youngs_modulus * gear.face_width)
+        return np.asarray(flattening * part / (1.0 - part) * self._inside(roll_angle), dtype=np.float64)
+
+    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
+        """Both ends of both edges."""
+        return self._edges
+
+    def _part_of_face(self, gear: Gear) -> float:
+        return 1.0 if self.width is None else self.width / gear.face_width
+
+    def _inside(self, roll_angle: FloatArray) -> FloatArray:
+        return np.interp(roll_angle, self._edges, [0.0, 1.0, 1.0, 0.0])
+
+    @property
+    def _edges(self) -> tuple[float, float, float, float]:
+        edge = _EDGE * (self.end_roll_angle - self.start_roll_angle)
+        return (self.start_roll_angle, self.start_roll_angle + edge, self.end_roll_angle - edge, self.end_roll_angle)
+
+
+@dataclass(frozen=True)
+class MissingTooth:
+    """A tooth that is broken off: its pairs carry nothing."""
+
+    tooth: int
+
+    def __post_init__(self) -> None:
+        _check_tooth("missing tooth", self.tooth)
+
+    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+        """A gap that no mesh closes."""
+        return np.full_like(roll_angle, NEVER)
+
+    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """None that matters."""
+        return np.zeros_like(roll_angle)
+
+    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
+        """None."""
+        return ()
+
+
+def _check_tooth(name: str, tooth: int | None) -> None:
+    if tooth is not None and (type(tooth) is not int or tooth < 0):
+        raise GearError(f"{name}: tooth must be a whole number from 0, got {tooth!r}")

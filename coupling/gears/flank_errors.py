@@ -1,0 +1,125 @@
+"""How a made flank differs from its design, as a gear inspection reports it.
+
+Deviations are those of ISO 1328-1, normal to the flank in the transverse plane, so along the line of action, and
+positive where there is too much material. Profile deviations vary with the roll angle from the form circle to the tip,
+helix deviations across the face.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import GearError, require_finite
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ProfileDeviation:
+    """Deviation of all flanks of a gear along the profile.
+
+    With ``u`` running from -1 at the form circle to 1 at the tip in proportion to the roll angle, the deviation is
+    ``slope u / 2 + form sin(pi waves u + phase) / 2 - crowning u^2``, and the table's on top.
+
+    Parameters
+    ----------
+    slope : float
+        Profile slope deviation f_Halpha [m]: what the tip stands out over the form circle.
+    form : float
+        Profile form deviation f_falpha [m]: height of the waves from trough to crest.
+    waves : float
+        Number of waves over the flank.
+    phase : float
+        Of the waves at the middle of the flank [rad].
+    crowning : float
+        Profile crowning C_alpha [m]: what is taken off at both ends.
+    table : tuple of (float, float)
+        A measured profile: roll angle [rad], deviation [m]; straight lines between, held beyond its ends.
+    """
+
+    slope: float = 0.0
+    form: float = 0.0
+    waves: float = 3.0
+    phase: float = 0.0
+    crowning: float = 0.0
+    table: tuple[tuple[float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        for quantity in ("slope", "phase", "crowning"):
+            require_finite(f"profile deviation {quantity}", getattr(self, quantity))
+        for quantity in ("form", "waves"):
+            require_finite(f"profile deviation {quantity}", getattr(self, quantity), minimum=0.0)
+        if self.table:
+            if len(self.table) < 2 or not np.all(np.isfinite(self.table)):
+                raise GearError("profile deviation table: at least two rows of finite numbers are needed")
+            if not np.all(np.diff([roll for roll, _ in self.table]) > 0.0):
+                raise GearError("profile deviation table: the roll angles must increase")
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether it has no corners, so that only `table` would make any."""
+        return not self.table
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Roll angles where the profile has corners [rad]."""
+        return tuple(roll for roll, _ in self.table)
+
+    def at(self, roll_angle: FloatArray, form_roll_angle: float, tip_roll_angle: float) -> FloatArray:
+        """Deviation [m] at roll angles [rad] of a gear whose flank reaches from the form circle to the tip."""
+        u = 2.0 * (roll_angle - form_roll_angle) / (tip_roll_angle - form_roll_angle) - 1.0
+        waves = np.sin(math.pi * self.waves * u + self.phase) if self.form else 0.0
+        deviation = 0.5 * self.slope * u + 0.5 * self.form * waves - self.crowning * u**2
+        if self.table:
+            rolls, values = np.array(self.table).T
+            deviation = deviation + np.interp(roll_angle, rolls, values)
+        return np.asarray(deviation, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class HelixDeviation:
+    """Deviation of all flanks of a gear across the face.
+
+    With ``v`` running from -1 at the face's left end (smallest z) to 1 at its right end, the deviation is
+    ``slope v / 2 - crowning v^2``, less the end relief, which grows linearly to its amount at either end.
+
+    Parameters
+    ----------
+    slope : float
+        Helix slope deviation f_Hbeta [m]: what the right end stands out over the left one.
+    crowning : float
+        Lead crowning C_beta [m]: what is taken off at both ends.
+    end_relief, end_relief_length : float
+        Amount at the ends [m], and how far it reaches from each [m].
+    """
+
+    slope: float = 0.0
+    crowning: float = 0.0
+    end_relief: float = 0.0
+    end_relief_length: float = 0.0
+
+    def __post_init__(self) -> None:
+        for quantity in ("slope", "crowning"):
+            require_finite(f"helix deviation {quantity}", getattr(self, quantity))
+        for quantity in ("end_relief", "end_relief_length"):
+            require_finite(f"helix deviation {quantity}", getattr(self, quantity), minimum=0.0)
+        if self.end_relief > 0.0 and self.end_relief_length == 0.0:
+            raise GearError("helix deviation: an end relief needs an end_relief_length above 0")
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether the flank is straight and true across the face."""
+        return self == HelixDeviation(end_relief_length=self.end_relief_length)
+
+    def at(self, z: FloatArray, face_width: float) -> FloatArray:
+        """Deviation [m] at places across the face [m], counted from its middle."""
+        v = 2.0 * z / face_width
+        deviation = 0.5 * self.slope * v - self.crowning * v**2
+        if self.end_relief > 0.0:
+            from_end = 0.5 * face_width - np.abs(z)
+            deviation = deviation - self.end_relief * np.maximum(0.0, 1.0 - from_end / self.end_relief_length)
+        return np.asarray(deviation, dtype=np.float64)

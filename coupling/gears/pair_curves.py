@@ -1,0 +1,151 @@
+"""How stiff a pair of teeth is along its path of contact, and how far apart its flanks are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears import piecewise
+from coupling.gears.corner_contact import LARGEST_GAP, LONGEST_REACH, corner_reach, flank_places
+from coupling.gears.deviation import pair_deviation
+from coupling.gears.errors import GearError
+from coupling.gears.faults import MissingTooth
+from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.pair_variants import PairFaults
+from coupling.gears.piecewise import PiecewiseCubic
+
+FloatArray = npt.NDArray[np.float64]
+
+_SAME_KNOT = 1e-9
+"""Knots nearer to each other than this, in base pitches, are one."""
+_SLOPE_JUMP = 1e-5
+"""A slope that jumps by less than this part of the largest one does so by the fit of a smooth curve."""
+_STIFFNESS_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class PairCurves:
+    """How stiff a pair of teeth is along the path of contact, and how far apart its flanks are.
+
+    Attributes
+    ----------
+    stiffness, deviation : PiecewiseCubic
+        [N/m] and [m], over one range of positions in base pitches.
+    """
+
+    stiffness: PiecewiseCubic
+    deviation: PiecewiseCubic
+
+
+def pair_kinds(
+    geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: Sequence[PairFaults], corner_contact: bool
+) -> tuple[PairCurves, ...]:
+    """Curves of every kind of pair.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+    stiffness : PiecewiseCubic
+        Of a pair of sound teeth, from 0 to the contact ratio; or of the whole mesh, from 0 to 1.
+    faults : sequence
+        Of every kind, the driver's tooth's and the driven's.
+    corner_contact : bool
+        Whether the curves reach beyond the path of contact, to where corners may touch.
+
+    Raises
+    ------
+    GearError
+        Damaged teeth or corner contact with the stiffness of a whole mesh, which has no single pairs; a missing
+        tooth without corner contact.
+    """
+    length = float(stiffness.knots[-1])
+    whole_mesh = length == 1.0 and geometry.contact_ratio != 1.0
+    if whole_mesh and (corner_contact or any(any(own) for own in faults)):
+        raise GearError(
+            f"{geometry.label}: the stiffness model describes the whole mesh as one spring, without single pairs that "
+            "could be damaged or meet beyond the path of contact; choose a model of pairs of teeth"
+        )
+    if corner_contact and not math.isclose(length, geometry.contact_ratio, rel_tol=1e-9):
+        raise GearError(
+            f"{geometry.label}: corner contact needs the teeth's own contact ratio, {geometry.contact_ratio:.6g}; "
+            f"the stiffness model has {length:.6g}"
+        )
+    broken = any(isinstance(fault, MissingTooth) for kind in faults for own in kind for fault in own)
+    if broken and not (corner_contact and length + 2.0 * LONGEST_REACH > 2.0):
+        raise GearError(
+            f"{geometry.label}: where a tooth is missing only corners of its neighbours could touch; that needs "
+            f"corner_contact, and a contact ratio above {2.0 - 2.0 * LONGEST_REACH:g}"
+        )
+    start, end = 0.0, length
+    if corner_contact:
+        # The neighbours of a missing tooth stay in contact for as long as they reach.
+        before, beyond = corner_reach(geometry, math.inf if broken else LARGEST_GAP)
+        start, end = -before, length + beyond
+        stiffness = stiffness.on_knots(np.concatenate([[start], stiffness.knots, [end]]))
+    return tuple(
+        PairCurves(
+            _weakened(geometry, stiffness, own),
+            piecewise.constant(0.0, length)
+            if whole_mesh
+            else pair_deviation(geometry, start, end, corner_contact=corner_contact, faults=own),
+        )
+        for own in faults
+    )
+
+
+def curve_table(kinds: Sequence[PairCurves]) -> tuple[FloatArray, FloatArray]:
+    """All curves on common knots (m + 1,), and their cubics (v, m, 8): stiffness, then gap."""
+    curves = [curve for kind in kinds for curve in (kind.stiffness, kind.deviation)]
+    knots = np.unique(np.concatenate([curve.knots for curve in curves]))
+    knots = knots[np.concatenate([[True], np.diff(knots) > _SAME_KNOT])]
+    cubics = np.array([_on_common(curve, knots) for curve in curves])
+    shape = len(kinds), knots.size - 1
+    return knots, np.ascontiguousarray(cubics.reshape(shape[0], 2, shape[1], 4).swapaxes(1, 2)).reshape(*shape, 8)
+
+
+def corners_of(curve: PiecewiseCubic) -> FloatArray:
+    """Inner knots where a curve's slope jumps by more than the fit of a smooth one leaves."""
+    widths = np.diff(curve.knots)
+    after = curve.coefficients[1:, 1] / widths[1:]
+    before = (curve.coefficients[:-1] @ np.array([0.0, 1.0, 2.0, 3.0])) / widths[:-1]
+    largest = float(np.max(np.abs(after), initial=0.0))
+    # A slope beside which the whole curve hardly changes over its range is none.
+    least = 1e-9 * float(np.abs(curve.coefficients[:, 0]).max())
+    jumps = np.abs(after - before) > max(_SLOPE_JUMP * largest, least, 1e-30)
+    return np.asarray(curve.knots[1:-1][jumps], dtype=np.float64)
+
+
+def _on_common(curve: PiecewiseCubic, knots: FloatArray) -> FloatArray:
+    """Coefficients on knots among which the curve's own are, but for rounding."""
+    nearest = np.abs(curve.knots[:, None] - knots).argmin(axis=1)
+    return PiecewiseCubic(knots[nearest], curve.coefficients).on_knots(knots).coefficients
+
+
+def _weakened(geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: PairFaults) -> PiecewiseCubic:
+    """Stiffness of a pair of teeth with faults: their compliance comes on top."""
+    if not any(faults):
+        return stiffness
+    sides = (
+        (geometry.driver, geometry.driver_position, faults[0]),
+        (geometry.driven, geometry.driven_position, faults[1]),
+    )
+    pitch_roll = math.tan(geometry.working_pressure_angle)
+
+    def weakened(position: FloatArray) -> FloatArray:
+        places = flank_places(geometry, np.clip(position, 0.0, geometry.contact_ratio))
+        compliance = 1.0 / stiffness(position)
+        for (gear, _, own), roll in zip(sides, (places.driver_roll_angle, places.driven_roll_angle), strict=True):
+            for fault in own:
+                compliance = compliance + fault.extra_compliance(gear, roll)
+        return np.asarray(1.0 / compliance, dtype=np.float64)
+
+    corners = [locate(roll) for gear, locate, own in sides for f in own for roll in f.corners(gear, pitch_roll)]
+    knots = stiffness.knots
+    inner = [corner for corner in corners if knots[0] < corner < knots[-1]]
+    breaks = np.unique(np.concatenate([knots, inner]))
+    breaks = breaks[np.concatenate([[True], np.diff(breaks) > _SAME_KNOT])]
+    return piecewise.fitted(weakened, breaks, _STIFFNESS_TOLERANCE * stiffness.mean)

@@ -1,0 +1,198 @@
+"""Deviations and faults of flanks: what each takes off, which pairs it concerns, and what the mesh makes of it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coupling.gears import (
+    ConstantStiffness,
+    Gear,
+    GearError,
+    GearPairGeometry,
+    HelixDeviation,
+    MissingTooth,
+    PotentialEnergyStiffness,
+    ProfileDeviation,
+    RootRelief,
+    Spall,
+    TipRelief,
+    Wear,
+    flank_gap,
+    hertz_compliance,
+    static_transmission_error,
+    tooth_contact,
+)
+from coupling.gears.kernels import tooth_force
+
+ALPHA = math.radians(20.0)
+PINION = Gear("pinion", 20, 3e-3, ALPHA, 10e-3, profile_shift=0.2)
+WHEEL = Gear("wheel", 31, 3e-3, ALPHA, 10e-3)
+MODEL = PotentialEnergyStiffness()
+FORM, TIP = PINION.roll_angle(PINION.form_radius), PINION.roll_angle(PINION.tip_radius)
+MIDDLE = 0.5 * (FORM + TIP)
+
+
+def gap(gear: Gear, *rolls: float) -> list[float]:
+    return flank_gap(gear, np.array(rolls)).tolist()
+
+
+def test_reliefs_by_angle_and_by_length_are_the_same() -> None:
+    length = 2e-3
+    for by_length, by_angle in (
+        (
+            replace(PINION, tip_relief=TipRelief(1e-5, length=length)),
+            replace(PINION, tip_relief=TipRelief(1e-5, TIP - length / PINION.base_radius)),
+        ),
+        (
+            replace(PINION, root_relief=RootRelief(1e-5, length=length)),
+            replace(PINION, root_relief=RootRelief(1e-5, FORM + length / PINION.base_radius)),
+        ),
+    ):
+        rolls = np.linspace(FORM, TIP, 41)
+        np.testing.assert_allclose(flank_gap(by_length, rolls), flank_gap(by_angle, rolls), atol=1e-18)
+    assert gap(replace(PINION, tip_relief=TipRelief(1e-5, length=length)), FORM, TIP) == [0.0, pytest.approx(1e-5)]
+    assert gap(replace(PINION, root_relief=RootRelief(1e-5, length=length)), FORM, TIP) == [pytest.approx(1e-5), 0.0]
+
+
+def test_parabolic_relief_has_a_quarter_of_its_depth_half_way() -> None:
+    gear = replace(PINION, tip_relief=TipRelief(1e-5, MIDDLE, shape="parabolic"))
+    assert gap(gear, MIDDLE, 0.5 * (MIDDLE + TIP), TIP) == pytest.approx([0.0, 0.25e-5, 1e-5], abs=1e-20)
+
+
+def test_profile_deviation_is_what_an_inspection_reports() -> None:
+    slope = replace(PINION, profile_deviation=ProfileDeviation(slope=8e-6))
+    foot, tip = gap(slope, FORM, TIP)
+    assert foot - tip == pytest.approx(8e-6)  # the tip stands out, so less is missing there
+    waves = flank_gap(replace(PINION, profile_deviation=ProfileDeviation(form=6e-6)), np.linspace(FORM, TIP, 2001))
+    assert float(np.ptp(waves)) == pytest.approx(6e-6, rel=1e-4)
+    crowned = replace(PINION, profile_deviation=ProfileDeviation(crowning=5e-6))
+    assert gap(crowned, FORM, MIDDLE, TIP) == pytest.approx([5e-6, 0.0, 5e-6], abs=1e-18)
+    measured = replace(PINION, profile_deviation=ProfileDeviation(table=((FORM, 1e-6), (MIDDLE, 2e-6), (TIP, -4e-6))))
+    assert gap(measured, FORM, 0.5 * (MIDDLE + TIP)) == pytest.approx([-1e-6, 1e-6])
+
+
+def test_a_table_of_tip_relief_is_tip_relief() -> None:
+    start = FORM + 0.7 * (TIP - FORM)
+    by_table = ProfileDeviation(table=((FORM, 0.0), (start, 0.0), (TIP, -15e-6)))
+    errors = [
+        static_transmission_error(tooth_contact(GearPairGeometry(gear, WHEEL), MODEL), 3000.0, np.linspace(0, 1, 301))
+        for gear in (replace(PINION, profile_deviation=by_table), replace(PINION, tip_relief=TipRelief(15e-6, start)))
+    ]
+    np.testing.assert_allclose(errors[0].transmission_error, errors[1].transmission_error, atol=1e-12)
+
+
+def test_helix_deviation_across_the_face() -> None:
+    deviation = HelixDeviation(slope=4e-6, crowning=3e-6, end_relief=5e-6, end_relief_length=1e-3)
+    z = np.array([-5e-3, -4.5e-3, 0.0, 5e-3])
+    expected = [-2e-6 - 3e-6 - 5e-6, -1.8e-6 - 3e-6 * 0.81 - 2.5e-6, 0.0, 2e-6 - 3e-6 - 5e-6]
+    np.testing.assert_allclose(deviation.at(z, 10e-3), expected, atol=1e-18)
+    assert HelixDeviation().is_straight
+    assert not deviation.is_straight
+
+
+def test_uniform_wear_of_all_teeth_is_a_shift() -> None:
+    phases = np.linspace(0.0, 1.0, 101)
+    new, worn = (
+        static_transmission_error(tooth_contact(GearPairGeometry(gear, WHEEL), MODEL), 2000.0, phases)
+        for gear in (PINION, replace(PINION, faults=(Wear(7e-6, shape="uniform"),)))
+    )
+    np.testing.assert_allclose(worn.transmission_error, new.transmission_error + 7e-6, rtol=1e-9)
+
+
+def test_sliding_wear_spares_the_pitch_point() -> None:
+    pair = GearPairGeometry(replace(PINION, faults=(Wear(9e-6),)), WHEEL)
+    contact = tooth_contact(pair, MODEL)
+    assert float(contact.deviation(pair.pitch_point_position)) == pytest.approx(0.0, abs=1e-12)
+    roll = pair.driver_roll_angle(0.0)
+    pitch = math.tan(pair.working_pressure_angle)
+    farthest = max(TIP - pitch, pitch - FORM)
+    assert float(contact.deviation(0.0)) == pytest.approx(9e-6 * abs(float(roll) - pitch) / farthest)
+
+
+def test_a_missing_tooth_leaves_the_load_to_its_neighbours() -> None:
+    pair = GearPairGeometry(replace(PINION, faults=(MissingTooth(3),)), WHEEL)
+    contact = tooth_contact(pair, MODEL, corner_contact=True)
+    assert contact.hunting_period == 20
+    phases = np.arange(0.0, 20.0, 0.01) + 0.003
+    mesh = static_transmission_error(contact, 500.0, phases)
+    number = np.floor(phases)[:, None] - np.floor(mesh.positions)
+    np.testing.assert_array_equal(mesh.pair_forces[number % 20 == 3], 0.0)
+    sound = static_transmission_error(
+        tooth_contact(GearPairGeometry(PINION, WHEEL), MODEL, corner_contact=True), 500.0, phases
+    )
+    apart = np.abs(mesh.transmission_error - sound.transmission_error) > 1e-12
+    assert apart.any()
+    assert set(np.floor(phases[apart]).tolist()) <= {2.0, 3.0, 4.0}
+
+
+def test_spall_across_the_face_is_a_pit_in_the_motion() -> None:
+    spall = Spall(5, MIDDLE - 0.05, MIDDLE + 0.05, 20e-6)
+    pair = GearPairGeometry(replace(PINION, faults=(spall,)), WHEEL)
+    contact = tooth_contact(pair, MODEL)
+    position = pair.driver_position(MIDDLE)
+    assert contact.variants[0].deviation(position) == pytest.approx(20e-6)
+    assert float(contact.deviation(position)) == 0.0
+    law = contact.kernel_arguments
+    for tooth, expected in ((4, 0.0), (5, 20e-6), (25, 20e-6)):
+        alone = [tooth_force(tooth + position, delta, 0.0, *law)[5] for delta in (expected - 1e-9, expected + 1e-9)]
+        others = 0 if expected == 0.0 else alone[0]
+        assert alone[1] == others + 1
+
+
+def test_spall_across_a_part_of_the_face_softens_the_contact() -> None:
+    spall = Spall(0, MIDDLE - 0.05, MIDDLE + 0.05, 20e-6, width=4e-3)
+    pair = GearPairGeometry(replace(PINION, faults=(spall,)), WHEEL)
+    contact = tooth_contact(pair, MODEL)
+    position = pair.driver_position(MIDDLE)
+    more = 1.0 / contact.variants[0].stiffness(position) - 1.0 / contact.stiffness(position)
+    # Six tenths of the face carry: the flattening is ten sixths.
+    assert more == pytest.approx((10.0 / 6.0 - 1.0) * hertz_compliance(PINION, WHEEL), rel=1e-7)
+
+
+def test_both_damaged_teeth_meet_once_in_the_hunting_period() -> None:
+    pair = GearPairGeometry(
+        replace(PINION, faults=(Wear(5e-6, 2, "uniform"),)), replace(WHEEL, faults=(Wear(3e-6, 4, "uniform"),))
+    )
+    contact = tooth_contact(pair, MODEL)
+    assert contact.hunting_period == 620
+    depths = [0.0, *(float(kind.deviation(0.5)) for kind in contact.variants)]
+    seen = np.array(depths)[contact.pair_variants]
+    expected = [5e-6 * (n % 20 == 2) + 3e-6 * (n % 31 == 4) for n in range(620)]
+    np.testing.assert_allclose(seen, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: TipRelief(1e-5), "exactly one of start_roll_angle and length"),
+        (lambda: TipRelief(1e-5, 0.3, 1e-3), "exactly one"),
+        (lambda: TipRelief(1e-5, 0.3, shape="cubic"), "linear, parabolic"),  # type: ignore[arg-type]
+        (lambda: replace(PINION, tip_relief=TipRelief(1e-5, TIP + 0.01)), "below the tip's roll angle"),
+        (lambda: replace(PINION, tip_relief=TipRelief(1e-5, length=0.1)), "below the tip's roll angle"),
+        (lambda: replace(PINION, root_relief=RootRelief(1e-5, FORM - 0.01)), "root relief must start between"),
+        (lambda: replace(PINION, faults=(MissingTooth(20),)), "numbered 0 to 19"),
+        (lambda: MissingTooth(-1), "whole number from 0"),
+        (lambda: Spall(1, 0.3, 0.2, 1e-5), "end_roll_angle must be above"),
+        (lambda: Wear(1e-5, shape="round"), "'sliding' or 'uniform'"),  # type: ignore[arg-type]
+        (lambda: ProfileDeviation(table=((0.2, 0.0),)), "at least two rows"),
+        (lambda: ProfileDeviation(table=((0.2, 0.0), (0.1, 0.0))), "must increase"),
+        (lambda: ProfileDeviation(form=-1e-6), "form must be at least 0"),
+        (lambda: HelixDeviation(end_relief=1e-6), "end_relief_length above 0"),
+        (
+            lambda: tooth_contact(
+                GearPairGeometry(replace(PINION, faults=(MissingTooth(1),)), WHEEL), ConstantStiffness(1e8)
+            ),
+            "whole mesh as one spring",
+        ),
+        (
+            lambda: tooth_contact(GearPairGeometry(replace(PINION, faults=(MissingTooth(1),)), WHEEL), MODEL),
+            "where a tooth is missing",
+        ),
+    ],
+)
+def test_impossible_flanks_say_why(make: object, words: str) -> None:
+    assert callable(make)
+    with pytest.raises(GearError, match=words):
+        make()
