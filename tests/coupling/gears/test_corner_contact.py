@@ -1,4 +1,4 @@
-"""Corners beyond the path of contact: the gap against outlines turned until they touch, and what it does to the mesh."""
+"""Corners beyond the path of contact: the gap against flanks turned until they touch, and the mesh that has them."""
 
 import math
 from dataclasses import replace
@@ -30,10 +30,10 @@ MODEL = PotentialEnergyStiffness()
 
 
 def turn_until_touch(pair: GearPairGeometry, position: float) -> float:
-    """Gap before the path, times 1 over rb: the driver's turn until its flank passes through the driven tip's corner.
+    """The driver's turn until its flank passes through the driven tip's corner, by root finding.
 
-    Written anew, in coordinates about the pitch point's line of centres and by root finding on the involute's own
-    parametric form; the mating flank's corner stands where the nominal ratio puts it.
+    Centres at 0 and a on the real axis; the involute in its own parametric form, each flank where the nominal motion
+    puts it.
     """
     driver, driven = pair.driver, pair.driven
     w, a = pair.working_pressure_angle, pair.working_centre_distance
@@ -48,14 +48,8 @@ def turn_until_touch(pair: GearPairGeometry, position: float) -> float:
         angle = start + turned + roll
         return complex(driver.base_radius * np.exp(1j * angle) * (1.0 - 1j * roll))
 
-    assert (
-        abs(
-            flank(distance / driver.base_radius, 0.0)
-            - tangent * (1.0 - 1j * math.tan(0.0))
-            + 1j * distance * np.exp(1j * w)
-        )
-        < 1e-12
-    )
+    nominal = tangent - 1j * distance * np.exp(1j * w)
+    assert abs(flank(distance / driver.base_radius, 0.0) - nominal) < 1e-12
     other_start = w - mating / driven.base_radius
     tip_roll = driven.roll_angle(driven.tip_radius)
     tip = a - driven.base_radius * np.exp(1j * (other_start + tip_roll)) * (1.0 - 1j * tip_roll)
