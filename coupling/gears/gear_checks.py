@@ -66,9 +66,9 @@ def require_tip_thickness(gear: Gear, least: float = 0.2) -> None:
     thickness = 2.0 * gear.tip_half_angle * gear.tip_radius * math.cos(gear.helix_angle_at(gear.tip_radius))
     if thickness < least * gear.module:
         raise ThinTipError(
-            f"gear {gear.name!r}: the teeth are {thickness * 1e3:.4g} mm thick at the tip, {thickness / gear.module:.3g} "
-            f"modules; at least {least:g} modules are wanted. Reduce profile_shift ({gear.profile_shift:g}) or addendum "
-            f"({gear.addendum:g})"
+            f"gear {gear.name!r}: the teeth are {thickness * 1e3:.4g} mm thick at the tip, "
+            f"{thickness / gear.module:.3g} modules; at least {least:g} modules are wanted. "
+            f"Reduce profile_shift ({gear.profile_shift:g}) or addendum ({gear.addendum:g})"
         )
 
 
@@ -104,7 +104,8 @@ def _check_rack(gear: Gear) -> None:
         )
     if gear.root_radius is not None and gear.root_radius > full * (1.0 + 1e-12):
         raise GearError(
-            f"{label}root_radius {gear.root_radius * 1e3:.4g} mm does not fit the rack's tip; at most {full * 1e3:.4g} mm"
+            f"{label}root_radius {gear.root_radius * 1e3:.4g} mm does not fit the rack's tip; "
+            f"at most {full * 1e3:.4g} mm"
         )
     if gear.rack_corner_arc.depth <= 0.0:
         raise GearError(

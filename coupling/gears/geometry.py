@@ -10,7 +10,7 @@ drawn lives in the transverse plane.  With ``z`` teeth and helix angle ``beta`` 
     base helix angle           sin(beta_b) = sin(beta) cos(alpha)
     equivalent teeth           z_n = z / (cos(beta_b)^2 cos(beta))
 
-A spur gear is ``beta = 0``.  A tooth made thinner for backlash is cut by the same rack drawn ``thinning / (2 tan(alpha))``
+A spur gear is ``beta = 0``.  A tooth made thinner for backlash is cut by the same rack, ``thinning / (2 tan(alpha))``
 deeper: flank, fillet and root follow the generating shift ``x_E = x - thinning / (2 m tan(alpha))``, the tip does not.
 
 The rack's tip corners are rounded; the flank is an involute down to the form radius, where the corner's trochoid takes
@@ -23,7 +23,7 @@ import math
 from dataclasses import dataclass
 
 from coupling.gears.blank import Inertia, blank_inertia
-from coupling.gears.errors import GearError, require_finite
+from coupling.gears.errors import require_finite
 from coupling.gears.gear_checks import check_numbers, check_tooth
 from coupling.gears.involute import involute
 from coupling.gears.rack import BasicRack, RackCorner
@@ -36,7 +36,7 @@ STEEL_DENSITY = 7850.0
 
 
 def module_from_base_radius(base_radius: float, teeth: int, pressure_angle: float, helix_angle: float = 0.0) -> float:
-    """Normal module [m] of a gear known by its base radius [m]: ``2 rb cos(beta) / (z cos(alpha_t))``, angles in rad."""
+    """Normal module [m] of a gear by its base radius [m], ``2 rb cos(beta) / (z cos(alpha_t))``; angles in rad."""
     require_finite("base_radius", base_radius, minimum=0.0, strict=True)
     require_finite("teeth", teeth, minimum=0.0, strict=True)
     transverse = math.atan2(math.tan(pressure_angle), math.cos(helix_angle))
@@ -206,7 +206,7 @@ class Gear:
 
     @property
     def virtual_teeth(self) -> float:
-        """Teeth of the spur gear that has this gear's teeth in its normal section, ``z / (cos(beta_b)^2 cos(beta))``."""
+        """Teeth of the spur gear like this gear's normal section, ``z / (cos(beta_b)^2 cos(beta))``."""
         return self.teeth / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
 
     def helix_angle_at(self, radius: float) -> float:
@@ -263,9 +263,7 @@ class Gear:
         """The parameter of `coupling.gears.profile.fillet_points` where the involute begins [rad]."""
         if not self.is_undercut:
             return self.transverse_pressure_angle
-        return fillet_end(
-            self.rack_corner_arc, self.pitch_radius, self.transverse_pressure_angle, self.base_half_angle
-        )
+        return fillet_end(self.rack_corner_arc, self.pitch_radius, self.transverse_pressure_angle, self.base_half_angle)
 
     @property
     def _flank_depth(self) -> float:

@@ -100,14 +100,14 @@ def tooth_outline(gear: Gear, points: int = 60) -> FloatArray:
     points : int
         Points on each curve (fillet, flank) of a side.
 
-    See Also
-    --------
-    coupling.gears.outline.gear_outline : all teeth, at any rotation and place.
-
     Returns
     -------
     ndarray, shape (4 * points - 2, 2)
         Coordinates across and along the tooth [m]; left side upward, then right side downward.
+
+    See Also
+    --------
+    coupling.gears.outline.gear_outline : all teeth, at any rotation and place.
     """
     fillet = fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, points))
     angles = load_angle(gear, np.array([gear.form_radius, gear.tip_radius]))
