@@ -83,5 +83,6 @@ def _check_active_profile(pair: GearPairGeometry, rooted: Gear, tip: Gear, lowes
     raise InterferenceError(
         f"{pair.label}: the tip of {tip.name!r} reaches {(form - lowest) * 1e3:.4g} mm (along the line of action) "
         f"below the involute of {rooted.name!r}: contact would start {start}, the flank above its fillet starts at "
-        f"a radius of {rooted.form_radius * 1e3:.6g} mm; reduce the addendum of {tip.name!r} or the root_radius of {rooted.name!r}"
+        f"a radius of {rooted.form_radius * 1e3:.6g} mm; reduce the addendum of {tip.name!r} or "
+        f"the root_radius of {rooted.name!r}"
     )
