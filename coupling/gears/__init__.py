@@ -15,6 +15,8 @@ The compiled law is `coupling.gears.kernels.tooth_force`; it alone imports numba
 Positions along the path of contact are in base pitches, phases in mesh periods, everything else in SI.
 """
 
+from coupling.gears.blank import Inertia
+from coupling.gears.centre_distance import profile_shift_sum, shifted_to, tip_shortening
 from coupling.gears.corner_contact import FlankPlaces, corner_reach, flank_places
 from coupling.gears.damping import equivalent_mass, mesh_damping
 from coupling.gears.deviation import flank_gap, pair_deviation
@@ -26,17 +28,21 @@ from coupling.gears.errors import (
     NoContactError,
     PointedToothError,
     StiffnessModelError,
+    ThinTipError,
     UndercutError,
 )
 from coupling.gears.faults import Fault, MissingTooth, Spall, Wear
 from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
-from coupling.gears.geometry import Gear, module_from_base_radius
+from coupling.gears.gear_checks import require_tip_thickness
+from coupling.gears.geometry import Gear, module_from_base_radius, module_from_diametral_pitch
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
 from coupling.gears.modifications import RootRelief, TipRelief
+from coupling.gears.outline import gear_outline, meshing_rotations, pair_outlines
 from coupling.gears.pair_curves import PairCurves
 from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.path_of_contact import POINTS_OF_CONTACT, PathOfContact, path_of_contact, specific_sliding
 from coupling.gears.piecewise import PiecewiseCubic
 from coupling.gears.pitch_gaps import back_flank_pitch_gaps, pitch_gaps
 from coupling.gears.profile import tooth_outline
@@ -57,6 +63,17 @@ from coupling.gears.stiffness_models import (
     TableStiffness,
     stiffness_model,
 )
+from coupling.gears.thickness import (
+    BallMeasurement,
+    ChordalThickness,
+    SpanMeasurement,
+    chordal_thickness,
+    normal_tooth_thickness,
+    over_balls,
+    pointed_radius,
+    span_measurement,
+    tooth_thickness,
+)
 from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, hertz_compliance, potential_energy
 from coupling.gears.tooth_contact import (
     PairStates,
@@ -65,7 +82,10 @@ from coupling.gears.tooth_contact import (
 )
 
 __all__ = [
+    "POINTS_OF_CONTACT",
     "STIFFNESS_MODELS",
+    "BallMeasurement",
+    "ChordalThickness",
     "ConstantStiffness",
     "ContactAccuracyError",
     "Fault",
@@ -74,6 +94,7 @@ __all__ = [
     "GearError",
     "GearPairGeometry",
     "HelixDeviation",
+    "Inertia",
     "InterferenceError",
     "Iso6336Stiffness",
     "Iso6336Values",
@@ -82,6 +103,7 @@ __all__ = [
     "NoContactError",
     "PairCurves",
     "PairStates",
+    "PathOfContact",
     "PiecewiseCubic",
     "PointedToothError",
     "PotentialEnergyStiffness",
@@ -89,11 +111,13 @@ __all__ = [
     "RootRelief",
     "RootSection",
     "Spall",
+    "SpanMeasurement",
     "SquareStiffness",
     "StaticMesh",
     "StiffnessModel",
     "StiffnessModelError",
     "TableStiffness",
+    "ThinTipError",
     "TipRelief",
     "ToothCompliance",
     "ToothContact",
@@ -101,11 +125,13 @@ __all__ = [
     "UndercutError",
     "Wear",
     "back_flank_pitch_gaps",
+    "chordal_thickness",
     "corner_reach",
     "equivalent_mass",
     "flank_gap",
     "flank_places",
     "foundation_compliance",
+    "gear_outline",
     "hertz_compliance",
     "inverse_involute",
     "involute",
@@ -113,14 +139,29 @@ __all__ = [
     "mesh_damping",
     "mesh_period_phases",
     "mesh_stiffness",
+    "meshing_rotations",
     "module_from_base_radius",
+    "module_from_diametral_pitch",
+    "normal_tooth_thickness",
+    "over_balls",
     "pair_deviation",
+    "pair_outlines",
+    "path_of_contact",
     "pitch_gaps",
+    "pointed_radius",
     "potential_energy",
+    "profile_shift_sum",
+    "require_tip_thickness",
     "runout_error",
+    "shifted_to",
+    "span_measurement",
+    "specific_sliding",
     "static_transmission_error",
     "stiffness_model",
+    "tip_relief_deviation",
+    "tip_shortening",
     "tooth_contact",
     "tooth_outline",
+    "tooth_thickness",
     "within_fitted_range",
 ]

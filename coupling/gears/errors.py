@@ -15,6 +15,10 @@ class PointedToothError(GearError):
     """The two flanks meet below the tip circle."""
 
 
+class ThinTipError(PointedToothError):
+    """The teeth are thinner at their tips than wanted."""
+
+
 class InterferenceError(GearError):
     """A tip digs into the mating root, or the teeth jam between each other's flanks."""
 
@@ -24,7 +28,7 @@ class NoContactError(GearError):
 
 
 class MismatchedGearsError(GearError):
-    """Two gears whose base pitches differ cannot mesh."""
+    """Two gears of different module, pressure angle or helix angle, or of the same hand, cannot mesh."""
 
 
 class StiffnessModelError(GearError):

@@ -1,13 +1,20 @@
-"""One spur gear: tooth proportions, the radii that follow, and the inertia of its blank.
+"""One external gear, spur or helical: tooth proportions, and the radii and angles that follow.
 
-The tooth is what a basic rack generates.  With module ``m``, ``z`` teeth, pressure angle ``alpha`` and
-profile shift ``x`` (positive outward), all in the transverse plane (ISO 53, ISO 21771):
+The tooth is what a basic rack generates (ISO 53, ISO 21771).  Module ``m``, pressure angle ``alpha``, profile shift
+``x`` (positive outward) and the heights are those of the rack's normal section; everything that turns, touches or is
+drawn lives in the transverse plane.  With ``z`` teeth and helix angle ``beta`` on the reference cylinder:
 
-    pitch radius  r  = m z / 2                  tip radius   r_a = r + (h_a + x) m
-    base radius   rb = r cos(alpha)             root radius  r_f = r - (h_f - x) m
+    transverse module          m_t = m / cos(beta)             tan(alpha_t) = tan(alpha) / cos(beta)
+    reference radius           r = m_t z / 2                   tip radius   r_a = r + (h_a + x) m
+    base radius                rb = r cos(alpha_t)             root radius  r_f = r - (h_f - x_E) m
+    base helix angle           sin(beta_b) = sin(beta) cos(alpha)
+    equivalent teeth           z_n = z / (cos(beta_b)^2 cos(beta))
 
-The rack's tip corners are rounded; the flank is an involute down to the form radius, where the
-corner's trochoid takes over (see :mod:`coupling.gears.profile`).
+A spur gear is ``beta = 0``.  A tooth made thinner for backlash is cut by the same rack, ``thinning / (2 tan(alpha))``
+deeper: flank, fillet and root follow the generating shift ``x_E = x - thinning / (2 m tan(alpha))``, the tip does not.
+
+The rack's tip corners are rounded; the flank is an involute down to the form radius, where the corner's trochoid takes
+over (see :mod:`coupling.gears.rack`, :mod:`coupling.gears.profile`).
 """
 
 from __future__ import annotations
@@ -15,27 +22,41 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from coupling.gears.errors import GearError, PointedToothError, UndercutError, require_finite
+from coupling.gears.blank import Inertia, blank_inertia
+from coupling.gears.errors import require_finite
 from coupling.gears.faults import Fault
 from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
+from coupling.gears.gear_checks import check_flanks, check_numbers, check_tooth
 from coupling.gears.involute import involute
 from coupling.gears.modifications import RootRelief, TipRelief
+from coupling.gears.rack import BasicRack, RackCorner
+from coupling.gears.undercut import fillet_end
 
 STEEL_YOUNGS_MODULUS = 207e9
 STEEL_POISSON_RATIO = 0.3
 STEEL_DENSITY = 7850.0
 
 
-def module_from_base_radius(base_radius: float, teeth: int, pressure_angle: float) -> float:
-    """Module [m] of a gear known by its base radius [m], ``2 rb / (z cos(alpha))``, angle in rad."""
+def module_from_base_radius(base_radius: float, teeth: int, pressure_angle: float, helix_angle: float = 0.0) -> float:
+    """Normal module [m] of a gear by its base radius [m], ``2 rb cos(beta) / (z cos(alpha_t))``; angles in rad."""
     require_finite("base_radius", base_radius, minimum=0.0, strict=True)
     require_finite("teeth", teeth, minimum=0.0, strict=True)
-    return 2.0 * base_radius / (teeth * math.cos(pressure_angle))
+    transverse = math.atan2(math.tan(pressure_angle), math.cos(helix_angle))
+    return 2.0 * base_radius * math.cos(helix_angle) / (teeth * math.cos(transverse))
+
+
+def module_from_diametral_pitch(diametral_pitch: float) -> float:
+    """Normal module [m] of a normal diametral pitch [1/m], teeth per length of diameter: ``1 / P``.
+
+    Eight teeth per inch are ``8 / 0.0254`` per metre, a module of 3.175 mm.
+    """
+    require_finite("diametral_pitch", diametral_pitch, minimum=0.0, strict=True)
+    return 1.0 / diametral_pitch
 
 
 @dataclass(frozen=True)
 class Gear:
-    """A spur gear.
+    """A spur or helical gear with external teeth.
 
     Parameters
     ----------
@@ -44,19 +65,19 @@ class Gear:
     teeth : int
         Number of teeth, at least 5.
     module : float
-        Module [m].
+        Normal module [m].
     pressure_angle : float
-        Pressure angle of the basic rack [rad].
+        Normal pressure angle, of the basic rack [rad].
     face_width : float
         Width of the teeth along the shaft [m].
     profile_shift : float
-        Profile shift coefficient, in modules, positive outward.
+        Profile shift coefficient, in normal modules, positive outward.
     addendum, dedendum : float
-        Addendum of the gear and of the basic rack that cuts it (so the gear's dedendum), in modules.
+        Addendum of the gear and of the basic rack that cuts it (so the gear's dedendum), in normal modules.
     root_radius : float or None
-        Tip corner radius of the rack [m].  None: the radius that ends the rack's straight flank one
-        addendum below its reference line, ``(dedendum - addendum) m / (1 - sin(alpha))``, or the full
-        tip radius where that is smaller.
+        Tip corner radius of the rack in its normal section [m], which shapes the root fillet.  None: the radius that
+        ends the rack's straight flank one addendum below its reference line, ``(dedendum - addendum) m / (1 -
+        sin(alpha))``, or the full tip radius where that is smaller.
     bore : float
         Diameter of the bore [m]; 0 for a gear in one piece with its shaft.
     youngs_modulus, poisson_ratio, density : float
@@ -80,12 +101,24 @@ class Gear:
         How all flanks differ from it across the face.
     faults : tuple of Fault
         Damaged teeth (:mod:`coupling.gears.faults`).
+    helix_angle : float
+        Helix angle on the reference cylinder [rad], positive for a right-hand helix; 0 for a spur gear.
+    rim_thickness : float or None
+        From the root circle to the inside of the rim [m]; None for a disc without a rim.
+    web_thickness : float or None
+        Width of the disc between rim and bore [m]; None for a rim alone.
+    tooth_thinning : float
+        How much thinner a tooth is than its profile shift says, so that there is backlash: in the normal section,
+        along the reference circle [m].
+    allow_undercut : bool
+        Take a gear whose rack cuts away the foot of the involute; its flank then begins where trochoid and involute
+        cross.
 
     Raises
     ------
     GearError
-        For a value outside its range; `UndercutError` where the rack cuts below the involute's start,
-        `PointedToothError` where the flanks meet before the tip circle.
+        For a value outside its range; `UndercutError` where the rack cuts below the involute's start and that is
+        not allowed, `PointedToothError` where the flanks meet before the tip circle.
     """
 
     name: str
@@ -109,22 +142,40 @@ class Gear:
     profile_deviation: ProfileDeviation | None = None
     helix_deviation: HelixDeviation | None = None
     faults: tuple[Fault, ...] = ()
+    helix_angle: float = 0.0
+    rim_thickness: float | None = None
+    web_thickness: float | None = None
+    tooth_thinning: float = 0.0
+    allow_undercut: bool = False
 
     def __post_init__(self) -> None:
-        self._check_numbers()
-        self._check_tooth()
+        check_numbers(self)
+        check_tooth(self)
+        check_flanks(self)
 
-    # ------------------------------------------------------------------ radii
+    # ------------------------------------------------------- transverse plane
+
+    @property
+    def transverse_module(self) -> float:
+        """Diameter of the reference circle over teeth [m]."""
+        return self.module / math.cos(self.helix_angle)
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """Pressure angle on the reference circle [rad]."""
+        if self.helix_angle == 0.0:
+            return self.pressure_angle  # to the last bit
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
 
     @property
     def pitch_radius(self) -> float:
-        """Reference radius ``m z / 2`` [m]."""
-        return 0.5 * self.module * self.teeth
+        """Reference radius ``m_t z / 2`` [m]."""
+        return 0.5 * self.transverse_module * self.teeth
 
     @property
     def base_radius(self) -> float:
         """Radius of the circle the involute unwinds from [m]."""
-        return self.pitch_radius * math.cos(self.pressure_angle)
+        return self.pitch_radius * math.cos(self.transverse_pressure_angle)
 
     @property
     def tip_radius(self) -> float:
@@ -134,59 +185,117 @@ class Gear:
     @property
     def root_circle_radius(self) -> float:
         """Radius of the bottom of the tooth space [m]."""
-        return self.pitch_radius - (self.dedendum - self.profile_shift) * self.module
+        return self.pitch_radius - (self.dedendum - self.generating_shift) * self.module
 
     @property
     def base_pitch(self) -> float:
-        """Distance between neighbouring flanks along the line of action [m]."""
+        """Distance between neighbouring flanks along the line of action, in the transverse plane [m]."""
         return 2.0 * math.pi * self.base_radius / self.teeth
 
     @property
     def form_radius(self) -> float:
         """Radius where the fillet's trochoid ends and the involute begins [m]."""
-        sine = math.sin(self.pressure_angle)
-        from_tangent = self.pitch_radius * sine - self._flank_depth / sine
-        return math.hypot(self.base_radius, from_tangent)
+        if self.is_undercut:
+            height, across, _ = self.rack_corner_arc.trochoid(self.pitch_radius, self.fillet_end)
+            return math.hypot(height, across)
+        sine = math.sin(self.transverse_pressure_angle)
+        return math.hypot(self.base_radius, self.pitch_radius * sine - self._flank_depth / sine)
 
-    # ------------------------------------------------------------- rack corner
+    # ------------------------------------------------------------------- helix
+
+    @property
+    def base_helix_angle(self) -> float:
+        """Helix angle on the base cylinder [rad], signed as `helix_angle`."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
+
+    @property
+    def lead(self) -> float:
+        """Length of shaft over which a tooth turns once round [m], negative for a left hand; infinite for a spur."""
+        return self.teeth * self.axial_pitch
+
+    @property
+    def axial_pitch(self) -> float:
+        """Distance of neighbouring teeth along the shaft [m], signed as `helix_angle`; infinite for a spur."""
+        return math.inf if self.helix_angle == 0.0 else math.pi * self.module / math.sin(self.helix_angle)
+
+    @property
+    def virtual_teeth(self) -> float:
+        """Teeth of the spur gear like this gear's normal section, ``z / (cos(beta_b)^2 cos(beta))``."""
+        return self.teeth / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
+
+    def helix_angle_at(self, radius: float) -> float:
+        """Helix angle [rad] on the cylinder of `radius` [m]: ``tan(beta_y) = tan(beta) r_y / r``."""
+        return math.atan(math.tan(self.helix_angle) * radius / self.pitch_radius)
+
+    # ---------------------------------------------------------- generating rack
+
+    @property
+    def generating_shift(self) -> float:
+        """Profile shift ``x_E`` at which the rack stands that cuts the teeth as thin as they are, in modules."""
+        return self.profile_shift - self.tooth_thinning / (2.0 * self.module * math.tan(self.pressure_angle))
+
+    @property
+    def rack(self) -> BasicRack:
+        """The rack that generates the teeth."""
+        return BasicRack(
+            self.module, self.pressure_angle, self.addendum, self.dedendum, self.root_radius, self.helix_angle
+        )
 
     @property
     def rack_tip_radius(self) -> float:
-        """Corner radius of the generating rack [m]."""
-        if self.root_radius is not None:
-            return self.root_radius
-        from_clearance = (self.dedendum - self.addendum) * self.module / (1.0 - math.sin(self.pressure_angle))
-        return max(0.0, min(from_clearance, self.full_rack_tip_radius))
+        """Corner radius of the generating rack, in its normal section [m]."""
+        return self.rack.corner_radius
 
     @property
     def full_rack_tip_radius(self) -> float:
         """The largest corner radius: one arc from flank to flank of the rack's tooth [m]."""
-        half_tip_land = self.module * (math.pi / 4.0 - self.dedendum * math.tan(self.pressure_angle))
-        return half_tip_land * math.cos(self.pressure_angle) / (1.0 - math.sin(self.pressure_angle))
+        return self.rack.full_tip_radius
+
+    @property
+    def rack_corner_arc(self) -> RackCorner:
+        """The rack's corner as it rolls in the transverse plane."""
+        return self.rack.corner(self.generating_shift)
 
     @property
     def rack_corner(self) -> tuple[float, float]:
         """Centre of the rack's corner arc [m]: depth below the gear's pitch line, distance from the tooth's axis."""
-        depth_in_rack = self.dedendum * self.module - self.rack_tip_radius
-        across = (
-            math.pi * self.module / 4.0
-            + depth_in_rack * math.tan(self.pressure_angle)
-            + self.rack_tip_radius / math.cos(self.pressure_angle)
-        )
-        return depth_in_rack - self.profile_shift * self.module, across
+        corner = self.rack_corner_arc
+        return corner.depth, corner.across
+
+    @property
+    def least_generating_shift(self) -> float:
+        """The generating shift below which the rack undercuts the teeth, in modules."""
+        return (self.rack.flank_depth - self._deepest_flank) / self.module
+
+    @property
+    def is_undercut(self) -> bool:
+        """Whether the rack cuts away the foot of the involute."""
+        return self._flank_depth > self._deepest_flank * (1.0 + 1e-12)
+
+    @property
+    def fillet_end(self) -> float:
+        """The parameter of `coupling.gears.profile.fillet_points` where the involute begins [rad]."""
+        if not self.is_undercut:
+            return self.transverse_pressure_angle
+        return fillet_end(self.rack_corner_arc, self.pitch_radius, self.transverse_pressure_angle, self.base_half_angle)
 
     @property
     def _flank_depth(self) -> float:
         """Depth of the end of the rack's straight flank below the gear's pitch line [m]."""
-        return self.rack_corner[0] + self.rack_tip_radius * math.sin(self.pressure_angle)
+        return self.rack.flank_depth - self.generating_shift * self.module
+
+    @property
+    def _deepest_flank(self) -> float:
+        """Depth of the tangent point of line of action and base circle below the pitch line [m]."""
+        return self.pitch_radius * math.sin(self.transverse_pressure_angle) ** 2
 
     # ------------------------------------------------------------------ angles
 
     @property
     def base_half_angle(self) -> float:
         """Half the angle a tooth spans on the base circle [rad]."""
-        at_pitch = (math.pi / 2.0 + 2.0 * self.profile_shift * math.tan(self.pressure_angle)) / self.teeth
-        return at_pitch + involute(self.pressure_angle)
+        at_pitch = (math.pi / 2.0 + 2.0 * self.generating_shift * math.tan(self.pressure_angle)) / self.teeth
+        return at_pitch + involute(self.transverse_pressure_angle)
 
     @property
     def tip_half_angle(self) -> float:
@@ -197,106 +306,29 @@ class Gear:
         """Roll angle [rad] of the flank point at `radius` [m], ``sqrt((r / rb)^2 - 1)``."""
         return math.sqrt(max(0.0, (radius / self.base_radius) ** 2 - 1.0))
 
-    # ----------------------------------------------------------------- inertia
+    # -------------------------------------------------------------------- body
+
+    @property
+    def rim_inner_radius(self) -> float | None:
+        """Radius of the inside of the rim [m]; None for a gear without one."""
+        return None if self.rim_thickness is None else self.root_circle_radius - self.rim_thickness
+
+    @property
+    def inertia(self) -> Inertia:
+        """Mass and moments of inertia of the blank, see :mod:`coupling.gears.blank`."""
+        return blank_inertia(self)
 
     @property
     def mass(self) -> float:
-        """Mass of a disc of the pitch diameter, less the bore [kg]."""
-        return self.density * self.face_width * math.pi * (self.pitch_radius**2 - 0.25 * self.bore**2)
+        """Mass of the blank [kg]."""
+        return self.inertia.mass
 
     @property
     def polar_inertia(self) -> float:
-        """Moment of inertia of that disc about the shaft [kg m^2]."""
-        return 0.5 * self.mass * (self.pitch_radius**2 + 0.25 * self.bore**2)
+        """Moment of inertia of the blank about the shaft [kg m^2]."""
+        return self.inertia.polar
 
     @property
     def diametral_inertia(self) -> float:
-        """Moment of inertia of that disc about a diameter through its middle [kg m^2]."""
-        return 0.5 * self.polar_inertia + self.mass * self.face_width**2 / 12.0
-
-    # ------------------------------------------------------------------ checks
-
-    def _check_numbers(self) -> None:
-        label = f"gear {self.name!r}: "
-        if type(self.teeth) is not int or self.teeth < 5:
-            raise GearError(f"{label}teeth must be a whole number of at least 5, got {self.teeth!r}")
-        for quantity in ("module", "face_width", "addendum", "dedendum", "youngs_modulus", "density"):
-            require_finite(label + quantity, getattr(self, quantity), minimum=0.0, strict=True)
-        for quantity in ("bore", "eccentricity"):
-            require_finite(label + quantity, getattr(self, quantity), minimum=0.0)
-        for quantity in ("profile_shift", "eccentricity_phase"):
-            require_finite(label + quantity, getattr(self, quantity))
-        if self.pitch_deviations and len(self.pitch_deviations) != self.teeth:
-            raise GearError(
-                f"{label}pitch_deviations must be one for each of {self.teeth} teeth, got {len(self.pitch_deviations)}"
-            )
-        for tooth, deviation in enumerate(self.pitch_deviations):
-            require_finite(f"{label}pitch_deviations[{tooth}]", deviation)
-        if not 0.0 <= self.poisson_ratio < 0.5:
-            raise GearError(f"{label}poisson_ratio must be in 0 ... 0.5, got {self.poisson_ratio!r}")
-        if not math.radians(5.0) <= self.pressure_angle <= math.radians(45.0):
-            raise GearError(f"{label}pressure_angle must be 5 to 45 degrees in rad, got {self.pressure_angle!r} rad")
-
-    def _check_tooth(self) -> None:
-        label = f"gear {self.name!r}: "
-        if self.root_circle_radius <= 0.5 * self.bore:
-            raise GearError(
-                f"{label}the bore ({self.bore * 1e3:.4g} mm) must be smaller than the root circle "
-                f"({2e3 * self.root_circle_radius:.4g} mm)"
-            )
-        if self.full_rack_tip_radius < 0.0:
-            raise PointedToothError(
-                f"{label}the rack's own teeth are pointed: dedendum {self.dedendum:g} is too much for "
-                f"{math.degrees(self.pressure_angle):.4g} degrees"
-            )
-        if self.root_radius is not None:
-            require_finite(f"{label}root_radius", self.root_radius, minimum=0.0)
-            if self.root_radius > self.full_rack_tip_radius * (1.0 + 1e-12):
-                raise GearError(
-                    f"{label}root_radius {self.root_radius * 1e3:.4g} mm does not fit the rack's tip; "
-                    f"at most {self.full_rack_tip_radius * 1e3:.4g} mm"
-                )
-        if self.rack_corner[0] <= 0.0:
-            raise GearError(
-                f"{label}profile_shift {self.profile_shift:g} lifts the rack's corner above the pitch line; "
-                f"at most {self.dedendum - self.rack_tip_radius / self.module:.4g} here"
-            )
-        deepest = self.pitch_radius * math.sin(self.pressure_angle) ** 2
-        if self._flank_depth > deepest * (1.0 + 1e-12):
-            least = self.profile_shift + (self._flank_depth - deepest) / self.module
-            raise UndercutError(
-                f"{label}{self.teeth} teeth at profile_shift {self.profile_shift:g} are undercut; "
-                f"a profile_shift of {least:.4g} or more avoids it"
-            )
-        if self.tip_radius <= self.form_radius:
-            raise GearError(f"{label}the tip circle lies below the start of the involute; raise the addendum")
-        if self.tip_half_angle <= 0.0:
-            raise PointedToothError(
-                f"{label}the teeth are pointed below the tip circle; reduce profile_shift "
-                f"({self.profile_shift:g}) or addendum ({self.addendum:g})"
-            )
-        self._check_flanks()
-
-    def _check_flanks(self) -> None:
-        label = f"gear {self.name!r}: "
-        tip, form = self.roll_angle(self.tip_radius), self.roll_angle(self.form_radius)
-        if self.tip_relief is not None:
-            start = self.tip_relief.start(tip, self.base_radius)
-            if not 0.0 <= start < tip:
-                raise GearError(
-                    f"{label}tip relief must start below the tip's roll angle of {math.degrees(tip):.4g} degrees "
-                    f"and on the involute, got {math.degrees(start):.4g} degrees"
-                )
-        if self.root_relief is not None:
-            start = self.root_relief.start(form, self.base_radius)
-            if not form < start <= tip:
-                raise GearError(
-                    f"{label}root relief must start between the roll angles of the form circle and the tip, "
-                    f"{math.degrees(form):.4g} and {math.degrees(tip):.4g} degrees, "
-                    f"got {math.degrees(start):.4g} degrees"
-                )
-        for fault in self.faults:
-            if fault.tooth is not None and fault.tooth >= self.teeth:
-                raise GearError(
-                    f"{label}a fault is on tooth {fault.tooth}; the teeth are numbered 0 to {self.teeth - 1}"
-                )
+        """Moment of inertia of the blank about a diameter through its middle [kg m^2]."""
+        return self.inertia.diametral

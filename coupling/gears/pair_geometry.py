@@ -1,10 +1,11 @@
-"""Two spur gears in mesh: working centre distance, path of contact, and who touches where.
+"""Two gears in mesh on parallel shafts: working centre distance, path of contact, and who touches where.
 
-Position along the path of contact is counted in base pitches: a pair of teeth comes into contact at
-``s = 0`` (the driven gear's tip meets the driver's root) and leaves at ``s = contact_ratio`` (the driver's
-tip).  The dimensionless phase ``p = z_k theta_k / (2 pi)`` counts mesh periods; at phase ``p`` the pairs in
-contact are at ``s = frac(p) + j``, j = 0, 1, ... while ``s < contact_ratio``.  The pair that enters at phase n
-joins tooth ``n mod z_k`` of the driver and ``n mod z_i`` of the driven gear.
+Everything is in the transverse plane, where a pair of helical gears is a pair of spur gears whose phase moves along
+the face.  Position along the path of contact is counted in base pitches: a pair of teeth comes into contact at
+``s = 0`` (the driven gear's tip meets the driver's root) and leaves at ``s = contact_ratio`` (the driver's tip).  The
+dimensionless phase ``p = z_k theta_k / (2 pi)`` counts mesh periods; at phase ``p`` the pairs in contact are at
+``s = frac(p) + j``, j = 0, 1, ... while ``s < contact_ratio``.  The pair that enters at phase n joins tooth
+``n mod z_k`` of the driver and ``n mod z_i`` of the driven gear.
 
 With base radii ``rb_k, rb_i``, centre distance ``a`` and working pressure angle ``w``, the distance of the
 contact from the driver's tangent point is ``xi_k = xi_0 + s p_b`` with
@@ -19,9 +20,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import GearError, InterferenceError, MismatchedGearsError, NoContactError
+from coupling.gears.centre_distance import closing_pressure_angle
+from coupling.gears.errors import GearError
 from coupling.gears.geometry import Gear
-from coupling.gears.involute import inverse_involute, involute
+from coupling.gears.involute import involute
+from coupling.gears.pair_checks import check_contact, check_distance, check_match
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -35,14 +38,16 @@ class GearPairGeometry:
     ----------
     driver, driven : Gear
     centre_distance : float or None
-        Distance of the shafts [m]; None for the distance without backlash.
+        Distance of the shafts [m]; None for the distance without backlash of teeth as thick as their profile shifts
+        say, so that any `tooth_thinning` becomes backlash.
 
     Raises
     ------
     MismatchedGearsError
-        Unequal module or pressure angle.
+        Unequal module, pressure angle or helix angle, or helices of one hand.
     InterferenceError
-        Contact below the involute's start on either gear, or teeth thicker than their spaces.
+        Contact below the involute's start on either gear, a tip in the other's root, or teeth thicker than their
+        spaces.
     NoContactError
         Contact ratio below one.
     """
@@ -52,9 +57,9 @@ class GearPairGeometry:
     centre_distance: float | None = None
 
     def __post_init__(self) -> None:
-        self._check_match()
-        self._check_distance()
-        self._check_contact()
+        check_match(self)
+        check_distance(self)
+        check_contact(self)
 
     # ---------------------------------------------------------- working values
 
@@ -74,61 +79,94 @@ class GearPairGeometry:
         return self.driver.base_pitch
 
     @property
-    def close_pressure_angle(self) -> float:
-        """Pressure angle of the mesh without backlash [rad].
+    def face_width(self) -> float:
+        """Width of the face that both gears share [m]."""
+        return min(self.driver.face_width, self.driven.face_width)
 
-        ``inv(w) = inv(alpha) + 2 tan(alpha) (x_k + x_i) / (z_k + z_i)``.
+    @property
+    def close_pressure_angle(self) -> float:
+        """Transverse pressure angle [rad] of the mesh without backlash, of the teeth as thick as they are.
+
+        ``inv(w) = inv(alpha_t) + 2 tan(alpha_n) (x_k + x_i) / (z_k + z_i)``, x the generating shifts.
         """
-        alpha = self.driver.pressure_angle
-        shift = self.driver.profile_shift + self.driven.profile_shift
-        value = involute(alpha) + 2.0 * math.tan(alpha) * shift / (self.driver.teeth + self.driven.teeth)
-        if value < 0.0:
-            raise InterferenceError(
-                f"{self.label}: with profile shifts that sum to {shift:.4g} the teeth do not close at any distance"
-            )
-        return inverse_involute(value)
+        return closing_pressure_angle(self.driver, self.driven, thinned=True)
 
     @property
     def working_centre_distance(self) -> float:
         """Distance of the shafts [m]."""
         if self.centre_distance is not None:
             return self.centre_distance
-        return self._base_radii_sum / math.cos(self.close_pressure_angle)
+        return self.base_radii_sum / math.cos(self.working_pressure_angle)
 
     @property
     def working_pressure_angle(self) -> float:
-        """Angle of the line of action to the common tangent of the pitch circles [rad]."""
+        """Angle of the line of action to the common tangent of the pitch circles, transverse [rad]."""
         if self.centre_distance is None:
-            return self.close_pressure_angle
-        return math.acos(self._base_radii_sum / self.centre_distance)
+            return closing_pressure_angle(self.driver, self.driven)
+        return math.acos(self.base_radii_sum / self.centre_distance)
+
+    @property
+    def working_pitch_radii(self) -> tuple[float, float]:
+        """Radii of driver and driven gear that roll on each other [m]."""
+        cosine = math.cos(self.working_pressure_angle)
+        return self.driver.base_radius / cosine, self.driven.base_radius / cosine
+
+    @property
+    def working_helix_angle(self) -> float:
+        """Helix angle of the driver on its working pitch cylinder [rad], ``tan(beta_w) = tan(beta_b) / cos(w)``."""
+        return math.atan(math.tan(self.driver.base_helix_angle) / math.cos(self.working_pressure_angle))
+
+    @property
+    def backlash(self) -> float:
+        """Gap of the idle flanks along their line of action, in the transverse plane [m].
+
+        From centre distance and tooth thicknesses, ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
+        teeth would jam.
+        """
+        return 2.0 * self.base_radii_sum * (involute(self.working_pressure_angle) - involute(self.close_pressure_angle))
 
     @property
     def normal_backlash(self) -> float:
-        """Gap of the idle flanks along their line of action, from the centre distance alone [m].
+        """Shortest distance of the idle flanks, what a feeler gauge finds [m]: ``backlash cos(beta_b)``."""
+        return self.backlash * math.cos(self.driver.base_helix_angle)
 
-        ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the teeth would jam.
-        """
-        return (
-            2.0 * self._base_radii_sum * (involute(self.working_pressure_angle) - involute(self.close_pressure_angle))
-        )
+    @property
+    def circumferential_backlash(self) -> float:
+        """How far a working pitch circle turns freely, as an arc [m]: ``backlash / cos(w)``."""
+        return self.backlash / math.cos(self.working_pressure_angle)
+
+    def tip_clearance(self, gear: Gear) -> float:
+        """Gap between the tip circle of `gear`, one of the two, and the other's root circle [m]."""
+        other = self.driven if gear is self.driver else self.driver
+        return self.working_centre_distance - gear.tip_radius - other.root_circle_radius
 
     # --------------------------------------------------------- path of contact
 
     @property
     def path_length(self) -> float:
         """Length of the path of contact [m]."""
-        return self._tip_reach(self.driver) + self._tip_reach(self.driven) - self._tangent_distance
+        return tip_reach(self.driver) + tip_reach(self.driven) - self.tangent_distance
 
     @property
     def contact_ratio(self) -> float:
-        """Mean number of pairs in contact: path of contact over base pitch."""
+        """Transverse contact ratio, the mean number of pairs in contact in one plane: path over base pitch."""
         return self.path_length / self.base_pitch
+
+    @property
+    def overlap_ratio(self) -> float:
+        """How many pitches a helical tooth enters earlier at one end of the face, ``b sin(beta) / (pi m_n)``."""
+        return self.face_width * abs(math.sin(self.driver.helix_angle)) / (math.pi * self.driver.module)
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """Contact ratio with the overlap, the mean number of pairs that touch somewhere along the face."""
+        return self.contact_ratio + self.overlap_ratio
 
     @property
     def pitch_point_position(self) -> float:
         """Position of the pitch point on the path of contact, in base pitches."""
         to_pitch_point = self.driver.base_radius * math.tan(self.working_pressure_angle)
-        return (to_pitch_point - self._start_distance) / self.base_pitch
+        return (to_pitch_point - self.start_distance) / self.base_pitch
 
     @property
     def back_flank_offset(self) -> float:
@@ -171,7 +209,7 @@ class GearPairGeometry:
 
     def driven_roll_angle(self, position: npt.ArrayLike) -> FloatArray:
         """Roll angle of the driven gear's contact point [rad] at `position` in base pitches."""
-        return (self._tangent_distance - self._driver_distance(position)) / self.driven.base_radius
+        return (self.tangent_distance - self._driver_distance(position)) / self.driven.base_radius
 
     def driver_radius(self, position: npt.ArrayLike) -> FloatArray:
         """Distance of the contact from the driver's centre [m] at `position` in base pitches."""
@@ -183,91 +221,40 @@ class GearPairGeometry:
 
     def driver_position(self, roll_angle: float) -> float:
         """Position in base pitches where the driver's contact point has `roll_angle` [rad]."""
-        return (roll_angle * self.driver.base_radius - self._start_distance) / self.base_pitch
+        return (roll_angle * self.driver.base_radius - self.start_distance) / self.base_pitch
 
     def driven_position(self, roll_angle: float) -> float:
         """Position in base pitches where the driven gear's contact point has `roll_angle` [rad]."""
-        distance = self._tangent_distance - roll_angle * self.driven.base_radius
-        return (distance - self._start_distance) / self.base_pitch
+        distance = self.tangent_distance - roll_angle * self.driven.base_radius
+        return (distance - self.start_distance) / self.base_pitch
 
-    # ------------------------------------------------------------------ inside
+    # ----------------------------------------------------- along the line of action
 
     @property
-    def _base_radii_sum(self) -> float:
+    def base_radii_sum(self) -> float:
+        """Sum of the base radii [m]."""
         return self.driver.base_radius + self.driven.base_radius
 
     @property
-    def _tangent_distance(self) -> float:
+    def tangent_distance(self) -> float:
         """Distance of the tangent points of the line of action on the two base circles [m]."""
-        return self._base_radii_sum * math.tan(self.working_pressure_angle)
+        return self.base_radii_sum * math.tan(self.working_pressure_angle)
 
     @property
     def _back_flank_shift(self) -> float:
         """Sum of the positions of a driver tooth's working and idle flanks when it enters at phase 0 [base pitches]."""
         sum_of_distances = 2.0 * self.driver.base_radius * (self.working_pressure_angle + self.driver.base_half_angle)
-        return (sum_of_distances - 2.0 * self._start_distance) / self.base_pitch
+        return (sum_of_distances - 2.0 * self.start_distance) / self.base_pitch
 
     @property
-    def _start_distance(self) -> float:
+    def start_distance(self) -> float:
         """Distance of the start of contact from the driver's tangent point [m]."""
-        return self._tangent_distance - self._tip_reach(self.driven)
-
-    @staticmethod
-    def _tip_reach(gear: Gear) -> float:
-        """Distance from a gear's tangent point to where its tip circle cuts the line of action [m]."""
-        return math.sqrt(gear.tip_radius**2 - gear.base_radius**2)
+        return self.tangent_distance - tip_reach(self.driven)
 
     def _driver_distance(self, position: npt.ArrayLike) -> FloatArray:
-        return self._start_distance + self.base_pitch * np.asarray(position, dtype=np.float64)
+        return self.start_distance + self.base_pitch * np.asarray(position, dtype=np.float64)
 
-    def _check_match(self) -> None:
-        for quantity, unit, scale in (("module", "mm", 1e3), ("pressure_angle", "degrees", 180.0 / math.pi)):
-            first, second = getattr(self.driver, quantity), getattr(self.driven, quantity)
-            # A thousandth is what printed sizes are rounded to (module 3.175 mm for 8 teeth per inch).
-            if not math.isclose(first, second, rel_tol=1e-3):
-                raise MismatchedGearsError(
-                    f"{self.label}: both gears need the same {quantity}, "
-                    f"got {first * scale:.8g} and {second * scale:.8g} {unit}"
-                )
 
-    def _check_distance(self) -> None:
-        distance = self.centre_distance
-        if distance is None:
-            return
-        if not (math.isfinite(distance) and distance > self._base_radii_sum):
-            raise InterferenceError(
-                f"{self.label}: the centre distance must exceed the sum of the base radii, "
-                f"{self._base_radii_sum * 1e3:.6g} mm, got {distance * 1e3:.6g} mm"
-            )
-        # One per cent of a module is what cutting thins a tooth for backlash anyway.
-        if self.normal_backlash < -0.01 * self.driver.module:
-            close = self._base_radii_sum / math.cos(self.close_pressure_angle)
-            raise InterferenceError(
-                f"{self.label}: the teeth jam at a centre distance of {distance * 1e3:.6g} mm; "
-                f"they mesh without backlash at {close * 1e3:.6g} mm"
-            )
-
-    def _check_contact(self) -> None:
-        if self.contact_ratio < 1.0:
-            raise NoContactError(
-                f"{self.label}: the contact ratio is {self.contact_ratio:.4f}, below 1, at a centre distance of "
-                f"{self.working_centre_distance * 1e3:.6g} mm; bring the shafts closer or lengthen the teeth"
-            )
-        ends = (
-            (self.driver, self.driven, self._start_distance),
-            (self.driven, self.driver, self._tangent_distance - self._tip_reach(self.driver)),
-        )
-        for rooted, tip, lowest in ends:
-            form = rooted.roll_angle(rooted.form_radius) * rooted.base_radius
-            if lowest < form - 1e-9 * rooted.module:
-                raise InterferenceError(
-                    f"{self.label}: the tip of {tip.name!r} reaches {(form - lowest) * 1e3:.4g} mm (along the line "
-                    f"of action) below the involute of {rooted.name!r}; reduce the addendum of {tip.name!r} or "
-                    f"the root_radius of {rooted.name!r}"
-                )
-            root_gap = self.working_centre_distance - tip.tip_radius - rooted.root_circle_radius
-            if root_gap < 0.0:
-                raise InterferenceError(
-                    f"{self.label}: the tip of {tip.name!r} hits the root of {rooted.name!r} "
-                    f"by {-root_gap * 1e3:.4g} mm"
-                )
+def tip_reach(gear: Gear) -> float:
+    """Distance from a gear's tangent point to where its tip circle cuts the line of action [m]."""
+    return math.sqrt(gear.tip_radius**2 - gear.base_radius**2)

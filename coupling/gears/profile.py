@@ -9,11 +9,11 @@ flank
     ``tau + psi``:  half_thickness = rb ((tau + psi) cos(tau) - sin(tau)),
     height = rb ((tau + psi) sin(tau) + cos(tau)).
 fillet
-    the angle ``gamma`` between the rack's pitch line and the line from the pitch point through the centre
-    of the rack's corner: the common normal of rack and gear passes through the pitch point.  The corner's
-    centre is ``depth`` below the pitch line, ``across`` from the tooth's axis, its radius ``rho``; the gear
-    of pitch radius ``r`` has then turned ``turn = (depth / tan(gamma) + across) / r``.  ``gamma`` runs from
-    pi/2 (bottom of the space) to the pressure angle (start of the involute).
+    the angle ``gamma`` between the rack's pitch line and the common normal of rack and gear, see
+    :mod:`coupling.gears.rack`.  It runs from pi/2 (bottom of the space) to `Gear.fillet_end` (start of the
+    involute), which is the transverse pressure angle but for undercut teeth.
+
+All of it is in the transverse plane; tip relief, a few micrometres, is not drawn.
 """
 
 from __future__ import annotations
@@ -82,21 +82,8 @@ def flank_points(gear: Gear, angle: FloatArray) -> ProfilePoints:
 
 
 def fillet_points(gear: Gear, gamma: FloatArray) -> ProfilePoints:
-    """Root fillet of a tooth at `gamma` [rad], from pi/2 (root circle) down to the pressure angle."""
-    depth, across = gear.rack_corner
-    r, rho = gear.pitch_radius, gear.rack_tip_radius
-    sine = np.sin(gamma)
-    # cot(pi/2) is zero, not the 6e-17 that 1 / tan leaves: written so that the root circle is met exactly.
-    cotangent = np.cos(gamma) / sine
-    turn = (depth * cotangent + across) / r
-    reach = depth / sine + rho
-    turn_rate = -depth / (sine**2 * r)
-    reach_rate = -depth * np.cos(gamma) / sine**2
-    tilt = gamma - turn
-    height = r * np.cos(turn) - reach * np.sin(tilt)
-    half_thickness = r * np.sin(turn) - reach * np.cos(tilt)
-    height_rate = -r * np.sin(turn) * turn_rate - reach_rate * np.sin(tilt) - reach * np.cos(tilt) * (1.0 - turn_rate)
-    return ProfilePoints(height, half_thickness, height_rate)
+    """Root fillet of a tooth at `gamma` [rad], from pi/2 (root circle) down to `Gear.fillet_end`."""
+    return ProfilePoints(*gear.rack_corner_arc.trochoid(gear.pitch_radius, gamma))
 
 
 def root_half_angle(gear: Gear) -> float:
@@ -105,7 +92,7 @@ def root_half_angle(gear: Gear) -> float:
 
 
 def tooth_outline(gear: Gear, points: int = 60) -> FloatArray:
-    """Closed-up outline of one tooth, root to tip to root.
+    """Outline of one tooth about its own axis, root to tip to root.
 
     Parameters
     ----------
@@ -117,8 +104,12 @@ def tooth_outline(gear: Gear, points: int = 60) -> FloatArray:
     -------
     ndarray, shape (4 * points - 2, 2)
         Coordinates across and along the tooth [m]; left side upward, then right side downward.
+
+    See Also
+    --------
+    coupling.gears.outline.gear_outline : all teeth, at any rotation and place.
     """
-    fillet = fillet_points(gear, np.linspace(math.pi / 2.0, gear.pressure_angle, points))
+    fillet = fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, points))
     angles = load_angle(gear, np.array([gear.form_radius, gear.tip_radius]))
     flank = flank_points(gear, np.linspace(angles[0], angles[1], points))
     across = np.concatenate([fillet.half_thickness, flank.half_thickness[1:]])

@@ -1,0 +1,42 @@
+"""The body that carries the teeth: its mass and moments of inertia.
+
+The teeth count as a ring out to the reference circle, where they fill half the circumference.  A gear without a rim is
+a disc as wide as its face, down to its bore.  A gear with a rim is a ring of the full width down to the inside of the
+rim, and a web of its own thickness in the middle of the face from there to the bore; without a web the ring stands
+alone, and what carries it is given as a disc of the rotor.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from coupling.gears.geometry import Gear
+
+
+class Inertia(NamedTuple):
+    """Mass [kg] and moments of inertia about the shaft and about a diameter through the middle [kg m^2]."""
+
+    mass: float
+    polar: float
+    diametral: float
+
+
+def hollow_disc(density: float, width: float, outer_radius: float, inner_radius: float) -> Inertia:
+    """Inertia of a disc with a hole, lengths in m and density in kg/m^3."""
+    mass = density * width * math.pi * (outer_radius**2 - inner_radius**2)
+    polar = 0.5 * mass * (outer_radius**2 + inner_radius**2)
+    return Inertia(mass, polar, 0.5 * polar + mass * width**2 / 12.0)
+
+
+def blank_inertia(gear: Gear) -> Inertia:
+    """Inertia of a gear by its geometry."""
+    bore_radius, inside = 0.5 * gear.bore, gear.rim_inner_radius
+    if inside is None:
+        return hollow_disc(gear.density, gear.face_width, gear.pitch_radius, bore_radius)
+    rim = hollow_disc(gear.density, gear.face_width, gear.pitch_radius, inside)
+    if gear.web_thickness is None:
+        return rim
+    web = hollow_disc(gear.density, gear.web_thickness, inside, bore_radius)
+    return Inertia(*(of_rim + of_web for of_rim, of_web in zip(rim, web, strict=True)))

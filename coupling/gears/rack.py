@@ -1,0 +1,154 @@
+"""The basic rack that cuts a gear, and the root fillet that the tip corner of its tooth leaves.
+
+A rack (hob, rack cutter, grinding worm) is straight along its teeth, so its section by the gear's transverse plane
+rolls on the gear's pitch circle as a plane figure, and the outline of the gear is the envelope of that section.  For a
+helical gear the section is the normal profile (ISO 53) stretched by ``1 / cos(beta)`` along the pitch line: the flanks
+stay straight, at the transverse pressure angle ``tan(alpha_t) = tan(alpha_n) / cos(beta)``, and the round corner of
+radius ``rho`` becomes an ellipse of half axes ``rho / cos(beta)`` along and ``rho`` across the pitch line.  Nothing is
+approximated by that; what is left out is that a hob has a finite number of cutting edges.
+
+The corner's point with the outward normal at ``gamma`` below the pitch line is, from the centre of the ellipse,
+
+    c = rho cos(gamma) / (k cos(beta)^2),   e = rho sin(gamma) / k,   k^2 = (cos(gamma) / cos(beta))^2 + sin(gamma)^2,
+
+c towards the flank and e towards the bottom, with the radius of curvature ``R = rho / (k^3 cos(beta)^2)``.  By the law
+of gearing it cuts when its normal passes through the pitch point (Litvin & Fuentes, Gear Geometry and Applied Theory,
+2004).  With the centre ``depth`` below the pitch line and ``across`` from the tooth's axis, D = depth + e, the
+gear of pitch radius ``r`` has then turned by ``turn``, and the point is ``reach`` away from the pitch point:
+
+    turn = (across - c + D cot(gamma)) / r,     reach = D / sin(gamma),
+    r turn' = (R - reach) / sin(gamma),         reach' = r turn' cos(gamma)      (derivatives by gamma).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BasicRack:
+    """The tooth of the generating rack in its normal section.
+
+    Parameters
+    ----------
+    module, pressure_angle : float
+        Normal module [m] and normal pressure angle [rad].
+    addendum, dedendum : float
+        Of the gear that it cuts, in modules: the rack's tooth reaches one `dedendum` below its reference line.
+    tip_radius : float or None
+        Radius of the tip corner [m].  None: the radius that ends the straight flank one addendum below the reference
+        line, ``(dedendum - addendum) m / (1 - sin(alpha))``, or the full tip radius where that is smaller.
+    helix_angle : float
+        Of the gear [rad].
+    """
+
+    module: float
+    pressure_angle: float
+    addendum: float
+    dedendum: float
+    tip_radius: float | None = None
+    helix_angle: float = 0.0
+
+    @property
+    def full_tip_radius(self) -> float:
+        """The largest corner radius: one arc from flank to flank of the rack's tooth [m]."""
+        half_tip_land = self.module * (math.pi / 4.0 - self.dedendum * math.tan(self.pressure_angle))
+        return half_tip_land * math.cos(self.pressure_angle) / (1.0 - math.sin(self.pressure_angle))
+
+    @property
+    def corner_radius(self) -> float:
+        """Radius of the tip corner in the normal section [m]."""
+        if self.tip_radius is not None:
+            return self.tip_radius
+        from_clearance = (self.dedendum - self.addendum) * self.module / (1.0 - math.sin(self.pressure_angle))
+        return max(0.0, min(from_clearance, self.full_tip_radius))
+
+    @property
+    def flank_depth(self) -> float:
+        """Depth of the end of the straight flank below the rack's reference line [m]."""
+        return self.dedendum * self.module - self.corner_radius * (1.0 - math.sin(self.pressure_angle))
+
+    def corner(self, profile_shift: float) -> RackCorner:
+        """The corner in the transverse plane, the rack drawn back by `profile_shift` modules."""
+        depth = self.dedendum * self.module - self.corner_radius
+        across = (
+            math.pi * self.module / 4.0
+            + depth * math.tan(self.pressure_angle)
+            + self.corner_radius / math.cos(self.pressure_angle)
+        )
+        return RackCorner(
+            depth=depth - profile_shift * self.module,
+            across=across / math.cos(self.helix_angle),
+            radius=self.corner_radius,
+            helix_angle=self.helix_angle,
+        )
+
+
+class TrochoidPoints(NamedTuple):
+    """Points of a fillet in the tooth's coordinates: along its axis from the gear's centre, and across [m]."""
+
+    height: FloatArray
+    half_thickness: FloatArray
+    height_rate: FloatArray
+    """Derivative of `height` by gamma [m/rad]."""
+
+
+@dataclass(frozen=True)
+class RackCorner:
+    """The tip corner of a rack in the transverse plane of the gear.
+
+    Attributes
+    ----------
+    depth, across : float
+        Its centre: below the gear's pitch line, and from the tooth's axis [m].
+    radius : float
+        In the rack's normal section [m].
+    helix_angle : float
+        [rad]
+    """
+
+    depth: float
+    across: float
+    radius: float
+    helix_angle: float
+
+    def trochoid(self, pitch_radius: float, gamma: npt.ArrayLike) -> TrochoidPoints:
+        """What the corner cuts out of a gear.
+
+        Parameters
+        ----------
+        pitch_radius : float
+            Of the rolling circle [m].
+        gamma : array_like
+            Angles of the common normal to the pitch line [rad]: pi/2 at the root circle, the transverse pressure
+            angle where the straight flank takes over.
+
+        Returns
+        -------
+        TrochoidPoints
+        """
+        gamma = np.asarray(gamma, dtype=np.float64)
+        sine, cosine, squared = np.sin(gamma), np.cos(gamma), math.cos(self.helix_angle) ** 2
+        stretch = np.sqrt(cosine**2 / squared + sine**2)
+        below = self.depth + self.radius * sine / stretch
+        curvature_radius = self.radius / (squared * stretch**3)
+        reach = below / sine
+        # cot(pi/2) is zero, not the 6e-17 that 1 / tan leaves: written so that the root circle is met exactly.
+        turn = (self.across - self.radius * cosine / (stretch * squared) + below * (cosine / sine)) / pitch_radius
+        rolled_rate = (curvature_radius - reach) / sine
+        turn_rate, reach_rate = rolled_rate / pitch_radius, rolled_rate * cosine
+        tilt = gamma - turn
+        return TrochoidPoints(
+            height=pitch_radius * np.cos(turn) - reach * np.sin(tilt),
+            half_thickness=pitch_radius * np.sin(turn) - reach * np.cos(tilt),
+            height_rate=-pitch_radius * np.sin(turn) * turn_rate
+            - reach_rate * np.sin(tilt)
+            - reach * np.cos(tilt) * (1.0 - turn_rate),
+        )
