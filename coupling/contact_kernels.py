@@ -47,6 +47,8 @@ def law_of(
         contacts.damping_depth[k],
         contacts.pair_gaps[k, : contacts.pairs[k]],
         contacts.pair_kinds[k, : contacts.pairs[k]],
+        contacts.faces[k, : contacts.face_kinds[k], : contacts.pieces[k]],
+        contacts.face_depth[k],
     )
 
 

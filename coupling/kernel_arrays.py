@@ -59,6 +59,9 @@ class Contacts(NamedTuple):
     clearance: FloatArray  # (c,)
     pair_gaps: FloatArray  # (c, pairs)
     pair_kinds: IntArray  # (c, pairs)
+    faces: FloatArray  # (c, kinds of pairs, pieces, depths, 20): cells where the load spreads over the face
+    face_kinds: IntArray  # (c,) 0 where it does not
+    face_depth: FloatArray  # (c,)
     pairs: IntArray  # (c,) pairs of teeth in a hunting period; 0 where all are alike
 
 

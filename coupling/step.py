@@ -158,12 +158,17 @@ def _contacts(system: CoupledSystem) -> Contacts:
     errors = np.zeros((c, harmonics, 3))
     pair_gaps = np.zeros((c, max(pairs, default=0)))
     pair_kinds = np.zeros((c, max(pairs, default=0)), dtype=np.int64)
-    for k, (contact, (places, cubics, _, _, gaps, numbers)) in enumerate(zip(system.contacts, arguments, strict=True)):
+    face_shapes = [argument[6].shape for argument in arguments]
+    faces = np.zeros((c, *(max((shape[axis] for shape in face_shapes), default=0) for axis in range(3)), 20))
+    for k, (contact, (places, cubics, _, _, gaps, numbers, cells, _)) in enumerate(
+        zip(system.contacts, arguments, strict=True)
+    ):
         knots[k, : pieces[k] + 1] = places
         curves[k, : kinds[k], : pieces[k]] = cubics
         errors[k, : len(contact.errors)] = contact.errors
         pair_gaps[k, : pairs[k]] = gaps
         pair_kinds[k, : pairs[k]] = numbers
+        faces[k, : face_shapes[k][0], : face_shapes[k][1], : face_shapes[k][2]] = cells
     return Contacts(
         direction=np.ascontiguousarray(system.contact_directions.T),
         knots=knots,
@@ -178,5 +183,8 @@ def _contacts(system: CoupledSystem) -> Contacts:
         clearance=np.array([contact.clearance for contact in system.contacts], dtype=np.float64),
         pair_gaps=pair_gaps,
         pair_kinds=pair_kinds,
+        faces=faces,
+        face_kinds=np.array([shape[0] for shape in face_shapes], dtype=np.int64),
+        face_depth=np.array([argument[7] for argument in arguments], dtype=np.float64),
         pairs=np.array(pairs, dtype=np.int64),
     )

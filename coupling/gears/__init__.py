@@ -31,6 +31,7 @@ from coupling.gears.errors import (
     ThinTipError,
     UndercutError,
 )
+from coupling.gears.face_slices import FaceSlices, face_slices
 from coupling.gears.faults import Fault, MissingTooth, Spall, Wear
 from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
@@ -88,6 +89,7 @@ __all__ = [
     "ChordalThickness",
     "ConstantStiffness",
     "ContactAccuracyError",
+    "FaceSlices",
     "Fault",
     "FlankPlaces",
     "Gear",
@@ -128,6 +130,7 @@ __all__ = [
     "chordal_thickness",
     "corner_reach",
     "equivalent_mass",
+    "face_slices",
     "flank_gap",
     "flank_places",
     "foundation_compliance",
@@ -158,7 +161,6 @@ __all__ = [
     "specific_sliding",
     "static_transmission_error",
     "stiffness_model",
-    "tip_relief_deviation",
     "tip_shortening",
     "tooth_contact",
     "tooth_outline",

@@ -19,6 +19,47 @@ TangentForce = tuple[float, float, float, float, float, int]
 
 
 @njit(cache=True, nogil=True)
+def face_force(cells: FloatArray, unit: float, p: float, depth: float) -> tuple[float, float, float, float]:
+    """Force, tangent, energy and the energy's slope by p of a pair whose face is loaded unevenly.
+
+    ``cells`` (d, 20), ``unit``: see :mod:`coupling.gears.face_table`; ``depth`` is the compression beyond first touch.
+    """
+    r = math.sqrt(depth / unit)
+    last = cells.shape[0] - 1
+    cell = min(int(r), last)
+    rho = min(r - cell, 1.0)
+    begin = float(cell)
+    c = cells[cell]
+    # The force's cubic in rho at this p, and how it changes with p.
+    v0 = c[0] + p * (c[4] + p * (c[8] + p * c[12]))
+    v1 = c[1] + p * (c[5] + p * (c[9] + p * c[13]))
+    v2 = c[2] + p * (c[6] + p * (c[10] + p * c[14]))
+    v3 = c[3] + p * (c[7] + p * (c[11] + p * c[15]))
+    d0 = c[4] + p * (2.0 * c[8] + 3.0 * p * c[12])
+    d1 = c[5] + p * (2.0 * c[9] + 3.0 * p * c[13])
+    d2 = c[6] + p * (2.0 * c[10] + 3.0 * p * c[14])
+    d3 = c[7] + p * (2.0 * c[11] + 3.0 * p * c[15])
+    force = v0 + rho * (v1 + rho * (v2 + rho * v3))
+    # Integrals of the powers of rho times 2 a r.
+    w0 = begin + 0.5 * rho
+    w1 = rho * (0.5 * begin + rho / 3.0)
+    w2 = rho * rho * (begin / 3.0 + 0.25 * rho)
+    w3 = rho * rho * rho * (0.25 * begin + 0.2 * rho)
+    twice = 2.0 * unit * rho
+    energy = c[16] + p * (c[17] + p * (c[18] + p * c[19])) + twice * (v0 * w0 + v1 * w1 + v2 * w2 + v3 * w3)
+    slope = c[17] + p * (2.0 * c[18] + 3.0 * p * c[19]) + twice * (d0 * w0 + d1 * w1 + d2 * w2 + d3 * w3)
+    at = 2.0 * unit * (begin + rho)
+    tangent = (v1 + rho * (2.0 * v2 + 3.0 * rho * v3)) / at if at > 0.0 else 0.0
+    if r > last + 1.0:
+        beyond = depth - unit * (last + 1.0) ** 2
+        tangent_slope = (d1 + 2.0 * d2 + 3.0 * d3) / at
+        energy += (force + 0.5 * tangent * beyond) * beyond
+        slope += (d0 + d1 + d2 + d3 + 0.5 * tangent_slope * beyond) * beyond
+        force += tangent * beyond
+    return force, tangent, energy, slope
+
+
+@njit(cache=True, nogil=True)
 def tooth_force(
     phase: float,
     compression: float,
@@ -29,6 +70,8 @@ def tooth_force(
     damping_depth: float,
     pair_gaps: FloatArray,
     pair_kinds: IntArray,
+    faces: FloatArray,
+    face_depth: float,
 ) -> TangentForce:
     """Force of the tooth contact, its tangent, and its stored energy.
 
@@ -52,6 +95,11 @@ def tooth_force(
         pairs are alike.
     pair_kinds : ndarray of int, shape (h,)
         Which kind that pair is.
+    faces : ndarray, shape (v, m, d, 20)
+        Where the load spreads over the face, the cells of `coupling.gears.face_table`, on the same knots; they stand
+        for the stiffness, and the gap is that of first touch. Empty where it does not.
+    face_depth : float
+        Their unit of compression [m].
 
     Returns
     -------
@@ -95,7 +143,16 @@ def tooth_force(
         span = knots[at + 1] - knots[at]
         u = (position - knots[at]) / span
         approach = compression - gap_of_pair - (cubic[4] + u * (cubic[5] + u * (cubic[6] + u * cubic[7])))
-        if approach > 0.0:
+        if approach > 0.0 and faces.size > 0:
+            pair_force, pair_tangent, pair_energy, pair_slope = face_force(faces[kind, at], face_depth, u, approach)
+            gap_slope = cubic[5] + u * (2.0 * cubic[6] + 3.0 * u * cubic[7])
+            force += pair_force
+            tangent += pair_tangent
+            energy += pair_energy
+            slope += (pair_slope - pair_force * gap_slope) / span
+            touching += 1
+            deepest = max(deepest, approach)
+        elif approach > 0.0:
             k = cubic[0] + u * (cubic[1] + u * (cubic[2] + u * cubic[3]))
             k_slope = cubic[1] + u * (2.0 * cubic[2] + 3.0 * u * cubic[3])
             gap_slope = cubic[5] + u * (2.0 * cubic[6] + 3.0 * u * cubic[7])
@@ -129,13 +186,15 @@ def tooth_force_history(
     damping_depth: float,
     pair_gaps: FloatArray,
     pair_kinds: IntArray,
+    faces: FloatArray,
+    face_depth: float,
 ) -> FloatArray:
     """`tooth_force` at every sample of a history.
 
     Parameters
     ----------
     phase, compression, rate : ndarray, shape (t,)
-    knots, curves, damping, damping_depth, pair_gaps, pair_kinds
+    knots, curves, damping, damping_depth, pair_gaps, pair_kinds, faces, face_depth
         As for `tooth_force`.
 
     Returns
@@ -155,6 +214,8 @@ def tooth_force_history(
             damping_depth,
             pair_gaps,
             pair_kinds,
+            faces,
+            face_depth,
         )
         history[i, 0], history[i, 1], history[i, 2] = force, tangent, viscous
         history[i, 3], history[i, 4], history[i, 5] = energy, slope, touching

@@ -15,6 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import ContactAccuracyError, GearError
+from coupling.gears.face_slices import FaceSlices, balance_faces
+from coupling.gears.face_table import face_state
 from coupling.gears.tooth_contact import ToothContact
 
 FloatArray = npt.NDArray[np.float64]
@@ -43,6 +45,8 @@ class StaticMesh:
         Stiffness of the pairs that touch, dF/d delta [N/m].
     secant_stiffness : ndarray, shape (n,)
         Load over the compression beyond first touch [N/m]; the tangent at no load.
+    line_loads : ndarray, shape (n, m, s), or None
+        Load per width on every slice of each pair's face [N/m]; None where it is the same all over.
     """
 
     force: float
@@ -52,6 +56,7 @@ class StaticMesh:
     pair_forces: FloatArray
     tangent_stiffness: FloatArray
     secant_stiffness: FloatArray
+    line_loads: FloatArray | None = None
 
     @property
     def load_shares(self) -> FloatArray:
@@ -123,6 +128,8 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
     if not (math.isfinite(force) and force >= 0.0):
         raise GearError(f"static mesh: the load must be at least 0 N, got {force!r}")
     at = mesh_period_phases(contact) if phases is None else np.atleast_1d(np.asarray(phases, dtype=np.float64))
+    if contact.faces is not None:
+        return _balanced_faces(contact, contact.faces, force, at)
     states = contact.pairs(at)
     order = np.argsort(states.deviation, axis=1)
     stiffness = np.take_along_axis(states.stiffness, order, axis=1)
@@ -154,9 +161,35 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
     return StaticMesh(force, at, compression, states.position, forces, tangent, secant)
 
 
+def _balanced_faces(contact: ToothContact, faces: FaceSlices, force: float, at: FloatArray) -> StaticMesh:
+    """The loaded mesh where the load spreads unevenly over the face."""
+    states = contact.pairs(at)
+    rows, columns = np.nonzero(states.present)
+    position, kind = states.position[rows, columns], states.kind[rows, columns]
+    slices = faces.z.size
+    base, gap = np.ones((rows.size, slices)), np.zeros((rows.size, slices))
+    meeting = np.zeros((rows.size, slices), dtype=np.bool_)
+    for number, curves in enumerate(contact.kinds):
+        these = kind == number
+        state = face_state(faces, curves, position[these])
+        base[these], gap[these], meeting[these] = state.base, state.gap, state.meeting
+    gap += states.pitch_gap[rows, columns][:, None]
+    compression, loads = balance_faces(faces, base, gap, meeting, rows, np.full(at.size, force))
+    forces, tangents = np.zeros(states.position.shape), np.zeros(states.position.shape)
+    line_loads = np.zeros((*states.position.shape, slices))
+    forces[rows, columns], tangents[rows, columns] = loads.force, loads.tangent
+    line_loads[rows, columns] = loads.line_load
+    beyond = compression - states.deviation.min(axis=1)
+    tangent = tangents.sum(axis=1)
+    secant = np.where(beyond > 0.0, force / np.where(beyond > 0.0, beyond, 1.0), tangent)
+    return StaticMesh(force, at, compression, states.position, forces, tangent, secant, line_loads)
+
+
 def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
     """Stiffness of all pairs on the path of contact, as if none were relieved [N/m], at `phases` (n,)."""
     states = contact.pairs(phases)
+    if contact.faces is not None:
+        return np.asarray(states.stiffness.sum(axis=1), dtype=np.float64)
     on_path = (states.position >= 0.0) & (states.position < contact.contact_ratio)
     return np.asarray(np.where(on_path, states.stiffness, 0.0).sum(axis=1), dtype=np.float64)
 

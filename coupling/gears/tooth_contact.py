@@ -34,11 +34,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import GearError
+from coupling.gears.face_slices import FaceSlices
+from coupling.gears.face_table import face_state, face_table
 from coupling.gears.pair_curves import PairCurves, corners_of, curve_table, pair_kinds
 from coupling.gears.pair_geometry import GearPairGeometry, IntArray
 from coupling.gears.pair_variants import pair_variants
@@ -48,7 +51,7 @@ from coupling.gears.stiffness_models import StiffnessModel
 
 FloatArray = npt.NDArray[np.float64]
 
-KernelArguments = tuple[FloatArray, FloatArray, float, float, FloatArray, IntArray]
+KernelArguments = tuple[FloatArray, FloatArray, float, float, FloatArray, IntArray, FloatArray, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,13 +67,19 @@ class PairStates:
     stiffness : ndarray, shape (n, m)
         [N/m], 0 where absent.
     deviation : ndarray, shape (n, m)
-        Gap by profile and pitch [m], infinite where absent.
+        Gap by profile and pitch [m], infinite where absent; that of first touch where the face is not even.
+    kind : ndarray of int, shape (n, m)
+        Number of the kind of pair.
+    pitch_gap : ndarray, shape (n, m)
+        The part of the gap that pitch deviations make [m].
     """
 
     position: FloatArray
     present: npt.NDArray[np.bool_]
     stiffness: FloatArray
     deviation: FloatArray
+    kind: IntArray
+    pitch_gap: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +107,10 @@ class ToothContact:
         Of pairs of damaged teeth, numbered from 1; pairs of sound teeth are number 0.
     pair_variants, back_pair_variants : ndarray of int, shape (h,)
         Which of them the pair is that enters at phase n, at n mod h; empty where all are alike.
+    faces : FaceSlices or None
+        Slices of the face where it is not loaded evenly; positions are then those of the middle of the face.
+    module : float
+        Of the gears [m]; how deep the table for the kernels goes is counted in it. Needed with `faces` alone.
     """
 
     contact_ratio: float
@@ -111,6 +124,8 @@ class ToothContact:
     variants: tuple[PairCurves, ...] = ()
     pair_variants: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     back_pair_variants: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    faces: FaceSlices | None = None
+    module: float = 0.0
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
@@ -129,7 +144,7 @@ class ToothContact:
                 raise GearError(f"tooth contact: {name} must be 0 to {len(self.variants)}, got {numbers.max()}")
 
     def _check_curves(self, curves: PairCurves) -> None:
-        start, end = self.touching_range
+        start, end = self._slice_range
         if not (start <= 1e-12 and end >= self.contact_ratio * (1.0 - 1e-12)):
             raise GearError(
                 f"tooth contact: the stiffness must cover 0 to {self.contact_ratio:.6g} base pitches, "
@@ -154,7 +169,10 @@ class ToothContact:
         Knots (m + 1,), the cubics of stiffness and of gap of every kind of pair (v, m, 8) on them, damping and its
         depth, and for every pair of the hunting period its gap and its kind, (h,) both.
         """
-        knots, table = curve_table(self.kinds)
+        if self.faces is None:
+            (knots, table), cells, depth = curve_table(self.kinds), np.zeros((0, 0, 0, 20)), 1.0
+        else:
+            (knots, table), cells, depth = self._face_arguments
         return (
             knots,
             table,
@@ -162,7 +180,16 @@ class ToothContact:
             float(self.damping_depth),
             np.zeros(self.hunting_numbers) + (self.pitch_gaps if self.pitch_gaps.size else 0.0),
             np.zeros(self.hunting_numbers, dtype=np.int64) + (self.pair_variants if self.pair_variants.size else 0),
+            cells,
+            depth,
         )
+
+    @cached_property
+    def _face_arguments(self) -> tuple[tuple[FloatArray, FloatArray], FloatArray, float]:
+        assert self.faces is not None
+        made = face_table(self.faces, self.kinds, self.module)
+        curves = np.concatenate([np.zeros_like(made.first_touch), made.first_touch], axis=-1)
+        return (made.knots, np.ascontiguousarray(curves)), made.cells, made.depth_unit
 
     @property
     def kinds(self) -> tuple[PairCurves, ...]:
@@ -172,6 +199,12 @@ class ToothContact:
     @property
     def touching_range(self) -> tuple[float, float]:
         """First and last position where a pair can touch [base pitches]: 0 and the contact ratio, or beyond."""
+        start, end = self._slice_range
+        reach = 0.0 if self.faces is None else float(np.abs(self.faces.shift).max())
+        return start - reach, end + reach
+
+    @property
+    def _slice_range(self) -> tuple[float, float]:
         return float(self.stiffness.knots[0]), float(self.stiffness.knots[-1])
 
     @property
@@ -200,9 +233,12 @@ class ToothContact:
     def event_phases(self) -> tuple[float, ...]:
         """Phases in [0, 1) where a pair enters its path of contact (0) or leaves it, ascending.
 
-        Empty for a mesh that is one unchanging number of pairs, i.e. a whole contact ratio with a stiffness
-        and a deviation that join up at the period's ends in value and slope, and all pairs alike.
+        Empty where the load spreads over the face, since pairs then come and go slice by slice, and for a mesh that
+        is one unchanging number of pairs, i.e. a whole contact ratio with a stiffness and a deviation that join up at
+        the period's ends in value and slope, and all pairs alike.
         """
+        if self.faces is not None:
+            return ()
         leaving = self.contact_ratio % 1.0
         if leaving > 1e-12 and 1.0 - leaving > 1e-12:
             return (0.0, leaving)
@@ -221,6 +257,8 @@ class ToothContact:
     @property
     def corner_phases(self) -> tuple[float, ...]:
         """Phases in [0, 1) where the slope of a deviation or of a stiffness jumps (a relief begins), ascending."""
+        if self.faces is not None:
+            return ()
         found: set[float] = set()
         for curves in self.kinds:
             for curve in (curves.deviation, curves.stiffness):
@@ -260,11 +298,16 @@ class ToothContact:
         stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
         for variant, curves in enumerate(self.kinds):
             these = present & (kind == variant)
-            stiffness[these] = curves.stiffness(position[these])
-            deviation[these] = curves.deviation(position[these])
-        if self.pitch_gaps.size:
-            deviation = deviation + self.pitch_gaps[entered % self.pitch_gaps.size]
-        return PairStates(position, present, stiffness, deviation)
+            if self.faces is None:
+                stiffness[these] = curves.stiffness(position[these])
+                deviation[these] = curves.deviation(position[these])
+            else:
+                state = face_state(self.faces, curves, position[these])
+                shares = curves.stiffness(position[these][:, None] + self.faces.shift) / self.faces.z.size
+                stiffness[these] = np.where(state.meeting, shares, 0.0).sum(axis=1)
+                deviation[these] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
+        gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
+        return PairStates(position, present, stiffness, deviation + gap, kind, gap)
 
     def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
         """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
@@ -274,7 +317,12 @@ class ToothContact:
 
 
 def tooth_contact(
-    geometry: GearPairGeometry, model: StiffnessModel, damping: float = 0.0, *, corner_contact: bool = False
+    geometry: GearPairGeometry,
+    model: StiffnessModel,
+    damping: float = 0.0,
+    *,
+    corner_contact: bool = False,
+    faces: FaceSlices | None = None,
 ) -> ToothContact:
     """Contact law of a gear pair.
 
@@ -289,6 +337,8 @@ def tooth_contact(
         Damping coefficient [N s/m], e.g. from `mesh_damping`.
     corner_contact : bool
         Whether pairs touch beyond their path of contact as well, where a load closes the gap to a corner.
+    faces : FaceSlices or None
+        From `face_slices`, where the face is not loaded evenly; None for the same load all over it.
 
     Returns
     -------
@@ -315,4 +365,6 @@ def tooth_contact(
         variants=kinds[1:],
         pair_variants=variants.of_pair if len(kinds) > 1 else none.astype(np.int64),
         back_pair_variants=variants.of_back_pair if len(kinds) > 1 else none.astype(np.int64),
+        faces=faces,
+        module=geometry.driver.module,
     )

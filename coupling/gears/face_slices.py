@@ -1,0 +1,286 @@
+r"""Contact across the face: a pair of teeth as slices that are coupled to each other.
+
+Where the flanks are not alike across the face (helical, crowned, misaligned), the load spreads along the contact
+line as the teeth yield. The face of width b is cut into slices at places z, each with its own position on the path
+of contact, ``s + eps_beta z / b``, and its own gap. The field ``w(z)`` by which both teeth and their bodies give way is
+that of a foundation which passes shear on (Pasternak's; for gears: Ajmi and Velex, Mech. Mach. Theory 40, 2005),
+
+    k_b w - T w'' = q,        w' = 0 at the ends of the face,
+
+with q the load per width, k_b the stiffness of the teeth per width without the flattening of their contact, and T
+their coupling; contact adds, wherever there is any,
+
+    q = k_h (delta - gap - w) >= 0,
+
+k_h the stiffness of the flattening per width. So a slice that carries takes its neighbours along, and a tooth's ends,
+with nothing beyond them, are softer. Alike across the face it is the spur gear's law exactly.
+
+T is the energy of a tooth whose deflection varies across the face. A cantilever of thickness t(y) that is deflected by
+``W(z) phi(y)`` twists with ``int G t^3/3 phi'^2 dy`` and shears across with ``int 5/6 G t phi^2 dy``, per W'^2; both
+must yield, like springs in series. phi is a cantilever's shape under a load at the middle of the path of contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import ContactAccuracyError
+from coupling.gears.geometry import Gear
+from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.profile import tooth_outline
+from coupling.gears.tooth_compliance import hertz_compliance
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.intp]
+
+DEFAULT_SLICES = 61
+_MOST_ROUNDS = 200
+
+
+@dataclass(frozen=True, eq=False)
+class FaceSlices:
+    """The slices of a pair's common face.
+
+    Attributes
+    ----------
+    z : ndarray, shape (n,)
+        Their middles, counted from that of the face [m].
+    width : float
+        Of each [m].
+    shift : ndarray, shape (n,)
+        What each adds to the position of the pair [base pitches].
+    gap : ndarray, shape (n,)
+        What the flanks lack there, over their profiles' own [m].
+    flattening : float
+        k_h, load per width over the flattening of the contact [N/m per m].
+    coupling : float
+        T, shear force over slope [N].
+    """
+
+    z: FloatArray
+    width: float
+    shift: FloatArray
+    gap: FloatArray
+    flattening: float
+    coupling: float
+
+    @property
+    def face_width(self) -> float:
+        """Of all slices [m]."""
+        return self.width * self.z.size
+
+
+@dataclass(frozen=True, eq=False)
+class FaceLoads:
+    """Loaded faces of p pairs.
+
+    Attributes
+    ----------
+    line_load : ndarray, shape (p, n)
+        Load per width [N/m], transverse.
+    force, tangent : ndarray, shape (p,)
+        Of each pair [N], and its rise by compression [N/m].
+    """
+
+    line_load: FloatArray
+    force: FloatArray
+    tangent: FloatArray
+
+
+def face_slices(
+    geometry: GearPairGeometry,
+    *,
+    sense: int = 1,
+    misalignment: float = 0.0,
+    count: int = DEFAULT_SLICES,
+) -> FaceSlices:
+    """Slices of a gear pair's face.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+    sense : int
+        +1 where the driver turns counter-clockwise seen from +z, -1 where clockwise: a right-hand helix then leads at
+        the end of larger z, or lags there.
+    misalignment : float
+        Angle between the flanks in the plane of action [rad], open towards +z where it is positive.
+    count : int
+        How many.
+    """
+    b = geometry.face_width
+    z = b * ((np.arange(count) + 0.5) / count - 0.5)
+    hand = math.copysign(1.0, geometry.driver.helix_angle) * sense
+    gap = misalignment * z
+    for gear in (geometry.driver, geometry.driven):
+        if gear.helix_deviation is not None:
+            gap = gap - gear.helix_deviation.at(z, b)
+    couplings = [
+        tooth_coupling(gear, radius)
+        for gear, radius in zip((geometry.driver, geometry.driven), _middle_radii(geometry), strict=True)
+    ]
+    return FaceSlices(
+        z=z,
+        width=b / count,
+        shift=hand * geometry.overlap_ratio * z / b,
+        gap=np.asarray(gap, dtype=np.float64),
+        flattening=1.0 / (hertz_compliance(geometry.driver, geometry.driven) * b),
+        coupling=1.0 / sum(1.0 / coupling for coupling in couplings) if count > 1 else 0.0,
+    )
+
+
+def tooth_coupling(gear: Gear, radius: float) -> float:
+    """T of one tooth [N], with the load at `radius` [m]."""
+    across, along = tooth_outline(gear)[: 2 * 60 - 1].T
+    height = along - along[0]
+    load = float(np.interp(radius, np.hypot(across, along), height))
+    below = height <= load
+    y, thickness = height[below], -2.0 * across[below]
+    share = y / load
+    shape, slope = share**2 * (3.0 - share) / 2.0, 1.5 * share * (2.0 - share) / load
+    shear_modulus = gear.youngs_modulus / (2.0 * (1.0 + gear.poisson_ratio))
+    twist = shear_modulus * np.trapezoid(thickness**3 / 3.0 * slope**2, y)
+    shear = shear_modulus * np.trapezoid(5.0 / 6.0 * thickness * shape**2, y)
+    return float(1.0 / (1.0 / twist + 1.0 / shear))
+
+
+def tooth_stiffness(slices: FaceSlices, stiffness: FloatArray) -> FloatArray:
+    """k_b [N/m per m] from the stiffness of a pair over its whole face [N/m], flattening included.
+
+    A pair so stiff that the flattening alone would yield more is taken to yield half by it.
+    """
+    whole = stiffness / slices.face_width
+    return np.asarray(1.0 / np.maximum(1.0 / whole - 1.0 / slices.flattening, 0.5 / whole), dtype=np.float64)
+
+
+def load_faces(
+    slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, compression: FloatArray
+) -> FaceLoads:
+    """Loads of p pairs at given compressions.
+
+    Parameters
+    ----------
+    slices : FaceSlices
+    base : ndarray, shape (p, n)
+        k_b of each slice [N/m per m].
+    gap : ndarray, shape (p, n)
+        [m]; finite where slices meet.
+    meeting : ndarray of bool, shape (p, n)
+        Whether the slice is where it can touch.
+    compression : ndarray, shape (p,)
+        [m].
+
+    Raises
+    ------
+    ContactAccuracyError
+        Where the set of touching slices does not settle.
+    """
+    touching = meeting & (compression[:, None] > gap)
+    for _ in range(_MOST_ROUNDS):
+        fixed, rising = _fields(slices, base, gap, touching)
+        excess = compression[:, None] - gap - (fixed + compression[:, None] * rising)
+        touches = meeting & (excess > 0.0)
+        if np.array_equal(touches, touching):
+            load = np.where(touching, slices.flattening * excess, 0.0)
+            tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
+            return FaceLoads(load, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
+        touching = touches
+    raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
+
+
+def balance_faces(
+    slices: FaceSlices,
+    base: FloatArray,
+    gap: FloatArray,
+    meeting: BoolArray,
+    owner: IntArray,
+    force: FloatArray,
+) -> tuple[FloatArray, FaceLoads]:
+    """Compressions (m,) at which the pairs of m meshes carry their loads, and the loaded faces.
+
+    Parameters
+    ----------
+    slices, base, gap, meeting
+        As for `load_faces`, of all pairs of all meshes.
+    owner : ndarray of int, shape (p,)
+        Which mesh a pair belongs to.
+    force : ndarray, shape (m,)
+        Load of each mesh along the line of action [N].
+
+    Raises
+    ------
+    ContactAccuracyError
+        Where the set of touching slices does not settle, or the loads do not balance to rounding.
+    """
+    meshes = force.size
+    nearest = np.full(meshes, np.inf)
+    np.minimum.at(nearest, owner, np.where(meeting, gap, np.inf).min(axis=1, initial=np.inf))
+    # Every slice that could touch: the set shrinks to the right one from there.
+    touching = meeting.copy()
+    touched = nearest
+    for _ in range(_MOST_ROUNDS):
+        fixed, rising = _fields(slices, base, gap, touching)
+        constant = np.where(touching, -gap - fixed, 0.0).sum(axis=1)
+        slope = np.where(touching, 1.0 - rising, 0.0).sum(axis=1)
+        scale = slices.flattening * slices.width
+        stiffness = scale * np.bincount(owner, slope, meshes)
+        offset = scale * np.bincount(owner, constant, meshes)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            touched = np.where(stiffness > 0.0, (force - offset) / stiffness, nearest)
+        own = touched[owner][:, None]
+        touches = meeting & (own - gap - (fixed + own * rising) > 0.0)
+        # At least the nearest slice carries.
+        none = np.bincount(owner, touches.any(axis=1), meshes) == 0
+        if none.any():
+            touches |= none[owner][:, None] & meeting & (gap <= nearest[owner][:, None])
+        if np.array_equal(touches, touching):
+            break
+        touching = touches
+    else:
+        raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
+    load = np.where(touching, slices.flattening * (own - gap - (fixed + own * rising)), 0.0)
+    tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
+    loads = FaceLoads(load, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
+    carried = np.bincount(owner, loads.force, meshes)
+    rounding = 1e-9 * (force + stiffness * np.abs(touched)) + 1e-300
+    if np.any(np.abs(carried - force) > rounding) or np.any(load < -rounding.max()):
+        raise ContactAccuracyError("the slices of the face do not balance the load; check the stiffness and the gaps")
+    return touched, loads
+
+
+def _fields(
+    slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """w = fixed + compression * rising of every pair, (p, n) both, with given slices touching."""
+    n = slices.z.size
+    flat = np.where(touching, slices.flattening, 0.0)
+    link = slices.coupling / slices.width**2
+    neighbours = np.full(n, 2.0)
+    neighbours[0] -= 1.0
+    neighbours[-1] -= 1.0
+    diagonal = (base + flat + link * neighbours).T
+    fixed, rising = -(flat * np.where(touching, gap, 0.0)).T, flat.T.copy()
+    # Thomas' elimination along the face, all pairs at once: the matrix is diagonally dominant.
+    pivot = diagonal[0]
+    pivots = [pivot]
+    for i in range(1, n):
+        factor = link / pivot
+        pivot = diagonal[i] - link * factor
+        pivots.append(pivot)
+        fixed[i] += factor * fixed[i - 1]
+        rising[i] += factor * rising[i - 1]
+    fixed[-1] /= pivot
+    rising[-1] /= pivot
+    for i in range(n - 2, -1, -1):
+        fixed[i] = (fixed[i] + link * fixed[i + 1]) / pivots[i]
+        rising[i] = (rising[i] + link * rising[i + 1]) / pivots[i]
+    return fixed.T, rising.T
+
+
+def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:
+    middle = 0.5 * geometry.contact_ratio
+    return float(geometry.driver_radius(middle)), float(geometry.driven_radius(middle))

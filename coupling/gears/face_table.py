@@ -1,0 +1,121 @@
+r"""The force of a pair whose face is loaded unevenly, as a table that a compiled kernel can read.
+
+Force, tangent and energy of such a pair (:mod:`coupling.gears.face_slices`) depend on its position s and on the
+compression ``u`` beyond its first touch. On a grid of both they are bicubic: with ``u = a r^2`` the grid is fine where
+contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is
+that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's slope, whatever
+the table may miss of the slices' own solution, and motion on it conserves energy. Beyond the last ``u`` the force goes
+on with its tangent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicSpline
+
+from coupling.gears.face_slices import FaceSlices, load_faces, tooth_stiffness
+from coupling.gears.pair_curves import PairCurves
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+POSITIONS = 160
+DEPTHS = 24
+_DEEPEST = 0.02
+"""In modules: compression up to which the table goes, beyond what evens out the face."""
+
+
+@dataclass(frozen=True, eq=False)
+class FaceTable:
+    """Tables for every kind of pair.
+
+    Attributes
+    ----------
+    knots : ndarray, shape (m + 1,)
+        Positions of the middle of the face [base pitches].
+    first_touch : ndarray, shape (v, m, 4)
+        Cubics of the gap at which a pair first touches [m].
+    cells : ndarray, shape (v, m, d, 20)
+        Coefficients c_mn of the force [N], row by row, and the four of U_0 [J].
+    depth_unit : float
+        a [m].
+    """
+
+    knots: FloatArray
+    first_touch: FloatArray
+    cells: FloatArray
+    depth_unit: float
+
+
+@dataclass(frozen=True, eq=False)
+class FaceState:
+    """The slices of pairs at given positions, (p, n) each: k_b [N/m per m], gap [m], and whether they can touch."""
+
+    base: FloatArray
+    gap: FloatArray
+    meeting: BoolArray
+
+
+def face_state(slices: FaceSlices, curves: PairCurves, position: FloatArray) -> FaceState:
+    """Slices of pairs of one kind whose faces' middles are at `position` (p,) in base pitches."""
+    at = position[:, None] + slices.shift
+    start, end = curves.stiffness.knots[[0, -1]]
+    meeting = (at >= start) & (at <= end)
+    base = tooth_stiffness(slices, curves.stiffness(at))
+    return FaceState(base, curves.deviation(at) + slices.gap, meeting)
+
+
+def face_table(slices: FaceSlices, kinds: tuple[PairCurves, ...], module: float) -> FaceTable:
+    """Table of every kind of pair; `module` [m] sets how deep it goes."""
+    start, end = kinds[0].stiffness.knots[[0, -1]]
+    reach = float(np.abs(slices.shift).max()) if slices.z.size > 1 else 0.0
+    knots = np.linspace(start - reach, end + reach, POSITIONS + 1)
+    deepest = _DEEPEST * module + 1.5 * float(np.ptp(slices.gap))
+    unit = deepest / DEPTHS**2
+    compressions = unit * np.arange(DEPTHS + 1.0) ** 2
+    touches, cells = [], []
+    for curves in kinds:
+        state = face_state(slices, curves, knots)
+        gap = np.where(state.meeting, state.gap, np.inf).min(axis=1)
+        # At the very ends nothing may meet for rounding: as at the next position.
+        gap = np.where(np.isfinite(gap), gap, np.nanmax(np.where(np.isfinite(gap), gap, np.nan)))
+        shape = (knots.size, DEPTHS + 1)
+        base, gaps = np.repeat(state.base, DEPTHS + 1, axis=0), np.repeat(state.gap, DEPTHS + 1, axis=0)
+        meeting = np.repeat(state.meeting, DEPTHS + 1, axis=0)
+        loads = load_faces(slices, base, gaps, meeting, (gap[:, None] + compressions).ravel())
+        force = loads.force.reshape(shape)
+        rise = loads.tangent.reshape(shape) * 2.0 * unit * np.arange(DEPTHS + 1.0)
+        force[:, 0] = 0.0
+        touches.append(_powers(knots, gap[:, None])[:, 0])
+        cells.append(_cells(_powers(knots, force), _powers(knots, rise), unit))
+    return FaceTable(knots, np.array(touches), np.array(cells), unit)
+
+
+def _powers(knots: FloatArray, values: FloatArray) -> FloatArray:
+    """Cubic splines through columns of values at knots, (m, columns, 4), in a variable from 0 to 1."""
+    spacing = knots[1] - knots[0]
+    coefficients = np.asarray(CubicSpline(knots, values, axis=0).c)[::-1]
+    return np.asarray(np.moveaxis(coefficients, 0, -1) * spacing ** np.arange(4), dtype=np.float64)
+
+
+def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
+    """Coefficients (m, d, 20) from those of the force and of its derivative by r along the positions, (m, d + 1, 4)."""
+    low, high, rise_low, rise_high = force[:, :-1], force[:, 1:], rise[:, :-1], rise[:, 1:]
+    powers = np.stack(
+        [
+            low,
+            rise_low,
+            3.0 * (high - low) - 2.0 * rise_low - rise_high,
+            2.0 * (low - high) + rise_low + rise_high,
+        ],
+        axis=-1,
+    )
+    n = np.arange(4.0)
+    begin = np.arange(low.shape[1], dtype=np.float64)
+    weights = 2.0 * unit * (begin[:, None] / (n + 1.0) + 1.0 / (n + 2.0))
+    gained = np.einsum("jimn,in->jim", powers, weights)
+    energy = np.cumsum(gained, axis=1) - gained
+    return np.concatenate([powers.reshape(*low.shape[:2], 16), energy], axis=-1)

@@ -1,0 +1,192 @@
+"""Uneven faces: the spur law as the limit, the slices against dense quadratic programming, and the compiled table."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+
+from coupling.gears import (
+    Gear,
+    GearPairGeometry,
+    HelixDeviation,
+    PotentialEnergyStiffness,
+    TipRelief,
+    face_slices,
+    static_transmission_error,
+    tooth_contact,
+)
+from coupling.gears.face_slices import FaceSlices, load_faces, tooth_coupling, tooth_stiffness
+from coupling.gears.kernels import tooth_force
+
+ALPHA = math.radians(20.0)
+MODEL = PotentialEnergyStiffness()
+PINION = Gear("pinion", 24, 3e-3, ALPHA, 24e-3, tip_relief=TipRelief(10e-6, length=3e-3))
+WHEEL = replace(PINION, name="wheel", teeth=37)
+SPUR = GearPairGeometry(PINION, WHEEL)
+PHASES = np.arange(64) / 64.0
+FORCE = 6000.0
+
+
+def helical(degrees: float, **changes: object) -> GearPairGeometry:
+    angle = math.radians(degrees)
+    return GearPairGeometry(
+        replace(PINION, helix_angle=angle, **changes),  # type: ignore[arg-type]
+        replace(WHEEL, helix_angle=-angle),
+    )
+
+
+def test_even_faces_are_the_spur_law() -> None:
+    plain = tooth_contact(SPUR, MODEL, corner_contact=True)
+    sliced = tooth_contact(SPUR, MODEL, corner_contact=True, faces=face_slices(SPUR))
+    for force in (50.0, FORCE):
+        one, other = (static_transmission_error(contact, force, PHASES) for contact in (plain, sliced))
+        np.testing.assert_allclose(other.transmission_error, one.transmission_error, rtol=1e-9)
+        np.testing.assert_allclose(other.pair_forces, one.pair_forces, atol=1e-6 * force)
+        np.testing.assert_allclose(other.tangent_stiffness, one.tangent_stiffness, rtol=1e-9)
+
+
+def test_helix_angle_to_nothing_is_a_spur_gear() -> None:
+    spur = static_transmission_error(tooth_contact(SPUR, MODEL, corner_contact=True), FORCE, PHASES)
+    apart = []
+    for degrees in (1.0, 0.1, 0.01):
+        pair = helical(degrees)
+        contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair))
+        error = static_transmission_error(contact, FORCE, PHASES).transmission_error
+        apart.append(np.abs(error - spur.transmission_error).max() / spur.mean_transmission_error)
+    assert apart[2] < 1e-3
+    assert apart[2] < 0.2 * apart[1] < 0.1 * apart[0]
+
+
+def random_face(seed: int) -> tuple[FaceSlices, np.ndarray, np.ndarray, float]:
+    random = np.random.default_rng(seed)
+    n = 24
+    slices = FaceSlices(np.linspace(-1.0, 1.0, n) * 1e-2, 8e-4, np.zeros(n), np.zeros(n), 1.6e11, 1.3e5)
+    base = random.uniform(8e9, 2e10, n)
+    gap = random.uniform(0.0, 2e-5, n) + random.uniform(-1.0, 1.0) * np.linspace(-1e-5, 1e-5, n)
+    return slices, base, gap, float(random.uniform(5e-6, 3e-5))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_slices_against_a_dense_solution_of_the_unilateral_problem(seed: int) -> None:
+    # q >= 0, delta - gap - w - q/k_h <= 0, complementary: the minimum of a quadratic form, here by non-negative
+    # least squares on its Cholesky factor.
+    slices, base, gap, compression = random_face(seed)
+    n = base.size
+    link = slices.coupling / slices.width**2
+    matrix = np.diag(base + link * np.r_[1.0, np.full(n - 2, 2.0), 1.0]) - link * (np.eye(n, k=1) + np.eye(n, k=-1))
+    flexibility = np.linalg.inv(matrix) + np.eye(n) / slices.flattening
+    factor = np.linalg.cholesky(flexibility)
+    expected = nnls(factor.T, np.linalg.solve(factor, compression - gap), maxiter=1000)[0]
+    found = load_faces(slices, base[None], gap[None], np.ones((1, n), dtype=np.bool_), np.array([compression]))
+    np.testing.assert_allclose(found.line_load[0], expected, atol=1e-8 * expected.max())
+    assert (expected == 0.0).any() or seed > 2  # some of them lose contact
+    step = 1e-10
+    ahead = load_faces(slices, base[None], gap[None], np.ones((1, n), dtype=np.bool_), np.array([compression + step]))
+    assert (ahead.force[0] - found.force[0]) / step == pytest.approx(found.tangent[0], rel=1e-4)
+
+
+def test_a_point_load_spreads_by_the_foundations_own_length() -> None:
+    # Far from the ends w falls with e^{-|z|/l}, l = sqrt(T/k_b): the closed form of Pasternak's foundation.
+    n, k_b = 401, 1.2e10
+    width = 0.1 / n
+    z = width * (np.arange(n) - 200)
+    slices = FaceSlices(z, width, np.zeros(n), np.zeros(n), 1e13, 1.5e5)
+    gap = np.where(z == 0.0, 0.0, 1.0)
+    meeting = (z == 0.0)[None]
+    load = load_faces(slices, np.full((1, n), k_b), gap[None], meeting, np.array([1e-5]))
+    length = math.sqrt(slices.coupling / k_b)
+    stiffness = 2.0 * math.sqrt(k_b * slices.coupling)  # of a line load at one place of an endless face
+    assert load.force[0] / 1e-5 == pytest.approx(stiffness, rel=2.0 * width / length)
+
+
+def test_coupling_is_of_the_order_of_the_modulus_times_module_squared() -> None:
+    # By hand for a plate of the tooth's mean thickness 1.5 m over 2 m: twist 0.75 and shear 0.59 G m^2 in series.
+    coupling = tooth_coupling(PINION, PINION.pitch_radius)
+    shear_modulus = PINION.youngs_modulus / 2.6
+    assert 0.15 < coupling / (shear_modulus * PINION.module**2) < 0.8
+    double = replace(PINION, module=6e-3)
+    assert tooth_coupling(double, double.pitch_radius) == pytest.approx(4.0 * coupling, rel=1e-9)
+
+
+def test_crowning_brings_the_load_to_the_middle_and_misalignment_to_one_end() -> None:
+    crowned = GearPairGeometry(replace(PINION, helix_deviation=HelixDeviation(crowning=12e-6)), WHEEL)
+    contact = tooth_contact(crowned, MODEL, corner_contact=True, faces=face_slices(crowned))
+    mesh = static_transmission_error(contact, FORCE, [0.8])
+    assert mesh.line_loads is not None
+    loads = mesh.line_loads[0].sum(axis=0)
+    assert loads.argmax() == loads.size // 2
+    np.testing.assert_allclose(loads, loads[::-1], rtol=1e-6, atol=1e-6 * loads.max())
+    tilted = tooth_contact(SPUR, MODEL, corner_contact=True, faces=face_slices(SPUR, misalignment=1e-3))
+    mesh = static_transmission_error(tilted, FORCE, [0.8])
+    assert mesh.line_loads is not None
+    assert mesh.line_loads[0].sum(axis=0).argmax() == 0  # the gap opens towards +z
+    assert mesh.tangent_stiffness[0] < tooth_contact(SPUR, MODEL).mean_stiffness
+
+
+def test_a_helix_deviation_undoes_a_misalignment() -> None:
+    angle, b = 0.8e-3, PINION.face_width
+    mended = GearPairGeometry(replace(PINION, helix_deviation=HelixDeviation(slope=angle * b)), WHEEL)
+    faces = face_slices(mended, misalignment=angle)
+    np.testing.assert_allclose(faces.gap, 0.0, atol=1e-18)
+
+
+def test_turning_the_other_way_mirrors_the_face() -> None:
+    pair = helical(15.0, helix_deviation=HelixDeviation(slope=9e-6))
+    mirrored = helical(-15.0, helix_deviation=HelixDeviation(slope=9e-6))
+    errors = [
+        static_transmission_error(
+            tooth_contact(p, MODEL, corner_contact=True, faces=face_slices(p, sense=sense)), FORCE, PHASES
+        ).transmission_error
+        for p, sense in ((pair, 1), (mirrored, -1), (pair, -1))
+    ]
+    np.testing.assert_allclose(errors[1], errors[0], rtol=1e-9)
+    assert np.abs(errors[2] - errors[0]).max() > 1e-9
+
+
+def test_whole_overlap_keeps_the_length_of_contact_and_so_the_error() -> None:
+    # With an overlap of one pitch the lines of contact are as long at every phase.
+    whole = math.degrees(math.asin(math.pi * PINION.module / PINION.face_width))
+    swings = []
+    for degrees in (0.01, 8.0, whole):
+        pair = helical(degrees, tip_relief=None)
+        contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair))
+        swings.append(static_transmission_error(contact, FORCE, PHASES).peak_to_peak_transmission_error)
+    assert pair.overlap_ratio == pytest.approx(1.0)
+    assert swings[0] > swings[1] > 8.0 * swings[2]
+
+
+@pytest.fixture(scope="module")
+def uneven() -> object:
+    pair = helical(14.0, helix_deviation=HelixDeviation(crowning=6e-6))
+    return tooth_contact(pair, MODEL, 100.0, corner_contact=True, faces=face_slices(pair, misalignment=2e-4))
+
+
+def test_the_table_carries_what_the_slices_carry(uneven) -> None:  # type: ignore[no-untyped-def]
+    random = np.random.default_rng(8)
+    law = uneven.with_damping(0.0).kernel_arguments
+    for phase, force in zip(random.uniform(0.0, 1.0, 40), random.uniform(100.0, 2.0 * FORCE, 40), strict=True):
+        compression = static_transmission_error(uneven, force, [phase]).transmission_error[0]
+        assert tooth_force(phase, compression, 0.0, *law)[0] == pytest.approx(force, abs=3e-3 * FORCE)
+
+
+@pytest.mark.parametrize("depth", [2e-6, 14e-6, 60e-6, 300e-6])
+@pytest.mark.parametrize("phase", [0.11, 0.52, 0.87])
+def test_the_tables_force_is_its_energys_slope(uneven, phase: float, depth: float) -> None:  # type: ignore[no-untyped-def]
+    law = uneven.with_damping(0.0).kernel_arguments
+    step = 1e-4 * depth
+    before, here, after = (tooth_force(phase, depth + change, 0.0, *law) for change in (-step, 0.0, step))
+    assert (after[3] - before[3]) / (2.0 * step) == pytest.approx(here[0], rel=1e-6)
+    assert (after[0] - before[0]) / (2.0 * step) == pytest.approx(here[1], rel=1e-5)
+    before, after = (tooth_force(phase + change, depth, 0.0, *law) for change in (-1e-6, 1e-6))
+    assert (after[3] - before[3]) / 2e-6 == pytest.approx(here[4], rel=1e-4, abs=1e-7 * here[3])
+
+
+def test_stiffness_without_flattening_gives_the_whole_back() -> None:
+    slices = face_slices(SPUR)
+    whole = np.array([3e8, 1e12])
+    base = tooth_stiffness(slices, whole)
+    back = slices.face_width / (1.0 / base + 1.0 / slices.flattening)
+    assert back[0] == pytest.approx(whole[0], rel=1e-12)
+    assert np.all(base > 0.0)
