@@ -37,9 +37,11 @@ from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
 from coupling.gears.gear_checks import require_tip_thickness
 from coupling.gears.geometry import Gear, module_from_base_radius, module_from_diametral_pitch
+from coupling.gears.harris_map import HarrisMap, harris_map, transmission_error_harmonics
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
 from coupling.gears.modifications import RootRelief, TipRelief
+from coupling.gears.optimal_relief import ReliefOptimum, optimal_tip_relief
 from coupling.gears.outline import gear_outline, meshing_rotations, pair_outlines
 from coupling.gears.pair_curves import PairCurves
 from coupling.gears.pair_geometry import GearPairGeometry
@@ -95,6 +97,7 @@ __all__ = [
     "Gear",
     "GearError",
     "GearPairGeometry",
+    "HarrisMap",
     "HelixDeviation",
     "Inertia",
     "InterferenceError",
@@ -110,6 +113,7 @@ __all__ = [
     "PointedToothError",
     "PotentialEnergyStiffness",
     "ProfileDeviation",
+    "ReliefOptimum",
     "RootRelief",
     "RootSection",
     "Spall",
@@ -135,6 +139,7 @@ __all__ = [
     "flank_places",
     "foundation_compliance",
     "gear_outline",
+    "harris_map",
     "hertz_compliance",
     "inverse_involute",
     "involute",
@@ -146,6 +151,7 @@ __all__ = [
     "module_from_base_radius",
     "module_from_diametral_pitch",
     "normal_tooth_thickness",
+    "optimal_tip_relief",
     "over_balls",
     "pair_deviation",
     "pair_outlines",
@@ -165,5 +171,6 @@ __all__ = [
     "tooth_contact",
     "tooth_outline",
     "tooth_thickness",
+    "transmission_error_harmonics",
     "within_fitted_range",
 ]

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import brentq
 
 from coupling.gears.pair_geometry import GearPairGeometry
 
@@ -31,7 +32,6 @@ LARGEST_GAP = 0.03
 """In modules: no load that teeth can bear closes a wider one."""
 LONGEST_REACH = 0.45
 """In base pitches, beyond either end of the path."""
-_SEARCH_STEPS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,20 +77,15 @@ def corner_reach(geometry: GearPairGeometry, largest_gap: float = LARGEST_GAP) -
     """
     widest = largest_gap * geometry.driver.module
 
-    def gap_at(position: float) -> float:
-        return float(flank_places(geometry, position).gap[0])
+    def beyond(reach: float, end: float, outward: float) -> float:
+        return float(flank_places(geometry, end + outward * reach).gap[0]) - widest
 
     reaches = []
-    for end, outward in ((0.0, -1.0), (geometry.contact_ratio, 1.0)):
-        inside, outside = 0.0, LONGEST_REACH
-        if gap_at(end + outward * outside) > widest:
-            for _ in range(_SEARCH_STEPS):
-                middle = 0.5 * (inside + outside)
-                if gap_at(end + outward * middle) > widest:
-                    outside = middle
-                else:
-                    inside = middle
-        reaches.append(outside)
+    for ends in ((0.0, -1.0), (geometry.contact_ratio, 1.0)):
+        if beyond(LONGEST_REACH, *ends) <= 0.0:
+            reaches.append(LONGEST_REACH)
+        else:
+            reaches.append(float(brentq(beyond, 0.0, LONGEST_REACH, args=ends, xtol=1e-9)))
     return reaches[0], reaches[1]
 
 

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 from coupling.gears.blank import Inertia, blank_inertia
 from coupling.gears.errors import require_finite
@@ -167,17 +168,17 @@ class Gear:
             return self.pressure_angle  # to the last bit
         return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
 
-    @property
+    @cached_property
     def pitch_radius(self) -> float:
         """Reference radius ``m_t z / 2`` [m]."""
         return 0.5 * self.transverse_module * self.teeth
 
-    @property
+    @cached_property
     def base_radius(self) -> float:
         """Radius of the circle the involute unwinds from [m]."""
         return self.pitch_radius * math.cos(self.transverse_pressure_angle)
 
-    @property
+    @cached_property
     def tip_radius(self) -> float:
         """Outer radius [m]."""
         return self.pitch_radius + (self.addendum + self.profile_shift) * self.module
@@ -187,12 +188,12 @@ class Gear:
         """Radius of the bottom of the tooth space [m]."""
         return self.pitch_radius - (self.dedendum - self.generating_shift) * self.module
 
-    @property
+    @cached_property
     def base_pitch(self) -> float:
         """Distance between neighbouring flanks along the line of action, in the transverse plane [m]."""
         return 2.0 * math.pi * self.base_radius / self.teeth
 
-    @property
+    @cached_property
     def form_radius(self) -> float:
         """Radius where the fillet's trochoid ends and the involute begins [m]."""
         if self.is_undercut:
@@ -291,7 +292,7 @@ class Gear:
 
     # ------------------------------------------------------------------ angles
 
-    @property
+    @cached_property
     def base_half_angle(self) -> float:
         """Half the angle a tooth spans on the base circle [rad]."""
         at_pitch = (math.pi / 2.0 + 2.0 * self.generating_shift * math.tan(self.pressure_angle)) / self.teeth

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -73,7 +74,7 @@ class GearPairGeometry:
         """Teeth of the driven over teeth of the driver: speeds divide by it."""
         return self.driven.teeth / self.driver.teeth
 
-    @property
+    @cached_property
     def base_pitch(self) -> float:
         """Distance between neighbouring pairs along the line of action [m]."""
         return self.driver.base_pitch
@@ -83,7 +84,7 @@ class GearPairGeometry:
         """Width of the face that both gears share [m]."""
         return min(self.driver.face_width, self.driven.face_width)
 
-    @property
+    @cached_property
     def close_pressure_angle(self) -> float:
         """Transverse pressure angle [rad] of the mesh without backlash, of the teeth as thick as they are.
 
@@ -91,14 +92,14 @@ class GearPairGeometry:
         """
         return closing_pressure_angle(self.driver, self.driven, thinned=True)
 
-    @property
+    @cached_property
     def working_centre_distance(self) -> float:
         """Distance of the shafts [m]."""
         if self.centre_distance is not None:
             return self.centre_distance
         return self.base_radii_sum / math.cos(self.working_pressure_angle)
 
-    @property
+    @cached_property
     def working_pressure_angle(self) -> float:
         """Angle of the line of action to the common tangent of the pitch circles, transverse [rad]."""
         if self.centre_distance is None:
@@ -142,12 +143,12 @@ class GearPairGeometry:
 
     # --------------------------------------------------------- path of contact
 
-    @property
+    @cached_property
     def path_length(self) -> float:
         """Length of the path of contact [m]."""
         return tip_reach(self.driver) + tip_reach(self.driven) - self.tangent_distance
 
-    @property
+    @cached_property
     def contact_ratio(self) -> float:
         """Transverse contact ratio, the mean number of pairs in contact in one plane: path over base pitch."""
         return self.path_length / self.base_pitch
@@ -230,12 +231,12 @@ class GearPairGeometry:
 
     # ----------------------------------------------------- along the line of action
 
-    @property
+    @cached_property
     def base_radii_sum(self) -> float:
         """Sum of the base radii [m]."""
         return self.driver.base_radius + self.driven.base_radius
 
-    @property
+    @cached_property
     def tangent_distance(self) -> float:
         """Distance of the tangent points of the line of action on the two base circles [m]."""
         return self.base_radii_sum * math.tan(self.working_pressure_angle)
@@ -246,7 +247,7 @@ class GearPairGeometry:
         sum_of_distances = 2.0 * self.driver.base_radius * (self.working_pressure_angle + self.driver.base_half_angle)
         return (sum_of_distances - 2.0 * self.start_distance) / self.base_pitch
 
-    @property
+    @cached_property
     def start_distance(self) -> float:
         """Distance of the start of contact from the driver's tangent point [m]."""
         return self.tangent_distance - tip_reach(self.driven)
