@@ -1,7 +1,7 @@
-"""The outline against the rack itself: a figure rolled past the gear, that never cuts into it and touches it everywhere.
+"""The outline against the rack itself: rolled past the gear, it touches every point and cuts into none.
 
-Nothing of the trochoid or the involute is used: the rack's tooth is four lines and two circles in its normal section, and
-the gear's points are carried into its frame by rolling alone.  Undercut teeth are held to the same.
+Nothing of the trochoid or the involute is used: the rack's tooth is lines and circles in its normal section, and the
+gear's points are carried into its frame by rolling alone.  Undercut teeth are held to the same.
 """
 
 import math
