@@ -5,10 +5,13 @@
 [2] A spreadsheet of profile shifts after ISO 21771, "Gear generating profile shift calculations" (scribd.com, document
     376176518): z 31 and 30, m_n 3.5 mm, alpha_n 20 deg, alpha_t 21.2990642859 deg (so a helix angle of 21 deg), working
     centre distance 116.5 mm.
+[3] Contact ratio of equal full-depth gears of 20 degrees at their standard distance,
+    (sqrt((z + 2)^2 - (z cos(alpha))^2) - z sin(alpha)) / (pi cos(alpha)), here in thirty decimal digits.
 """
 
 import math
 from collections.abc import Callable
+from decimal import Decimal, localcontext
 
 import pytest
 
@@ -25,6 +28,7 @@ from coupling.gears import (
 
 Published = Callable[..., None]
 
+FULL_DEPTH = "Full-depth gears of 20 degrees, closed form"
 MESYS = "MESYS helical gear geometry (ISO 21771), example"
 SHIFTS = "Profile shifts at a centre distance (ISO 21771), spreadsheet"
 
@@ -73,3 +77,24 @@ def test_shifts_at_a_centre_distance(published: Published) -> None:
     working = math.degrees(pair.working_pressure_angle)
     published(SHIFTS, "working transverse pressure angle", 23.8707609654, working, "°", abs=0.5e-10)
     published(SHIFTS, "working centre distance", 116.5, 1e3 * pair.working_centre_distance, "mm", abs=1e-9)
+
+
+def contact_ratio_in_decimals(teeth: int) -> Decimal:
+    """The closed form [3] with cos(20 deg) from its own cubic, 4 c^3 - 3 c = cos(60 deg)."""
+    with localcontext() as context:
+        context.prec = 30
+        cosine = Decimal("0.94")
+        for _ in range(8):
+            cosine -= (4 * cosine**3 - 3 * cosine - Decimal("0.5")) / (12 * cosine**2 - 3)
+        pi = Decimal("3.14159265358979323846264338328")
+        reach = (Decimal(teeth + 2) ** 2 - (teeth * cosine) ** 2).sqrt()
+        return (reach - teeth * (1 - cosine**2).sqrt()) / (pi * cosine)
+
+
+@pytest.mark.parametrize(("teeth", "printed"), [(28, "1.63800"), (62, "1.7897798668")])
+def test_contact_ratio_in_thirty_digits(teeth: int, printed: str, published: Published) -> None:
+    exact = contact_ratio_in_decimals(teeth)
+    assert str(round(exact, len(printed) - 2)) == printed
+    gear = Gear("full depth", teeth, 3e-3, ALPHA, 20e-3)
+    found = GearPairGeometry(gear, gear).contact_ratio
+    published(FULL_DEPTH, f"contact ratio, {teeth} / {teeth} teeth, in decimals", float(exact), found, abs=1e-13)
