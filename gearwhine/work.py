@@ -85,6 +85,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         results.write(place / "results.nc", case, housing, rotors, pairs, system_modes, transient)
         if pairs:
             figures.draw_gear_pairs(place, pairs)
+        figures.draw_teeth_of_pairs(place, gear_stage.pair_geometries(case))
         if transient is not None:
             figures.draw_transient(place, case, transient, housing, comparison)
         if housing is not None:
@@ -161,7 +162,7 @@ def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ro
 
 
 def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
-    """The gear pairs; with a folder, also as a results file and a picture."""
+    """The gear pairs; with a folder, also as a results file and pictures."""
     from gearwhine import figures, results
 
     pairs = gear_stage.solve_gears(case, progress)
@@ -170,6 +171,7 @@ def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str,
         results.write(place / "results.nc", case, None, (), pairs, None, None)
         if pairs:
             figures.draw_gear_pairs(place, pairs)
+        figures.draw_teeth_of_pairs(place, gear_stage.pair_geometries(case))
 
     return _kept(gear_documents.gears_document(case, pairs), case, folder, write)
 

@@ -7,7 +7,7 @@ import numpy as np
 
 import coupling.gears as room
 from gearwhine.case import Case, mesh_frequencies, pair_torques
-from gearwhine.stages.gears import SolvedPair, pair_geometry
+from gearwhine.stages.gears import SolvedPair, pair_geometries
 
 _UNSOLVED = "mesh stiffness and transmission error of helical gears come with a later version"
 
@@ -16,7 +16,7 @@ def gears_document(case: Case, solved: tuple[SolvedPair, ...]) -> dict[str, Any]
     """Every gear pair of the case as the command's JSON, those that were solved with their stiffness."""
     by_names = {(pair.given.driver, pair.given.driven): pair for pair in solved}
     rows, warnings = [], []
-    for row, geometry in zip(pairs_document(case), _geometries(case), strict=True):
+    for row, geometry in zip(pairs_document(case), pair_geometries(case), strict=True):
         row["geometry"] = geometry_document(geometry)
         warnings += doubts(geometry)
         pair = by_names.get((row["driver"], row["driven"]))
@@ -30,7 +30,9 @@ def pairs_document(case: Case) -> list[dict[str, Any]]:
     frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
     torques = pair_torques(case) if case.operation is not None else (None,) * number
     rows = []
-    for pair, geometry, frequency, torque in zip(case.gear_pair, _geometries(case), frequencies, torques, strict=True):
+    for pair, geometry, frequency, torque in zip(
+        case.gear_pair, pair_geometries(case), frequencies, torques, strict=True
+    ):
         rows.append(
             {
                 "driver": pair.driver,
@@ -116,10 +118,6 @@ def doubts(geometry: room.GearPairGeometry) -> list[dict[str, str]]:
             )
             found.append({"name": "undercut", "message": message})
     return found
-
-
-def _geometries(case: Case) -> list[room.GearPairGeometry]:
-    return [pair_geometry(case, pair) for pair in case.gear_pair]
 
 
 def _measured(measure: Callable[[], object], count: str, length: str) -> dict[str, Any] | None:

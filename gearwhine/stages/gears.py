@@ -77,6 +77,11 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
     return tuple(solved)
 
 
+def pair_geometries(case: Case) -> tuple[room.GearPairGeometry, ...]:
+    """Both gears of every pair of the case in mesh."""
+    return tuple(pair_geometry(case, pair) for pair in case.gear_pair)
+
+
 def pair_geometry(case: Case, pair: GivenPair) -> room.GearPairGeometry:
     """The two gears at the distance of their shafts, or without backlash where there are no shafts."""
     driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)

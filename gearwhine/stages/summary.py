@@ -20,7 +20,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.stages import mesh_health
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gear_documents import doubts, geometry_document, pairs_document
-from gearwhine.stages.gears import pair_geometry
+from gearwhine.stages.gears import pair_geometries
 
 _RPM = 60.0 / (2.0 * np.pi)
 
@@ -160,8 +160,7 @@ def _analysis(case: Case) -> list[dict[str, Any]]:
 def _add_gears(case: Case, document: dict[str, Any]) -> None:
     """Add the gear pairs, and warnings of their teeth to those there are."""
     document["gear_pairs"] = pairs_document(case)
-    for pair, row in zip(case.gear_pair, document["gear_pairs"], strict=True):
-        geometry = pair_geometry(case, pair)
+    for geometry, row in zip(pair_geometries(case), document["gear_pairs"], strict=True):
         row["stiffness_model"] = row.pop("model")
         row["geometry"] = geometry_document(geometry)
         if found := doubts(geometry):
