@@ -32,7 +32,7 @@ from coupling.gears.errors import (
 )
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
 from coupling.gears.gear_checks import require_tip_thickness
-from coupling.gears.geometry import Gear, module_from_base_radius, module_from_diametral_pitch
+from coupling.gears.geometry import Gear
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
 from coupling.gears.outline import gear_outline, meshing_rotations, pair_outlines
@@ -76,6 +76,7 @@ from coupling.gears.tooth_contact import (
     ToothContact,
     tooth_contact,
 )
+from coupling.gears.tooth_size import module_from_base_radius, module_from_diametral_pitch
 
 __all__ = [
     "POINTS_OF_CONTACT",
