@@ -36,7 +36,7 @@ from coupling.gears.faults import Fault, MissingTooth, Spall, Wear
 from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
 from coupling.gears.gear_checks import require_tip_thickness
-from coupling.gears.geometry import Gear, module_from_base_radius, module_from_diametral_pitch
+from coupling.gears.geometry import Gear
 from coupling.gears.harris_map import HarrisMap, harris_map, transmission_error_harmonics
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
@@ -83,6 +83,7 @@ from coupling.gears.tooth_contact import (
     ToothContact,
     tooth_contact,
 )
+from coupling.gears.tooth_size import module_from_base_radius, module_from_diametral_pitch
 
 __all__ = [
     "POINTS_OF_CONTACT",

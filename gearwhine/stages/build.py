@@ -14,10 +14,7 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
 
     A gear known by its base radius alone has the module that gives it, and a nominal width where none is given.
     """
-    module = given.module
-    if module is None:
-        assert given.base_radius is not None
-        module = gear_room.module_from_base_radius(given.base_radius, given.teeth, given.pressure_angle)
+    module = _module(given)
     gear = gear_room.Gear(
         name=given.name,
         teeth=given.teeth,
@@ -25,6 +22,8 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
         pressure_angle=given.pressure_angle,
         face_width=given.face_width if given.face_width is not None else 10.0 * module,
         profile_shift=given.profile_shift,
+        addendum=given.addendum,
+        dedendum=given.dedendum,
         root_radius=given.root_radius,
         bore=given.bore,
         tip_relief=gear_room.TipRelief(given.tip_relief.amount, given.tip_relief.start_roll_angle)
@@ -33,11 +32,31 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
         eccentricity=given.errors.eccentricity,
         eccentricity_phase=given.errors.phase,
         pitch_deviations=given.errors.pitch,
+        helix_angle=given.helix_angle,
+        rim_thickness=given.rim,
+        web_thickness=given.web,
+        tooth_thinning=given.tooth_thinning,
+        allow_undercut=given.allow_undercut,
     )
-    if (material := _gear_material(case, given)) is None:
+    if (name := _gear_material(case, given)) is None:
         return gear
-    steel = case.material[material]
-    return replace(gear, youngs_modulus=steel.youngs_modulus, poisson_ratio=steel.poisson_ratio, density=steel.density)
+    material = case.material[name]
+    return replace(
+        gear,
+        youngs_modulus=material.youngs_modulus,
+        poisson_ratio=material.poisson_ratio,
+        density=material.density,
+    )
+
+
+def _module(given: GivenGear) -> float:
+    """Normal module of a gear [m], however its size is given."""
+    if given.module is not None:
+        return given.module
+    if given.diametral_pitch is not None:
+        return gear_room.module_from_diametral_pitch(given.diametral_pitch)
+    assert given.base_radius is not None
+    return gear_room.module_from_base_radius(given.base_radius, given.teeth, given.pressure_angle, given.helix_angle)
 
 
 def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
