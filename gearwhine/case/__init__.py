@@ -36,7 +36,8 @@ from gearwhine.case.attachments import (
 from gearwhine.case.box import Box, Feet, Walls
 from gearwhine.case.bundled import bundled_case, bundled_cases
 from gearwhine.case.dump import case_document, dump_case
-from gearwhine.case.gears import Gear, GearErrors, GearPair, TipRelief, ToothStiffness
+from gearwhine.case.flanks import Fault, GearErrors, HelixErrors, ProfileErrors, Relief
+from gearwhine.case.gears import Gear, GearPair, ToothStiffness
 from gearwhine.case.housing import (
     Boss,
     CadFile,
@@ -104,10 +105,12 @@ __all__ = [
     "CouplingSegment",
     "Dashpots",
     "Disc",
+    "Fault",
     "Feet",
     "Gear",
     "GearErrors",
     "GearPair",
+    "HelixErrors",
     "Housing",
     "InertiaTensor",
     "Joint",
@@ -125,8 +128,10 @@ __all__ = [
     "Pedestal",
     "Probe",
     "Problem",
+    "ProfileErrors",
     "RadialDamping",
     "RadialStiffness",
+    "Relief",
     "RollingCatalogue",
     "RollingGeometry",
     "RollingStiffness",
@@ -143,7 +148,6 @@ __all__ = [
     "StiffnessMap",
     "Support",
     "Sweep",
-    "TipRelief",
     "ToothStiffness",
     "Transient",
     "Unbalance",

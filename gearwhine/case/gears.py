@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
-from pydantic import Field, StrictBool, model_validator
+from pydantic import Field, StrictBool, field_validator, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
-    Angle,
     CaseFile,
+    DampingFromZero,
     DampingRatio,
     Inertia,
     LengthFromZero,
@@ -23,34 +23,14 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
+from gearwhine.case.flanks import Fault, GearErrors, Relief
 
-PitchDeviation = Annotated[float, Quantity(units.LENGTH, at_least=-1e-3, at_most=1e-3)]
 PressureAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(10.0), at_most=math.radians(35.0))]
 HelixAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(-60.0), at_most=math.radians(60.0))]
 Module = Annotated[float, Quantity(units.LENGTH, at_least=1e-5, at_most=0.2)]
 DiametralPitch = Annotated[float, Quantity(units.DIAMETRAL_PITCH, at_least=5.0, at_most=1e5)]
+Misalignment = Annotated[float, Quantity(units.ANGLE, at_least=-0.1, at_most=0.1)]
 ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
-
-
-class TipRelief(Table):
-    """Linear tip relief: amount at the tip [m], and the roll angle where it starts [rad]."""
-
-    amount: LengthFromZero
-    start_roll_angle: Annotated[float, Quantity(units.ANGLE, above=0.0, at_most=2.0 * math.pi)]
-
-
-class GearErrors(Table):
-    """Manufacturing errors.
-
-    Eccentricity of the teeth [m] and its angle from x at rest [rad]; `pitch`: how far each tooth's working flank
-    stands ahead of its ideal place along the pitch circle [m], tooth by tooth as they come into mesh.
-    """
-
-    later = frozenset({"profile", "lead", "runout", "spacing", "cumulative_pitch", "helix"})
-
-    eccentricity: LengthFromZero = 0.0
-    phase: Angle = 0.0
-    pitch: Annotated[tuple[PitchDeviation, ...], Field(max_length=2000)] = ()
 
 
 class Gear(Table):
@@ -62,8 +42,6 @@ class Gear(Table):
     root circle inward, `web` [m] is the width of the disc within it. Its inertia comes from its geometry unless `mass`,
     `polar_inertia` and `diametral_inertia` are all given.
     """
-
-    later = frozenset({"fault"})
 
     name: Name
     rotor: Name | None = None
@@ -84,12 +62,19 @@ class Gear(Table):
     bore: LengthFromZero = 0.0
     rim: PositiveLength | None = None
     web: PositiveLength | None = None
-    tip_relief: TipRelief | None = None
+    tip_relief: Relief | None = None
+    root_relief: Relief | None = None
     material: Name | None = None
     mass: Mass | None = None
     polar_inertia: Inertia | None = None
     diametral_inertia: Inertia | None = None
     errors: GearErrors = GearErrors()
+    fault: Annotated[tuple[Fault, ...], Field(max_length=100)] = ()
+
+    @field_validator("fault", mode="before")
+    @classmethod
+    def _one_or_more(cls, given: object) -> object:
+        return [given] if isinstance(given, dict) else given
 
     @model_validator(mode="after")
     def _consistent(self) -> Gear:
@@ -101,8 +86,12 @@ class Gear(Table):
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
         if self.web is not None and self.rim is None:
             raise wrong("no web, or a rim around it", "web")
-        if self.errors.pitch and len(self.errors.pitch) != self.teeth:
-            raise wrong(f"one deviation for each of {self.teeth} teeth, or none", "errors", "pitch")
+        for key, deviations in (("pitch", self.errors.pitch), ("spacing", self.errors.spacing)):
+            if deviations and len(deviations) != self.teeth:
+                raise wrong(f"one deviation for each of {self.teeth} teeth, or none", "errors", key)
+        for number, fault in enumerate(self.fault):
+            if fault.tooth is not None and fault.tooth >= self.teeth:
+                raise wrong(f"a tooth from 0 to {self.teeth - 1}", "fault", number, "tooth")
         given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]
         if any(given) and not all(given):
             raise wrong("all of 'mass', 'polar_inertia' and 'diametral_inertia', or none of them")
@@ -171,6 +160,9 @@ class ToothStiffness(Table):
 class GearPair(Table):
     """`[[gear_pair]]`: two gears by name, and their contact.
 
+    `damping` [N s/m] stands in place of `damping_ratio`. `corner_contact`: whether teeth touch beyond their path of
+    contact, where a load closes the gap to a corner; None: where the stiffness model is one of pairs of teeth.
+    `misalignment` [rad] is the angle between the flanks in the plane of action, open towards +z.
     `backlash` [m] is measured along the line of action; None: the back flanks never touch. `centre_distance`
     [m] is checked against the rotors' axes, and needed only in a case without rotors where it is not nominal.
     """
@@ -179,6 +171,9 @@ class GearPair(Table):
     driven: Name
     stiffness: ToothStiffness = ToothStiffness()
     damping_ratio: DampingRatio = 0.05
+    damping: DampingFromZero | None = None
+    corner_contact: StrictBool | None = None
+    misalignment: Misalignment = 0.0
     backlash: LengthFromZero | None = None
     centre_distance: PositiveLength | None = None
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import coupling.gears as gear_room
 import rotors as rotor_room
-from gearwhine.case import Case, CouplingSegment, Disc, RoundDisc, Segment
+from gearwhine.case import Case, CouplingSegment, Disc, Fault, RoundDisc, Segment
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import Rotor as GivenRotor
 
@@ -26,12 +26,14 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
         dedendum=given.dedendum,
         root_radius=given.root_radius,
         bore=given.bore,
-        tip_relief=gear_room.TipRelief(given.tip_relief.amount, given.tip_relief.start_roll_angle)
-        if given.tip_relief
-        else None,
-        eccentricity=given.errors.eccentricity,
+        tip_relief=_tip_relief(given),
+        root_relief=None if given.root_relief is None else gear_room.RootRelief(**given.root_relief.model_dump()),
+        eccentricity=given.errors.offset,
         eccentricity_phase=given.errors.phase,
-        pitch_deviations=given.errors.pitch,
+        pitch_deviations=given.errors.cumulative_pitch,
+        profile_deviation=_profile_deviation(given),
+        helix_deviation=_helix_deviation(given),
+        faults=tuple(_fault(fault) for fault in given.fault),
         helix_angle=given.helix_angle,
         rim_thickness=given.rim,
         web_thickness=given.web,
@@ -47,6 +49,33 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
         poisson_ratio=material.poisson_ratio,
         density=material.density,
     )
+
+
+def _tip_relief(given: GivenGear) -> gear_room.TipRelief | None:
+    return None if given.tip_relief is None else gear_room.TipRelief(**given.tip_relief.model_dump())
+
+
+def _profile_deviation(given: GivenGear) -> gear_room.ProfileDeviation | None:
+    errors = given.errors.profile
+    return None if errors is None else gear_room.ProfileDeviation(**errors.model_dump())
+
+
+def _helix_deviation(given: GivenGear) -> gear_room.HelixDeviation | None:
+    errors = given.errors.helix
+    return None if errors is None else gear_room.HelixDeviation(**errors.model_dump())
+
+
+def _fault(given: Fault) -> gear_room.Fault:
+    if given.kind == "wear":
+        assert given.depth is not None
+        return gear_room.Wear(given.depth, given.tooth, given.shape)
+    assert given.tooth is not None
+    if given.kind == "missing-tooth":
+        return gear_room.MissingTooth(given.tooth)
+    assert given.start_roll_angle is not None
+    assert given.end_roll_angle is not None
+    assert given.depth is not None
+    return gear_room.Spall(given.tooth, given.start_roll_angle, given.end_roll_angle, given.depth, given.width)
 
 
 def _module(given: GivenGear) -> float:

@@ -9,18 +9,13 @@ import coupling.gears as room
 from gearwhine.case import Case, mesh_frequencies, pair_torques
 from gearwhine.stages.gears import SolvedPair, pair_geometries
 
-_UNSOLVED = "mesh stiffness and transmission error of helical gears come with a later version"
-
 
 def gears_document(case: Case, solved: tuple[SolvedPair, ...]) -> dict[str, Any]:
-    """Every gear pair of the case as the command's JSON, those that were solved with their stiffness."""
-    by_names = {(pair.given.driver, pair.given.driven): pair for pair in solved}
+    """Every gear pair of the case as the command's JSON."""
     rows, warnings = [], []
-    for row, geometry in zip(pairs_document(case), pair_geometries(case), strict=True):
-        row["geometry"] = geometry_document(geometry)
-        warnings += doubts(geometry)
-        pair = by_names.get((row["driver"], row["driven"]))
-        rows.append(row | (_unsolved() if pair is None else _solved(pair)))
+    for row, pair in zip(pairs_document(case), solved, strict=True):
+        warnings += doubts(pair.geometry)
+        rows.append(row | {"geometry": geometry_document(pair.geometry)} | _solved(pair))
     return {"pairs": rows} | ({"warnings": warnings} if warnings else {})
 
 
@@ -128,10 +123,6 @@ def _measured(measure: Callable[[], object], count: str, length: str) -> dict[st
         return None
     size = getattr(found, count)
     return {count if isinstance(size, int) else f"{count}_m": size, f"{length}_m": getattr(found, length)}
-
-
-def _unsolved() -> dict[str, Any]:
-    return {"stiffness_n_per_m": None, "transmission_error_m": None, "note": _UNSOLVED}
 
 
 def _solved(pair: SolvedPair) -> dict[str, Any]:

@@ -7,7 +7,16 @@ import numpy as np
 import numpy.typing as npt
 
 import coupling.gears as room
-from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, pair_torques, require
+from gearwhine.case import (
+    Case,
+    CaseError,
+    Problem,
+    mesh_frequencies,
+    pair_torques,
+    require,
+    rotor_speeds,
+    shaft_of,
+)
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.progress import Progress, silent
@@ -62,10 +71,13 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
     for number, (pair, torque, frequency) in enumerate(zip(case.gear_pair, torques, frequencies, strict=True)):
         progress(f"gear pair {pair.driver} -> {pair.driven}")
         geometry = pair_geometry(case, pair)
-        if geometry.driver.helix_angle != 0.0:
-            continue
         force = abs(torque) / geometry.driver.base_radius
-        contact = room.tooth_contact(geometry, _model(pair, number, geometry, force))
+        contact = room.tooth_contact(
+            geometry,
+            _model(pair, number, geometry, force),
+            corner_contact=meets_with_corners(pair),
+            faces=uneven_faces(case, pair, geometry),
+        )
         depth = _FADING * force / contact.mean_stiffness
         contact = contact.with_damping(_damping(case, pair, contact), depth)
         static = room.static_transmission_error(contact, force)
@@ -75,6 +87,23 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
             hunting = room.static_transmission_error(contact, force, phases)
         solved.append(SolvedPair(pair, geometry, contact, static, hunting, frequency))
     return tuple(solved)
+
+
+def meets_with_corners(pair: GivenPair) -> bool:
+    """Whether teeth meet beyond their path of contact: as the case says, or where the pair's model is one of teeth."""
+    if pair.corner_contact is not None:
+        return pair.corner_contact
+    return pair.stiffness.model not in ("constant", "square", "table")
+
+
+def uneven_faces(case: Case, pair: GivenPair, geometry: room.GearPairGeometry) -> room.FaceSlices | None:
+    """The slices of a pair's face where the load spreads unevenly over it."""
+    bent = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
+    straight = all(deviation is None or deviation.is_straight for deviation in bent)
+    if geometry.driver.helix_angle == 0.0 and pair.misalignment == 0.0 and straight:
+        return None
+    speed = rotor_speeds(case)[shaft_of(case.gear_named(pair.driver))] if case.operation else 1.0
+    return room.face_slices(geometry, sense=1 if speed >= 0.0 else -1, misalignment=pair.misalignment)
 
 
 def pair_geometries(case: Case) -> tuple[room.GearPairGeometry, ...]:
@@ -133,6 +162,8 @@ def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
 
 def _damping(case: Case, pair: GivenPair, contact: room.ToothContact) -> float:
     """The mesh's damping coefficient [N s/m] from the ratio, with the inertia that sits where the gears do."""
+    if pair.damping is not None:
+        return pair.damping
     if pair.damping_ratio == 0.0:
         return 0.0
     driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
