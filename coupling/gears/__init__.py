@@ -17,8 +17,17 @@ Positions along the path of contact are in base pitches, phases in mesh periods,
 
 from coupling.gears.blank import Inertia
 from coupling.gears.centre_distance import profile_shift_sum, shifted_to, tip_shortening
+from coupling.gears.compliant_teeth import (
+    CompliantTeeth,
+    CornellStiffness,
+    ElasticRingStiffness,
+    PotentialEnergyStiffness,
+    WeberBanaschekStiffness,
+)
+from coupling.gears.cornell import cornell
 from coupling.gears.damping import equivalent_mass, mesh_damping
 from coupling.gears.deviation import tip_relief_deviation
+from coupling.gears.elastic_ring import elastic_ring
 from coupling.gears.errors import (
     ContactAccuracyError,
     GearError,
@@ -33,6 +42,7 @@ from coupling.gears.errors import (
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
 from coupling.gears.gear_checks import require_tip_thickness
 from coupling.gears.geometry import Gear, module_from_base_radius, module_from_diametral_pitch
+from coupling.gears.hertz import LineContact, hertz_compliance, line_contact
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
 from coupling.gears.outline import gear_outline, meshing_rotations, pair_outlines
@@ -52,7 +62,6 @@ from coupling.gears.stiffness_models import (
     STIFFNESS_MODELS,
     ConstantStiffness,
     Iso6336Stiffness,
-    PotentialEnergyStiffness,
     SquareStiffness,
     StiffnessModel,
     TableStiffness,
@@ -70,20 +79,24 @@ from coupling.gears.thickness import (
     tooth_thickness,
 )
 from coupling.gears.tip_relief import TipRelief
-from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, hertz_compliance, potential_energy
+from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, potential_energy
 from coupling.gears.tooth_contact import (
     PairStates,
     ToothContact,
     tooth_contact,
 )
+from coupling.gears.weber_banaschek import weber_banaschek
 
 __all__ = [
     "POINTS_OF_CONTACT",
     "STIFFNESS_MODELS",
     "BallMeasurement",
     "ChordalThickness",
+    "CompliantTeeth",
     "ConstantStiffness",
     "ContactAccuracyError",
+    "CornellStiffness",
+    "ElasticRingStiffness",
     "Gear",
     "GearError",
     "GearPairGeometry",
@@ -91,6 +104,7 @@ __all__ = [
     "InterferenceError",
     "Iso6336Stiffness",
     "Iso6336Values",
+    "LineContact",
     "MismatchedGearsError",
     "NoContactError",
     "PairStates",
@@ -111,8 +125,11 @@ __all__ = [
     "ToothContact",
     "ToothModel",
     "UndercutError",
+    "WeberBanaschekStiffness",
     "back_flank_pitch_gaps",
     "chordal_thickness",
+    "cornell",
+    "elastic_ring",
     "equivalent_mass",
     "foundation_compliance",
     "gear_outline",
@@ -120,6 +137,7 @@ __all__ = [
     "inverse_involute",
     "involute",
     "iso6336_stiffness",
+    "line_contact",
     "mesh_damping",
     "mesh_period_phases",
     "mesh_stiffness",
@@ -146,5 +164,6 @@ __all__ = [
     "tooth_contact",
     "tooth_outline",
     "tooth_thickness",
+    "weber_banaschek",
     "within_fitted_range",
 ]
