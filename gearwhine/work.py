@@ -9,10 +9,10 @@ from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
+from gearwhine.stages import gear_documents, housing_documents, mesh_health, rotor_documents
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
-from gearwhine.stages import housing_documents, mesh_health, rotor_documents
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import transient as transient_stage
@@ -31,6 +31,8 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         require(case, "rotor", "operation", command="run")
     if case.operation is not None:
         machine_stage.require_no_bow(case)
+        if case.rotor:
+            machine_stage.require_spur(case)
     if case.housing is not None:
         # Found out before the work, not after it.
         pictures.load_pyvista()
@@ -51,7 +53,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
     if rotors:
         document |= rotor_documents.rotors_document(rotors)
     if pairs:
-        document |= gear_stage.gears_document(pairs)
+        document |= gear_documents.gears_document(case, pairs)
     comparison = None
     if housing is not None:
         document["housing"] = housing_documents.modes_document(housing)
@@ -83,6 +85,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         results.write(place / "results.nc", case, housing, rotors, pairs, system_modes, transient)
         if pairs:
             figures.draw_gear_pairs(place, pairs)
+        figures.draw_teeth_of_pairs(place, gear_stage.pair_geometries(case))
         if transient is not None:
             figures.draw_transient(place, case, transient, housing, comparison)
         if housing is not None:
@@ -159,16 +162,18 @@ def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ro
 
 
 def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
-    """The gear pairs; with a folder, also as a results file and a picture."""
+    """The gear pairs; with a folder, also as a results file and pictures."""
     from gearwhine import figures, results
 
     pairs = gear_stage.solve_gears(case, progress)
 
     def write(place: Path) -> None:
         results.write(place / "results.nc", case, None, (), pairs, None, None)
-        figures.draw_gear_pairs(place, pairs)
+        if pairs:
+            figures.draw_gear_pairs(place, pairs)
+        figures.draw_teeth_of_pairs(place, gear_stage.pair_geometries(case))
 
-    return _kept(gear_stage.gears_document(pairs), case, folder, write)
+    return _kept(gear_documents.gears_document(case, pairs), case, folder, write)
 
 
 def system_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:

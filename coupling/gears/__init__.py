@@ -41,7 +41,7 @@ from coupling.gears.errors import (
 )
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
 from coupling.gears.gear_checks import require_tip_thickness
-from coupling.gears.geometry import Gear, module_from_base_radius, module_from_diametral_pitch
+from coupling.gears.geometry import Gear
 from coupling.gears.hertz import LineContact, hertz_compliance, line_contact
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
@@ -85,6 +85,7 @@ from coupling.gears.tooth_contact import (
     ToothContact,
     tooth_contact,
 )
+from coupling.gears.tooth_size import module_from_base_radius, module_from_diametral_pitch
 from coupling.gears.weber_banaschek import weber_banaschek
 
 __all__ = [

@@ -36,8 +36,7 @@ class ToothCompliance:
     bending, shear, axial, foundation : ndarray
         Of the tooth as a beam, and of the body it stands on; all of the shape of the radii asked for.
     rim : ndarray
-        What a rim on a thinner web yields more than a body of the teeth's full width; negative for a web as wide as
-        the teeth or wider.
+        What a rim on a thinner web yields more than a body of the teeth's full width.
     """
 
     bending: FloatArray

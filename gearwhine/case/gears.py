@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, StrictBool, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
@@ -26,6 +26,10 @@ from gearwhine.case.fields import (
 
 PitchDeviation = Annotated[float, Quantity(units.LENGTH, at_least=-1e-3, at_most=1e-3)]
 PressureAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(10.0), at_most=math.radians(35.0))]
+HelixAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(-60.0), at_most=math.radians(60.0))]
+Module = Annotated[float, Quantity(units.LENGTH, at_least=1e-5, at_most=0.2)]
+DiametralPitch = Annotated[float, Quantity(units.DIAMETRAL_PITCH, at_least=5.0, at_most=1e5)]
+ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
 
 
 class TipRelief(Table):
@@ -50,50 +54,53 @@ class GearErrors(Table):
 
 
 class Gear(Table):
-    """`[[gear]]`: an external spur gear, by module or by base radius.
+    """`[[gear]]`: an external spur or helical gear, by module, diametral pitch or base radius.
 
-    On a rotor at a station [m from its left end]; without rotor in a case that has no rotors. Its
-    inertia comes from its geometry unless `mass`, `polar_inertia` and `diametral_inertia` are all given.
+    On a rotor at a station [m from its left end]; without rotor in a case that has no rotors. Module, diametral pitch,
+    pressure angle, profile shift, addendum, dedendum and the rack's corner `root_radius` are of the normal section,
+    `base_radius` is of the transverse plane; a positive `helix_angle` is a right-hand helix. `rim` [m] reaches from the
+    root circle inward, `web` [m] is the width of the disc within it. Its inertia comes from its geometry unless `mass`,
+    `polar_inertia` and `diametral_inertia` are all given.
     """
 
-    later = frozenset({"fault", "rim"})
+    later = frozenset({"fault"})
 
     name: Name
     rotor: Name | None = None
     at: LengthFromZero | None = None
     teeth: Annotated[int, Whole(5, 2000)]
-    module: Annotated[float, Quantity(units.LENGTH, at_least=1e-5, at_most=0.2)] | None = None
+    module: Module | None = None
+    diametral_pitch: DiametralPitch | None = None
     base_radius: PositiveLength | None = None
     face_width: PositiveLength | None = None
-    pressure_angle: Annotated[float, Quantity(units.ANGLE, at_least=math.radians(10.0), at_most=math.radians(35.0))] = (
-        math.radians(20.0)
-    )
+    pressure_angle: PressureAngle = math.radians(20.0)
+    helix_angle: HelixAngle = 0.0
     profile_shift: Annotated[float, Quantity(units.RATIO, at_least=-2.0, at_most=2.0)] = 0.0
-    bore: LengthFromZero = 0.0
+    addendum: ToothHeight = 1.0
+    dedendum: ToothHeight = 1.25
     root_radius: LengthFromZero | None = None
+    tooth_thinning: LengthFromZero = 0.0
+    allow_undercut: StrictBool = False
+    bore: LengthFromZero = 0.0
+    rim: PositiveLength | None = None
+    web: PositiveLength | None = None
     tip_relief: TipRelief | None = None
     material: Name | None = None
     mass: Mass | None = None
     polar_inertia: Inertia | None = None
     diametral_inertia: Inertia | None = None
     errors: GearErrors = GearErrors()
-    helix_angle: Angle = 0.0
-
-    @field_validator("helix_angle", mode="after")
-    @classmethod
-    def _spur(cls, angle: float) -> float:
-        if angle != 0.0:
-            raise wrong("0 deg: helical gears come in a later version")
-        return angle
 
     @model_validator(mode="after")
     def _consistent(self) -> Gear:
-        if (self.module is None) == (self.base_radius is None):
-            raise wrong("exactly one of 'module' and 'base_radius'")
-        if self.module is not None and self.face_width is None:
-            raise wrong("the face width of a gear that is given by its module", "face_width")
+        if sum(size is not None for size in (self.module, self.diametral_pitch, self.base_radius)) != 1:
+            raise wrong("exactly one of 'module', 'diametral_pitch' and 'base_radius'")
+        if self.base_radius is None and self.face_width is None:
+            raise wrong("the face width of a gear that is given by the size of its teeth", "face_width")
         if self.bore >= 2.0 * self.base_circle_radius:
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
+        if self.web is not None and self.rim is None:
+            raise wrong("no web, or a rim around it", "web")
         if self.errors.pitch and len(self.errors.pitch) != self.teeth:
             raise wrong(f"one deviation for each of {self.teeth} teeth, or none", "errors", "pitch")
         given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]
@@ -106,30 +113,50 @@ class Gear(Table):
         return self
 
     @property
+    def transverse_pressure_angle(self) -> float:
+        """Pressure angle in the transverse plane [rad]."""
+        return math.atan2(math.tan(self.pressure_angle), math.cos(self.helix_angle))
+
+    @property
     def base_circle_radius(self) -> float:
         """Radius of the base circle [m]."""
         if self.base_radius is not None:
             return self.base_radius
-        return self.pitch_radius * math.cos(self.pressure_angle)
+        return self.pitch_radius * math.cos(self.transverse_pressure_angle)
 
     @property
     def tooth_module(self) -> float:
-        """Module [m], also where the gear is given by its base radius."""
-        return 2.0 * self.pitch_radius / self.teeth
+        """Normal module [m], also where the gear is given by its diametral pitch or its base radius."""
+        if self.module is not None:
+            return self.module
+        if self.diametral_pitch is not None:
+            return 1.0 / self.diametral_pitch
+        return 2.0 * self.pitch_radius * math.cos(self.helix_angle) / self.teeth
 
     @property
     def pitch_radius(self) -> float:
         """Radius of the reference circle [m]."""
-        if self.module is not None:
-            return self.module * self.teeth / 2.0
-        assert self.base_radius is not None
-        return self.base_radius / math.cos(self.pressure_angle)
+        if self.base_radius is not None:
+            return self.base_radius / math.cos(self.transverse_pressure_angle)
+        return self.tooth_module * self.teeth / (2.0 * math.cos(self.helix_angle))
+
+    @property
+    def tip_radius(self) -> float:
+        """Radius of the tip circle [m]."""
+        return self.pitch_radius + (self.addendum + self.profile_shift) * self.tooth_module
+
+    @property
+    def root_circle_radius(self) -> float:
+        """Radius of the root circle [m], of teeth that are not thinned."""
+        return self.pitch_radius - (self.dedendum - self.profile_shift) * self.tooth_module
 
 
 class ToothStiffness(Table):
     """How stiff a pair's teeth are: a model by name, and the value [N/m] or file that it needs."""
 
-    model: Literal["potential-energy", "constant", "iso6336", "square", "table"] = "potential-energy"
+    model: Literal[
+        "potential-energy", "elastic-ring", "cornell", "weber-banaschek", "iso6336", "constant", "square", "table"
+    ] = "potential-energy"
     value: PositiveStiffness | None = None
     file: CaseFile | None = None
 

@@ -77,11 +77,12 @@ ACCELERATION = Dimension("an acceleration", "m/s^2", "9.81 m/s^2")
 ANGLE = Dimension("an angle", "rad", "24 deg", display="deg")
 FREQUENCY = Dimension("a frequency", "Hz", "3.2 kHz")
 SPEED = Dimension("an angular speed", "rad/s", "5500 rpm", display="rpm")
+DIAMETRAL_PITCH = Dimension("a diametral pitch", "1/m", "8 1/in")
 RATIO = Dimension("a plain number", "", "0.01")
 
 _DIMENSIONS = (
     *(LENGTH, MASS, DENSITY, STRESS, INERTIA, IMBALANCE, STIFFNESS, COUPLED_STIFFNESS, DAMPING, TILT_DAMPING),
-    *(TORQUE, ACCELERATION, ANGLE, FREQUENCY, SPEED),
+    *(TORQUE, ACCELERATION, ANGLE, FREQUENCY, SPEED, DIAMETRAL_PITCH),
 )
 
 
@@ -128,9 +129,10 @@ def _symbol(symbol: str) -> _Unit | None:
 
 @lru_cache(maxsize=1024)
 def _parse_unit(text: str) -> _Unit | None:
-    """Multiply out a unit such as ``kg*m^2``; None where it is not one."""
+    """Multiply out a unit such as ``kg*m^2`` or ``1/in``; None where it is not one."""
+    inverse = text.startswith("1/")
     text = _BRACKET.sub(lambda inside: "/" + "/".join(re.split(r"[*·]", inside[1])), text.translate(_SUPERSCRIPTS))
-    factor, powers, place = Decimal(1), dict[str, int](), 0
+    factor, powers, place = Decimal(1), dict[str, int](), int(inverse)
     while place < len(text.rstrip()):
         match = _FACTOR.match(text, place)
         if match is None or (place == 0 and match[1]):

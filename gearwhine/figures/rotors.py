@@ -27,7 +27,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
 _MODES = 6  # drawn of each kind
-_ADDENDUM, _DEDENDUM, _WIDTH = 1.0, 1.25, 10.0  # of a drawn tooth and of a gear without a face width, in modules
+_WIDTH = 10.0  # of a gear without a face width, in modules
 
 
 def draw_rotors(folder: Path, case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> list[str]:
@@ -67,15 +67,14 @@ def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
     for gear in case.gear:
         if gear.rotor != name or gear.at is None:
             continue
-        module, shift = gear.tooth_module, gear.profile_shift
         gears.append(
             DrawnGear(
                 name=gear.name,
                 at=gear.at,
-                face_width=gear.face_width or _WIDTH * module,
-                tip_diameter=2.0 * (gear.pitch_radius + (_ADDENDUM + shift) * module),
+                face_width=gear.face_width or _WIDTH * gear.tooth_module,
+                tip_diameter=2.0 * gear.tip_radius,
                 pitch_diameter=2.0 * gear.pitch_radius,
-                root_diameter=2.0 * (gear.pitch_radius - (_DEDENDUM - shift) * module),
+                root_diameter=2.0 * gear.root_circle_radius,
                 teeth=gear.teeth,
                 disc=room.Disc(gear.at, *gear_inertia(case, gear)),
             )

@@ -126,14 +126,40 @@ def _analysis_lines(analysis: dict[str, Any]) -> Iterator[str]:
 
 def _pair_lines(pair: dict[str, Any]) -> list[str]:
     lines = [
-        f"{pair['driver']} → {pair['driven']}: ratio {pair['ratio']:.6g}, contact ratio {pair['contact_ratio']:.5f}, "
+        f"{pair['driver']} → {pair['driven']}: ratio {pair['ratio']:.6g}, {contact_ratios(pair)}, "
         f"stiffness {pair['stiffness_model']}",
         f"shafts {1e3 * pair['centre_distance_m']:.6g} mm apart, working pressure angle "
-        f"{pair['working_pressure_angle_deg']:.4g}°",
+        f"{pair['working_pressure_angle_deg']:.4g}°{_backlash(pair['backlash_m'])}",
     ]
+    lines += [tooth_line(gear) for gear in pair["geometry"]["gears"]]
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
     return lines
+
+
+def contact_ratios(pair: dict[str, Any]) -> str:
+    """The contact ratio; of helical gears with the overlap."""
+    text = f"contact ratio {pair['contact_ratio']:.5f}"
+    if pair["overlap_ratio"] == 0.0:
+        return text
+    return f"{text} + overlap {pair['overlap_ratio']:.5f} = {pair['total_contact_ratio']:.5f}"
+
+
+def tooth_line(gear: dict[str, Any]) -> str:
+    """A gear's circles, and the span over its teeth."""
+    hand = {0: "spur", 1: "right", -1: "left"}[(gear["helix_angle_deg"] > 0) - (gear["helix_angle_deg"] < 0)]
+    helix = "" if hand == "spur" else f", helix {abs(gear['helix_angle_deg']):.6g}° {hand}"
+    circles = ", ".join(f"{name} {1e3 * gear[f'{name}_diameter_m']:.6g}" for name in ("tip", "form", "root"))
+    span = gear["span"]
+    measured = "" if span is None else f"; span of {span['teeth']}: {1e3 * span['length_m']:.6g} mm"
+    cut = " (undercut)" if gear["undercut"] else ""
+    return f"{gear['name']}: {gear['teeth']} teeth{helix}, diameters {circles} mm{cut}{measured}"
+
+
+def _backlash(backlash: dict[str, float]) -> str:
+    """The backlash by centre distance and thickness, where there is any that could be measured."""
+    clearance = 1e3 * backlash["circumferential"]
+    return "" if abs(clearance) < 1e-6 else f", backlash of the teeth {clearance:.4g} mm"
 
 
 def show_mesh(document: dict[str, Any]) -> None:

@@ -7,6 +7,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from gearwhine.screen.case import contact_ratios, tooth_line
 from gearwhine.screen.console import counted, open_console, percent, show_origin, show_written
 from gearwhine.screen.health import static_error_line
 from gearwhine.screen.housing import comparison_table, modes_line
@@ -55,11 +56,16 @@ def show_gears(document: dict[str, Any]) -> None:
     for pair in document["pairs"]:
         stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
         console.print(Text.assemble((f"{pair['driver']} → {pair['driven']}", "bold"), f"  {pair['model']}"))
-        console.print(f"  contact ratio {pair['contact_ratio']:.5f}")
+        console.print(f"  {contact_ratios(pair)}")
+        for gear in pair["geometry"]["gears"]:
+            console.print(f"  {tooth_line(gear)}")
         if pair["mesh_frequency_hz"] is not None:
             console.print(
                 f"  mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mesh force {pair['mean_force_n']:.1f} N"
             )
+        if stiffness is None:
+            console.print(f"  {pair['note']}")
+            continue
         console.print(
             f"  mesh stiffness {1e-6 * stiffness['mean']:.2f} N/µm in the mean, {1e-6 * stiffness['min']:.2f} to "
             f"{1e-6 * stiffness['max']:.2f}"

@@ -1,5 +1,7 @@
 """The parts of a case as the rooms' own inputs: gears and rotors."""
 
+from dataclasses import replace
+
 import coupling.gears as gear_room
 import rotors as rotor_room
 from gearwhine.case import Case, CouplingSegment, Disc, RoundDisc, Segment
@@ -12,22 +14,16 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
 
     A gear known by its base radius alone has the module that gives it, and a nominal width where none is given.
     """
-    module = given.module
-    if module is None:
-        assert given.base_radius is not None
-        module = gear_room.module_from_base_radius(given.base_radius, given.teeth, given.pressure_angle)
-    steel = {} if (material := _gear_material(case, given)) is None else {
-        "youngs_modulus": case.material[material].youngs_modulus,
-        "poisson_ratio": case.material[material].poisson_ratio,
-        "density": case.material[material].density,
-    }  # fmt: skip
-    return gear_room.Gear(
+    module = _module(given)
+    gear = gear_room.Gear(
         name=given.name,
         teeth=given.teeth,
         module=module,
         pressure_angle=given.pressure_angle,
         face_width=given.face_width if given.face_width is not None else 10.0 * module,
         profile_shift=given.profile_shift,
+        addendum=given.addendum,
+        dedendum=given.dedendum,
         root_radius=given.root_radius,
         bore=given.bore,
         tip_relief=gear_room.TipRelief(given.tip_relief.amount, given.tip_relief.start_roll_angle)
@@ -36,8 +32,31 @@ def build_gear(case: Case, given: GivenGear) -> gear_room.Gear:
         eccentricity=given.errors.eccentricity,
         eccentricity_phase=given.errors.phase,
         pitch_deviations=given.errors.pitch,
-        **steel,
+        helix_angle=given.helix_angle,
+        rim_thickness=given.rim,
+        web_thickness=given.web,
+        tooth_thinning=given.tooth_thinning,
+        allow_undercut=given.allow_undercut,
     )
+    if (name := _gear_material(case, given)) is None:
+        return gear
+    material = case.material[name]
+    return replace(
+        gear,
+        youngs_modulus=material.youngs_modulus,
+        poisson_ratio=material.poisson_ratio,
+        density=material.density,
+    )
+
+
+def _module(given: GivenGear) -> float:
+    """Normal module of a gear [m], however its size is given."""
+    if given.module is not None:
+        return given.module
+    if given.diametral_pitch is not None:
+        return gear_room.module_from_diametral_pitch(given.diametral_pitch)
+    assert given.base_radius is not None
+    return gear_room.module_from_base_radius(given.base_radius, given.teeth, given.pressure_angle, given.helix_angle)
 
 
 def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:

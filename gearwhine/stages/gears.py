@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -49,7 +48,7 @@ class SolvedPair:
 
 
 def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ...]:
-    """Every gear pair of the case.
+    """Every pair of spur gears of the case; of helical ones only the geometry is known so far.
 
     Raises
     ------
@@ -63,6 +62,8 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
     for number, (pair, torque, frequency) in enumerate(zip(case.gear_pair, torques, frequencies, strict=True)):
         progress(f"gear pair {pair.driver} -> {pair.driven}")
         geometry = pair_geometry(case, pair)
+        if geometry.driver.helix_angle != 0.0:
+            continue
         force = abs(torque) / geometry.driver.base_radius
         contact = room.tooth_contact(geometry, _model(pair, number, geometry, force))
         depth = _FADING * force / contact.mean_stiffness
@@ -76,6 +77,11 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
     return tuple(solved)
 
 
+def pair_geometries(case: Case) -> tuple[room.GearPairGeometry, ...]:
+    """Both gears of every pair of the case in mesh."""
+    return tuple(pair_geometry(case, pair) for pair in case.gear_pair)
+
+
 def pair_geometry(case: Case, pair: GivenPair) -> room.GearPairGeometry:
     """The two gears at the distance of their shafts, or without backlash where there are no shafts."""
     driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
@@ -84,44 +90,6 @@ def pair_geometry(case: Case, pair: GivenPair) -> room.GearPairGeometry:
         axes = case.rotor_named(driver.rotor).axis, case.rotor_named(driven.rotor).axis
         distance = float(np.hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]))
     return room.GearPairGeometry(build_gear(case, driver), build_gear(case, driven), distance)
-
-
-def gears_document(solved: tuple[SolvedPair, ...]) -> dict[str, Any]:
-    """The gear pairs as the command's JSON."""
-    return {"pairs": [_pair_document(pair) for pair in solved]}
-
-
-def _pair_document(pair: SolvedPair) -> dict[str, Any]:
-    phases = pair.static.phases
-    stiffness = room.mesh_stiffness(pair.contact, phases)
-    teeth = pair.geometry.driver.teeth
-    return {
-        "driver": pair.given.driver,
-        "driven": pair.given.driven,
-        "model": pair.given.stiffness.model,
-        "contact_ratio": pair.geometry.contact_ratio,
-        "mesh_frequency_hz": pair.mesh_frequency,
-        "mean_force_n": pair.static.force,
-        "stiffness_n_per_m": {
-            "mean": pair.contact.mean_stiffness,
-            "min": float(stiffness.min()),
-            "max": float(stiffness.max()),
-        },
-        "transmission_error_m": {
-            "mean": pair.static.mean_transmission_error,
-            "peak_to_peak": pair.static.peak_to_peak_transmission_error,
-            "over_hunting_period": None
-            if pair.hunting is None
-            else {
-                "mean": pair.hunting.mean_transmission_error,
-                "peak_to_peak": pair.hunting.peak_to_peak_transmission_error,
-            },
-        },
-        "roll_angle_rad": (2.0 * np.pi * phases / teeth).tolist(),
-        "stiffness": stiffness.tolist(),
-        "loaded_stiffness": pair.static.tangent_stiffness.tolist(),
-        "transmission_error": pair.static.transmission_error.tolist(),
-    }
 
 
 def _model(pair: GivenPair, number: int, geometry: room.GearPairGeometry, force: float) -> room.StiffnessModel:
@@ -133,9 +101,11 @@ def _model(pair: GivenPair, number: int, geometry: room.GearPairGeometry, force:
         return room.stiffness_model(stiffness.model, value=stiffness.value)
     if stiffness.model == "iso6336" and force > 0.0:
         # F_t / b: tangential force at the reference circle over the common width, as the norm's load per width.
-        width = min(geometry.driver.face_width, geometry.driven.face_width)
         tangential = force * geometry.driver.base_radius / geometry.driver.pitch_radius
-        return room.stiffness_model("iso6336", specific_load=tangential / width)
+        return room.stiffness_model("iso6336", specific_load=tangential / geometry.face_width)
+    if stiffness.model in ("elastic-ring", "cornell", "weber-banaschek") and force > 0.0:
+        # Their contact stiffens with the load; it is frozen where one pair carries all of it.
+        return room.stiffness_model(stiffness.model, force=force)
     return room.stiffness_model(stiffness.model)
 
 

@@ -13,15 +13,14 @@ from gearwhine.case import (
     amounts,
     applied_torques,
     campbell_speeds,
-    mesh_frequencies,
-    pair_torques,
     response_speeds,
     rotor_speeds,
 )
 from gearwhine.progress import Progress, silent
 from gearwhine.stages import mesh_health
 from gearwhine.stages.build import build_rotor
-from gearwhine.stages.gears import pair_geometry
+from gearwhine.stages.gear_documents import doubts, geometry_document, pairs_document
+from gearwhine.stages.gears import pair_geometries
 
 _RPM = 60.0 / (2.0 * np.pi)
 
@@ -39,7 +38,7 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
     if bearings := _bearings(case):
         document["bearings"] = bearings
     if case.gear_pair:
-        document["gear_pairs"] = _pairs(case)
+        _add_gears(case, document)
     if case.operation is not None:
         document["operation"] = {
             "speed_rpm": case.operation.speed * _RPM,
@@ -158,24 +157,11 @@ def _analysis(case: Case) -> list[dict[str, Any]]:
     return rows
 
 
-def _pairs(case: Case) -> list[dict[str, Any]]:
-    number = len(case.gear_pair)
-    frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
-    torques = pair_torques(case) if case.operation is not None else (None,) * number
-    rows = []
-    for pair, frequency, torque in zip(case.gear_pair, frequencies, torques, strict=True):
-        geometry = pair_geometry(case, pair)
-        rows.append(
-            {
-                "driver": pair.driver,
-                "driven": pair.driven,
-                "ratio": geometry.ratio,
-                "contact_ratio": geometry.contact_ratio,
-                "centre_distance_m": geometry.working_centre_distance,
-                "working_pressure_angle_deg": float(np.degrees(geometry.working_pressure_angle)),
-                "mesh_frequency_hz": frequency,
-                "mean_force_n": None if torque is None else abs(torque) / geometry.driver.base_radius,
-                "stiffness_model": pair.stiffness.model,
-            }
-        )
-    return rows
+def _add_gears(case: Case, document: dict[str, Any]) -> None:
+    """Add the gear pairs, and warnings of their teeth to those there are."""
+    document["gear_pairs"] = pairs_document(case)
+    for geometry, row in zip(pair_geometries(case), document["gear_pairs"], strict=True):
+        row["stiffness_model"] = row.pop("model")
+        row["geometry"] = geometry_document(geometry)
+        if found := doubts(geometry):
+            document["warnings"] = [*document.get("warnings", ()), *found]

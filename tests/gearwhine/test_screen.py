@@ -114,6 +114,7 @@ def test_the_hunting_period_has_its_own_line() -> None:
     error: Document = {"mean": 5e-6, "peak_to_peak": 2e-6}
     pair = {"driver": "a", "driven": "b", "model": "constant", "contact_ratio": 1.5, "mesh_frequency_hz": None}
     pair |= {"stiffness_n_per_m": {"mean": 1e8, "min": 1e8, "max": 1e8}, "transmission_error_m": error}
+    pair |= {"overlap_ratio": 0.0, "geometry": {"gears": []}}
     assert "hunting" not in _said(screen.show_gears, {"pairs": [pair]})
     error["over_hunting_period"] = None
     assert "hunting" not in _said(screen.show_gears, {"pairs": [pair]})

@@ -1,13 +1,13 @@
 """Tooth compliance against a plane finite-element model of the whole gear, and the contact's dent with it.
 
-The gear of NASA TM-104434, Table I (28 teeth, module 3.175 mm, bore 40 mm as in the bundled case), and the 62-tooth gear
-of Ma et al. (2014): all teeth and fillets, quadratic triangles with curved edges, finest along the loaded flank and its
-fillets, held at the bore, in plane strain.  The load is Hertz's pressure over a strip of 0.1 module, in the direction of
-the line of action.
+The gear of NASA TM-104434, Table I (28 teeth, module 3.175 mm, bore 40 mm as in the bundled case), and the 62-tooth
+gear of Ma et al. (2014): all teeth and fillets, quadratic triangles with curved edges, finest along the loaded flank
+and its fillets, held at the bore, in plane strain.  The load is Hertz's pressure over a strip of 0.1 module, in the
+direction of the line of action.
 
 Under the load the surface sinks further than the tooth moves: a dent that a finer strip deepens without end.  It is no
-part of a tooth's compliance.  The tooth's motion is read where the line of action crosses its axis; the rest is the dent
-against that point, which Weber's formula for the same strip meets (a check of it, and of the choice).
+part of a tooth's compliance.  The tooth's motion is read where the line of action crosses its axis; the rest is the
+dent against that point, which Weber's formula for the same strip meets (a check of it, and of the choice).
 
 Held at the bore, the ring twists: its share, ``rb^2 (1/r_i^2 - 1/r_f^2) / (4 pi G b)``, is in both models.
 
@@ -207,8 +207,8 @@ def test_tooth_compliance_along_the_profile(solved: Any, published: Any, remark:
     source = "Plane-strain finite elements of our own, gmsh and scikit-fem"
     remark(
         source,
-        "Not published, but independent: compliance of a tooth and its body under loads from the start of the active "
-        "profile to the tip, against the energy method on an elastic ring. The finite-element value stands as published.",
+        "Not published, but independent: a tooth and its body under loads from the start of the active profile to the "
+        "tip. The finite-element value stands as published, the energy method on an elastic ring as ours.",
     )
     for radius, value, ours in zip(radii, found.axis, model, strict=True):
         quantity = f"tooth compliance, {gear.teeth} teeth, at radius {1e3 * radius:.2f} mm"
@@ -230,8 +230,8 @@ def test_what_the_surface_sinks_more_is_webers_dent(solved: Any) -> None:
     beta = load_angle(gear, radii)
     depth = flank_points(gear, beta).half_thickness / np.cos(beta)
     nu = gear.poisson_ratio
-    # Weber's is of the middle of the strip.  Under Hertz's pressure the surface rises from there as (x/a)^2, in the mean
-    # over the pressure by a quarter.  The formula is a half plane's; a tooth has a back, and dents some tenth more.
+    # Weber's is of the middle of the strip.  Under Hertz's pressure the surface rises from there as (x/a)^2, in the
+    # mean over the pressure by a quarter.  A tooth is no half plane: it dents some tenth more.
     dent = np.log(2.0 * depth / (STRIP * gear.module)) - 0.5 * nu / (1.0 - nu) - 0.25
     dent *= 2.0 * (1.0 - nu**2) / (math.pi * gear.youngs_modulus * gear.face_width)
     np.testing.assert_allclose(found.surface - found.axis, dent, rtol=0.13)

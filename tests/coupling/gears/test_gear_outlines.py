@@ -190,6 +190,18 @@ def test_every_pair_on_the_path_touches() -> None:
         assert second[1] - first[1] == pytest.approx(-2.0 * math.pi / 43, rel=1e-12)
 
 
+@pytest.mark.parametrize("sense", [1, -1])
+def test_helical_gears_mesh_in_every_plane_of_their_face(sense: int) -> None:
+    # Opposite hands turn the two sections against each other just as rolling does: another phase of the same mesh.
+    z, phase = 4e-3, 0.3
+    rotations = meshing_rotations(PAIR, phase, sense=sense)
+    there = meshing_rotations(PAIR, phase + sense * z / PINION.axial_pitch, sense=sense)
+    centre = PAIR.working_centre_distance
+    for gear, origin, here, moved in zip((PINION, WHEEL), (0.0, centre), rotations, there, strict=True):
+        section = gear_outline(gear, here, (origin, 0.0), axial_position=z)
+        np.testing.assert_allclose(section, gear_outline(gear, moved, (origin, 0.0)), atol=1e-15)
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [

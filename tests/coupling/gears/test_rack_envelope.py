@@ -1,7 +1,7 @@
-"""The outline against the rack itself: a figure rolled past the gear, that never cuts into it and touches it everywhere.
+"""The outline against the rack itself: rolled past the gear, it touches every point and cuts into none.
 
-Nothing of the trochoid or the involute is used: the rack's tooth is four lines and two circles in its normal section, and
-the gear's points are carried into its frame by rolling alone.  Undercut teeth are held to the same.
+Nothing of the trochoid or the involute is used: the rack's tooth is lines and circles in its normal section, and the
+gear's points are carried into its frame by rolling alone.  Undercut teeth are held to the same.
 """
 
 import math
@@ -60,9 +60,9 @@ def rack_penetration(gear: Gear, x: FloatArray, y: FloatArray, rolls: FloatArray
 
 def deepest_penetration(gear: Gear, x: FloatArray, y: FloatArray) -> FloatArray:
     """The deepest that the rack ever reaches beyond each point [m], by ever finer searches around the best roll."""
-    best, span = np.zeros(x.size), 8.0 * gear.transverse_module
+    best, span = np.zeros(x.size), 20.0 * gear.transverse_module
     for _ in range(5):
-        rolls = best[:, None] + np.linspace(-span, span, 401)
+        rolls = best[:, None] + np.linspace(-span, span, 1001)
         depth = rack_penetration(gear, x, y, rolls)
         best = rolls[np.arange(x.size), np.argmax(depth, axis=1)]
         span *= 0.02
@@ -114,17 +114,26 @@ def test_the_fillets_climb_is_its_derivative(gear: Gear) -> None:
 @settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.filter_too_much])
 @given(
     teeth=st.integers(5, 150),
-    angle=st.floats(14.5, 28.0),
-    helix=st.floats(-45.0, 45.0),
-    shift=st.floats(-0.5, 0.9),
+    angle=st.floats(12.0, 32.0),
+    helix=st.floats(-60.0, 60.0),
+    shift=st.floats(-1.0, 1.0),
+    addendum=st.floats(0.4, 1.5),
+    dedendum=st.floats(0.6, 1.5),
     corner=st.floats(0.0, 1.0),
     thinning=st.floats(0.0, 0.1),
 )
 def test_any_gear_is_the_envelope_of_its_rack(
-    teeth: int, angle: float, helix: float, shift: float, corner: float, thinning: float
+    teeth: int,
+    angle: float,
+    helix: float,
+    shift: float,
+    addendum: float,
+    dedendum: float,
+    corner: float,
+    thinning: float,
 ) -> None:
-    plain = Gear("plain", 60, 1.0, math.radians(angle), 10.0)
     try:
+        plain = Gear("plain", 200, 1.0, math.radians(angle), 10.0, dedendum=dedendum)
         gear = Gear(
             "drawn",
             teeth,
@@ -132,6 +141,8 @@ def test_any_gear_is_the_envelope_of_its_rack(
             math.radians(angle),
             10.0,
             profile_shift=shift,
+            addendum=addendum,
+            dedendum=dedendum,
             root_radius=corner * plain.full_rack_tip_radius,
             helix_angle=math.radians(helix),
             tooth_thinning=thinning,

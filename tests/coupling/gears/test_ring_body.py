@@ -109,20 +109,17 @@ def test_a_web_as_wide_as_the_teeth_is_no_web() -> None:
     np.testing.assert_array_equal(rim_compliance(GEAR, radius), 0.0)
     # A rim alone is held at its inside.
     held = replace(GEAR, bore=2.0 * (GEAR.root_circle_radius - 15e-3))
-    np.testing.assert_allclose(
-        ring_compliance(replace(GEAR, rim_thickness=15e-3), radius), ring_compliance(held, radius)
-    )
+    alone = replace(GEAR, rim_thickness=15e-3)
+    np.testing.assert_allclose(ring_compliance(alone, radius), ring_compliance(held, radius))
 
 
 def test_a_thin_rim_on_a_thin_web_bends_like_a_curved_beam_on_an_elastic_foundation() -> None:
-    # Winkler and Bernoulli: rim of height h and width b on a web of radial stiffness per length k; a radial push in
-    # its middle yields P / (8 E I lambda^3), lambda^4 = k / (4 E I).  Hoop tension and the web's Poisson effect are
-    # left out there, so a third is all that can be asked.
+    # Winkler and Bernoulli: on a foundation of stiffness k per length a radial push in its middle yields
+    # P / (8 E I lambda^3), lambda^4 = k / (4 E I): as k to the power -3/4.  Hoop tension is not in that.
     rim, web = Annulus(0.97, 1.0, 1.0), Annulus(0.5, 0.97, 0.004)
     yielding = root_flexibility((web, rim), 0.01, NU, STRESS).radial
     assert yielding > 5.0 * root_flexibility(ring(2.0), 0.01, NU, STRESS).radial
     thinner = root_flexibility((replace(web, width=0.002), rim), 0.01, NU, STRESS).radial
-    # Deflection as the foundation's stiffness to the power -3/4.
     assert math.log2(thinner / yielding) == pytest.approx(0.75, abs=0.12)
 
 

@@ -165,6 +165,6 @@ def test_thin_tips_are_named() -> None:
     sharp = Gear("sharp", 12, 2e-3, ALPHA, 20e-3, profile_shift=0.55)
     thickness = normal_tooth_thickness(sharp, sharp.tip_radius) / sharp.module
     assert 0.1 < thickness < 0.4
-    with pytest.raises(ThinTipError, match="'sharp'.*at least 0.4 modules"):
+    with pytest.raises(ThinTipError, match=r"'sharp'.*at least 0\.4 modules"):
         require_tip_thickness(sharp, least=0.4)
     require_tip_thickness(sharp, least=thickness - 1e-9)

@@ -1,0 +1,111 @@
+"""Gears of a case: sizes given in several ways, helices, rims, and what `check` and `gears` say of them."""
+
+import math
+from typing import Any
+
+import pytest
+
+from gearwhine.case import CaseError, dump_case, load_case, parse_case
+from gearwhine.screen.case import show_check
+from gearwhine.screen.machine import show_gears
+from gearwhine.stages.build import build_gear
+from gearwhine.stages.gear_documents import gears_document
+from gearwhine.stages.gears import pair_geometry, solve_gears
+from gearwhine.stages.machine import require_spur
+from gearwhine.stages.summary import check_document
+
+STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
+TOOTH = {"module": "3.175 mm", "face_width": "30 mm", "material": "steel"}
+
+
+def case_of(pinion: dict[str, Any], wheel: dict[str, Any], **pair: Any) -> Any:
+    document = {
+        "title": "gears",
+        "material": {"steel": STEEL},
+        "gear": [{"name": "pinion", "teeth": 20} | pinion, {"name": "wheel", "teeth": 61} | wheel],
+        "gear_pair": [{"driver": "pinion", "driven": "wheel"} | pair],
+        "operation": {"speed": "1500 rpm", "torque": "10 N*m"},
+    }
+    return parse_case(document, source="gears.toml")
+
+
+HELICAL = case_of(TOOTH | {"helix_angle": "15 deg"}, TOOTH | {"helix_angle": "-15 deg", "rim": "9 mm", "web": "8 mm"})
+
+
+def test_three_ways_of_saying_the_size() -> None:
+    rest = {"face_width": "30 mm", "helix_angle": "15 deg", "material": "steel"}
+    transverse = math.atan(math.tan(math.radians(20.0)) / math.cos(math.radians(15.0)))
+    base_radius = 0.5 * 20 * 3.175e-3 / math.cos(math.radians(15.0)) * math.cos(transverse)
+    for size in ({"module": "3.175 mm"}, {"diametral_pitch": "8 1/in"}, {"base_radius": base_radius}):
+        case = case_of(rest | size, TOOTH | {"helix_angle": "-15 deg"})
+        given = case.gear_named("pinion")
+        gear = build_gear(case, given)
+        assert gear.module == pytest.approx(3.175e-3, rel=1e-13)
+        assert gear.base_radius == pytest.approx(base_radius, rel=1e-13)
+        # What the case knows by itself agrees with the gear that is built.
+        for ours, built in (
+            (given.tooth_module, gear.module),
+            (given.base_circle_radius, gear.base_radius),
+            (given.pitch_radius, gear.pitch_radius),
+            (given.tip_radius, gear.tip_radius),
+            (given.root_circle_radius, gear.root_circle_radius),
+        ):
+            assert ours == pytest.approx(built, rel=1e-13)
+
+
+def test_every_key_reaches_the_gear_and_the_resolved_case() -> None:
+    keys = {
+        "addendum": 0.9,
+        "dedendum": 1.3,
+        "profile_shift": 0.1,
+        "helix_angle": "-15 deg",
+        "root_radius": "0.8 mm",
+        "tooth_thinning": "0.05 mm",
+        "bore": "30 mm",
+        "rim": "9 mm",
+        "web": "8 mm",
+    }
+    case = case_of(TOOTH | {"helix_angle": "15 deg", "teeth": 14, "allow_undercut": True}, TOOTH | keys)
+    wheel, pinion = (build_gear(case, case.gear_named(name)) for name in ("wheel", "pinion"))
+    assert (wheel.addendum, wheel.dedendum, wheel.root_radius) == (0.9, 1.3, pytest.approx(0.8e-3))
+    assert (wheel.rim_thickness, wheel.web_thickness) == (pytest.approx(9e-3), pytest.approx(8e-3))
+    assert wheel.tooth_thinning == pytest.approx(0.05e-3)
+    assert pinion.is_undercut
+    import tomllib
+
+    assert parse_case(tomllib.loads(dump_case(case)), source="resolved.toml") == case
+
+
+def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) -> None:
+    geometry = pair_geometry(HELICAL, HELICAL.gear_pair[0])
+    document = check_document(HELICAL)
+    (pair,) = document["gear_pairs"]
+    assert pair["overlap_ratio"] == pytest.approx(30e-3 * math.sin(math.radians(15.0)) / (math.pi * 3.175e-3))
+    assert pair["total_contact_ratio"] == geometry.total_contact_ratio
+    assert [gear["helix_angle_deg"] for gear in pair["geometry"]["gears"]] == pytest.approx([15.0, -15.0])
+    assert [point["point"] for point in pair["geometry"]["path_of_contact"]][::4] == ["SAP", "EAP"]
+    show_check(document)
+    solved = solve_gears(HELICAL)
+    assert solved == ()
+    document = gears_document(HELICAL, solved)
+    assert document["pairs"][0]["stiffness_n_per_m"] is None
+    show_gears(document)
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "+ overlap" in shown
+    assert "helix 15° left" in shown
+    assert "come with a later version" in shown
+
+
+def test_the_machine_refuses_helical_gears() -> None:
+    with pytest.raises(CaseError, match=r"gear\[0\].helix_angle .*expected 0 deg in the coupled system"):
+        require_spur(HELICAL)
+    require_spur(load_case("small-gearbox").case)
+
+
+def test_undercut_and_thin_tips_are_warned_of() -> None:
+    case = case_of(TOOTH | {"teeth": 12, "allow_undercut": True}, TOOTH | {"addendum": 0.6})
+    (warning,) = check_document(case)["warnings"]
+    assert (warning["name"], "'pinion'" in warning["message"]) == ("undercut", True)
+    case = case_of(TOOTH | {"teeth": 12, "profile_shift": 0.7}, TOOTH)
+    (warning,) = check_document(case)["warnings"]
+    assert (warning["name"], "'pinion'" in warning["message"]) == ("thin tip", True)
