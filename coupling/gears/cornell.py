@@ -3,7 +3,7 @@
 R. W. Cornell, "Compliance and stress sensitivity of spur gear teeth", J. Mech. Design 103 (1981).  The beam's part is
 that of :mod:`coupling.gears.beam_compliance` from the effective fillet section up to the load, which stands where the
 fillet's tangent leans by 75 degrees from the tooth's axis.  The body is a half plane under the bending moment, shear
-and thrust of that section (O'Donnell, J. Eng. Industry 82, 1960, and 85, 1963).  With ``l`` the lever from the section
+and thrust of that section (O'Donnell, J. Appl. Mechanics 27, 1960).  With ``l`` the lever from the section
 to where the line of action crosses the axis, and ``h`` the section's thickness:
 
     plane stress  cos(beta)^2 / (E b) (16.67/pi (l/h)^2 + 2 (1 - nu) l/h + 1.534 (1 + tan(beta)^2 / (2.4 (1 + nu))))

@@ -14,8 +14,8 @@ finite-element model.  Here
 * its root section is the rigid arc that plane sections make it, and the body is the ring under that arc
   (:mod:`coupling.gears.rim`), loaded in full equilibrium with the load on the flank.
 
-No number is fitted.  The work of the load is an upper bound where the tractions are free; neighbouring teeth, which
-stiffen the root by some 2 %, are left out.
+No number is fitted.  Against finite elements (tests/validation) the model is -2 to +8 % off, most where the load is
+near the root and the tooth is no beam; neighbouring teeth, which stiffen the root by some 2 %, are left out.
 """
 
 from __future__ import annotations
