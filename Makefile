@@ -15,7 +15,7 @@ OUT    ?= results/nasa-gear-noise-rig
 export OMP_NUM_THREADS ?= 2
 export OPENBLAS_NUM_THREADS ?= 2
 
-.PHONY: demo test lint types unit validation install install-dev system format constraints clean
+.PHONY: demo test lint types unit validation stiffness-page install install-dev system format constraints clean
 
 # One environment: never two installations into it at once, whatever -j says.
 .NOTPARALLEL:
@@ -60,6 +60,10 @@ $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
 # The validation page, from the tests against published values.
 validation: install-dev
 	$(BIN)/pytest tests/validation -q --validation-table docs/validation.md
+
+# The tables and the figure of the page of stiffness models.
+stiffness-page: install
+	$(BIN)/python scripts/gear_stiffness_page.py
 
 format: install-dev
 	$(BIN)/ruff check --fix .

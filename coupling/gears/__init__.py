@@ -17,9 +17,18 @@ Positions along the path of contact are in base pitches, phases in mesh periods,
 
 from coupling.gears.blank import Inertia
 from coupling.gears.centre_distance import profile_shift_sum, shifted_to, tip_shortening
+from coupling.gears.compliant_teeth import (
+    CompliantTeeth,
+    CornellStiffness,
+    ElasticRingStiffness,
+    PotentialEnergyStiffness,
+    WeberBanaschekStiffness,
+)
+from coupling.gears.cornell import cornell
 from coupling.gears.corner_contact import FlankPlaces, corner_reach, flank_places
 from coupling.gears.damping import equivalent_mass, mesh_damping
 from coupling.gears.deviation import flank_gap, pair_deviation
+from coupling.gears.elastic_ring import elastic_ring
 from coupling.gears.errors import (
     ContactAccuracyError,
     GearError,
@@ -38,6 +47,7 @@ from coupling.gears.foundation import RootSection, foundation_compliance, within
 from coupling.gears.gear_checks import require_tip_thickness
 from coupling.gears.geometry import Gear
 from coupling.gears.harris_map import HarrisMap, harris_map, transmission_error_harmonics
+from coupling.gears.hertz import LineContact, hertz_compliance, line_contact
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
 from coupling.gears.modifications import RootRelief, TipRelief
@@ -60,7 +70,6 @@ from coupling.gears.stiffness_models import (
     STIFFNESS_MODELS,
     ConstantStiffness,
     Iso6336Stiffness,
-    PotentialEnergyStiffness,
     SquareStiffness,
     StiffnessModel,
     TableStiffness,
@@ -77,21 +86,21 @@ from coupling.gears.thickness import (
     span_measurement,
     tooth_thickness,
 )
-from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, hertz_compliance, potential_energy
-from coupling.gears.tooth_contact import (
-    PairStates,
-    ToothContact,
-    tooth_contact,
-)
+from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, potential_energy
+from coupling.gears.tooth_contact import PairStates, ToothContact, tooth_contact
 from coupling.gears.tooth_size import module_from_base_radius, module_from_diametral_pitch
+from coupling.gears.weber_banaschek import weber_banaschek
 
 __all__ = [
     "POINTS_OF_CONTACT",
     "STIFFNESS_MODELS",
     "BallMeasurement",
     "ChordalThickness",
+    "CompliantTeeth",
     "ConstantStiffness",
     "ContactAccuracyError",
+    "CornellStiffness",
+    "ElasticRingStiffness",
     "FaceSlices",
     "Fault",
     "FlankPlaces",
@@ -104,6 +113,7 @@ __all__ = [
     "InterferenceError",
     "Iso6336Stiffness",
     "Iso6336Values",
+    "LineContact",
     "MismatchedGearsError",
     "MissingTooth",
     "NoContactError",
@@ -131,9 +141,12 @@ __all__ = [
     "ToothModel",
     "UndercutError",
     "Wear",
+    "WeberBanaschekStiffness",
     "back_flank_pitch_gaps",
     "chordal_thickness",
+    "cornell",
     "corner_reach",
+    "elastic_ring",
     "equivalent_mass",
     "face_slices",
     "flank_gap",
@@ -145,6 +158,7 @@ __all__ = [
     "inverse_involute",
     "involute",
     "iso6336_stiffness",
+    "line_contact",
     "mesh_damping",
     "mesh_period_phases",
     "mesh_stiffness",
@@ -173,5 +187,6 @@ __all__ = [
     "tooth_outline",
     "tooth_thickness",
     "transmission_error_harmonics",
+    "weber_banaschek",
     "within_fitted_range",
 ]

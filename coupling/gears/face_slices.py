@@ -30,9 +30,9 @@ import numpy.typing as npt
 
 from coupling.gears.errors import ContactAccuracyError
 from coupling.gears.geometry import Gear
+from coupling.gears.hertz import hertz_compliance
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.profile import tooth_outline
-from coupling.gears.tooth_compliance import hertz_compliance
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]

@@ -1,12 +1,22 @@
-"""Tooth stiffness by ISO 6336-1 (2006), clause 9, method B, for spur gears of solid blanks.
+"""Tooth stiffness by ISO 6336-1 (2006), clause 9, method B, for spur and helical gears.
 
 The theoretical single stiffness c'_th is one over (Eq. 81, constants of Table 9)
 
-    q' = C1 + C2/z_1 + C3/z_2 + C4 x_1 + C5 x_1/z_1 + C6 x_2 + C7 x_2/z_2 + C8 x_1^2 + C9 x_2^2
+    q' = C1 + C2/z_n1 + C3/z_n2 + C4 x_1 + C5 x_1/z_n1 + C6 x_2 + C7 x_2/z_n2 + C8 x_1^2 + C9 x_2^2
 
-in mm um/N, gear 1 the smaller.  The maximum of a pair is ``c' = c'_th C_M C_B`` with C_M = 0.8 and
-``C_B = (1 + 0.5 (1.2 - h_fP/m)) (1 - 0.02 (20 - alpha_P))``, alpha_P in degrees; other materials scale by
-their mean modulus over 206 GPa.  The mean over the mesh is ``c_gamma = c' (0.75 eps_alpha + 0.25)``.
+in mm um/N, gear 1 the smaller, ``z_n`` the teeth of the equivalent spur gear.  The maximum of a pair is
+``c' = c'_th C_M C_R C_B cos(beta)`` with
+
+    C_M = 0.8                                                            from theory to measurement
+    C_R = 1 + ln(b_s/b) / (5 exp(s_R / (5 m_n)))                         blank of a web b_s and a rim s_R
+    C_B = (1 + 0.5 (1.2 - h_fP/m_n)) (1 - 0.02 (20 - alpha_Pn))          basic rack, alpha_Pn in degrees
+
+where ``b_s/b`` is held within 0.2 ... 1.2 and ``s_R/m_n`` at 1 or more, and C_R is 1 for a disc; of two different
+blanks or racks the mean is taken.  Other materials scale by their mean modulus over 206 GPa, specific loads below
+100 N/mm by their fourth root.  The mean over the mesh is ``c_gamma = c' (0.75 eps_alpha + 0.25)``, meant for
+``eps_alpha`` of 1.2 and more, and helix angles to 30 degrees.
+
+C_R was written from the norm's formula as it is commonly quoted; the norm's graph was not at hand.
 """
 
 from __future__ import annotations
@@ -15,6 +25,7 @@ import math
 from dataclasses import dataclass
 
 from coupling.gears.errors import StiffnessModelError
+from coupling.gears.geometry import Gear
 from coupling.gears.pair_geometry import GearPairGeometry
 
 _PER_MM_AND_UM = 1e9
@@ -63,7 +74,7 @@ def iso6336_stiffness(geometry: GearPairGeometry, specific_load: float | None = 
         raise StiffnessModelError(
             f"{geometry.label}: ISO 6336-1 covers sums of profile shifts from -0.5 to 2, got {x1 + x2:g}"
         )
-    z1, z2 = pinion.teeth, wheel.teeth
+    z1, z2 = pinion.virtual_teeth, wheel.virtual_teeth
     flexibility = (
         0.04723
         + 0.15551 / z1
@@ -79,9 +90,19 @@ def iso6336_stiffness(geometry: GearPairGeometry, specific_load: float | None = 
     dedendum = 0.5 * (pinion.dedendum + wheel.dedendum)
     rack = (1.0 + 0.5 * (1.2 - dedendum)) * (1.0 - 0.02 * (20.0 - math.degrees(pinion.pressure_angle)))
     modulus = 2.0 / (1.0 / pinion.youngs_modulus + 1.0 / wheel.youngs_modulus)
-    single = 0.8 * theoretical * rack * modulus / _STEEL
+    blank = 0.5 * (blank_factor(pinion) + blank_factor(wheel))
+    single = 0.8 * blank * theoretical * rack * math.cos(pinion.helix_angle) * modulus / _STEEL
     if specific_load is not None:
         if not (math.isfinite(specific_load) and specific_load > 0.0):
             raise StiffnessModelError(f"{geometry.label}: specific_load must be above 0, got {specific_load!r} N/m")
         single *= min(1.0, specific_load / _LIGHT_LOAD) ** 0.25
     return Iso6336Values(theoretical, single, single * (0.75 * geometry.contact_ratio + 0.25))
+
+
+def blank_factor(gear: Gear) -> float:
+    """Gear blank factor C_R, 1 for a disc and for a rim alone (of which the norm says nothing)."""
+    if gear.rim_thickness is None or gear.web_thickness is None:
+        return 1.0
+    web = min(max(gear.web_thickness / gear.face_width, 0.2), 1.2)
+    rim = max(gear.rim_thickness / gear.module, 1.0)
+    return 1.0 + math.log(web) / (5.0 * math.exp(rim / 5.0))

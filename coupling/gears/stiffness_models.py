@@ -8,7 +8,10 @@ as one spring.
 ============================  =====================================================================
 name                          model
 ============================  =====================================================================
-``"potential-energy"``        bending, shear, compression, body and Hertz, from the tooth's outline
+``"potential-energy"``        energy method, Sainsot's body, constant contact (Ma et al. 2014)
+``"elastic-ring"``            energy method on an exact elastic ring, Weber's contact
+``"cornell"``                 Cornell (1981), as in NASA's gear dynamics
+``"weber-banaschek"``         Weber and Banaschek (1953)
 ``"iso6336"``                 ISO 6336-1 method B: its maximum c' and its mean c_gamma, as a parabola
 ``"square"``                  every pair the same constant: a square wave in the mesh
 ``"constant"``                the whole mesh one constant spring
@@ -27,12 +30,16 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import piecewise
+from coupling.gears.compliant_teeth import (
+    CornellStiffness,
+    ElasticRingStiffness,
+    PotentialEnergyStiffness,
+    WeberBanaschekStiffness,
+)
 from coupling.gears.errors import StiffnessModelError
-from coupling.gears.foundation import RootSection
 from coupling.gears.iso6336 import iso6336_stiffness
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
-from coupling.gears.tooth_compliance import ToothModel, hertz_compliance, potential_energy
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,43 +50,6 @@ class StiffnessModel(Protocol):
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         """Stiffness [N/m] by position in base pitches, from 0 to the contact ratio (or 1)."""
         ...
-
-
-@dataclass(frozen=True)
-class PotentialEnergyStiffness:
-    """Energy method with Sainsot's body compliance and linear Hertzian flattening.
-
-    Parameters
-    ----------
-    root_section : {"ma2014", "trochoid"}
-        See `coupling.gears.foundation.root_section_angle`; ignored when `tooth_model` is given.
-    tooth_model : callable or None
-        Another tooth model (gear, radii) -> `ToothCompliance` in place of `potential_energy`.
-    """
-
-    root_section: RootSection = "ma2014"
-    tooth_model: ToothModel | None = None
-
-    def pair_compliance(self, geometry: GearPairGeometry, position: FloatArray) -> FloatArray:
-        """Compliance of one pair [m/N] at `position` in base pitches, without any table."""
-        total = np.full(np.shape(position), hertz_compliance(geometry.driver, geometry.driven))
-        sides = (
-            (geometry.driver, geometry.driver_radius(position)),
-            (geometry.driven, geometry.driven_radius(position)),
-        )
-        for gear, radius in sides:
-            if self.tooth_model is None:
-                tooth = potential_energy(gear, radius, self.root_section)
-            else:
-                tooth = self.tooth_model(gear, radius)
-            total = total + tooth.total
-        return np.asarray(total, dtype=np.float64)
-
-    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
-        """Stiffness [N/m] by position; the table is checked against the model to 1e-9."""
-        return piecewise.tabulated(
-            lambda position: 1.0 / self.pair_compliance(geometry, position), geometry.contact_ratio
-        )
 
 
 @dataclass(frozen=True)
@@ -101,8 +71,7 @@ class Iso6336Stiffness:
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         """Stiffness [N/m] by position."""
         norm = iso6336_stiffness(geometry, specific_load=self.specific_load)
-        width = min(geometry.driver.face_width, geometry.driven.face_width)
-        largest = norm.single_pair * width
+        largest = norm.single_pair * geometry.face_width
         ends = largest * (0.25 + 0.75 / geometry.contact_ratio)
         return piecewise.quadratic(ends, largest, ends, geometry.contact_ratio)
 
@@ -200,6 +169,9 @@ class TableStiffness:
 
 _MODELS: dict[str, Callable[..., StiffnessModel]] = {
     "potential-energy": PotentialEnergyStiffness,
+    "elastic-ring": ElasticRingStiffness,
+    "cornell": CornellStiffness,
+    "weber-banaschek": WeberBanaschekStiffness,
     "iso6336": Iso6336Stiffness,
     "square": SquareStiffness,
     "constant": ConstantStiffness,

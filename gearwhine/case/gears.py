@@ -143,7 +143,9 @@ class Gear(Table):
 class ToothStiffness(Table):
     """How stiff a pair's teeth are: a model by name, and the value [N/m] or file that it needs."""
 
-    model: Literal["potential-energy", "constant", "iso6336", "square", "table"] = "potential-energy"
+    model: Literal[
+        "potential-energy", "elastic-ring", "cornell", "weber-banaschek", "iso6336", "constant", "square", "table"
+    ] = "potential-energy"
     value: PositiveStiffness | None = None
     file: CaseFile | None = None
 

@@ -63,9 +63,6 @@ def show_gears(document: dict[str, Any]) -> None:
             console.print(
                 f"  mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mesh force {pair['mean_force_n']:.1f} N"
             )
-        if stiffness is None:
-            console.print(f"  {pair['note']}")
-            continue
         console.print(
             f"  mesh stiffness {1e-6 * stiffness['mean']:.2f} N/µm in the mean, {1e-6 * stiffness['min']:.2f} to "
             f"{1e-6 * stiffness['max']:.2f}"

@@ -130,9 +130,11 @@ def _model(pair: GivenPair, number: int, geometry: room.GearPairGeometry, force:
         return room.stiffness_model(stiffness.model, value=stiffness.value)
     if stiffness.model == "iso6336" and force > 0.0:
         # F_t / b: tangential force at the reference circle over the common width, as the norm's load per width.
-        width = min(geometry.driver.face_width, geometry.driven.face_width)
         tangential = force * geometry.driver.base_radius / geometry.driver.pitch_radius
-        return room.stiffness_model("iso6336", specific_load=tangential / width)
+        return room.stiffness_model("iso6336", specific_load=tangential / geometry.face_width)
+    if stiffness.model in ("elastic-ring", "cornell", "weber-banaschek") and force > 0.0:
+        # Their contact stiffens with the load; it is frozen where one pair carries all of it.
+        return room.stiffness_model(stiffness.model, force=force)
     return room.stiffness_model(stiffness.model)
 
 

@@ -1,0 +1,231 @@
+r"""The gear's body under one tooth: an elastic ring, exactly.
+
+The body is a flat ring between the root circle (radius 1 here) and a circle where it is held.  Tractions on the root
+circle are split into waves ``n`` around it.  In one wave the displacements are combinations of powers of ``r`` that
+follow from the complex potentials ``z^k`` (Kolosov; Muskhelishvili 1953), with ``kappa = (3 - nu)/(1 + nu)`` in plane
+stress, ``3 - 4 nu`` in plane strain:
+
+    2 mu (u_r + i u_t) = e^{-i t} (kappa phi(z) - z conj(phi'(z)) - conj(psi(z)))
+    s_r - i s_rt       = phi' + conj(phi') - e^{2 i t} (conj(z) phi'' + psi')
+
+so that each wave is four numbers: two conditions at the held circle, two at the root circle.  A rim on a thinner web is
+two such rings, one in the other: what the web yields at its outer circle is the condition at the rim's inner one.
+
+The tooth stands on the arc ``|t| < theta``.  A beam's sections stay plane, so the arc moves as a rigid one, and the
+tractions under it are those that make the energy least among all that carry the load (Castigliano): those of a rigid
+stamp.  They are sought as ``T_k(t/theta) / sqrt(1 - (t/theta)^2)``, whose waves are Bessel functions,
+``pi theta J_k(n theta)``; a few terms give all digits that matter.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+_SHAPES = 8
+"""Chebyshev polynomials in each traction: the compliance is within 1e-4 of where more of them go."""
+_WAVES_ACROSS = 60.0
+"""The last wave counted has n theta of this; those beyond act on a half plane and are summed in closed form."""
+
+_POINTS = 100
+"""Points of quadrature on the arc: more than `_WAVES_ACROSS` by as much as makes the integrals exact."""
+_FADED = 25.0
+"""A wave n with n ln(outer / inner) beyond this is 1e-11 of itself at the inside."""
+
+
+@dataclass(frozen=True)
+class Annulus:
+    """A flat ring of one width.
+
+    Attributes
+    ----------
+    inner, outer : float
+        Radii, in root circle radii.
+    width : float
+        In the units of the rim's.
+    """
+
+    inner: float
+    outer: float
+    width: float
+
+
+@dataclass(frozen=True, eq=False)
+class RootFlexibility:
+    """How the rigid root arc gives way, times E and width.
+
+    Attributes
+    ----------
+    lateral : ndarray, shape (2, 2)
+        Under (force across the tooth's axis, torque about the gear's centre over root radius).
+    radial : float
+        Under a force along the tooth's axis.
+    """
+
+    lateral: FloatArray
+    radial: float
+
+
+def root_flexibility(
+    rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float
+) -> RootFlexibility:
+    """Flexibility of the arc that one tooth stands on.
+
+    Parameters
+    ----------
+    rings : tuple of Annulus
+        From the held circle outward, each beginning where the last ends; the last ends at the root circle, 1.
+    half_angle : float
+        Of the tooth on the root circle [rad].
+    poisson_ratio, kappa : float
+        Of the material, and Kolosov's constant.
+
+    Returns
+    -------
+    RootFlexibility
+    """
+    last = math.ceil(_WAVES_ACROSS / half_angle)
+    waves = np.arange(1, last + 1)
+    # Waves shorter than the outermost ring is thick never reach its inside.
+    deep = math.ceil(_FADED / math.log(rings[-1].outer / rings[-1].inner))
+    flexibility = np.concatenate(
+        [
+            _wave_flexibility(rings, waves[:1], kappa),
+            _wave_flexibility(rings, waves[1:deep], kappa),
+            _short_wave_flexibility(waves[max(1, deep) :], kappa),
+        ]
+    )
+    even, odd = np.arange(0, _SHAPES, 2), np.arange(1, _SHAPES, 2)
+    # int f_k cos(n t) dt for even k, int f_k sin(n t) dt for odd k, by Gauss and Chebyshev: many times faster than jv.
+    phase = math.pi * (np.arange(_POINTS) + 0.5) / _POINTS
+    argument, weight = np.outer(waves, half_angle * np.cos(phase)), math.pi * half_angle / _POINTS
+    content = [
+        weight * np.cos(np.outer(even, phase)) @ np.cos(argument).T,
+        weight * np.cos(np.outer(odd, phase)) @ np.sin(argument).T,
+    ]
+    # Beyond, J_k J_l averages to +-1 / (pi n theta) and the flexibility falls as 1/n: all terms of a block alike.
+    tail = half_angle * last / (last + 0.5) * np.diagonal(flexibility[-1])
+    twist, breathing = _twist(rings), _breathing(rings, kappa)
+    # Across the axis: radial tractions odd, tangential ones even.  Shifted by a quarter wave, tangential changes sign.
+    lateral = _energy(content[1], content[0], flexibility, -1.0, tail)
+    whole = np.where(even == 0, math.pi * half_angle, 0.0)
+    lateral[odd.size :, odd.size :] += np.outer(whole, whole) / (2.0 * math.pi) * twist
+    radial = _energy(content[0], content[1], flexibility, 1.0, tail)
+    radial[: even.size, : even.size] += np.outer(whole, whole) / (2.0 * math.pi) * breathing
+    first_even, first_odd = content[0][:, 0], content[1][:, 0]
+    across = np.array([np.concatenate([first_odd, first_even]), np.concatenate([np.zeros(odd.size), whole])])
+    along = np.concatenate([first_even, -first_odd])[None, :]
+    scale = 1.0 + poisson_ratio  # E / (2 mu)
+    return RootFlexibility(
+        lateral=scale * _least_work(lateral, across), radial=float(scale * _least_work(radial, along)[0, 0])
+    )
+
+
+def _energy(
+    radial: FloatArray, tangential: FloatArray, flexibility: FloatArray, sign: float, tail: FloatArray
+) -> FloatArray:
+    """Work of each traction on each other's displacement, radial shapes first, waves of n >= 1."""
+    blocks = [
+        [np.einsum("in,n,jn->ij", a, flexibility[:, i, j], b) / math.pi for j, b in enumerate((radial, tangential))]
+        for i, a in enumerate((radial, tangential))
+    ]
+    return np.block([[blocks[0][0] + tail[0], sign * blocks[0][1]], [sign * blocks[1][0], blocks[1][1] + tail[1]]])
+
+
+def _least_work(energy: FloatArray, resultants: FloatArray) -> FloatArray:
+    """Flexibility under the resultants when the tractions are free to find the least energy."""
+    return np.asarray(np.linalg.inv(resultants @ np.linalg.solve(energy, resultants.T)), dtype=np.float64)
+
+
+def _wave_flexibility(rings: tuple[Annulus, ...], waves: npt.NDArray[np.int64], kappa: float) -> FloatArray:
+    """Displacement (u_r, u_t), times 2 mu, under unit tractions (s_r cos n t, s_rt sin n t) on the last ring's outside.
+
+    Shape (waves, 2, 2).
+    """
+    support = np.zeros((waves.size, 2, 2))
+    for ring, inside in zip(rings, (None, *rings[:-1]), strict=True):
+        inner_motion, inner_stress = _fields(ring.inner, ring, waves, kappa)
+        motion, stress = _fields(ring.outer, ring, waves, kappa)
+        ratio = 1.0 if inside is None else ring.width / inside.width
+        held = inner_motion - ratio * support @ inner_stress
+        conditions = np.concatenate([held, stress], axis=1)
+        loads = np.broadcast_to(np.vstack([np.zeros((2, 2)), np.eye(2)]), (waves.size, 4, 2))
+        support = motion @ np.linalg.solve(conditions, loads)
+    return support
+
+
+def _short_wave_flexibility(waves: npt.NDArray[np.int64], kappa: float) -> FloatArray:
+    """`_wave_flexibility` of a full disc of radius 1: of the growing solutions alone."""
+    n = waves.astype(np.float64)
+    # Rows: what z^(n+1) and z^(n-1) weigh under each traction, from their two tractions inverted.
+    determinant = 2.0 * (n**2 - 1.0)
+    first = np.array([n - 1.0, n - 1.0]) / determinant
+    second = np.array([-(n + 1.0) * n, (n + 1.0) * (2.0 - n)]) / determinant
+    radial = (kappa - n - 1.0) * first - second
+    tangential = (kappa + n + 1.0) * first + second
+    return np.moveaxis(np.array([radial, tangential]), 2, 0)
+
+
+def _fields(radius: float, ring: Annulus, waves: npt.NDArray[np.int64], kappa: float) -> tuple[FloatArray, FloatArray]:
+    """Displacements and tractions of the four solutions of a wave at `radius`, each shape (waves, 2, 4).
+
+    Two grow outward and are one at the ring's outside, two fade outward and are one at its inside, so that no power
+    overflows.
+    """
+    n = waves.astype(np.float64)
+    one, none = np.ones_like(n), np.zeros_like(n)
+    outward, inward = radius / ring.outer, ring.inner / radius
+    grow, fade = outward**n, inward**n
+    r = radius
+    if waves.size == 1 and waves[0] == 1:
+        # z^0 moves the ring as one, and the force along the axis of a wave of one asks for a logarithm.
+        log, inside = math.log(outward), inward**2
+        columns = [
+            _potential(2.0 * one, grow * outward, grow * outward / r, kappa, 1.0),
+            (
+                (2.0 * kappa * log - 1.0) * one,
+                -(2.0 * kappa * log + 1.0) * one,
+                (3.0 + kappa) / r * one,
+                (1.0 - kappa) / r * one,
+            ),
+            (-inside * one, -inside * one, 2.0 * inside / r * one, 2.0 * inside / r * one),
+            (one, -one, none, none),
+        ]
+    else:
+        columns = [
+            _potential(n + 1.0, grow * outward, grow * outward / r, kappa, 1.0),
+            _potential(1.0 - n, fade / inward, fade / inward / r, kappa, -1.0),
+            (-grow / outward, grow / outward, -(n - 1.0) * grow / outward / r, (n - 1.0) * grow / outward / r),
+            (-fade * inward, -fade * inward, (n + 1.0) * fade * inward / r, (n + 1.0) * fade * inward / r),
+        ]
+    table = np.moveaxis(np.array(columns), 0, -1)  # (4 quantities, waves, 4 solutions)
+    return np.moveaxis(table[:2], 0, 1), np.moveaxis(table[2:], 0, 1)
+
+
+def _potential(
+    k: FloatArray, power: FloatArray, rate: FloatArray, kappa: float, side: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Fields of ``phi = z^k``: `power` is r^k, `rate` r^(k-1), `side` +1 for k > 0 and -1 for k < 0."""
+    return (kappa - k) * power, side * (kappa + k) * power, k * (3.0 - k) * rate, side * k * (k - 1.0) * rate
+
+
+def _twist(rings: tuple[Annulus, ...]) -> float:
+    """Turning of the root circle (times 2 mu) under a uniform tangential traction 1 on it."""
+    outermost = rings[-1].width
+    return sum(outermost / ring.width * (ring.inner**-2 - ring.outer**-2) for ring in rings)
+
+
+def _breathing(rings: tuple[Annulus, ...], kappa: float) -> float:
+    """Radial displacement of the root circle (times 2 mu) under a uniform radial traction 1 on it."""
+    support, width = 0.0, rings[0].width
+    for ring in rings:
+        a, b = ring.inner, ring.outer
+        held = np.array([(kappa - 1.0) * a, -1.0 / a]) - ring.width / width * support * np.array([2.0, a**-2])
+        amplitude = np.linalg.solve(np.array([held, [2.0, b**-2]]), np.array([0.0, 1.0]))
+        support, width = float(np.array([(kappa - 1.0) * b, -1.0 / b]) @ amplitude), ring.width
+    return support
