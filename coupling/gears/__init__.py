@@ -26,6 +26,7 @@ from coupling.gears.compliant_teeth import (
 )
 from coupling.gears.cornell import cornell
 from coupling.gears.corner_contact import FlankPlaces, corner_reach, flank_places
+from coupling.gears.crack import ToothCrack
 from coupling.gears.damping import equivalent_mass, mesh_damping
 from coupling.gears.deviation import flank_gap, pair_deviation
 from coupling.gears.elastic_ring import elastic_ring
@@ -138,6 +139,7 @@ __all__ = [
     "TipRelief",
     "ToothCompliance",
     "ToothContact",
+    "ToothCrack",
     "ToothModel",
     "UndercutError",
     "Wear",

@@ -25,6 +25,7 @@ from coupling.gears.errors import StiffnessModelError
 from coupling.gears.foundation import RootSection
 from coupling.gears.geometry import Gear
 from coupling.gears.hertz import hertz_compliance, line_contact
+from coupling.gears.normal_section import by_normal_section
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
 from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, potential_energy
@@ -60,10 +61,15 @@ class CompliantTeeth(ABC):
     def teeth_compliance(self, geometry: GearPairGeometry, position: npt.ArrayLike) -> FloatArray:
         """Compliance of both teeth without their contact [m/N] at `position` in base pitches."""
         driver, driven = geometry.driver, geometry.driven
-        return (
-            self.tooth(driver, geometry.driver_radius(position)).total
-            + self.tooth(driven, geometry.driven_radius(position)).total
+        return self._one_tooth(driver, geometry.driver_radius(position)) + self._one_tooth(
+            driven, geometry.driven_radius(position)
         )
+
+    def _one_tooth(self, gear: Gear, radius: FloatArray) -> FloatArray:
+        if gear.helix_angle == 0.0:
+            return self.tooth(gear, radius).total
+        yields = by_normal_section(gear, radius, lambda spur, there: self.tooth(spur, there).total)
+        return np.asarray(yields / math.cos(gear.base_helix_angle), dtype=np.float64)
 
     def contact_compliance(
         self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None
@@ -71,11 +77,13 @@ class CompliantTeeth(ABC):
         """Approach of the flanks over their load [m/N] at `position`, under `force` [N] (None: the model's own)."""
         at = np.asarray(position, dtype=np.float64)
         if self.contact == "yang-sun":
-            return np.full(at.shape, hertz_compliance(geometry.driver, geometry.driven))
+            flattening = hertz_compliance(geometry.driver, geometry.driven)
+            return np.full(at.shape, flattening / math.cos(geometry.driver.base_helix_angle))
         load = force if force is not None else self.force
         if load is None:
             load = REFERENCE_LINE_LOAD * geometry.face_width
-        return line_contact(geometry, at.ravel()).secant_compliance(load).reshape(at.shape)
+        approach = line_contact(geometry, at.ravel()).secant_compliance(load).reshape(at.shape)
+        return np.asarray(approach / math.cos(geometry.driver.base_helix_angle), dtype=np.float64)
 
     def pair_compliance(
         self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None

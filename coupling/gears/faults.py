@@ -1,4 +1,4 @@
-"""Teeth that are damaged: worn, spalled, missing.
+"""Teeth that are damaged: worn, spalled, missing; cracks are in :mod:`coupling.gears.crack`.
 
 A fault changes the pairs that its tooth belongs to: it takes material off the flank, makes the contact softer, or
 both. All are given on the gear, by the number of the tooth in the order in which teeth come into mesh.
@@ -67,7 +67,7 @@ class Wear:
     shape: Literal["sliding", "uniform"] = "sliding"
 
     def __post_init__(self) -> None:
-        _check_tooth("wear", self.tooth)
+        check_tooth_number("wear", self.tooth)
         require_finite("wear depth", self.depth, minimum=0.0)
         if self.shape not in ("sliding", "uniform"):
             raise GearError(f"wear shape must be 'sliding' or 'uniform', got {self.shape!r}")
@@ -115,7 +115,7 @@ class Spall:
     width: float | None = None
 
     def __post_init__(self) -> None:
-        _check_tooth("spall", self.tooth)
+        check_tooth_number("spall", self.tooth)
         for quantity in ("start_roll_angle", "end_roll_angle", "depth"):
             require_finite(f"spall {quantity}", getattr(self, quantity), minimum=0.0)
         if not self.end_roll_angle > self.start_roll_angle:
@@ -162,7 +162,7 @@ class MissingTooth:
     tooth: int
 
     def __post_init__(self) -> None:
-        _check_tooth("missing tooth", self.tooth)
+        check_tooth_number("missing tooth", self.tooth)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
         """A gap that no mesh closes."""
@@ -177,6 +177,7 @@ class MissingTooth:
         return ()
 
 
-def _check_tooth(name: str, tooth: int | None) -> None:
+def check_tooth_number(name: str, tooth: int | None) -> None:
+    """Raise `GearError` unless a fault's tooth is a whole number from 0, or none."""
     if tooth is not None and (type(tooth) is not int or tooth < 0):
         raise GearError(f"{name}: tooth must be a whole number from 0, got {tooth!r}")

@@ -126,7 +126,8 @@ def line_contact(geometry: GearPairGeometry, position: npt.ArrayLike) -> LineCon
         beta = load_angle(gear, radius)
         depths.append(flank_points(gear, beta).half_thickness / np.cos(beta))
     return LineContact(
-        curvature_radius=1.0 / (curvatures[0] + curvatures[1]),
+        # In the normal section of helical teeth the flanks are flatter.
+        curvature_radius=1.0 / (curvatures[0] + curvatures[1]) / math.cos(geometry.driver.base_helix_angle),
         depths=np.array(depths),
         yielding=np.array([(1.0 - gear.poisson_ratio**2) / gear.youngs_modulus for gear in gears]),
         poisson_ratios=np.array([gear.poisson_ratio for gear in gears]),

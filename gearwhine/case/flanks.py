@@ -123,23 +123,28 @@ class Fault(Table):
     """A damaged tooth, numbered from 0 as the teeth come into mesh.
 
     `wear` by `depth`, of one tooth or of all, in proportion to the sliding or uniform; `spall` by `depth` between two
-    roll angles, across the face or a `width` of it; `missing-tooth`.
+    roll angles, across the face or a `width` of it; `crack` of a `depth` at an `angle` to the tooth's axis;
+    `missing-tooth`.
     """
 
-    kind: Literal["wear", "spall", "missing-tooth"]
+    kind: Literal["wear", "spall", "crack", "missing-tooth"]
     tooth: Annotated[int, Whole(0, 1999)] | None = None
     depth: LengthFromZero | None = None
     shape: Literal["sliding", "uniform"] = "sliding"
     start_roll_angle: RollAngle | None = None
     end_roll_angle: RollAngle | None = None
     width: PositiveLength | None = None
+    angle: Annotated[float, Quantity(units.ANGLE, above=0.0, at_most=math.pi / 2.0)] = math.radians(70.0)
 
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Fault:
-        needs = {"wear": ("depth",), "missing-tooth": ("tooth",)}.get(
-            self.kind, ("tooth", "depth", "start_roll_angle", "end_roll_angle")
-        )
-        for key in needs:
+        needs = {
+            "wear": ("depth",),
+            "spall": ("tooth", "depth", "start_roll_angle", "end_roll_angle"),
+            "crack": ("tooth", "depth"),
+            "missing-tooth": ("tooth",),
+        }
+        for key in needs[self.kind]:
             if getattr(self, key) is None:
                 raise wrong(f"'{key}' of a fault of kind {self.kind!r}", key)
         if self.kind == "spall":

@@ -72,9 +72,11 @@ def _fault(given: Fault) -> gear_room.Fault:
     assert given.tooth is not None
     if given.kind == "missing-tooth":
         return gear_room.MissingTooth(given.tooth)
+    assert given.depth is not None
+    if given.kind == "crack":
+        return gear_room.ToothCrack(given.tooth, given.depth, given.angle)
     assert given.start_roll_angle is not None
     assert given.end_roll_angle is not None
-    assert given.depth is not None
     return gear_room.Spall(given.tooth, given.start_roll_angle, given.end_roll_angle, given.depth, given.width)
 
 

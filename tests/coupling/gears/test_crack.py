@@ -1,0 +1,74 @@
+"""A cracked tooth: the sections that are left, integrated anew on the drawn outline, and what the mesh makes of it."""
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coupling.gears import (
+    Gear,
+    GearError,
+    GearPairGeometry,
+    PotentialEnergyStiffness,
+    ToothCrack,
+    static_transmission_error,
+    tooth_contact,
+    tooth_outline,
+)
+from coupling.gears.profile import load_angle
+
+GEAR = Gear("cracked", 30, 3e-3, math.radians(20.0), 15e-3)
+ROLLS = np.linspace(GEAR.roll_angle(GEAR.form_radius), GEAR.roll_angle(GEAR.tip_radius), 7)
+
+
+@pytest.mark.parametrize("depth", [0.4e-3, 1.5e-3, 3.5e-3])
+def test_extra_compliance_is_that_of_the_sections_left(depth: float) -> None:
+    points = 20000
+    across, along = tooth_outline(GEAR, points)[: 2 * points - 1].T
+    half = -across
+    crack = ToothCrack(2, depth, math.radians(60.0))
+    left = half[0] - depth * math.sin(math.radians(60.0))
+    found = crack.extra_compliance(GEAR, ROLLS)
+    modulus, shear = GEAR.youngs_modulus * GEAR.face_width, GEAR.youngs_modulus / 2.6 * GEAR.face_width
+    for roll, value in zip(ROLLS, found, strict=True):
+        radius = GEAR.base_radius * math.sqrt(1.0 + roll**2)
+        beta = float(load_angle(GEAR, np.array(radius)))
+        height = float(np.interp(radius, np.hypot(across, along), along))
+        lever = float(np.interp(height, along, half))
+        below = along <= height
+        y, x = along[below], half[below]
+        kept = np.minimum(2.0 * x, x + left)
+        moment = math.cos(beta) * (height - y) - math.sin(beta) * lever
+        more = 12.0 * moment**2 / modulus * (kept**-3 - (2.0 * x) ** -3)
+        more += (1.2 * math.cos(beta) ** 2 / shear + math.sin(beta) ** 2 / modulus) * (1.0 / kept - 0.5 / x)
+        assert value == pytest.approx(float(np.trapezoid(more, y)), rel=2e-4, abs=1e-14)
+
+
+def test_no_crack_no_difference_and_deeper_is_softer() -> None:
+    np.testing.assert_array_equal(ToothCrack(0, 0.0).extra_compliance(GEAR, ROLLS), 0.0)
+    depths = [ToothCrack(0, depth).extra_compliance(GEAR, ROLLS) for depth in (0.5e-3, 1e-3, 2e-3, 4e-3)]
+    for shallow, deep in itertools.pairwise(depths):
+        assert np.all(deep > shallow)
+
+
+def test_the_mesh_is_softer_while_the_cracked_tooth_carries() -> None:
+    sound = GearPairGeometry(GEAR, replace(GEAR, name="sound"))
+    cracked = replace(sound, driver=replace(GEAR, faults=(ToothCrack(4, 2e-3),)))
+    phases = np.arange(0.0, 30.0, 0.02)
+    before, after = (
+        static_transmission_error(tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True), 3000.0, phases)
+        for pair in (sound, cracked)
+    )
+    lag = after.transmission_error - before.transmission_error
+    assert np.all(lag > -1e-15)
+    assert lag.max() > 0.02 * before.mean_transmission_error
+    assert set(np.floor(phases[lag > 1e-12]).tolist()) <= {3.0, 4.0, 5.0}
+
+
+def test_a_crack_through_the_foot_is_refused() -> None:
+    with pytest.raises(GearError, match="goes through the foot of the tooth; at most"):
+        ToothCrack(0, 8e-3).extra_compliance(GEAR, ROLLS)
+    with pytest.raises(GearError, match="angle must be above 0"):
+        ToothCrack(0, 1e-3, 0.0)
