@@ -23,6 +23,7 @@ import numpy.typing as npt
 
 from coupling.gears.beam_compliance import PlaneState, plane_modulus
 from coupling.gears.errors import StiffnessModelError
+from coupling.gears.foundation import held_radius
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import load_angle, root_half_angle
 from coupling.gears.ring_body import Annulus, root_flexibility
@@ -48,7 +49,9 @@ def ring_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-s
     ndarray
         Same shape as `radius`.
     """
-    return _compliance(gear, radius, (Annulus(_held_radius(gear), 1.0, gear.face_width),), state, gear.bore > 0.0)
+    return _compliance(
+        gear, radius, (Annulus(_hold(gear), 1.0, gear.face_width),), state, held_radius(gear) is not None
+    )
 
 
 def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-stress") -> FloatArray:
@@ -63,7 +66,7 @@ def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-st
     """
     if gear.rim_inner_radius is None or gear.web_thickness is None:
         return np.zeros(np.shape(radius))
-    held, inside = _held_radius(gear), gear.rim_inner_radius / gear.root_circle_radius
+    held, inside = _hold(gear), gear.rim_inner_radius / gear.root_circle_radius
     if inside <= held:
         raise StiffnessModelError(
             f"gear {gear.name!r}: the inside of the rim ({gear.rim_inner_radius * 1e3:.4g} mm radius) must be outside "
@@ -94,10 +97,7 @@ def _compliance(
     return np.asarray((work + arc.radial * along**2) / (gear.youngs_modulus * gear.face_width), dtype=np.float64)
 
 
-def _held_radius(gear: Gear) -> float:
+def _hold(gear: Gear) -> float:
     """Where the body is held, in root circle radii."""
-    if gear.rim_inner_radius is not None and gear.web_thickness is None:
-        return gear.rim_inner_radius / gear.root_circle_radius
-    if gear.bore == 0.0:
-        return SOLID_HOLD
-    return 0.5 * gear.bore / gear.root_circle_radius
+    held = held_radius(gear)
+    return SOLID_HOLD if held is None else held / gear.root_circle_radius
