@@ -16,6 +16,9 @@ of action, which grows as h^2 and is the reason why P does.  A gear in one piece
 (``bore = 0``) has no such place to be held at, and its twist is the shaft's own: what is left is the dent,
 the formula less that twist in closed form.  The dent hardly depends on the bore (within 10 % over the whole
 range for 28 teeth and more); it is taken at h = 3, in the middle of the range, where the twist is small.
+
+The formula reads the ring at the middle of the root arc, and published cases take u to the loaded point of the flank.
+Both make it soft: see :mod:`coupling.gears.elastic_ring` for the same ring without either.
 """
 
 from __future__ import annotations

@@ -49,9 +49,8 @@ def ring_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-s
     ndarray
         Same shape as `radius`.
     """
-    return _compliance(
-        gear, radius, (Annulus(_hold(gear), 1.0, gear.face_width),), state, held_radius(gear) is not None
-    )
+    body = (Annulus(_hold(gear), 1.0, gear.face_width),)
+    return _compliance(gear, radius, body, state, turning=held_radius(gear) is not None)
 
 
 def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-stress") -> FloatArray:
@@ -74,7 +73,7 @@ def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-st
         )
     rings = (Annulus(held, inside, gear.web_thickness), Annulus(inside, 1.0, gear.face_width))
     plain = (Annulus(held, 1.0, gear.face_width),)
-    with_rim, without = (_compliance(gear, radius, body, state, True) for body in (rings, plain))
+    with_rim, without = (_compliance(gear, radius, body, state, turning=True) for body in (rings, plain))
     return with_rim - without
 
 
