@@ -10,8 +10,9 @@ The ring is held at its bore.  A gear in one piece with its shaft (``bore = 0``)
 a third of the root circle, and the twist of the whole ring, which is the shaft's own, is left out.
 
 A rim with a web of another width is two rings.  Its share is what they yield more than one ring of the teeth's width
-down to the same bore; finite elements of two widths agree within 4 % (tests/validation).  All of it is in the plane of the gear: a web that is not in the middle of the face, and spokes,
-also tilt the rim, which is not here.  A rim alone (no web) is held at its inside.
+down to the same bore; finite elements of two widths agree within 4 % (tests/validation).  All of it is in the plane of
+the gear: a web that is not in the middle of the face, and spokes, also tilt the rim, which is not here.  A rim alone
+(no web) is held at its inside.
 """
 
 from __future__ import annotations
