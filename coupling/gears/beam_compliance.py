@@ -55,7 +55,7 @@ def beam_compliance(
     Parameters
     ----------
     gear : Gear
-        A helical gear's transverse section, under the part of the load in its plane.
+        Of a helical gear the section given; pair models take the normal one (:mod:`coupling.gears.normal_section`).
     radius : ndarray
         Radii of the loaded points [m], from the form radius to the tip.
     foot : float

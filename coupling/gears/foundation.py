@@ -16,6 +16,9 @@ of action, which grows as h^2 and is the reason why P does.  A gear in one piece
 (``bore = 0``) has no such place to be held at, and its twist is the shaft's own: what is left is the dent,
 the formula less that twist in closed form.  The dent hardly depends on the bore (within 10 % over the whole
 range for 28 teeth and more); it is taken at h = 3, in the middle of the range, where the twist is small.
+
+The formula reads the ring at the middle of the root arc, and published cases take u to the loaded point of the flank.
+Both make it soft: see :mod:`coupling.gears.elastic_ring` for the same ring without either.
 """
 
 from __future__ import annotations
@@ -50,6 +53,13 @@ ANGLE_RANGE = (0.01, 0.12)
 """Range of theta [rad] that the polynomials were fitted over."""
 _SOLID_THICKNESS = 3.0
 """The h at which a gear without a bore reads the polynomials, twist taken off."""
+
+
+def held_radius(gear: Gear) -> float | None:
+    """Radius at which the body is held [m]: the bore's, or the inside of a rim alone; None where there is neither."""
+    if gear.rim_inner_radius is not None and gear.web_thickness is None:
+        return gear.rim_inner_radius
+    return 0.5 * gear.bore if gear.bore > 0.0 else None
 
 
 def root_section_angle(gear: Gear, root_section: RootSection) -> float:
@@ -114,9 +124,9 @@ def foundation_compliance(gear: Gear, radius: FloatArray, root_section: RootSect
     thickness = _thickness(gear)
     if not THICKNESS_RANGE[0] <= thickness <= THICKNESS_RANGE[1]:
         raise StiffnessModelError(
-            f"gear {gear.name!r}: root radius over bore radius is {thickness:.3g}; Sainsot's body compliance "
+            f"gear {gear.name!r}: root radius over bore (or rim) radius is {thickness:.3g}; Sainsot's body compliance "
             f"covers {THICKNESS_RANGE[0]:g} to {THICKNESS_RANGE[1]:g}. Change the bore (0 for a gear in one "
-            "piece with its shaft) or choose another model"
+            "piece with its shaft), give a rim its web, or choose a model that takes any ring, as 'elastic-ring'"
         )
     theta = root_section_angle(gear, root_section)
     terms = np.array([theta**-2, thickness**2, thickness / theta, 1.0 / theta, thickness, 1.0])
@@ -126,7 +136,7 @@ def foundation_compliance(gear: Gear, radius: FloatArray, root_section: RootSect
     relative_height = (flank_points(gear, beta).height - root) / (2.0 * root * theta)
     shape = quadratic * relative_height**2 + linear * relative_height + constant * (1.0 + radial * np.tan(beta) ** 2)
     flexibility = np.cos(beta) ** 2 * shape / (gear.youngs_modulus * gear.face_width)
-    if gear.bore == 0.0:
+    if held_radius(gear) is None:
         flexibility = flexibility - _ring_twist(gear, thickness)
     return np.asarray(flexibility, dtype=np.float64)
 
@@ -139,10 +149,11 @@ def _ring_twist(gear: Gear, thickness: float) -> float:
 
 
 def _thickness(gear: Gear) -> float:
-    """Root radius over bore radius h; the middle of the fitted range for a gear without a bore."""
-    if gear.bore == 0.0:
+    """Root radius over the radius of the held circle, h; the middle of the fitted range for a gear in one piece."""
+    held = held_radius(gear)
+    if held is None:
         return _SOLID_THICKNESS
-    thickness = 2.0 * gear.root_circle_radius / gear.bore
+    thickness = gear.root_circle_radius / held
     nearest = min(max(thickness, THICKNESS_RANGE[0]), THICKNESS_RANGE[1])
     # An h of exactly 1.4 or 7 may come out a rounding error beyond.
     return nearest if math.isclose(thickness, nearest, rel_tol=1e-9) else thickness

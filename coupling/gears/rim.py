@@ -10,8 +10,9 @@ The ring is held at its bore.  A gear in one piece with its shaft (``bore = 0``)
 a third of the root circle, and the twist of the whole ring, which is the shaft's own, is left out.
 
 A rim with a web of another width is two rings.  Its share is what they yield more than one ring of the teeth's width
-down to the same bore.  All of it is in the plane of the gear: a web that is not in the middle of the face, and spokes,
-also tilt the rim, which is not here.  A rim alone (no web) is held at its inside.
+down to the same bore; finite elements of two widths agree within 4 % (tests/validation).  All of it is in the plane of
+the gear: a web that is not in the middle of the face, and spokes, also tilt the rim, which is not here.  A rim alone
+(no web) is held at its inside.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import numpy.typing as npt
 
 from coupling.gears.beam_compliance import PlaneState, plane_modulus
 from coupling.gears.errors import StiffnessModelError
+from coupling.gears.foundation import held_radius
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import load_angle, root_half_angle
 from coupling.gears.ring_body import Annulus, root_flexibility
@@ -48,7 +50,8 @@ def ring_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-s
     ndarray
         Same shape as `radius`.
     """
-    return _compliance(gear, radius, (Annulus(_held_radius(gear), 1.0, gear.face_width),), state, gear.bore > 0.0)
+    body = (Annulus(_hold(gear), 1.0, gear.face_width),)
+    return _compliance(gear, radius, body, state, turning=held_radius(gear) is not None)
 
 
 def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-stress") -> FloatArray:
@@ -63,7 +66,7 @@ def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-st
     """
     if gear.rim_inner_radius is None or gear.web_thickness is None:
         return np.zeros(np.shape(radius))
-    held, inside = _held_radius(gear), gear.rim_inner_radius / gear.root_circle_radius
+    held, inside = _hold(gear), gear.rim_inner_radius / gear.root_circle_radius
     if inside <= held:
         raise StiffnessModelError(
             f"gear {gear.name!r}: the inside of the rim ({gear.rim_inner_radius * 1e3:.4g} mm radius) must be outside "
@@ -71,7 +74,7 @@ def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-st
         )
     rings = (Annulus(held, inside, gear.web_thickness), Annulus(inside, 1.0, gear.face_width))
     plain = (Annulus(held, 1.0, gear.face_width),)
-    with_rim, without = (_compliance(gear, radius, body, state, True) for body in (rings, plain))
+    with_rim, without = (_compliance(gear, radius, body, state, turning=True) for body in (rings, plain))
     return with_rim - without
 
 
@@ -94,10 +97,7 @@ def _compliance(
     return np.asarray((work + arc.radial * along**2) / (gear.youngs_modulus * gear.face_width), dtype=np.float64)
 
 
-def _held_radius(gear: Gear) -> float:
+def _hold(gear: Gear) -> float:
     """Where the body is held, in root circle radii."""
-    if gear.rim_inner_radius is not None and gear.web_thickness is None:
-        return gear.rim_inner_radius / gear.root_circle_radius
-    if gear.bore == 0.0:
-        return SOLID_HOLD
-    return 0.5 * gear.bore / gear.root_circle_radius
+    held = held_radius(gear)
+    return SOLID_HOLD if held is None else held / gear.root_circle_radius

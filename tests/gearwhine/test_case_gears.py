@@ -1,10 +1,13 @@
 """Gears of a case: sizes given in several ways, helices, rims, and what `check` and `gears` say of them."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
+from coupling.gears import GearPairGeometry, stiffness_model
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.screen.case import show_check
 from gearwhine.screen.machine import show_gears
@@ -97,6 +100,23 @@ def test_the_machine_refuses_helical_gears() -> None:
     with pytest.raises(CaseError, match=r"gear\[0\].helix_angle .*expected 0 deg in the coupled system"):
         require_spur(HELICAL)
     require_spur(load_case("small-gearbox").case)
+
+
+@pytest.mark.parametrize("model", ["elastic-ring", "cornell", "weber-banaschek"])
+def test_tooth_models_by_name_take_the_load_of_the_case(model: str) -> None:
+    wheel = TOOTH | {"bore": "30 mm", "rim": "9 mm", "web": "8 mm"}
+    (solved,) = solve_gears(case_of(TOOTH, wheel, stiffness={"model": model}))
+    pair = solved.geometry
+    position = np.linspace(0.0, pair.contact_ratio, 5)
+    expected = stiffness_model(model).pair_compliance(pair, position, force=10.0 / pair.driver.base_radius)
+    np.testing.assert_allclose(1.0 / solved.contact.stiffness(position), expected, rtol=1e-8)
+    solid = stiffness_model(model).pair_compliance(replace_rim(pair), position, force=10.0 / pair.driver.base_radius)
+    assert np.all(expected > solid)
+
+
+def replace_rim(pair: GearPairGeometry) -> GearPairGeometry:
+    disc = replace(pair.driven, rim_thickness=None, web_thickness=None)
+    return GearPairGeometry(pair.driver, disc, pair.centre_distance)
 
 
 def test_undercut_and_thin_tips_are_warned_of() -> None:

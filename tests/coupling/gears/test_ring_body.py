@@ -111,6 +111,7 @@ def test_a_web_as_wide_as_the_teeth_is_no_web() -> None:
     held = replace(GEAR, bore=2.0 * (GEAR.root_circle_radius - 15e-3))
     alone = replace(GEAR, rim_thickness=15e-3)
     np.testing.assert_allclose(ring_compliance(alone, radius), ring_compliance(held, radius))
+    np.testing.assert_allclose(ring_compliance(replace(alone, bore=0.0), radius), ring_compliance(held, radius))
 
 
 def test_a_thin_rim_on_a_thin_web_bends_like_a_curved_beam_on_an_elastic_foundation() -> None:

@@ -122,6 +122,15 @@ def test_body_outside_the_fitted_range_is_refused(ratio: float) -> None:
     assert not within_fitted_range(ring, "trochoid")
 
 
+def test_a_rim_alone_is_a_ring_held_at_its_inside() -> None:
+    gear = replace(GEARS[0], rim_thickness=20e-3)
+    ring = replace(GEARS[0], bore=2.0 * (gear.root_circle_radius - 20e-3))
+    radius = np.array([gear.pitch_radius])
+    np.testing.assert_allclose(foundation_compliance(gear, radius), foundation_compliance(ring, radius), rtol=1e-12)
+    with pytest.raises(StiffnessModelError, match="give a rim its web"):
+        foundation_compliance(replace(gear, rim_thickness=5e-3), radius)
+
+
 def test_fitted_range() -> None:
     assert within_fitted_range(GEARS[0], "ma2014")
     assert within_fitted_range(replace(GEARS[0], bore=0.0), "trochoid")
