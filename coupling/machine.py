@@ -220,18 +220,31 @@ def _flank(
     With e the unit vector along which the driver pushes, δ = s (R_k θ_k + R_i θ_i) + e (u_k - u_i) - e_err. A gear
     whose centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
     e_err = -e (ε_k - ε_i): the same first-order runout as :func:`coupling.gears.runout_error`.
+
+    A helical driver of hand h (+1 for a right-hand helix) that moves along z leaves the contact as if it had turned
+    back by z tan β_b / R_k, so δ gains -s h tan β_b (w_k - w_i), w the axial motions where the teeth touch: at the
+    pitch point, r from a gear's centre, w = z + φ_x r_y - φ_y r_x with the tilts φ. The force has its axial part and
+    tilting moment from the same rows.
     """
     driver, driven = mesh.driver, mesh.driven
     line = np.subtract(driven.axis, driver.axis)
     angle = mesh.geometry.line_of_action_angle(float(np.arctan2(line[1], line[0])), sense)
     push = (np.cos(angle), np.sin(angle))
+    helix = mesh.geometry.driver.base_helix_angle
+    thrust = -sense * np.tan(helix)
+    towards = line / np.hypot(*line) if np.any(line) else line
     direction = np.zeros(sum(component.size for component in components))
     errors = []
-    for mounted, gear, side in ((driver, mesh.geometry.driver, 1.0), (driven, mesh.geometry.driven, -1.0)):
+    sides = ((driver, mesh.geometry.driver, 1.0), (driven, mesh.geometry.driven, -1.0))
+    for (mounted, gear, side), radius in zip(sides, mesh.geometry.working_pitch_radii, strict=True):
         which, rotor = parts(mounted.rotor)
         motion = sense * gear.base_radius * rotor.rotation(mounted.at)
         for axis in (0, 1):
             motion = motion + side * push[axis] * rotor.direction(mounted.at, axis)
+        if helix != 0.0:
+            rows = rotor.motions(mounted.at)
+            x, y = side * radius * towards
+            motion = motion + side * thrust * (rows[2] + y * rows[3] - x * rows[4])
         direction += embed(components, which, motion)
         if gear.eccentricity:
             errors.append([-side * gear.eccentricity, speeds[mounted.rotor], gear.eccentricity_phase - angle])

@@ -267,11 +267,15 @@ class ToothContact:
 
     @property
     def back_flanks(self) -> ToothContact:
-        """The law of the idle flanks by their own phase: the same, with the gaps and kinds of their own pairs."""
-        if not self.hunting_numbers:
+        """The law of the idle flanks by their own phase: the same, with the gaps and kinds of their own pairs.
+
+        A helical face runs through it from the other end.
+        """
+        if not self.hunting_numbers and self.faces is None:
             return self
         return replace(
             self,
+            faces=None if self.faces is None else replace(self.faces, shift=-self.faces.shift),
             pitch_gaps=self.back_pitch_gaps,
             back_pitch_gaps=self.pitch_gaps,
             pair_variants=self.back_pair_variants,

@@ -1,6 +1,5 @@
 """The whole machine of a case: rotors, housing, bearings, gears and loads in one system; its complex modes."""
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +37,6 @@ def build_machine(
     assert case.operation is not None
     speeds = rotor_speeds(case)
     require_no_bow(case)
-    require_spur(case)
     components = []
     bearings: list[room.MountedBearing] = []
     for given in case.rotor:
@@ -91,7 +89,6 @@ def solve_machine(
     """
     require(case, "rotor", "operation", command="system")
     require_no_bow(case)
-    require_spur(case)
     pairs = solve_gears(case, progress) if case.gear_pair else ()
     housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     return housing, pairs, build_machine(case, housing, pairs, progress)
@@ -170,20 +167,3 @@ def require_no_bow(case: Case) -> None:
         if rotor.bow:
             expected = "no bow for the coupled system, which takes it in a later version; 'gearwhine rotors' does now"
             raise CaseError([Problem(f"rotor[{index}].bow", "a bow", expected, label=f'rotor "{rotor.name}"')])
-
-
-def require_spur(case: Case) -> None:
-    """Raise for helical gears, whose axial force and tilting moment the coupled system does not know yet.
-
-    Raises
-    ------
-    CaseError
-    """
-    meshing = {name for pair in case.gear_pair for name in (pair.driver, pair.driven)}
-    for index, gear in enumerate(case.gear):
-        if gear.helix_angle != 0.0 and gear.name in meshing:
-            expected = (
-                "0 deg in the coupled system, which takes helical gears in a later version; 'check' and 'gears' do"
-            )
-            shown = f"{math.degrees(gear.helix_angle):g} deg"
-            raise CaseError([Problem(f"gear[{index}].helix_angle", shown, expected, label=f'gear "{gear.name}"')])

@@ -1,20 +1,16 @@
 """Gears of a case: sizes given in several ways, helices, rims, and what `check` and `gears` say of them."""
 
 import math
-from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
 
-from coupling.gears import GearPairGeometry, stiffness_model
-from gearwhine.case import CaseError, dump_case, load_case, parse_case
+from gearwhine.case import dump_case, parse_case
 from gearwhine.screen.case import show_check
 from gearwhine.screen.machine import show_gears
 from gearwhine.stages.build import build_gear
 from gearwhine.stages.gear_documents import gears_document
 from gearwhine.stages.gears import pair_geometry, solve_gears
-from gearwhine.stages.machine import require_spur
 from gearwhine.stages.summary import check_document
 
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
@@ -94,29 +90,6 @@ def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) 
     shown = " ".join(capsys.readouterr().out.split())
     assert "+ overlap" in shown
     assert "helix 15° left" in shown
-
-
-def test_the_machine_refuses_helical_gears() -> None:
-    with pytest.raises(CaseError, match=r"gear\[0\].helix_angle .*expected 0 deg in the coupled system"):
-        require_spur(HELICAL)
-    require_spur(load_case("small-gearbox").case)
-
-
-@pytest.mark.parametrize("model", ["elastic-ring", "cornell", "weber-banaschek"])
-def test_tooth_models_by_name_take_the_load_of_the_case(model: str) -> None:
-    wheel = TOOTH | {"bore": "30 mm", "rim": "9 mm", "web": "8 mm"}
-    (solved,) = solve_gears(case_of(TOOTH, wheel, stiffness={"model": model}))
-    pair = solved.geometry
-    position = np.linspace(0.0, pair.contact_ratio, 5)
-    expected = stiffness_model(model).pair_compliance(pair, position, force=10.0 / pair.driver.base_radius)
-    np.testing.assert_allclose(1.0 / solved.contact.stiffness(position), expected, rtol=1e-8)
-    solid = stiffness_model(model).pair_compliance(replace_rim(pair), position, force=10.0 / pair.driver.base_radius)
-    assert np.all(expected > solid)
-
-
-def replace_rim(pair: GearPairGeometry) -> GearPairGeometry:
-    disc = replace(pair.driven, rim_thickness=None, web_thickness=None)
-    return GearPairGeometry(pair.driver, disc, pair.centre_distance)
 
 
 def test_undercut_and_thin_tips_are_warned_of() -> None:
