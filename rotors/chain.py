@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .profile import restricted
+from .quadrature import gauss_rule
 from .shaft import merged_positions, station_index
 from .timoshenko import NumberArray, PieceTable
 
@@ -23,8 +24,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 # Products of two fields, on pieces this short, are integrated to rounding.
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
-GAUSS_FRACTIONS = 0.5 * (_POINTS + 1.0)
+GAUSS_FRACTIONS, _WEIGHTS = gauss_rule(10)
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Chain:
     Attributes
     ----------
     nodes
-        (p + 1,): ascending positions, m (the only field not in scaled units).
+        (p + 1,): ascending positions, m (they and the stations are not in scaled units).
     table
         The pieces that differ from each other, in scaled units.
     element
@@ -62,8 +62,8 @@ class Chain:
         (n,): SI value of a displacement and rotation of one, at unit modal mass in kg·m² or kg.
     highest
         rad/s up to which the pieces are short enough.
-    is_station
-        (p + 1,): nodes that are stations, rather than cuts between them.
+    stations
+        (s,): ascending positions of segment ends, discs and supports, m; nodes need not be among them.
     """
 
     nodes: FloatArray
@@ -75,7 +75,7 @@ class Chain:
     length_unit: float
     displacement_unit: FloatArray
     highest: float
-    is_station: npt.NDArray[np.bool_]
+    stations: FloatArray
 
     @property
     def size(self) -> int:
@@ -103,7 +103,7 @@ class Chain:
         table, beam = self.table, self.size == 2
         points, kinds = GAUSS_FRACTIONS.size, table.lengths.size
         values = table.coefficients_at(np.repeat(np.arange(kinds), points), np.tile(GAUSS_FRACTIONS, kinds))
-        values = values.reshape(kinds, points, -1) * (0.5 * table.lengths[:, None] * _WEIGHTS)[:, :, None]
+        values = values.reshape(kinds, points, -1) * (table.lengths[:, None] * _WEIGHTS)[:, :, None]
         along = values[self.element]
         inertia, strain = along[:, :, 2:4] if beam else along[:, :, 1:], along[:, :, [5, 0, 1] if beam else [0]]
         # A round section's polar moment of area is twice its diametral one.
@@ -169,7 +169,6 @@ class Chain:
             node_inertia=spread(nodes.size, index, self.node_inertia),
             node_stiffness=spread(nodes.size, index, self.node_stiffness),
             node_polar=spread(nodes.size, index, self.node_polar),
-            is_station=spread(nodes.size, index, self.is_station),
         )
 
     @cached_property

@@ -134,7 +134,7 @@ class Rotor:
         """Segment ends and disc positions, ascending, each place once, (stations,), m."""
         return merged_positions(self.joints, [disc.at for disc in self.discs])
 
-    @property
+    @cached_property
     def mass(self) -> float:
         """Total mass, kg."""
         return math.fsum([part.mass for part in self.segments] + [disc.mass for disc in self.discs])

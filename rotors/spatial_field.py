@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .chain import Chain
+from .quadrature import gauss_rule
 from .search import require_positions
 from .spatial_chain import SpatialChain
 from .spatial_ties import MEMBERS
@@ -14,7 +15,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-GAUSS_POINTS = 6
+GAUSS_FRACTIONS, _WEIGHTS = gauss_rule(6)
 
 
 @dataclass(frozen=True)
@@ -95,11 +96,10 @@ class SpatialMotion:
     def shares(self) -> FloatArray:
         """∫ ρA |r±|² + ρI |β±|² dz with the nodes' own, of the forward and the backward part, (w, 2), kg·m²."""
         chain = self.chain
-        points, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-        pieces = np.repeat(np.arange(chain.element.size), GAUSS_POINTS)
-        fractions = np.tile(0.5 * (points + 1.0), chain.element.size)
+        pieces = np.repeat(np.arange(chain.element.size), GAUSS_FRACTIONS.size)
+        fractions = np.tile(GAUSS_FRACTIONS, chain.element.size)
         along = chain.coefficients_at(pieces, fractions)[:, 2:4]
-        along *= (0.5 * chain.lengths[:, None] * weights).reshape(-1, 1)
+        along *= (chain.lengths[:, None] * _WEIGHTS).reshape(-1, 1)
         shares = []
         for block, states in ((1, self.forward), (-1, self.backward)):
             inside = self._inside(block, states, pieces, fractions)[:, :, :2]
