@@ -35,7 +35,6 @@ SIDE_SAMPLES = 13
 MOST_ROUNDS = 48
 # The second step of a sample, as a part of the interval it was put into.
 SLOPE_PART = 1e-3
-BATCH = 512
 # An interval of ln λ still unsafe at this length passes through a root to rounding.
 SHORTEST = 1e-10
 MOST_SAMPLES = 40_000
@@ -129,12 +128,8 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
     corners = sector.corners
 
     def logarithm(w: ComplexArray) -> ComplexArray:
-        parts = []
-        for first in range(0, w.size, BATCH):
-            at = np.exp(w[first : first + BATCH])
-            size, phase = chain.pattern.determinants(chain.values(at, speed(at), np.full(at.size, scale)))
-            parts.append(size + 1j * np.angle(phase))
-        return np.concatenate(parts)
+        at = np.exp(w)
+        return chain.entries.log_determinants(at, speed(at), np.full(at.size, scale))
 
     def sampled(w: ComplexArray, step: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         both = logarithm(np.concatenate([w, w + step]))
