@@ -55,17 +55,18 @@ class EntryTable:
         from .entry_kernels import entries
 
         out = np.empty((eigenvalues.size, self.pattern.rows.size), dtype=np.complex128)
-        entries(eigenvalues, speeds, scale, self._arrays, out)
+        entries(eigenvalues, speeds, scale, self.arrays, out)
         return out
 
     def log_determinants(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Logarithms of the determinants, (b,), their imaginary parts within (−π, π]."""
         from .entry_kernels import determinants
 
-        return np.asarray(determinants(eigenvalues, speeds, scale, self._arrays, self.pattern.arrays))
+        return np.asarray(determinants(eigenvalues, speeds, scale, self.arrays, self.pattern.arrays))
 
     @property
-    def _arrays(self) -> tuple[IntArray, Pieces, Pieces, ComplexArray, FloatArray]:
+    def arrays(self) -> tuple[IntArray, Pieces, Pieces, ComplexArray, FloatArray]:
+        """The table as compiled functions take it."""
         return self.blocks, self.beams, self.rods, self.numerators, self.denominators
 
 

@@ -49,9 +49,6 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-# Relative step of the central difference that gives slopes of the entries: good to about 1e-10, which costs
-# the refined roots nothing, as their residual is exact.
-SLOPE_STEP = 1e-5
 # The least unit of force of a response, as a part of what the stiffest bearing takes per unit displacement.
 STATIC_FORCE = 1e-6
 
