@@ -101,9 +101,7 @@ class Chain:
     def energy_weights(self) -> EnergyWeights:
         """What turns squared fields into energies: coefficients times lengths times the weights of Gauss."""
         table, beam = self.table, self.size == 2
-        points, kinds = GAUSS_FRACTIONS.size, table.lengths.size
-        values = table.coefficients_at(np.repeat(np.arange(kinds), points), np.tile(GAUSS_FRACTIONS, kinds))
-        values = values.reshape(kinds, points, -1) * (table.lengths[:, None] * _WEIGHTS)[:, :, None]
+        values = table.coefficients_along(GAUSS_FRACTIONS) * (table.lengths[:, None] * _WEIGHTS)[:, :, None]
         along = values[self.element]
         inertia, strain = along[:, :, 2:4] if beam else along[:, :, 1:], along[:, :, [5, 0, 1] if beam else [0]]
         # A round section's polar moment of area is twice its diametral one.

@@ -25,6 +25,7 @@ Pieces = tuple[FloatArray, FloatArray, IntArray]
 
 ALONE = np.array([0.0, 1.0])
 OVER_FORCE = np.array([1.0, 0.0])
+NO_PIECES = (np.zeros(0), np.zeros((0, 2, 1)), np.zeros(0, dtype=np.intp))
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,8 @@ class EntryTable:
     blocks
         1 for r+, −1 for r−, 0 for z.
     beams, rods
-        Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, and which of them each piece is, (p,).
+        Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, and which of them each piece is, (p,); no
+        rods without z.
     numerators, denominators
         (t, 5) complex and (t, 2): of the entries that are no transfer matrix's, and stand behind those.
     """
@@ -72,7 +74,7 @@ class EntryTable:
 
 def entry_table(
     bending: Chain,
-    axial: Chain,
+    axial: Chain | None,
     blocks: tuple[int, ...],
     ties: Sequence[tuple[Tie, tuple[IntArray, IntArray]]],
     bounds: IntArray,
@@ -101,11 +103,15 @@ def entry_table(
     return EntryTable(
         BandPattern.of(np.concatenate(rows + terms.rows), np.concatenate(columns + terms.columns), order),
         np.array(blocks, dtype=np.intp),
-        (bending.table.lengths, bending.table.coefficients, bending.element),
-        (axial.table.lengths, axial.table.coefficients, axial.element),
+        _pieces(bending),
+        NO_PIECES if axial is None else _pieces(axial),
         np.concatenate(terms.numerators),
         np.concatenate(terms.denominators),
     )
+
+
+def _pieces(chain: Chain) -> Pieces:
+    return chain.table.lengths, chain.table.coefficients, chain.element
 
 
 def _inertias(chain: Chain, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:

@@ -124,12 +124,12 @@ class LateralModes:
     def support_matrix(self) -> FloatArray:
         """Φᵀ k Φ of the finite supports, (m, m), N/m per unit modal mass."""
         total = np.zeros((self.count, self.count))
-        for support in self.supports:
-            displacement, slope = self.evaluate([support.at])
-            if np.isfinite(support.stiffness):
-                total += support.stiffness * (displacement @ displacement.T)
-            if np.isfinite(support.tilt_stiffness):
-                total += support.tilt_stiffness * (slope @ slope.T)
+        if not self.supports:
+            return total
+        springs = np.array([(support.stiffness, support.tilt_stiffness) for support in self.supports])
+        springs[np.isinf(springs)] = 0.0
+        for stiffness, motion in zip(springs.T, self.evaluate([support.at for support in self.supports]), strict=True):
+            total += (motion * stiffness) @ motion.T
         return total
 
 

@@ -62,7 +62,7 @@ class SpatialChain:
     bending
         Pieces and node inertias of one plane, without springs.
     axial
-        The same shaft as a rod, on the same nodes and in the same units.
+        The same shaft as a rod, on the same nodes and in the same units; None where no bearing ties its motion.
     blocks
         1 for r+, −1 for r−, 0 for z, in the order of the unknowns.
     ties
@@ -70,7 +70,7 @@ class SpatialChain:
     """
 
     bending: Chain
-    axial: Chain
+    axial: Chain | None
     blocks: tuple[int, ...]
     ties: tuple[Tie, ...]
 
@@ -164,6 +164,7 @@ class SpatialChain:
     ) -> ComplexArray:
         translation = -(eigenvalues**2)
         if block == 0:
+            assert self.axial is not None
             transfer = self.axial.transfers(translation)
         else:
             transfer = self.bending.transfers(translation, translation + block * 2j * speeds * eigenvalues)
@@ -217,7 +218,7 @@ def spatial_chain(
     chain = bending_chain(rotor, tuple(supports), highest)
     units = block_units(chain, blocks)
     ties = tuple(make_tie(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
-    return SpatialChain(chain, axial_chain_on(rotor, chain), blocks, ties)
+    return SpatialChain(chain, axial_chain_on(rotor, chain) if 0 in blocks else None, blocks, ties)
 
 
 def retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:

@@ -58,9 +58,14 @@ def oscillating(least: float, most: float) -> Sector:
 
 
 def certified_roots(
-    chain: SpatialChain, roots: ExactRoots, speed: Speed, sector: Sector, conservative: bool
+    chain: SpatialChain,
+    roots: ExactRoots,
+    speed: Speed,
+    sector: Sector,
+    conservative: bool,
+    beyond: ComplexArray = NONE,
 ) -> tuple[ExactRoots, WhirlCertificate]:
-    """All roots in a sector, starting from those known, and the proof.
+    """All roots in a sector, starting from those known, and the proof; near values of others spare it some work.
 
     Raises
     ------
@@ -69,7 +74,7 @@ def certified_roots(
     """
     method = "inertia" if conservative else "winding"
     held = roots.take(sector.holds(roots.eigenvalues))
-    expected = count_roots(chain, speed, sector, conservative, roots.eigenvalues)
+    expected = count_roots(chain, speed, sector, conservative, np.concatenate([roots.eigenvalues, beyond]))
     if held.eigenvalues.size < expected:
         held = search(chain, roots, speed, sector)
     found = held.eigenvalues.size
