@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
 
 from .fields import Fields
 from .lateral import LateralModes, lateral_modes
@@ -119,7 +118,7 @@ def _residuals(fields: Fields, modes: FloatArray, zeros: int, count: int) -> Flo
     if rows.shape[0] == 0:
         return rows
     rows /= left[:, None]
-    values, vectors = linalg.eigh(fields.mass_products(rows, rows))
+    values, vectors = np.linalg.eigh(fields.mass_products(rows, rows))
     independent = values > 1e-9
     return np.asarray((vectors[:, independent] / np.sqrt(values[independent])).T @ rows)
 

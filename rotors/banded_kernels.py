@@ -152,7 +152,13 @@ def orthonormalise(vectors: ComplexArray) -> None:
 
 @njit(cache=True, nogil=True)
 def solve(
-    rows: IntArray, columns: IntArray, envelope: IntArray, lower: int, upper: int, values: ComplexArray, sides: ComplexArray
+    rows: IntArray,
+    columns: IntArray,
+    envelope: IntArray,
+    lower: int,
+    upper: int,
+    values: ComplexArray,
+    sides: ComplexArray,
 ) -> None:
     """Solve for sides (b, k, order) in place."""
     order = envelope.shape[0]

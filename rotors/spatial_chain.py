@@ -59,18 +59,18 @@ class SpatialChain:
 
     Attributes
     ----------
+    rotor
+        What the pieces are of.
     bending
         Pieces and node inertias of one plane, without springs.
-    axial
-        The same shaft as a rod, on the same nodes and in the same units; None where no bearing ties its motion.
     blocks
         1 for r+, −1 for r−, 0 for z, in the order of the unknowns.
     ties
         Bearings with constant coefficients.
     """
 
+    rotor: Rotor
     bending: Chain
-    axial: Chain | None
     blocks: tuple[int, ...]
     ties: tuple[Tie, ...]
 
@@ -83,6 +83,11 @@ class SpatialChain:
     def units(self) -> FloatArray:
         """SI value of each of a node's displacements; forces have its reciprocal. (n,)."""
         return block_units(self.bending, self.blocks)
+
+    @cached_property
+    def axial(self) -> Chain:
+        """The same shaft as a rod, on the same nodes and in the same units."""
+        return axial_chain_on(self.rotor, self.bending)
 
     @cached_property
     def total_mass(self) -> float:
@@ -114,7 +119,8 @@ class SpatialChain:
     def entries(self) -> EntryTable:
         """What makes the entries of the equations at any λ."""
         ties = tuple(zip(self.ties, self.tie_unknowns, strict=True))
-        return entry_table(self.bending, self.axial, self.blocks, ties, self.starts)
+        axial = self.axial if 0 in self.blocks else None
+        return entry_table(self.bending, axial, self.blocks, ties, self.starts)
 
     @property
     def pattern(self) -> BandPattern:
@@ -164,7 +170,6 @@ class SpatialChain:
     ) -> ComplexArray:
         translation = -(eigenvalues**2)
         if block == 0:
-            assert self.axial is not None
             transfer = self.axial.transfers(translation)
         else:
             transfer = self.bending.transfers(translation, translation + block * 2j * speeds * eigenvalues)
@@ -218,7 +223,7 @@ def spatial_chain(
     chain = bending_chain(rotor, tuple(supports), highest)
     units = block_units(chain, blocks)
     ties = tuple(make_tie(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
-    return SpatialChain(chain, axial_chain_on(rotor, chain) if 0 in blocks else None, blocks, ties)
+    return SpatialChain(rotor, chain, blocks, ties)
 
 
 def retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:

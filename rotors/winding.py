@@ -12,9 +12,9 @@ analytic on the contour whatever the μ_k are, and the zeros of f inside number
 
 exactly, because an error in a μ_k leaves both a zero and a pole inside, whose turns cancel. Where the μ_k are the roots
 and none is missing, q is smooth and turns nowhere, so that few samples show it; a missing root shows in q as it would
-in f. A μ_k next to the contour itself is left in f, as which side it lies on is then for the sampling to find. Where both
-senses are tied and the speed is real, f(λ̄) is the conjugate of f(λ): the conjugates of the μ_k, outside the sector, are
-divided out too; and so is a power of λ, for the motions of a free shaft at zero.
+in f. A μ_k next to the contour itself is left in f: which side it lies on is for the sampling to find. Where both
+senses are tied and the speed is real, f(λ̄) is the conjugate of f(λ), and the conjugates of the μ_k, outside the sector,
+are divided out too; and so is a power of λ, for the motions of a free shaft at zero.
 
 Sampling is adaptive. With g = d ln q/dw measured at every sample by a short second step, an interval of
 length h is safe when |h g| < 1.5 at both its ends and its own change of ln q is that of the mean slope. A
@@ -82,7 +82,7 @@ class Sector:
         """How far values lie from the edge in ln λ, negative inside; along the axes, the larger part of it."""
         w = np.log(eigenvalues)
         across = np.maximum(np.log(self.least) - w.real, w.real - np.log(self.most))
-        return np.maximum(across, np.maximum(self.first - w.imag, w.imag - self.last))
+        return np.asarray(np.maximum(across, np.maximum(self.first - w.imag, w.imag - self.last)))
 
     def halves(self, part: float) -> tuple["Sector", "Sector"]:
         """Two sectors, cut across the longer side at a part of it."""
