@@ -100,18 +100,11 @@ class Chain:
     @cached_property
     def energy_weights(self) -> EnergyWeights:
         """What turns squared fields into energies: coefficients times lengths times the weights of Gauss."""
-        table, beam = self.table, self.size == 2
-        values = table.coefficients_along(GAUSS_FRACTIONS) * (table.lengths[:, None] * _WEIGHTS)[:, :, None]
-        along = values[self.element]
-        inertia, strain = along[:, :, 2:4] if beam else along[:, :, 1:], along[:, :, [5, 0, 1] if beam else [0]]
-        # A round section's polar moment of area is twice its diametral one.
-        polar, node_polar = np.zeros_like(inertia), np.zeros_like(self.node_inertia)
-        if beam:
-            polar[:, :, 1], node_polar[:, 1] = 2.0 * inertia[:, :, 1], self.node_polar
+        from .shape_kernels import energy_weights
+
+        table, nodal = self.table, (self.node_stiffness, self.node_inertia, self.node_polar)
         return EnergyWeights(
-            np.concatenate([inertia.ravel(), self.node_inertia.ravel()]),
-            np.concatenate([polar.ravel(), node_polar.ravel()]),
-            np.concatenate([strain.ravel(), self.finite_stiffness.ravel()]),
+            *energy_weights(GAUSS_FRACTIONS, _WEIGHTS, table.lengths, table.coefficients, self.element, *nodal)
         )
 
     def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:
@@ -179,8 +172,10 @@ class Chain:
         if self.size == 1:
             free = not bool((self.node_stiffness > 0.0).any())
             return np.ones((1, place.size, 1))[: int(free)]
-        slope, constant = np.ones_like(place), np.zeros_like(place)
         held = place[self.node_stiffness[:, 0] > 0.0]
+        if held.size > 1:
+            return np.zeros((0, place.size, 2))
+        slope, constant = np.ones_like(place), np.zeros_like(place)
         loaded = bool(self.table.coefficients[:, 5].any())
         tilt_held = loaded or bool((self.node_stiffness[:, 1] > 0.0).any())
         if held.size == 0:
