@@ -134,9 +134,11 @@ class Chain:
 
     def places(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
         """Piece that holds each position (z,) in m, and the fraction of it that lies to the left, both (z,)."""
-        piece = np.clip(np.searchsorted(self.nodes, positions, side="right") - 1, 0, self.element.size - 1)
-        fraction = (positions - self.nodes[piece]) / (self.nodes[piece + 1] - self.nodes[piece])
-        return piece, np.clip(fraction, 0.0, 1.0)
+        piece = self.nodes.searchsorted(positions, side="right") - 1
+        piece = np.minimum(np.maximum(piece, 0), self.element.size - 1)
+        left = self.nodes[piece]
+        fraction = (positions - left) / (self.nodes[piece + 1] - left)
+        return piece, np.minimum(np.maximum(fraction, 0.0), 1.0)
 
     def node_at(self, position: float) -> int:
         """Index of the node at a position (m), which must be one of the nodes."""

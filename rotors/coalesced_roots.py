@@ -50,6 +50,8 @@ def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> Exa
         Speed of rotation as an analytic function of λ.
     """
     roots, crawling = settled_roots(chain, starts, speed)
+    if crawling.size == 0:
+        return roots
     for place in clusters(crawling, CIRCLES[0]):
         roots = with_circle(chain, roots, complex(crawling[place].mean()), speed)
     return distinct(roots)

@@ -83,16 +83,15 @@ def entry_table(
     starts, order = bounds[:-1], int(bounds[-1])
     n = sum(len(MEMBERS[block]) for block in blocks)
     across, right, first = np.arange(n), starts[1:, None], 0
-    rows, columns = [], []
+    terms, transfers = _Terms(), []
     # Equations stand n above the unknowns: the first node has no piece to its left.
     for block in blocks:
         own = first + np.arange(len(MEMBERS[block]))
         local = np.concatenate([own, n + own])
-        shape = (starts.size - 1, local.size, local.size)
-        rows.append(np.broadcast_to(right[:, :, None] - n + local[:, None], shape).ravel())
-        columns.append(np.broadcast_to(starts[:-1, None, None] + local, shape).ravel())
+        places = np.empty((2, starts.size - 1, local.size, local.size), dtype=np.intp)
+        places[0], places[1] = right[:, :, None] - n + local[:, None], starts[:-1, None, None] + local
+        transfers.append(places.reshape(2, -1))
         first += own.size
-    terms = _Terms()
     terms.add(right - n + across, right + across, [1.0])
     node = starts[:, None] + across
     terms.add(node, node + n, [1.0])
@@ -100,8 +99,9 @@ def entry_table(
     for tie, (force, foot) in ties:
         _add_tie(terms, tie, starts[tie.node] + across, force, foot, n)
     terms.add(order - n + across, starts[-1] + n + across, [1.0])
+    rows, columns = np.concatenate(transfers + terms.places, axis=1)
     return EntryTable(
-        BandPattern.of(np.concatenate(rows + terms.rows), np.concatenate(columns + terms.columns), order),
+        BandPattern.of(rows, columns, order),
         np.array(blocks, dtype=np.intp),
         _pieces(bending),
         NO_PIECES if axial is None else _pieces(axial),
@@ -149,8 +149,7 @@ class _Terms:
     """Entries as they come, block by block."""
 
     def __init__(self) -> None:
-        self.rows: list[IntArray] = []
-        self.columns: list[IntArray] = []
+        self.places: list[IntArray] = []
         self.numerators: list[ComplexArray] = []
         self.denominators: list[FloatArray] = []
 
@@ -158,12 +157,13 @@ class _Terms:
         self, rows: IntArray, columns: IntArray, numerator: Sequence[npt.ArrayLike], denominator: FloatArray = ALONE
     ) -> None:
         """Entries at rows and columns that broadcast, with the leading coefficients of their numerators."""
-        shape = np.broadcast_shapes(rows.shape, columns.shape)
+        shape = np.broadcast(rows, columns).shape
+        places = np.empty((2, *shape), dtype=np.intp)
+        places[0], places[1] = rows, columns
         top, bottom = np.zeros((*shape, 5), dtype=np.complex128), np.empty((*shape, 2))
         for k, coefficient in enumerate(numerator):
             top[..., k] = coefficient
         bottom[:] = denominator
-        self.rows.append(np.broadcast_to(rows, shape).ravel())
-        self.columns.append(np.broadcast_to(columns, shape).ravel())
+        self.places.append(places.reshape(2, -1))
         self.numerators.append(top.reshape(-1, 5))
         self.denominators.append(bottom.reshape(-1, 2))

@@ -147,6 +147,8 @@ def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp
     """Indices of values that chains of distances below ``tolerance`` of their modulus connect."""
     label = np.arange(values.size)
     near = np.abs(values[:, None] - values) <= tolerance * np.abs(values)[:, None]
+    if np.count_nonzero(near) <= values.size:
+        return list(label[:, None])
     for i, j in np.argwhere(near & ~np.eye(values.size, dtype=np.bool_)):
         label[label == label[j]] = label[i]
     order = np.argsort(label, kind="stable")
@@ -157,7 +159,10 @@ def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp
 def distinct(roots: ExactRoots) -> ExactRoots:
     """Each root once: equal values are several roots only where their vectors are independent."""
     kept: list[int] = []
-    for cluster in clusters(roots.eigenvalues, SAME):
+    near = clusters(roots.eigenvalues, SAME)
+    if len(near) == roots.eigenvalues.size:
+        return roots
+    for cluster in near:
         first = len(kept)
         for i in cluster.tolist():
             if len(kept) > first:

@@ -97,6 +97,8 @@ class Fields:
 
     def on(self, chain: Chain) -> "Fields":
         """The same fields on a chain that differs by further nodes only."""
+        if chain is self.chain:
+            return self
         return Fields(chain, self.frequency_squared, self.at(chain.nodes))
 
     @cached_property

@@ -129,7 +129,7 @@ class SpatialChain:
 
     def force_scale(self, eigenvalues: ComplexArray) -> FloatArray:
         """Unit of forces for roots near every λ: the inertia forces, or the shaft's own where they are less."""
-        return np.asarray(np.clip(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30, 1.0))
+        return np.asarray(np.minimum(np.maximum(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30), 1.0))
 
     def response_scale(self, eigenvalues: ComplexArray) -> FloatArray:
         """Unit of forces for a response at every λ, zero included, where bearings may carry more than inertia."""

@@ -30,6 +30,7 @@ CIRCULAR = np.array(
         [0.0, 0.0, np.sqrt(2.0), 0.0, 0.0],
     ]
 ) / np.sqrt(2.0)
+CARTESIAN = np.eye(5, dtype=np.complex128)
 # Members of the five circular coordinates by kind of block: forward, backward, axial.
 MEMBERS = {1: (0, 1), -1: (2, 3), 0: (4,)}
 # Lateral displacements among the five coordinates: Cartesian and circular.
@@ -111,9 +112,11 @@ def make_tie(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatA
     if circular:
         turn, known, names = CIRCULAR, dict(zip(members, units.tolist(), strict=True)), members
     else:
-        turn, names = np.eye(5, dtype=np.complex128), [0, 1, 2, 3, 4] if 0 in blocks else [0, 1, 3, 4]
+        turn, names = CARTESIAN, [0, 1, 2, 3, 4] if 0 in blocks else [0, 1, 3, 4]
         known = {0: units[0], 1: units[0], 2: units[0], 3: units[1], 4: units[1]}
-    matrices = [turn @ m @ turn.conj().T for m in (bearing.spatial_stiffness, bearing.spatial_damping)]
+    matrices = np.array([bearing.spatial_stiffness, bearing.spatial_damping], dtype=np.complex128)
+    if circular:
+        matrices = turn @ matrices @ turn.conj().T
     acts = (matrices[0] != 0.0) | (matrices[1] != 0.0)
     acts = acts[names][:, names]
     busy = [names[k] for k in np.flatnonzero(acts.any(axis=0) | acts.any(axis=1)).tolist()]
