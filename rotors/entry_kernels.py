@@ -25,9 +25,9 @@ Pattern = tuple[IntArray, IntArray, IntArray, int, int]
 
 @njit(cache=True, nogil=True)
 def _put_pieces(
-    pieces: Pieces, translation: complex, rotation: complex, scale: float, first: int, transfers: Any, out: ComplexArray
+    pieces: Pieces, translation: complex, rotation: complex, scale: float, transfers: Any, out: ComplexArray
 ) -> int:
-    """−T of every piece, forces in the given unit, from ``out[first]`` on; returns where they end."""
+    """−T of every piece, forces in the given unit, into the beginning of ``out``; returns how many entries they are."""
     lengths, given, element = pieces
     whole = np.ones(1)
     size, half = transfers.shape[2], transfers.shape[2] // 2
@@ -37,12 +37,13 @@ def _put_pieces(
             for j in range(half):
                 transfers[e, 0, i, half + j] *= scale
                 transfers[e, 0, half + i, j] /= scale
+    entry = 0
     for piece in range(element.size):
         for i in range(size):
             for j in range(size):
-                out[first] = -transfers[element[piece], 0, i, j]
-                first += 1
-    return first
+                out[entry] = -transfers[element[piece], 0, i, j]
+                entry += 1
+    return entry
 
 
 @njit(cache=True, nogil=True)
@@ -55,9 +56,9 @@ def put_entries(
     first = 0
     for block in blocks:
         if block == 0:
-            first = _put_pieces(rod_pieces, -squared, -squared, scale, first, rods, out)
+            first += _put_pieces(rod_pieces, -squared, -squared, scale, rods, out[first:])
         else:
-            first = _put_pieces(beam_pieces, -squared, -squared + block * 2j * turning, scale, first, beams, out)
+            first += _put_pieces(beam_pieces, -squared, -squared + block * 2j * turning, scale, beams, out[first:])
     for term in range(numerators.shape[0]):
         c = numerators[term]
         top = c[0] + c[1] * at + c[2] * squared + c[3] * turning + c[4] * scale

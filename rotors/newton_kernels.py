@@ -55,7 +55,8 @@ def newton(
     order = envelope.shape[0]
     beams = np.empty((table[1][0].size, 1, 4, 4), dtype=np.complex128)
     rods = np.empty((table[2][0].size, 1, 2, 2), dtype=np.complex128)
-    values, slopes, behind = np.empty((3, rows.size), dtype=np.complex128)
+    values, slopes = np.empty(rows.size, dtype=np.complex128), np.empty(rows.size, dtype=np.complex128)
+    behind = np.empty(rows.size, dtype=np.complex128)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
     left = np.empty((1, order), dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
