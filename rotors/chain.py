@@ -100,7 +100,7 @@ class Chain:
     @cached_property
     def energy_weights(self) -> EnergyWeights:
         """What turns squared fields into energies: coefficients times lengths times the weights of Gauss."""
-        from .shape_kernels import energy_weights
+        from .energy_kernels import energy_weights
 
         table, nodal = self.table, (self.node_stiffness, self.node_inertia, self.node_polar)
         return EnergyWeights(
