@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
 
 from .fields import Fields
 from .lateral import LateralModes, lateral_modes
@@ -110,28 +109,22 @@ def _residuals(fields: Fields, modes: FloatArray, zeros: int, count: int) -> Flo
     """
     kept = np.hstack([modes, np.zeros((modes.shape[0], count))])
     rows = np.hstack([np.zeros((count, modes.shape[1])), np.eye(count)])
-    rows = rows / _sizes(fields, rows)[:, None]
+    rows = rows / fields.mass_norms(rows)[:, None]
     rows = _without(fields, rows, kept[:zeros])
-    rows = rows / _sizes(fields, rows)[:, None]
+    rows = rows / fields.mass_norms(rows)[:, None]
     rows = _without(fields, rows, kept)
-    left = _sizes(fields, rows)
+    left = fields.mass_norms(rows)
     rows, left = rows[left > NOTHING_LEFT], left[left > NOTHING_LEFT]
     if rows.shape[0] == 0:
         return rows
     rows /= left[:, None]
-    values, vectors = linalg.eigh(fields.energies(rows)[0])
+    values, vectors = np.linalg.eigh(fields.mass_products(rows, rows))
     independent = values > 1e-9
     return np.asarray((vectors[:, independent] / np.sqrt(values[independent])).T @ rows)
 
 
-def _sizes(fields: Fields, rows: FloatArray) -> FloatArray:
-    """Norms in mass of combinations of fields."""
-    return np.sqrt(np.diag(fields.energies(rows)[0]))
-
-
 def _without(fields: Fields, rows: FloatArray, modes: FloatArray) -> FloatArray:
     """Combinations less what they have of orthonormal modes; twice, for the rounding that the first time leaves."""
-    for _ in range(2):
-        mass = fields.energies(np.vstack([modes, rows]))[0]
-        rows = rows - mass[modes.shape[0] :, : modes.shape[0]] @ modes
+    for _ in range(2 if modes.size else 0):
+        rows = rows - fields.mass_products(rows, modes) @ modes
     return rows

@@ -1,11 +1,13 @@
-"""Banded complex matrices in batches: factors, determinants, solutions, and the null vectors of singular ones.
+"""Banded complex matrices in batches: factors, solutions, and the null vectors of singular ones.
 
 All matrices of a batch share one pattern, given by the row and column of every entry. A matrix is kept by
 rows, entry (i, j) at ``[i, j - i + lower]``, with ``lower`` more places on the right for what partial
-pivoting fills in. The factors are those of Gaussian elimination, P A = L U, the multipliers in place.
+pivoting fills in. The factors are those of Gaussian elimination, P A = L U, the multipliers in place; rows are
+followed only as far as they reach, which on a chain is half of the band.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -47,19 +49,27 @@ class BandPattern:
             max(int(-offset.min()), 0),
         )
 
-    def determinants(self, values: ComplexArray) -> tuple[FloatArray, ComplexArray]:
-        """Logarithm of the modulus (b,) and the phase factor (b,), of modulus one, of every determinant."""
-        from . import banded_kernels as kernels
+    @cached_property
+    def envelope(self) -> IntArray:
+        """For every k the last row with an entry in column k or before, and the last column of row k, (order, 2)."""
+        first, last = np.arange(self.order), np.arange(self.order)
+        np.minimum.at(first, self.rows, self.columns)
+        np.maximum.at(last, self.rows, self.columns)
+        deepest = np.arange(self.order)
+        np.maximum.at(deepest, first, np.arange(self.order))
+        return np.stack([np.maximum.accumulate(deepest), last], axis=1)
 
-        logarithms, phases = kernels.determinants(self.rows, self.columns, self.order, self.lower, self.upper, values)
-        return np.asarray(logarithms), np.asarray(phases)
+    @property
+    def arrays(self) -> tuple[IntArray, IntArray, IntArray, int, int]:
+        """The pattern as compiled functions take it."""
+        return self.rows, self.columns, self.envelope, self.lower, self.upper
 
     def solve(self, values: ComplexArray, sides: ComplexArray) -> ComplexArray:
         """Solutions of A x = sides, (b, k, order) both; the matrices from values (b, nnz)."""
         from . import banded_kernels as kernels
 
         solved = np.array(sides, dtype=np.complex128, order="C")
-        kernels.solve(self.rows, self.columns, self.order, self.lower, self.upper, values, solved)
+        kernels.solve(*self.arrays, values, solved)
         return solved
 
     def null_vectors(self, values: ComplexArray, start: ComplexArray, rounds: int) -> tuple[ComplexArray, ComplexArray]:
@@ -71,7 +81,7 @@ class BandPattern:
 
         right = np.array(start, dtype=np.complex128, order="C")
         left = np.empty_like(right)
-        kernels.null_vectors(self.rows, self.columns, self.order, self.lower, self.upper, values, right, left, rounds)
+        kernels.null_vectors(*self.arrays, values, right, left, rounds)
         return right, left
 
     def forms(self, values: ComplexArray, left: ComplexArray, right: ComplexArray) -> ComplexArray:

@@ -3,6 +3,8 @@
 Importing this module imports numba.
 """
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 from numba import njit
@@ -21,23 +23,30 @@ def fill(rows: IntArray, columns: IntArray, lower: int, values: ComplexArray, ma
     matrix[:] = 0.0
     largest = 0.0
     for entry in range(rows.size):
-        row = rows[entry]
-        matrix[row, columns[entry] - row + lower] += values[entry]
-        largest = max(largest, abs(values[entry]))
-    return largest
+        row, value = rows[entry], values[entry]
+        matrix[row, columns[entry] - row + lower] += value
+        largest = max(largest, value.real * value.real + value.imag * value.imag)
+    return math.sqrt(largest)
 
 
 @njit(cache=True, nogil=True)
-def factor(matrix: ComplexArray, lower: int, upper: int, pivots: IntArray, least: float) -> tuple[float, complex]:
-    """Factor in place; the logarithm of the determinant's modulus, and its phase factor."""
+def factor(
+    matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, least: float
+) -> complex:
+    """Factor in place; the logarithm of the determinant.
+
+    ``ends`` (order,) takes the last column of every row of U: rows are short where nothing reaches far, and
+    interchanges and what they fill in carry their ends along.
+    """
     order = matrix.shape[0]
     logarithm = 0.0
     phase = 1.0 + 0.0j
+    ends[:] = envelope[:, 1]
     for k in range(order):
         chosen = k
         head = matrix[k, lower]
         best = head.real * head.real + head.imag * head.imag
-        last_row = min(k + lower, order - 1)
+        last_row = envelope[k, 0]
         for i in range(k + 1, last_row + 1):
             head = matrix[i, k - i + lower]
             size = head.real * head.real + head.imag * head.imag
@@ -45,34 +54,41 @@ def factor(matrix: ComplexArray, lower: int, upper: int, pivots: IntArray, least
                 best = size
                 chosen = i
         pivots[k] = chosen
-        last = min(k + lower + upper, order - 1)
+        last = ends[chosen]
         if chosen != k:
             phase = -phase
-            for j in range(k, last + 1):
+            ends[chosen], ends[k] = ends[k], last
+            for j in range(k, max(last, ends[chosen]) + 1):
                 kept = matrix[k, j - k + lower]
                 matrix[k, j - k + lower] = matrix[chosen, j - chosen + lower]
                 matrix[chosen, j - chosen + lower] = kept
         if best <= least * least:
             matrix[k, lower] = least
+            best = least * least
         pivot = matrix[k, lower]
-        size = abs(pivot)
-        logarithm += np.log(size)
-        phase *= pivot / size
+        logarithm += 0.5 * math.log(best)
+        size = math.sqrt(best)
+        phase *= complex(pivot.real / size, pivot.imag / size)
         inverse = 1.0 / pivot
+        above = matrix[k, lower + 1 : last - k + lower + 1]
         for i in range(k + 1, last_row + 1):
-            if matrix[i, k - i + lower] == 0.0:
+            place = k - i + lower
+            head = matrix[i, place]
+            if head.real == 0.0 and head.imag == 0.0:
                 continue
-            multiplier = matrix[i, k - i + lower] * inverse
-            matrix[i, k - i + lower] = multiplier
-            shift = lower - i
-            above = lower - k
-            for j in range(k + 1, last + 1):
-                matrix[i, j + shift] -= multiplier * matrix[k, j + above]
-    return logarithm, phase / abs(phase)
+            multiplier = head * inverse
+            matrix[i, place] = multiplier
+            ends[i] = max(ends[i], last)
+            own = matrix[i, place + 1 : place + 1 + above.size]
+            for j in range(above.size):
+                own[j] -= multiplier * above[j]
+    return complex(logarithm, math.atan2(phase.imag, phase.real))
 
 
 @njit(cache=True, nogil=True)
-def forward_back(matrix: ComplexArray, lower: int, upper: int, pivots: IntArray, side: ComplexArray) -> None:
+def forward_back(
+    matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, side: ComplexArray
+) -> None:
     """Solve A x = side in place."""
     order = matrix.shape[0]
     for k in range(order):
@@ -81,26 +97,28 @@ def forward_back(matrix: ComplexArray, lower: int, upper: int, pivots: IntArray,
             kept = side[k]
             side[k] = side[chosen]
             side[chosen] = kept
-        for i in range(k + 1, min(k + lower, order - 1) + 1):
+        for i in range(k + 1, envelope[k, 0] + 1):
             side[i] -= matrix[i, k - i + lower] * side[k]
     for k in range(order - 1, -1, -1):
         total = side[k]
-        for j in range(k + 1, min(k + lower + upper, order - 1) + 1):
+        for j in range(k + 1, ends[k] + 1):
             total -= matrix[k, j - k + lower] * side[j]
         side[k] = total / matrix[k, lower]
 
 
 @njit(cache=True, nogil=True)
-def adjoint(matrix: ComplexArray, lower: int, upper: int, pivots: IntArray, side: ComplexArray) -> None:
+def adjoint(
+    matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, side: ComplexArray
+) -> None:
     """Solve Aᴴ x = side in place."""
     order = matrix.shape[0]
     for k in range(order):
         side[k] = side[k] / np.conj(matrix[k, lower])
-        for j in range(k + 1, min(k + lower + upper, order - 1) + 1):
+        for j in range(k + 1, ends[k] + 1):
             side[j] -= np.conj(matrix[k, j - k + lower]) * side[k]
     for k in range(order - 1, -1, -1):
         total = side[k]
-        for i in range(k + 1, min(k + lower, order - 1) + 1):
+        for i in range(k + 1, envelope[k, 0] + 1):
             total -= np.conj(matrix[i, k - i + lower]) * side[i]
         side[k] = total
         chosen = pivots[k]
@@ -133,40 +151,31 @@ def orthonormalise(vectors: ComplexArray) -> None:
 
 
 @njit(cache=True, nogil=True)
-def determinants(
-    rows: IntArray, columns: IntArray, order: int, lower: int, upper: int, values: ComplexArray
-) -> tuple[FloatArray, ComplexArray]:
-    """Logarithms of moduli (b,) and phase factors (b,)."""
-    batch = values.shape[0]
-    logarithms = np.empty(batch)
-    phases = np.empty(batch, dtype=np.complex128)
-    matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
-    pivots = np.empty(order, dtype=np.intp)
-    for b in range(batch):
-        largest = fill(rows, columns, lower, values[b], matrix)
-        logarithms[b], phases[b] = factor(matrix, lower, upper, pivots, TINY * largest)
-    return logarithms, phases
-
-
-@njit(cache=True, nogil=True)
 def solve(
-    rows: IntArray, columns: IntArray, order: int, lower: int, upper: int, values: ComplexArray, sides: ComplexArray
+    rows: IntArray,
+    columns: IntArray,
+    envelope: IntArray,
+    lower: int,
+    upper: int,
+    values: ComplexArray,
+    sides: ComplexArray,
 ) -> None:
     """Solve for sides (b, k, order) in place."""
+    order = envelope.shape[0]
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
-    pivots = np.empty(order, dtype=np.intp)
+    pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
     for b in range(values.shape[0]):
         largest = fill(rows, columns, lower, values[b], matrix)
-        factor(matrix, lower, upper, pivots, TINY * largest)
+        factor(matrix, lower, envelope, pivots, ends, TINY * largest)
         for k in range(sides.shape[1]):
-            forward_back(matrix, lower, upper, pivots, sides[b, k])
+            forward_back(matrix, lower, envelope, pivots, ends, sides[b, k])
 
 
 @njit(cache=True, nogil=True)
 def null_vectors(
     rows: IntArray,
     columns: IntArray,
-    order: int,
+    envelope: IntArray,
     lower: int,
     upper: int,
     values: ComplexArray,
@@ -175,23 +184,24 @@ def null_vectors(
     rounds: int,
 ) -> None:
     """Inverse iteration on vectors (b, k, order) in place."""
+    order = envelope.shape[0]
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
-    pivots = np.empty(order, dtype=np.intp)
+    pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
     for b in range(values.shape[0]):
         largest = fill(rows, columns, lower, values[b], matrix)
-        factor(matrix, lower, upper, pivots, TINY * largest)
+        factor(matrix, lower, envelope, pivots, ends, TINY * largest)
         for _ in range(rounds):
             for k in range(right.shape[1]):
                 left[b, k] = right[b, k]
-                adjoint(matrix, lower, upper, pivots, left[b, k])
+                adjoint(matrix, lower, envelope, pivots, ends, left[b, k])
             orthonormalise(left[b])
             for k in range(right.shape[1]):
                 right[b, k] = left[b, k]
-                forward_back(matrix, lower, upper, pivots, right[b, k])
+                forward_back(matrix, lower, envelope, pivots, ends, right[b, k])
             orthonormalise(right[b])
         for k in range(right.shape[1]):
             left[b, k] = right[b, k]
-            adjoint(matrix, lower, upper, pivots, left[b, k])
+            adjoint(matrix, lower, envelope, pivots, ends, left[b, k])
         orthonormalise(left[b])
 
 

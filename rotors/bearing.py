@@ -209,6 +209,8 @@ class Bearing:
 def undamped(bearing: Bearing) -> Bearing:
     """The bearing and its pedestal without damping."""
     pedestal = bearing.pedestal
+    if pedestal is None and not bearing.damping.any():
+        return bearing
     if pedestal is not None:
         pedestal = replace(pedestal, damping=np.zeros((2, 2)))
     return replace(bearing, damping=np.zeros_like(bearing.damping), pedestal=pedestal)

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .coalesced_roots import refine_roots
-from .exact_roots import ACCEPTED, NEAR, ExactRoots, clusters, constant_speed, distinct, refine_each
+from .exact_roots import ACCEPTED, NEAR, ExactRoots, Speed, clusters, constant_speed, distinct, refine_each
 from .spatial_chain import SpatialChain
 from .whirl_certificate import certified_roots, oscillating
 from .whirl_count import negative_count
@@ -102,7 +102,7 @@ def _expected(
     """Roots below the limits by inertia, (s,)."""
     if all(chain is chains[0] for chain in chains):
         twice = np.tile(speeds, 2).astype(np.complex128)
-        counts = negative_count(chains[0], np.concatenate([limits, np.full(speeds.size, least)]), lambda _: twice)
+        counts = negative_count(chains[0], np.concatenate([limits, np.full(speeds.size, least)]), Speed(twice))
         return np.asarray(counts[: speeds.size] - counts[speeds.size :])
     rows = [
         negative_count(chain, np.array([limit, least]), constant_speed(float(speed)))

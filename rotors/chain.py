@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .profile import restricted
+from .quadrature import gauss_rule
 from .shaft import merged_positions, station_index
 from .timoshenko import NumberArray, PieceTable
 
@@ -23,8 +24,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 # Products of two fields, on pieces this short, are integrated to rounding.
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
-GAUSS_FRACTIONS = 0.5 * (_POINTS + 1.0)
+GAUSS_FRACTIONS, _WEIGHTS = gauss_rule(10)
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Chain:
     Attributes
     ----------
     nodes
-        (p + 1,): ascending positions, m (the only field not in scaled units).
+        (p + 1,): ascending positions, m (they and the stations are not in scaled units).
     table
         The pieces that differ from each other, in scaled units.
     element
@@ -62,8 +62,8 @@ class Chain:
         (n,): SI value of a displacement and rotation of one, at unit modal mass in kg·m² or kg.
     highest
         rad/s up to which the pieces are short enough.
-    is_station
-        (p + 1,): nodes that are stations, rather than cuts between them.
+    stations
+        (s,): ascending positions of segment ends, discs and supports, m; nodes need not be among them.
     """
 
     nodes: FloatArray
@@ -75,7 +75,7 @@ class Chain:
     length_unit: float
     displacement_unit: FloatArray
     highest: float
-    is_station: npt.NDArray[np.bool_]
+    stations: FloatArray
 
     @property
     def size(self) -> int:
@@ -100,20 +100,11 @@ class Chain:
     @cached_property
     def energy_weights(self) -> EnergyWeights:
         """What turns squared fields into energies: coefficients times lengths times the weights of Gauss."""
-        table, beam = self.table, self.size == 2
-        points, kinds = GAUSS_FRACTIONS.size, table.lengths.size
-        values = table.coefficients_at(np.repeat(np.arange(kinds), points), np.tile(GAUSS_FRACTIONS, kinds))
-        values = values.reshape(kinds, points, -1) * (0.5 * table.lengths[:, None] * _WEIGHTS)[:, :, None]
-        along = values[self.element]
-        inertia, strain = along[:, :, 2:4] if beam else along[:, :, 1:], along[:, :, [5, 0, 1] if beam else [0]]
-        # A round section's polar moment of area is twice its diametral one.
-        polar, node_polar = np.zeros_like(inertia), np.zeros_like(self.node_inertia)
-        if beam:
-            polar[:, :, 1], node_polar[:, 1] = 2.0 * inertia[:, :, 1], self.node_polar
+        from .energy_kernels import energy_weights
+
+        table, nodal = self.table, (self.node_stiffness, self.node_inertia, self.node_polar)
         return EnergyWeights(
-            np.concatenate([inertia.ravel(), self.node_inertia.ravel()]),
-            np.concatenate([polar.ravel(), node_polar.ravel()]),
-            np.concatenate([strain.ravel(), self.finite_stiffness.ravel()]),
+            *energy_weights(GAUSS_FRACTIONS, _WEIGHTS, table.lengths, table.coefficients, self.element, *nodal)
         )
 
     def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:
@@ -143,9 +134,11 @@ class Chain:
 
     def places(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
         """Piece that holds each position (z,) in m, and the fraction of it that lies to the left, both (z,)."""
-        piece = np.clip(np.searchsorted(self.nodes, positions, side="right") - 1, 0, self.element.size - 1)
-        fraction = (positions - self.nodes[piece]) / (self.nodes[piece + 1] - self.nodes[piece])
-        return piece, np.clip(fraction, 0.0, 1.0)
+        piece = self.nodes.searchsorted(positions, side="right") - 1
+        piece = np.minimum(np.maximum(piece, 0), self.element.size - 1)
+        left = self.nodes[piece]
+        fraction = (positions - left) / (self.nodes[piece + 1] - left)
+        return piece, np.minimum(np.maximum(fraction, 0.0), 1.0)
 
     def node_at(self, position: float) -> int:
         """Index of the node at a position (m), which must be one of the nodes."""
@@ -169,7 +162,6 @@ class Chain:
             node_inertia=spread(nodes.size, index, self.node_inertia),
             node_stiffness=spread(nodes.size, index, self.node_stiffness),
             node_polar=spread(nodes.size, index, self.node_polar),
-            is_station=spread(nodes.size, index, self.is_station),
         )
 
     @cached_property
@@ -182,8 +174,10 @@ class Chain:
         if self.size == 1:
             free = not bool((self.node_stiffness > 0.0).any())
             return np.ones((1, place.size, 1))[: int(free)]
-        slope, constant = np.ones_like(place), np.zeros_like(place)
         held = place[self.node_stiffness[:, 0] > 0.0]
+        if held.size > 1:
+            return np.zeros((0, place.size, 2))
+        slope, constant = np.ones_like(place), np.zeros_like(place)
         loaded = bool(self.table.coefficients[:, 5].any())
         tilt_held = loaded or bool((self.node_stiffness[:, 1] > 0.0).any())
         if held.size == 0:

@@ -50,6 +50,8 @@ def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> Exa
         Speed of rotation as an analytic function of λ.
     """
     roots, crawling = settled_roots(chain, starts, speed)
+    if crawling.size == 0:
+        return roots
     for place in clusters(crawling, CIRCLES[0]):
         roots = with_circle(chain, roots, complex(crawling[place].mean()), speed)
     return distinct(roots)
@@ -75,7 +77,7 @@ def roots_in_circle(chain: SpatialChain, centre: complex, radius: float, speed: 
     around = centre + radius * turn
     scale = np.full(POINTS, chain.force_scale(np.array([centre]))[0])
     values = chain.values(around, speed(around), scale)
-    phases = np.angle(chain.pattern.determinants(values)[1])
+    phases = chain.entries.log_determinants(around, speed(around), scale).imag
     steps = np.diff(np.append(phases, phases[0]))
     steps -= 2.0 * np.pi * np.round(steps / (2.0 * np.pi))
     count = round(float(steps.sum()) / (2.0 * np.pi))

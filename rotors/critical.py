@@ -9,7 +9,7 @@ import numpy.typing as npt
 from .bearing import Bearing, undamped
 from .campbell import campbell
 from .errors import require
-from .exact_roots import ACCEPTED, synchronous_speed
+from .exact_roots import ACCEPTED, SYNCHRONOUS
 from .lateral import LateralModes
 from .projection import DEFAULT_COUNT, Projection, basis_for
 from .shaft import Rotor
@@ -122,7 +122,7 @@ def certified_criticals(
         rotor,
         bearings,
         [(one.blocks, one.critical(bearings)) for one in sets],
-        synchronous_speed,
+        SYNCHRONOUS,
         None,
         NO_OSCILLATION * sets[0].floor,
         limit,

@@ -13,20 +13,17 @@ that turn out to lie apart are then refined one by one; those that do not, and w
 stay together, where what is left out, the square of their distance, is below rounding.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from .spatial_chain import SLOPE_STEP, SpatialChain
+from .spatial_chain import SpatialChain
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-Speed = Callable[[ComplexArray], ComplexArray]
 
 # Starting values nearer than this are refined together first, as their errors may be as large.
 NEAR = 1e-3
@@ -38,10 +35,29 @@ PARALLEL = 1e-3
 SETTLED = 2e-14
 ACCEPTED = 1e-11
 MOST_STEPS = 14
-# Slopes are taken anew after steps longer than this.
-STALE = 1e-4
-# A step larger than this part of the root starts from nowhere near it, and is shortened.
-LONGEST_STEP = 0.3
+# Relative step of the central difference that gives slopes of the entries: good to about 1e-10, which costs
+# the refined roots nothing, as their residual is exact.
+SLOPE_STEP = 1e-5
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Speed of rotation Ω = base + rate λ, rad/s: an analytic function of the root.
+
+    Attributes
+    ----------
+    base
+        rad/s; or one for each root, (w,).
+    rate
+        rad/s per rad/s.
+    """
+
+    base: complex | ComplexArray
+    rate: complex = 0.0
+
+    def __call__(self, eigenvalues: ComplexArray) -> ComplexArray:
+        """Ω at every λ, (w,)."""
+        return np.asarray(self.base + self.rate * eigenvalues, dtype=np.complex128)
 
 
 @dataclass(frozen=True)
@@ -79,14 +95,13 @@ class ExactRoots:
         )
 
 
+# Speed of rotation at which a root is synchronous, Ω = −iλ: the frequency itself where λ = iω.
+SYNCHRONOUS = Speed(0.0, -1j)
+
+
 def constant_speed(speed: float) -> Speed:
     """Speed of rotation that does not follow the root."""
-    return lambda eigenvalues: np.full(eigenvalues.shape, complex(speed))
-
-
-def synchronous_speed(eigenvalues: ComplexArray) -> ComplexArray:
-    """Speed of rotation at which a root is synchronous, Ω = −iλ: the frequency itself where λ = iω."""
-    return -1j * eigenvalues
+    return Speed(complex(speed))
 
 
 def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tuple[ExactRoots, ComplexArray]:
@@ -132,6 +147,8 @@ def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp
     """Indices of values that chains of distances below ``tolerance`` of their modulus connect."""
     label = np.arange(values.size)
     near = np.abs(values[:, None] - values) <= tolerance * np.abs(values)[:, None]
+    if np.count_nonzero(near) <= values.size:
+        return list(label[:, None])
     for i, j in np.argwhere(near & ~np.eye(values.size, dtype=np.bool_)):
         label[label == label[j]] = label[i]
     order = np.argsort(label, kind="stable")
@@ -142,7 +159,10 @@ def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp
 def distinct(roots: ExactRoots) -> ExactRoots:
     """Each root once: equal values are several roots only where their vectors are independent."""
     kept: list[int] = []
-    for cluster in clusters(roots.eigenvalues, SAME):
+    near = clusters(roots.eigenvalues, SAME)
+    if len(near) == roots.eigenvalues.size:
+        return roots
+    for cluster in near:
         first = len(kept)
         for i in cluster.tolist():
             if len(kept) > first:
@@ -173,65 +193,26 @@ def refine_each(
     """
     if vectors is None:
         vectors = random_vectors(starts.size, chain.pattern.order)
-    return _singly(chain, starts, vectors, lambda index, _: speeds[index].astype(np.complex128))
+    return refine_alone(chain, starts, vectors, Speed(speeds.astype(np.complex128)))
 
 
 def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArray, speed: Speed) -> ExactRoots:
     """Exact roots from starting values (w,) and vectors (w, order), each by itself; none is dropped."""
-    return _singly(chain, starts, vectors, lambda _, at: speed(at))
+    from .newton_kernels import newton
+
+    values, found = (np.array(given, dtype=np.complex128, order="C") for given in (starts, vectors))
+    residuals, scales = np.empty(values.size), np.empty(values.size)
+    bases = np.array(np.broadcast_to(speed.base, values.shape), dtype=np.complex128)
+    entries = chain.entries
+    arrays = entries.arrays, entries.pattern.arrays
+    newton(values, found, bases, complex(speed.rate), chain.total_mass, *arrays, residuals, scales)
+    return ExactRoots(values, found, residuals, scales)
 
 
 def random_vectors(count: int, order: int) -> ComplexArray:
     """Complex vectors to start iterations from, the same every time, (count, order)."""
     random = np.random.default_rng(1991)
     return np.asarray(random.standard_normal((count, order)) + 1j * random.standard_normal((count, order)))
-
-
-def _singly(
-    chain: SpatialChain,
-    values: ComplexArray,
-    vectors: ComplexArray,
-    speed: Callable[[IntArray, ComplexArray], ComplexArray],
-) -> ExactRoots:
-    """Newton's method for each; ``speed`` takes the indices of roots and their values."""
-    values, vectors = values.copy(), vectors.copy()
-    residuals, scales = np.full(values.size, np.inf), np.ones(values.size)
-    last, slopes = np.full(values.size, np.inf), np.zeros((values.size, 0), dtype=np.complex128)
-    active = np.arange(values.size)
-    for step in range(MOST_STEPS):
-        if active.size == 0:
-            break
-        at, turning = values[active], partial(speed, active)
-        scale = chain.force_scale(at)
-        entries = chain.values(at, turning(at), scale)
-        # Slopes of the last step do for a root that has hardly moved since: they are not in the residual.
-        moved = np.flatnonzero(last[active] > STALE)
-        if step == 0:
-            slopes = np.zeros_like(entries)
-        if moved.size:
-            slopes[moved] = slopes_at(chain, at[moved], partial(speed, active[moved]), scale[moved])
-        right, left = chain.pattern.null_vectors(entries, vectors[active][:, None], 2 if step == 0 else 1)
-        top = chain.pattern.forms(entries, left, right)[:, 0, 0]
-        bottom = chain.pattern.forms(slopes, left, right)[:, 0, 0]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            change = np.where(bottom != 0.0, -top / bottom, np.inf)
-        share = np.abs(change) / np.abs(at)
-        long = share > LONGEST_STEP
-        change = np.where(long, LONGEST_STEP * np.abs(at) * np.exp(1j * np.angle(change)), change)
-        change = np.where(np.isfinite(change), change, 0.0)
-        vectors[active], scales[active] = right[:, 0], scale
-        # Rounding alone moves a settled root: it stays where its last good step brought it.
-        rounding = (share < ACCEPTED) & (share >= 0.5 * last[active])
-        values[active] = np.where(rounding, at, at + change)
-        # What is left after the step, from how the last two steps fell.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            forecast = share**2 * np.maximum(1.0, share / last[active] ** 2) + STALE * share
-        forecast = np.where((share < ACCEPTED**0.5) & (last[active] < 1.0), forecast, np.inf)
-        done = rounding | (share <= SETTLED) | (forecast <= SETTLED)
-        residuals[active] = np.where(rounding, share, np.minimum(share, forecast))
-        last[active] = share
-        active, slopes = active[~done], slopes[~done]
-    return ExactRoots(values, vectors, residuals, scales)
 
 
 def _together(chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, speed: Speed, steps: int) -> ExactRoots:

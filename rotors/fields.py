@@ -64,6 +64,17 @@ class Fields:
         weights = self.chain.energy_weights
         return (motion * weights.mass) @ motion.T, (strain * weights.strain) @ strain.T
 
+    def mass_products(self, rows: FloatArray, others: FloatArray) -> FloatArray:
+        """Entries of the mass matrix between two sets of combinations (a, k) and (b, k), (a, b)."""
+        motion = self._rows[0]
+        weighted = (rows @ motion) * self.chain.energy_weights.mass
+        return np.asarray(weighted @ (others @ motion).T)
+
+    def mass_norms(self, rows: FloatArray) -> FloatArray:
+        """Norms in mass of combinations (a, k), (a,)."""
+        motion = rows @ self._rows[0]
+        return np.sqrt((motion**2) @ self.chain.energy_weights.mass)
+
     def polar_matrix(self, mixture: FloatArray) -> FloatArray:
         """∫ ρI_p βᵢ βⱼ dz plus the nodes' polar inertias, of combinations of bending fields, (m, m)."""
         motion = mixture @ self._rows[0]
@@ -86,12 +97,14 @@ class Fields:
 
     def on(self, chain: Chain) -> "Fields":
         """The same fields on a chain that differs by further nodes only."""
+        if chain is self.chain:
+            return self
         return Fields(chain, self.frequency_squared, self.at(chain.nodes))
 
     @cached_property
     def _rows(self) -> tuple[FloatArray, FloatArray]:
-        """Motion and strain of every field at the Gauss points and the nodes (`rotors.shape_kernels.energy_rows`)."""
-        from .shape_kernels import energy_rows
+        """Motion and strain of every field at the Gauss points and the nodes (`rotors.energy_kernels.energy_rows`)."""
+        from .energy_kernels import energy_rows
 
         table, weights, count = self.chain.table, self.chain.energy_weights, self.frequency_squared.size
         motion, strain = np.empty((count, weights.mass.size)), np.empty((count, weights.strain.size))

@@ -124,12 +124,12 @@ class LateralModes:
     def support_matrix(self) -> FloatArray:
         """Φᵀ k Φ of the finite supports, (m, m), N/m per unit modal mass."""
         total = np.zeros((self.count, self.count))
-        for support in self.supports:
-            displacement, slope = self.evaluate([support.at])
-            if np.isfinite(support.stiffness):
-                total += support.stiffness * (displacement @ displacement.T)
-            if np.isfinite(support.tilt_stiffness):
-                total += support.tilt_stiffness * (slope @ slope.T)
+        if not self.supports:
+            return total
+        springs = np.array([(support.stiffness, support.tilt_stiffness) for support in self.supports])
+        springs[np.isinf(springs)] = 0.0
+        for stiffness, motion in zip(springs.T, self.evaluate([support.at for support in self.supports]), strict=True):
+            total += (motion * stiffness) @ motion.T
         return total
 
 
@@ -177,8 +177,7 @@ def lateral_modes(
 ) -> LateralModes:
     """Assemble the result from fields in the chain's units and the mixture that makes modes of them."""
     chain = fields.chain
-    is_station = chain.is_station
-    at_stations = fields.states[:, is_station, :2]
+    at_stations = fields.at(chain.stations)[:, :, :2]
     nodal = (mixture @ at_stations.reshape(mixture.shape[1], -1)).reshape(-1, at_stations.shape[1], 2)
     # The largest displacement is positive, so that a shape does not depend on the solver's start.
     shapes = nodal[:, :, 0]
@@ -190,7 +189,7 @@ def lateral_modes(
     polar = fields.polar_matrix(mixture)
     return LateralModes(
         frequencies=frequencies,
-        stations=chain.nodes[is_station],
+        stations=chain.stations,
         displacement=nodal[:, :, 0],
         slope=nodal[:, :, 1],
         polar_inertia_matrix=0.5 * (polar + polar.T),

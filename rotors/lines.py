@@ -41,8 +41,8 @@ class Line:
         What messages call it.
     nodes
         (s + 1,): ends of the spans, m.
-    is_station
-        (s + 1,): which of them are stations, rather than cuts of a cone.
+    stations
+        (r,): ascending positions of segment ends, discs and supports, m.
     kind, start, end, lengths
         (s,): of every span its kind, the fractions of that kind's own span it covers, and its length, m.
     coefficients, uniform
@@ -57,7 +57,7 @@ class Line:
 
     label: str
     nodes: FloatArray
-    is_station: npt.NDArray[np.bool_]
+    stations: FloatArray
     kind: IntArray
     start: FloatArray
     end: FloatArray
@@ -131,7 +131,7 @@ class Line:
             length_unit=self.length_unit,
             displacement_unit=self.displacement_unit,
             highest=highest,
-            is_station=spread(nodes.size, index, self.is_station),
+            stations=self.stations,
         )
 
     def held(self, places: Sequence[float], stiffness: Sequence[tuple[float, ...]]) -> "Line":
@@ -140,12 +140,11 @@ class Line:
             return self
         nodes = merged_positions(self.nodes, places)
         line = self if nodes.size == self.nodes.size else self.with_nodes(nodes)
-        node_stiffness, is_station = line.node_stiffness.copy(), line.is_station.copy()
+        node_stiffness = line.node_stiffness.copy()
         for place, spring in zip(places, stiffness, strict=True):
-            node = station_index(nodes, place)
-            node_stiffness[node] += spring
-            is_station[node] = True
-        return replace(line, node_stiffness=node_stiffness, is_station=is_station)
+            node_stiffness[station_index(nodes, place)] += spring
+        stations = merged_positions(self.stations, places)
+        return replace(line, node_stiffness=node_stiffness, stations=stations)
 
     def with_nodes(self, nodes: FloatArray) -> "Line":
         """The same line cut at nodes (m) that include its own; new ones are bare, and no stations."""
@@ -159,7 +158,6 @@ class Line:
         return replace(
             self,
             nodes=nodes,
-            is_station=spread(nodes.size, index, self.is_station),
             kind=self.kind[span],
             start=self.start[span] + first * reach,
             end=self.start[span] + last * reach,

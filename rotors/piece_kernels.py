@@ -3,6 +3,7 @@
 Importing this module imports numba. All functions take real or complex ω².
 """
 
+import math
 from math import factorial
 from typing import Any
 
@@ -18,6 +19,22 @@ NumberArray = npt.NDArray[Any]
 CLOSED_TERMS = 13
 EVEN = np.array([1.0 / factorial(2 * k) for k in range(CLOSED_TERMS)])
 ODD = np.array([1.0 / factorial(2 * k + 1) for k in range(CLOSED_TERMS)])
+# With ρ ≥ |λ²| the terms from the N-th on are below N max(2 ρᴺ⁻¹, ρᴺ) / (2N)!, and their slopes, which differentiation
+# by a complex step takes from here, below 24 N (N − 1) ρᴺ⁻² / (2N)! of the first one's: for every N, up to what ρ that
+# is rounding. Four hold all slopes at zero.
+ROUNDING = 5e-17
+LEAST_TERMS = 4
+REACH = np.array(
+    [0.0] * LEAST_TERMS
+    + [
+        min(
+            (ROUNDING * factorial(2 * n) / (2 * n)) ** (1.0 / (n - 1)),
+            (ROUNDING * factorial(2 * n) / n) ** (1.0 / n),
+            (ROUNDING * factorial(2 * n) / (24 * n * (n - 1))) ** (1.0 / (n - 2)),
+        )
+        for n in range(LEAST_TERMS, CLOSED_TERMS)
+    ]
+)
 # Terms of the power series along a cone; pieces of such lengths and tapers need about 25.
 MOST_TERMS = 80
 NEGLIGIBLE = 1e-18
@@ -33,7 +50,11 @@ def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, o
     older, newer = 0.0 * e1, 0.0 * e1 + 1.0
     even_low, odd_low = older, older
     c2, c3 = newer * EVEN[1], newer * ODD[1]
-    for n in range(2, CLOSED_TERMS):
+    # Short pieces need few terms: neither λ² exceeds |e₁| + |e₂|^½.
+    size, terms = abs(e1) + math.sqrt(abs(e2)), LEAST_TERMS
+    while terms < CLOSED_TERMS and size > REACH[terms]:
+        terms += 1
+    for n in range(2, terms):
         even_low += newer * EVEN[n]
         odd_low += newer * ODD[n]
         older, newer = newer, e1 * newer - e2 * older
@@ -143,7 +164,6 @@ def piece_transfers(
 ) -> None:
     """T from a piece's left end to fractions (k,) of its length h, into ``out`` (k, 2n, 2n)."""
     if given.shape[1] == 1:
-        out[:] = 0.0
         for k in range(fractions.size):
             if given.shape[0] == 6:
                 uniform_beam(fractions[k] * h, given[:, 0], translation, rotation, out[k])

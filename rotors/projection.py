@@ -166,25 +166,22 @@ class Projection:
         order = sum(sizes) + sum(len(tie.foot) for tie in ties)
         mass = np.ones(order)
         stiffness, damping, gyroscopic = (np.zeros((order, order), dtype=np.complex128) for _ in range(3))
-        first = 0
+        first, supported = 0, self.basis.support_matrix
         for block, size in zip(self.blocks, sizes, strict=True):
             own = slice(first, first + size)
             squared = (self.basis.frequencies if block else self.axial_frequencies) ** 2
             stiffness[own, own] = np.diag(squared)
             if block:
-                stiffness[own, own] -= self.basis.support_matrix
+                stiffness[own, own] -= supported
                 gyroscopic[own, own] = -1j * block * self.basis.polar_inertia_matrix
             first += size
-        for node, (tie, bearing) in enumerate(zip(ties, bearings, strict=True)):
+        for tie, bearing, moved in zip(ties, bearings, self._displacements(bearings, order), strict=True):
             foot = list(tie.foot)
-            spread = np.zeros((units.size + len(foot), order))
-            spread[: units.size] = self._displacements(node, bearing.at, order)
             rows = first + np.arange(len(foot))
-            spread[units.size + np.arange(len(foot)), rows] = 1.0
             first += len(foot)
             # The bearing feels the shaft less its pedestal.
-            relative = tie.frame @ spread[: units.size]
-            relative[foot] -= spread[units.size :]
+            relative = tie.frame @ moved
+            relative[foot, rows] -= 1.0
             stiffness += relative.conj().T @ tie.stiffness @ relative
             damping += relative.conj().T @ tie.damping @ relative
             if foot:
@@ -222,18 +219,20 @@ class Projection:
     def _units(self) -> FloatArray:
         return np.concatenate([np.ones(2) if block else np.ones(1) for block in self.blocks])
 
-    def _displacements(self, node: int, at: float, order: int) -> FloatArray:
-        """Rows that turn coordinates into the node displacements at a bearing, (n, order)."""
-        rows = np.zeros((self._units.size, order))
-        displacement, slope = self.basis.evaluate([at])
+    def _displacements(self, bearings: Sequence[Bearing], order: int) -> FloatArray:
+        """Rows that turn coordinates into the node displacements at every bearing, (bearings, n, order)."""
+        rows = np.zeros((len(bearings), self._units.size, order))
+        if not bearings:
+            return rows
+        displacement, slope = self.basis.evaluate([bearing.at for bearing in bearings])
         row = column = 0
         for block in self.blocks:
             if block:
-                rows[row, column : column + self.basis.count] = displacement[:, 0]
-                rows[row + 1, column : column + self.basis.count] = slope[:, 0]
+                rows[:, row, column : column + self.basis.count] = displacement.T
+                rows[:, row + 1, column : column + self.basis.count] = slope.T
                 row, column = row + 2, column + self.basis.count
             else:
-                rows[row, column : column + self.axial_frequencies.size] = self.axial_shapes[:, node]
+                rows[:, row, column : column + self.axial_frequencies.size] = self.axial_shapes.T
                 row, column = row + 1, column + self.axial_frequencies.size
         return rows
 

@@ -59,12 +59,12 @@ Modes = TypeVar("Modes", bound=RodModes)
 def rod_modes(kind: type[Modes], found: FoundModes) -> Modes:
     """Modes of a kind from what the search found; the largest amplitude of each is positive."""
     chain = found.fields.chain
-    nodal = found.mixture @ found.fields.states[:, chain.is_station, 0]
+    nodal = found.mixture @ found.fields.at(chain.stations)[:, :, 0]
     largest = np.take_along_axis(nodal, np.abs(nodal).argmax(axis=1)[:, None], axis=1)
     sign = np.where(largest < 0.0, -1.0, 1.0)
     return kind(
         frequencies=found.frequencies,
-        stations=chain.nodes[chain.is_station],
+        stations=chain.stations,
         amplitude=sign * nodal * chain.displacement_unit[0],
         certificate=found.certificate,
         fields=found.fields,

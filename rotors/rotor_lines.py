@@ -25,6 +25,59 @@ RodMotion = Literal["torsion", "axial"]
 
 
 @dataclass(frozen=True)
+class Spans:
+    """A rotor between the places where its section changes or an inertia sits: what all its motions share.
+
+    Attributes
+    ----------
+    nodes
+        (s + 1,): ends of the spans, m.
+    kind, start, end, lengths
+        (s,): as in `rotors.lines.Line`, the kinds those of the rotor's profile.
+    inertias
+        (s + 1, 3): mass (kg), diametral and polar moment of inertia (kg·m²) at the nodes.
+    """
+
+    nodes: FloatArray
+    kind: IntArray
+    start: FloatArray
+    end: FloatArray
+    lengths: FloatArray
+    inertias: FloatArray
+
+
+def spans_of(rotor: "Rotor") -> Spans:
+    """Spans of a rotor; neighbours of one uniform kind with nothing between them are one.
+
+    A file that gives a plain shaft in sixty elements so costs what the shaft costs. The transfer matrix of a uniform
+    span is exact at any length, and what is asked for inside it is found by the exact field.
+    """
+    profile = rotor.profile
+    edges = profile.edges
+    nodes = merged_positions(edges, [disc.at for disc in rotor.discs])
+    inertias = station_inertias(rotor, nodes)
+    span = np.clip(np.searchsorted(edges, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, edges.size - 2)
+    left, width, kind = edges[span], np.diff(edges)[span], profile.kind[span]
+    start, end = (nodes[:-1] - left) / width, (nodes[1:] - left) / width
+    lengths = np.where((start == 0.0) & (end == 1.0), profile.lengths[span], np.diff(nodes))
+    first = np.ones(kind.size, dtype=np.bool_)
+    first[1:] = (kind[1:] != kind[:-1]) | ~profile.uniform[kind[1:]] | inertias[1:-1].any(axis=1)
+    if first.all():
+        return Spans(nodes, kind, start, end, lengths, inertias)
+    index = np.flatnonzero(first)
+    kept = np.append(index, nodes.size - 1)
+    tapers = ~profile.uniform[kind[index]]
+    return Spans(
+        nodes=nodes[kept],
+        kind=kind[index],
+        start=np.where(tapers, start[index], 0.0),
+        end=np.where(tapers, end[index], 1.0),
+        lengths=np.add.reduceat(lengths, index),
+        inertias=inertias[kept],
+    )
+
+
+@dataclass(frozen=True)
 class FreeLines:
     """Lines of a rotor without supports, each made when first asked for; a rotor holds its own."""
 
@@ -39,7 +92,7 @@ class FreeLines:
         distributed = float(rotor.mass_model == "distributed")
         units = [force, force * length**2, distributed * length**2 / force, distributed / force, 1.0, 1.0 / force]
         per_node = np.array([length / force, 1.0 / (force * length)])
-        inertias = self._node_inertias
+        inertias = self._spans.inertias
         return self._line(
             coefficients=profile.coefficients[:, BENDING] * np.array(units)[:, None],
             stiffness=stiffness,
@@ -74,18 +127,14 @@ class FreeLines:
             stiffness=1.0 / values[:, :, :1].max(axis=1),
             inertia=distributed * values[:, :, 1:].max(axis=1),
             force=np.zeros(given.shape[0]),
-            node_inertia=self._node_inertias[:, inertia_column, None] / force,
-            node_polar=np.zeros(self._nodes.size),
+            node_inertia=self._spans.inertias[:, inertia_column, None] / force,
+            node_polar=np.zeros(self._spans.nodes.size),
             displacement_unit=np.array([1.0 / np.sqrt(force)]),
         )
 
     @cached_property
-    def _nodes(self) -> FloatArray:
-        return merged_positions(self.rotor.profile.edges, [disc.at for disc in self.rotor.discs])
-
-    @cached_property
-    def _node_inertias(self) -> FloatArray:
-        return station_inertias(self.rotor, self._nodes)
+    def _spans(self) -> "Spans":
+        return spans_of(self.rotor)
 
     def _line(
         self,
@@ -98,26 +147,17 @@ class FreeLines:
         node_polar: FloatArray,
         displacement_unit: FloatArray,
     ) -> Line:
-        rotor, profile, nodes = self.rotor, self.rotor.profile, self._nodes
-        edges = profile.edges
-        span = np.clip(np.searchsorted(edges, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, edges.size - 2)
-        left, width = edges[span], np.diff(edges)[span]
-        start, end = (nodes[:-1] - left) / width, (nodes[1:] - left) / width
-        whole = (start == 0.0) & (end == 1.0)
-        # A cone's own cuts are no stations, but a disc may sit on one.
-        is_station = np.zeros(nodes.size, dtype=np.bool_)
-        right = np.clip(np.searchsorted(nodes, rotor.stations), 1, nodes.size - 1)
-        is_station[right - (rotor.stations - nodes[right - 1] < nodes[right] - rotor.stations)] = True
+        rotor, spans = self.rotor, self._spans
         return Line(
             label=f"rotor {rotor.name!r}",
-            nodes=nodes,
-            is_station=is_station,
-            kind=profile.kind[span],
-            start=start,
-            end=end,
-            lengths=np.where(whole, profile.lengths[span], np.diff(nodes)),
+            nodes=spans.nodes,
+            stations=rotor.stations,
+            kind=spans.kind,
+            start=spans.start,
+            end=spans.end,
+            lengths=spans.lengths,
             coefficients=np.ascontiguousarray(coefficients),
-            uniform=profile.uniform,
+            uniform=rotor.profile.uniform,
             stiffness=np.ascontiguousarray(stiffness),
             inertia=inertia,
             force=np.ascontiguousarray(force),

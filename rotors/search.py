@@ -92,4 +92,4 @@ def require_positions(stations: FloatArray, z: npt.ArrayLike) -> FloatArray:
     inside = (positions >= low - slack) & (positions <= high + slack)
     if positions.ndim != 1 or not bool(inside.all()):
         raise RotorError(f"positions are {z!r}; expected places on the shaft, {low:g} to {high:g} m")
-    return np.asarray(np.clip(positions, low, high))
+    return np.asarray(np.minimum(np.maximum(positions, low), high))

@@ -4,11 +4,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from .errors import require, require_finite
 from .material import ShaftMaterial, ShearFormula
+from .quadrature import gauss_rule
 from .section import Section
+
+_GAUSS = tuple(zip(*(part.tolist() for part in gauss_rule(4)), strict=True))
 
 
 @dataclass(frozen=True)
@@ -109,13 +110,6 @@ class Segment:
 
     def _integral(self, density: Callable[[Section, float], float]) -> float:
         """Integral along the piece; Gauss's four points are exact for the polynomials of a cone (degree 5)."""
-        points, weights = np.polynomial.legendre.leggauss(4)
-        fractions = 0.5 * (points + 1.0)
-        return (
-            0.5
-            * self.length
-            * math.fsum(
-                weight * density(self.section(fraction), fraction * self.length)
-                for fraction, weight in zip(fractions.tolist(), weights.tolist(), strict=True)
-            )
+        return self.length * math.fsum(
+            weight * density(self.section(fraction), fraction * self.length) for fraction, weight in _GAUSS
         )

@@ -1,6 +1,7 @@
 """The rotor as the user describes it: round segments end to end, and rigid discs on them."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -134,7 +135,7 @@ class Rotor:
         """Segment ends and disc positions, ascending, each place once, (stations,), m."""
         return merged_positions(self.joints, [disc.at for disc in self.discs])
 
-    @property
+    @cached_property
     def mass(self) -> float:
         """Total mass, kg."""
         return math.fsum([part.mass for part in self.segments] + [disc.mass for disc in self.discs])
@@ -162,13 +163,13 @@ def merged_positions(joints: FloatArray, others: Sequence[float]) -> FloatArray:
     others
         Further positions on the shaft, m.
     """
-    slack = STATION_TOLERANCE * float(joints[-1])
-    places = np.sort(np.asarray(others, dtype=np.float64))
-    right = np.clip(np.searchsorted(joints, places), 1, joints.size - 1)
-    apart = np.minimum(np.abs(places - joints[right - 1]), np.abs(places - joints[right])) > slack
+    known = joints.tolist()
+    slack = STATION_TOLERANCE * known[-1]
     kept: list[float] = []
-    for place in places[apart].tolist():
-        if not kept or place - kept[-1] > slack:
+    for place in sorted(float(other) for other in others):
+        right = min(max(bisect_left(known, place), 1), len(known) - 1)
+        near = min(abs(place - known[right - 1]), abs(place - known[right])) <= slack
+        if not near and (not kept or place - kept[-1] > slack):
             kept.append(place)
     return np.sort(np.concatenate([joints, kept])) if kept else joints
 

@@ -122,7 +122,7 @@ def ritz_vectors(mass: FloatArray, stiffness: FloatArray) -> tuple[FloatArray, F
     """
     size = np.sqrt(np.diag(mass))
     scaled = mass / np.outer(size, size)
-    if linalg.eigvalsh(scaled)[0] < 1e-12:
+    if np.linalg.eigvalsh(scaled)[0] < 1e-12:
         raise IncompleteModesError("shapes of near roots are not independent; this is a defect, please report")
     values, vectors = linalg.eigh(stiffness / np.outer(size, size), scaled)
     return np.asarray(values), np.asarray(vectors / size[:, None])

@@ -40,6 +40,7 @@ import numpy.typing as npt
 from .banded import BandPattern
 from .bearing import Bearing, RadialSupport
 from .chain import Chain
+from .entries import EntryTable, entry_table
 from .rotor_lines import axial_chain_on, bending_chain
 from .shaft import Rotor
 from .spatial_ties import MEMBERS, Tie, make_tie
@@ -48,9 +49,6 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-# Relative step of the central difference that gives slopes of the entries: good to about 1e-10, which costs
-# the refined roots nothing, as their residual is exact.
-SLOPE_STEP = 1e-5
 # The least unit of force of a response, as a part of what the stiffest bearing takes per unit displacement.
 STATIC_FORCE = 1e-6
 
@@ -61,18 +59,18 @@ class SpatialChain:
 
     Attributes
     ----------
+    rotor
+        What the pieces are of.
     bending
         Pieces and node inertias of one plane, without springs.
-    axial
-        The same shaft as a rod, on the same nodes and in the same units.
     blocks
         1 for r+, −1 for r−, 0 for z, in the order of the unknowns.
     ties
         Bearings with constant coefficients.
     """
 
+    rotor: Rotor
     bending: Chain
-    axial: Chain
     blocks: tuple[int, ...]
     ties: tuple[Tie, ...]
 
@@ -85,6 +83,11 @@ class SpatialChain:
     def units(self) -> FloatArray:
         """SI value of each of a node's displacements; forces have its reciprocal. (n,)."""
         return block_units(self.bending, self.blocks)
+
+    @cached_property
+    def axial(self) -> Chain:
+        """The same shaft as a rod, on the same nodes and in the same units."""
+        return axial_chain_on(self.rotor, self.bending)
 
     @cached_property
     def total_mass(self) -> float:
@@ -113,42 +116,20 @@ class SpatialChain:
         return tuple(unknowns)
 
     @cached_property
+    def entries(self) -> EntryTable:
+        """What makes the entries of the equations at any λ."""
+        ties = tuple(zip(self.ties, self.tie_unknowns, strict=True))
+        axial = self.axial if 0 in self.blocks else None
+        return entry_table(self.bending, axial, self.blocks, ties, self.starts)
+
+    @property
     def pattern(self) -> BandPattern:
         """Places of the entries that `values` gives."""
-        n, starts, order = self.size, self.starts[:-1], int(self.starts[-1])
-        rows, columns = [], []
-        # Equations stand n above the unknowns: the first node has no piece to its left.
-        first = 0
-        for block in self.blocks:
-            width = len(MEMBERS[block])
-            local = np.concatenate([first + np.arange(width), n + first + np.arange(width)])
-            row = starts[1:, None, None] - n + local[:, None]
-            column = starts[:-1, None, None] + local[None, :]
-            rows.append(np.broadcast_to(row, (starts.size - 1, 2 * width, 2 * width)).ravel())
-            columns.append(np.broadcast_to(column, (starts.size - 1, 2 * width, 2 * width)).ravel())
-            first += width
-        across = np.arange(n)
-        rows += [(starts[1:, None] - n + across).ravel(), (starts[:, None] + across).ravel()]
-        columns += [(starts[1:, None] + across).ravel(), (starts[:, None] + n + across).ravel()]
-        rows.append((starts[:, None] + across).ravel())
-        columns.append(rows[-1])
-        for tie, (force, foot) in zip(self.ties, self.tie_unknowns, strict=True):
-            own = starts[tie.node] + across
-            shared = force[list(tie.foot)]
-            # A tie's equations follow the force balance of its node: n above its unknowns.
-            for row, column in ((own, force), (force - n, own), (force - n, foot), (foot - n, foot)):
-                rows.append(np.repeat(row, column.size))
-                columns.append(np.tile(column, row.size))
-            rows += [force - n, foot - n]
-            columns += [force, shared]
-        last = order - n + across
-        rows.append(last)
-        columns.append(starts[-1] + n + across)
-        return BandPattern.of(np.concatenate(rows), np.concatenate(columns), order)
+        return self.entries.pattern
 
     def force_scale(self, eigenvalues: ComplexArray) -> FloatArray:
         """Unit of forces for roots near every λ: the inertia forces, or the shaft's own where they are less."""
-        return np.asarray(np.clip(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30, 1.0))
+        return np.asarray(np.minimum(np.maximum(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30), 1.0))
 
     def response_scale(self, eigenvalues: ComplexArray) -> FloatArray:
         """Unit of forces for a response at every λ, zero included, where bearings may carry more than inertia."""
@@ -158,31 +139,7 @@ class SpatialChain:
 
     def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Entries of the equations at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
-        chain, batch = self.bending, eigenvalues.size
-        parts: list[npt.NDArray[np.complex128] | FloatArray] = [
-            -np.moveaxis(self._transfers(block, eigenvalues, speeds, scale), 1, 0).reshape(batch, -1)
-            for block in self.blocks
-        ]
-        nodes, n = chain.nodes.size, self.size
-        parts += [np.ones((batch, (nodes - 1) * n)), np.ones((batch, nodes * n))]
-        parts.append(-(self.node_terms(eigenvalues, speeds) / scale[:, None, None]).reshape(batch, -1))
-        for tie in self.ties:
-            bearing, ground = (matrix / scale[:, None, None] for matrix in tie.dynamic_stiffness(eigenvalues))
-            # Rows of one size, by factors that do not vary with λ: stiff directions and soft ones count alike.
-            row = 1.0 / (1.0 + np.abs(tie.stiffness).max(axis=1, initial=0.0) / scale[:, None])
-            held = row[:, :, None] * bearing
-            foot = list(tie.foot)
-            ground_row = 1.0 / (1.0 + np.abs(tie.foot_stiffness).max(axis=1, initial=0.0) / scale[:, None])
-            parts += [
-                np.broadcast_to(-tie.frame.conj().T.ravel(), (batch, tie.frame.size)),
-                -(held @ tie.frame).reshape(batch, -1),
-                held[:, :, foot].reshape(batch, -1),
-                (ground_row[:, :, None] * ground).reshape(batch, -1),
-                row,
-                -ground_row,
-            ]
-        parts.append(np.ones((batch, n)))
-        return np.ascontiguousarray(np.concatenate(parts, axis=1), dtype=np.complex128)
+        return self.entries.values(eigenvalues, speeds, scale)
 
     def node_terms(self, eigenvalues: ComplexArray, speeds: ComplexArray) -> ComplexArray:
         """λ²M ∓ iΩλ I_p of the nodes' own inertias, (b, p + 1, n)."""
@@ -266,7 +223,7 @@ def spatial_chain(
     chain = bending_chain(rotor, tuple(supports), highest)
     units = block_units(chain, blocks)
     ties = tuple(make_tie(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
-    return SpatialChain(chain, axial_chain_on(rotor, chain), blocks, ties)
+    return SpatialChain(rotor, chain, blocks, ties)
 
 
 def retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .chain import Chain
+from .quadrature import gauss_rule
 from .search import require_positions
 from .spatial_chain import SpatialChain
 from .spatial_ties import MEMBERS
@@ -14,7 +15,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-GAUSS_POINTS = 6
+GAUSS_FRACTIONS, _WEIGHTS = gauss_rule(6)
 
 
 @dataclass(frozen=True)
@@ -94,17 +95,16 @@ class SpatialMotion:
 
     def shares(self) -> FloatArray:
         """∫ ρA |r±|² + ρI |β±|² dz with the nodes' own, of the forward and the backward part, (w, 2), kg·m²."""
+        from .share_kernels import inertia_shares
+
         chain = self.chain
-        points, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-        pieces = np.repeat(np.arange(chain.element.size), GAUSS_POINTS)
-        fractions = np.tile(0.5 * (points + 1.0), chain.element.size)
-        along = chain.coefficients_at(pieces, fractions)[:, 2:4]
-        along *= (0.5 * chain.lengths[:, None] * weights).reshape(-1, 1)
+        along = chain.table.coefficients_along(GAUSS_FRACTIONS)[:, :, 2:4]
+        along = along * (chain.table.lengths[:, None] * _WEIGHTS)[:, :, None]
+        pieces = chain.table.lengths, chain.table.coefficients, chain.element
         shares = []
         for block, states in ((1, self.forward), (-1, self.backward)):
-            inside = self._inside(block, states, pieces, fractions)[:, :, :2]
-            nodal = states[:, :, :2]
-            shares.append(_weighted(inside, along) + _weighted(nodal, chain.node_inertia))
+            squared = self._squared(block)
+            shares.append(inertia_shares(pieces, *squared, states, GAUSS_FRACTIONS, along, chain.node_inertia))
         return np.stack(shares, axis=-1)
 
     def at(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
@@ -135,17 +135,16 @@ class SpatialMotion:
         return planes(forward[:, :, 1] * unit, backward[:, :, 1] * unit)
 
     def _inside(self, block: int, states: ComplexArray, pieces: IntArray, fractions: FloatArray) -> ComplexArray:
-        translation = -(self.eigenvalues**2)
-        rotation = translation + block * 2j * self.speeds * self.eigenvalues
-        transfers = self.chain.transfers_to(pieces, fractions, translation, rotation)
+        transfers = self.chain.transfers_to(pieces, fractions, *self._squared(block))
         return np.asarray(np.einsum("zwij,wzj->wzi", transfers, states[:, pieces]))
+
+    def _squared(self, block: int) -> tuple[ComplexArray, ComplexArray]:
+        """ω² of translation and of rotation in the circular coordinates of a block, (w,) both."""
+        translation = -(self.eigenvalues**2)
+        return translation, translation + block * 2j * self.speeds * self.eigenvalues
 
 
 def planes(forward: ComplexArray, backward: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """x and y of circular coordinates r± = (x ± i y)/√2."""
     root = np.sqrt(0.5)
     return np.asarray(root * (forward + backward)), np.asarray(-1j * root * (forward - backward))
-
-
-def _weighted(values: ComplexArray, weights: FloatArray) -> FloatArray:
-    return np.asarray((np.abs(values) ** 2 * weights).sum(axis=(1, 2)))

@@ -30,6 +30,7 @@ CIRCULAR = np.array(
         [0.0, 0.0, np.sqrt(2.0), 0.0, 0.0],
     ]
 ) / np.sqrt(2.0)
+CARTESIAN = np.eye(5, dtype=np.complex128)
 # Members of the five circular coordinates by kind of block: forward, backward, axial.
 MEMBERS = {1: (0, 1), -1: (2, 3), 0: (4,)}
 # Lateral displacements among the five coordinates: Cartesian and circular.
@@ -84,23 +85,20 @@ def block_sets(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
 
     Axial motion appears only where a bearing ties it to the lateral one; alone it is no whirl.
     """
-    matrices = [m for bearing in bearings for m in (bearing.spatial_stiffness, bearing.spatial_damping)]
+    matrices = [m for bearing in bearings for m in (bearing.spatial_stiffness, bearing.spatial_damping) if m.any()]
     for bearing in bearings:
         if bearing.pedestal is not None:
             for radial in (bearing.pedestal.stiffness, bearing.pedestal.damping):
                 whole = np.zeros((5, 5))
                 whole[:2, :2] = radial
                 matrices.append(whole)
-    circular = [CIRCULAR @ matrix @ CIRCULAR.conj().T for matrix in matrices]
+    circular = np.abs(CIRCULAR @ np.array(matrices).reshape(-1, 5, 5) @ CIRCULAR.conj().T)
+    # Forces and moments differ in unit: each place is small or not beside its own row's and column's.
+    couples = (circular > NO_COUPLING * circular.max(axis=(1, 2), initial=0.0)[:, None, None]).any(axis=0)
+    couples |= couples.T
 
     def tied(first: int, second: int) -> bool:
-        one, other = list(MEMBERS[first]), list(MEMBERS[second])
-        for matrix in circular:
-            between = max(np.abs(matrix[np.ix_(one, other)]).max(), np.abs(matrix[np.ix_(other, one)]).max())
-            # Forces and moments differ in unit: each place is small or not beside its own row's and column's.
-            if between > NO_COUPLING * np.abs(matrix).max(initial=0.0):
-                return True
-        return False
+        return bool(couples[list(MEMBERS[first])][:, MEMBERS[second]].any())
 
     if tied(0, 1) or tied(0, -1):
         return ((1, -1, 0),)
@@ -114,17 +112,22 @@ def make_tie(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatA
     if circular:
         turn, known, names = CIRCULAR, dict(zip(members, units.tolist(), strict=True)), members
     else:
-        turn, names = np.eye(5, dtype=np.complex128), [0, 1, 2, 3, 4] if 0 in blocks else [0, 1, 3, 4]
+        turn, names = CARTESIAN, [0, 1, 2, 3, 4] if 0 in blocks else [0, 1, 3, 4]
         known = {0: units[0], 1: units[0], 2: units[0], 3: units[1], 4: units[1]}
-    matrices = [turn @ m @ turn.conj().T for m in (bearing.spatial_stiffness, bearing.spatial_damping)]
-    busy = [k for k in names if any(m[k, names].any() or m[names, k].any() for m in matrices)]
-    scale = np.outer([known[k] for k in busy], [known[k] for k in busy])
-    stiffness, damping = (m[np.ix_(busy, busy)] * scale for m in matrices)
+    matrices = np.array([bearing.spatial_stiffness, bearing.spatial_damping], dtype=np.complex128)
+    if circular:
+        matrices = turn @ matrices @ turn.conj().T
+    acts = (matrices[0] != 0.0) | (matrices[1] != 0.0)
+    acts = acts[names][:, names]
+    busy = [names[k] for k in np.flatnonzero(acts.any(axis=0) | acts.any(axis=1)).tolist()]
+    unit = np.array([known[k] for k in busy])
+    scale = unit[:, None] * unit
+    stiffness, damping = (m[busy][:, busy] * scale for m in matrices)
     # Coordinates have one unit in both senses, so that it cancels between the two sets of directions.
-    frame = (turn @ CIRCULAR.conj().T)[np.ix_(busy, members)]
+    frame = (turn @ CIRCULAR.conj().T)[busy][:, members]
     pedestal = bearing.pedestal
     foot = () if pedestal is None else tuple(position for position, k in enumerate(busy) if k in RADIAL[circular])
-    ground = [np.zeros((len(foot), len(foot)), dtype=np.complex128) for _ in range(3)]
+    ground = [np.zeros((len(foot), len(foot)), dtype=np.complex128)] * 3
     if pedestal is not None:
         own = [busy[position] for position in foot]
         for index, given in enumerate((pedestal.stiffness, pedestal.damping, pedestal.mass * np.eye(2))):

@@ -109,6 +109,14 @@ class PieceTable:
         place_transfers(self.lengths, self.coefficients, element, fractions, moving, turning, out)
         return out
 
+    def coefficients_along(self, fractions: FloatArray) -> FloatArray:
+        """Coefficients at the same fractions (k,) of every piece, (e, k, 6) or (e, k, 2)."""
+        kinds, fields, order = self.coefficients.shape
+        if order == 1:
+            return np.broadcast_to(self.coefficients.reshape(kinds, 1, fields), (kinds, fractions.size, fields))
+        powers = (2.0 * fractions[:, None] - 1.0) ** np.arange(order)
+        return np.asarray(np.einsum("efj,kj->ekf", self.coefficients, powers))
+
     def coefficients_at(self, element: IntArray, fractions: FloatArray) -> FloatArray:
         """Coefficients at fractions (z,) of some pieces (z,), (z, 6) or (z, 2)."""
         given = self.coefficients[element]

@@ -95,7 +95,7 @@ def solve_torsional_chain(
     line = Line(
         label="torsional chain",
         nodes=np.arange(masses.size, dtype=np.float64),
-        is_station=np.ones(masses.size, dtype=np.bool_),
+        stations=np.arange(masses.size, dtype=np.float64),
         kind=np.arange(springs.size),
         start=np.zeros(springs.size),
         end=np.ones(springs.size),

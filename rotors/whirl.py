@@ -31,8 +31,9 @@ ComplexArray = npt.NDArray[np.complex128]
 
 # How far beyond the limit starting values are still followed: the projection's lie above the roots.
 START_REACH = 1.2
-# Beyond the modes asked for, so that the proof's limit finds a gap behind them.
-SPARE_STARTS = 4
+# Behind the modes asked for, starting values are followed to the first that lies this far from the one before it: the
+# proof's limit finds its gap there.
+WIDE_GAP = 0.01
 # A limit in a gap narrower than this would be too near a root to count by.
 LEAST_GAP = 1e-6
 
@@ -169,7 +170,7 @@ def certified_whirl(
     sizes = np.sort(np.abs(np.concatenate(kept)))
     if limit is None:
         assert count is not None
-        reach = float(sizes[min(count + SPARE_STARTS, sizes.size) - 1]) * (1.0 + LEAST_GAP) if sizes.size else 1.0
+        reach = _reach_behind(sizes, count)
     else:
         reach = START_REACH * limit
     highest = max(START_REACH * reach, 10.0 * least)
@@ -178,6 +179,7 @@ def certified_whirl(
     refined = [
         refine_roots(chain, values[np.abs(values) <= reach], speed) for chain, values in zip(chains, kept, strict=True)
     ]
+    beyond = [values[np.abs(values) > reach] for values in kept]
     if limit is None:
         assert count is not None
         sector = oscillating(least, _limit_behind(refined, least, count))
@@ -185,7 +187,8 @@ def certified_whirl(
         sector = oscillating(least, limit)
     conservative = is_undriven(rotor, bearings)
     parts = [
-        certified_roots(chain, roots, speed, sector, conservative) for chain, roots in zip(chains, refined, strict=True)
+        certified_roots(chain, roots, speed, sector, conservative, near)
+        for chain, roots, near in zip(chains, refined, beyond, strict=True)
     ]
     motion = _joined(chains, [roots for roots, _ in parts], speed)
     order = np.lexsort((motion.eigenvalues.imag, np.abs(motion.eigenvalues)))[:count]
@@ -205,6 +208,16 @@ def is_undriven(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
     # Under compression the shaft's own stiffness may fail to be.
     compressed = any(isinstance(part, Segment) and part.axial_force < 0.0 for part in rotor.segments)
     return is_conservative(bearings) and not compressed
+
+
+def _reach_behind(ascending: FloatArray, count: int) -> float:
+    """The size of starting values that holds the lowest ``count``, their twins, and one behind them."""
+    if ascending.size == 0:
+        return 1.0
+    last = min(count, ascending.size - 1)
+    while last < ascending.size - 1 and ascending[last] <= ascending[last - 1] * (1.0 + WIDE_GAP):
+        last += 1
+    return float(ascending[last]) * (1.0 + LEAST_GAP)
 
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:

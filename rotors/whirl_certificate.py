@@ -10,7 +10,7 @@ from .errors import IncompleteModesError
 from .exact_roots import ExactRoots, Speed, distinct
 from .spatial_chain import SpatialChain
 from .whirl_count import negative_count
-from .winding import RootOnContourError, Sector, wind
+from .winding import NONE, RootOnContourError, Sector, wind
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -58,9 +58,14 @@ def oscillating(least: float, most: float) -> Sector:
 
 
 def certified_roots(
-    chain: SpatialChain, roots: ExactRoots, speed: Speed, sector: Sector, conservative: bool
+    chain: SpatialChain,
+    roots: ExactRoots,
+    speed: Speed,
+    sector: Sector,
+    conservative: bool,
+    beyond: ComplexArray = NONE,
 ) -> tuple[ExactRoots, WhirlCertificate]:
-    """All roots in a sector, starting from those known, and the proof.
+    """All roots in a sector, starting from those known, and the proof; near values of others spare it some work.
 
     Raises
     ------
@@ -69,7 +74,7 @@ def certified_roots(
     """
     method = "inertia" if conservative else "winding"
     held = roots.take(sector.holds(roots.eigenvalues))
-    expected = count_roots(chain, speed, sector, conservative)
+    expected = count_roots(chain, speed, sector, conservative, np.concatenate([roots.eigenvalues, beyond]))
     if held.eigenvalues.size < expected:
         held = search(chain, roots, speed, sector)
     found = held.eigenvalues.size
@@ -83,13 +88,15 @@ def certified_roots(
     return held, certificate
 
 
-def count_roots(chain: SpatialChain, speed: Speed, sector: Sector, conservative: bool) -> int:
-    """Roots in a sector: by inertia where all lie on the imaginary axis, else by winding."""
+def count_roots(
+    chain: SpatialChain, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
+) -> int:
+    """Roots in a sector: by inertia where all lie on the imaginary axis, else by winding, cheaper with known roots."""
     if conservative:
         edges = np.array([sector.least, sector.most])
         low, high = negative_count(chain, edges, speed).tolist()
         return int(high - low)
-    return wind(chain, sector, speed).count
+    return wind(chain, sector, speed, known).count
 
 
 def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
@@ -97,13 +104,13 @@ def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector)
     roots, waiting, cuts = known, [sector], 0
     while waiting:
         part = waiting.pop()
-        winding = wind(chain, part, speed)
+        winding = wind(chain, part, speed, roots.eigenvalues)
         inside = roots.eigenvalues[part.holds(roots.eigenvalues)]
         missing = winding.count - inside.size
         if missing <= 0:
             continue
         if missing <= MOST_MISSING:
-            starts = winding.missing(inside)
+            starts = winding.missing(missing)
             roots = distinct(roots.joined(refine_roots(chain, starts, speed)))
             for start in starts:
                 if int(part.holds(roots.eigenvalues).sum()) == winding.count:
@@ -114,16 +121,16 @@ def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector)
         if cuts >= MOST_CUTS:
             break
         cuts += 1
-        waiting += _cut(chain, part, speed)
+        waiting += _cut(chain, part, speed, roots.eigenvalues)
     return roots.take(sector.holds(roots.eigenvalues))
 
 
-def _cut(chain: SpatialChain, sector: Sector, speed: Speed) -> list[Sector]:
+def _cut(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
     """Two parts of a sector with no root on the cut."""
     for nudge in range(MOST_NUDGES):
         halves = sector.halves(0.5 + 0.037 * nudge)
         try:
-            wind(chain, halves[0], speed)
+            wind(chain, halves[0], speed, known)
         except RootOnContourError:
             continue
         return list(halves)

@@ -5,16 +5,27 @@ is the number of turns that f makes about zero along it. The contour here bounds
 w = ln λ: an annular sector r₁ < |λ| < r₂, θ₁ < arg λ < θ₂. All oscillating motions, stable or not, lie in one such
 sector just inside 0 < arg λ < π.
 
-Sampling is adaptive. With g = d ln f/dw measured at every sample by a short second step, an interval of
-length h is safe when |h g| < 1.5 at both its ends and its own change of ln f is that of the mean slope. A
+Roots that are known already are divided out: q(λ) = f(λ) / Π (λ − μ_k), over all μ_k at hand inside and outside, is
+analytic on the contour whatever the μ_k are, and the zeros of f inside number
+
+    turns of q  +  how many μ_k lie inside,
+
+exactly, because an error in a μ_k leaves both a zero and a pole inside, whose turns cancel. Where the μ_k are the roots
+and none is missing, q is smooth and turns nowhere, so that few samples show it; a missing root shows in q as it would
+in f. A μ_k next to the contour itself is left in f: which side it lies on is for the sampling to find. Where both
+senses are tied and the speed is real, f(λ̄) is the conjugate of f(λ), and the conjugates of the μ_k, outside the sector,
+are divided out too; and so is a power of λ, for the motions of a free shaft at zero.
+
+Sampling is adaptive. With g = d ln q/dw measured at every sample by a short second step, an interval of
+length h is safe when |h g| < 1.5 at both its ends and its own change of ln q is that of the mean slope. A
 root of any multiplicity k at a distance d < h/2 from the interval gives |g| > k/h at both ends, so that even
 a double root's whole turn, invisible in the phase, is seen in the slopes, and the interval halved.
 
 Where a root is missing from those known, the power sums of all roots,
 
-    Σ w_k^m = (1/2πi) ∮ w^m d ln f = (1/2πi) { [w^m ln f] − m ∮ w^{m−1} ln f dw },
+    Σ w_k^m = (1/2πi) ∮ w^m d ln q = (1/2πi) { [w^m ln q] − m ∮ w^{m−1} ln q dw },
 
-less those of the known ones, give the polynomial of the missing (Delves and Lyness, Math. Comp. 21, 1967).
+less those of known ones not divided out, give the polynomial of the missing (Delves and Lyness, Math. Comp. 21, 1967).
 """
 
 from dataclasses import dataclass
@@ -29,13 +40,15 @@ from .spatial_chain import SpatialChain
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+NONE = np.zeros(0, dtype=np.complex128)
 STEEPEST = 1.5
 MISFIT = 0.3
-SIDE_SAMPLES = 13
+SIDE_SAMPLES = 5
+# Known roots nearer to the contour than this, in ln λ, are not divided out.
+TOO_NEAR = 1e-4
 MOST_ROUNDS = 48
 # The second step of a sample, as a part of the interval it was put into.
 SLOPE_PART = 1e-3
-BATCH = 512
 # An interval of ln λ still unsafe at this length passes through a root to rounding.
 SHORTEST = 1e-10
 MOST_SAMPLES = 40_000
@@ -65,6 +78,12 @@ class Sector:
         size, angle = np.abs(eigenvalues), np.angle(eigenvalues)
         return np.asarray((size > self.least) & (size < self.most) & (angle > self.first) & (angle < self.last))
 
+    def distance(self, eigenvalues: ComplexArray) -> FloatArray:
+        """How far values lie from the edge in ln λ, negative inside; along the axes, the larger part of it."""
+        w = np.log(eigenvalues)
+        across = np.maximum(np.log(self.least) - w.real, w.real - np.log(self.most))
+        return np.asarray(np.maximum(across, np.maximum(self.first - w.imag, w.imag - self.last)))
+
     def halves(self, part: float) -> tuple["Sector", "Sector"]:
         """Two sectors, cut across the longer side at a part of it."""
         if np.log(self.most / self.least) > self.last - self.first:
@@ -85,7 +104,9 @@ class Winding:
     samples
         How many determinants it took.
     points, logarithms, slopes
-        Along the contour, the last the first again: w, ln f continued along it, d ln f/dw, (s + 1,).
+        Along the contour, the last the first again: w, ln q continued along it, d ln q/dw, (s + 1,).
+    left
+        Known roots inside that q still has.
     """
 
     count: int
@@ -93,16 +114,16 @@ class Winding:
     points: ComplexArray
     logarithms: ComplexArray
     slopes: ComplexArray
+    left: ComplexArray
 
-    def missing(self, known: ComplexArray) -> ComplexArray:
-        """Estimates of the roots inside that are not among the known ones, by the power sums."""
-        wanted = self.count - known.size
+    def missing(self, wanted: int) -> ComplexArray:
+        """Estimates of so many roots inside that are not among the known ones, by the power sums."""
         # About the middle of the contour and in its size, the powers stay of one order.
         middle = self.points[:-1].mean()
         size = float(np.abs(self.points - middle).max())
         w, logs = (self.points - middle) / size, self.logarithms
         slopes, h = self.slopes * size, np.diff(w)
-        rest = (np.log(known) - middle) / size
+        rest = (np.log(self.left) - middle) / size
         sums = np.empty(wanted, dtype=np.complex128)
         for m in range(1, wanted + 1):
             values = m * w ** (m - 1) * logs
@@ -117,8 +138,19 @@ class Winding:
         return np.asarray(np.exp(np.roots(coefficients) * size + middle))
 
 
-def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
+def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray = NONE) -> Winding:
     """The turns of the determinant along the edge of a sector.
+
+    Parameters
+    ----------
+    chain
+        The exact equations.
+    sector
+        The region.
+    speed
+        Speed of rotation as an analytic function of λ.
+    known
+        (k,) complex, rad/s: roots known already, inside or outside; what is not quite a root costs samples only.
 
     Raises
     ------
@@ -127,14 +159,18 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
     """
     scale = float(chain.force_scale(np.array([sector.most]))[0])
     corners = sector.corners
+    apart = np.abs(sector.distance(known)) > TOO_NEAR
+    divided, left = known[apart], known[~apart & sector.holds(known)]
+    inside = int(sector.holds(divided).sum())
+    if len(chain.blocks) > 1:
+        mirrored = divided.conj()
+        real = speed(mirrored) == speed(divided).conj()
+        divided = np.concatenate([divided, mirrored[real & (sector.distance(mirrored) > TOO_NEAR)]])
 
     def logarithm(w: ComplexArray) -> ComplexArray:
-        parts = []
-        for first in range(0, w.size, BATCH):
-            at = np.exp(w[first : first + BATCH])
-            size, phase = chain.pattern.determinants(chain.values(at, speed(at), np.full(at.size, scale)))
-            parts.append(size + 1j * np.angle(phase))
-        return np.concatenate(parts)
+        at = np.exp(w)
+        whole = chain.entries.log_determinants(at, speed(at), np.full(at.size, scale))
+        return np.asarray(whole - np.log(at[:, None] - divided).sum(axis=1))
 
     def sampled(w: ComplexArray, step: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         both = logarithm(np.concatenate([w, w + step]))
@@ -144,6 +180,9 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
     edges = [np.linspace(a, b, SIDE_SAMPLES)[:-1] for a, b in zip(corners, np.roll(corners, -1), strict=True)]
     points = np.concatenate([*edges, corners[:1]])
     logs, slopes = sampled(points[:-1], np.asarray(SLOPE_PART * np.diff(points), dtype=np.complex128))
+    # Motions at zero, of a free shaft, are outside: divided out like the others.
+    at_zero = round(float(slopes[0].real))
+    logs, slopes = logs - at_zero * points[:-1], slopes - at_zero
     logs, slopes = np.append(logs, logs[0]), np.append(slopes, slopes[0])
     samples = 2 * (points.size - 1)
     # The slope along one edge serves the next one too: it is the derivative of an analytic function.
@@ -156,12 +195,13 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed) -> Winding:
         if unsafe.size and (np.abs(h[unsafe]).min() < SHORTEST or samples > MOST_SAMPLES):
             break
         if unsafe.size == 0:
-            count = round(float(change.imag.sum()) / (2.0 * np.pi))
+            count = inside + round(float(change.imag.sum()) / (2.0 * np.pi))
             continued = logs[0] + np.concatenate([[0.0], np.cumsum(change)])
-            return Winding(count, samples, points, continued, slopes)
+            return Winding(count, samples, points, continued, slopes, left)
         middles = 0.5 * (points[unsafe] + points[unsafe + 1])
         new_logs, new_slopes = sampled(middles, np.asarray(0.5 * SLOPE_PART * h[unsafe], dtype=np.complex128))
         samples += 2 * unsafe.size
+        new_logs, new_slopes = new_logs - at_zero * middles, new_slopes - at_zero
         points = np.insert(points, unsafe + 1, middles)
         logs, slopes = np.insert(logs, unsafe + 1, new_logs), np.insert(slopes, unsafe + 1, new_slopes)
     raise RootOnContourError(

@@ -1,0 +1,109 @@
+"""Compiled quadrature of a chain's fields: what their energies are sums of squares of, and the weights of these.
+
+Importing this module imports numba. The arrays of a chain come in the order of `rotors.count_kernels`.
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from .piece_kernels import piece_transfers
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+
+@njit(cache=True, nogil=True)
+def energy_weights(
+    fractions: FloatArray,
+    weights: FloatArray,
+    lengths: FloatArray,
+    given: FloatArray,
+    element: IntArray,
+    stiffness: FloatArray,
+    inertia: FloatArray,
+    polar: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What weighs the squares of `energy_rows`: mass and polar inertia beside the motion, and strain.
+
+    ``weights`` (g,) are those of the quadrature over a piece; infinite ``stiffness`` (p + 1, n) stores nothing.
+    """
+    n, pieces, points = stiffness.shape[1], element.size, fractions.size
+    motion_size, strain_size = pieces * points * n, pieces * points * (2 * n - 1)
+    nodal = (pieces + 1) * n
+    mass, turning = np.zeros(motion_size + nodal), np.zeros(motion_size + nodal)
+    strain = np.zeros(strain_size + nodal)
+    value = np.empty(given.shape[1])
+    at_motion, at_strain = 0, 0
+    for piece in range(pieces):
+        e = element[piece]
+        for g in range(points):
+            for row in range(value.size):
+                total = 0.0
+                for j in range(given.shape[2] - 1, -1, -1):
+                    total = total * (2.0 * fractions[g] - 1.0) + given[e, row, j]
+                value[row] = total * lengths[e] * weights[g]
+            if n == 2:
+                mass[at_motion], mass[at_motion + 1] = value[2], value[3]
+                # A round section's polar moment of area is twice its diametral one.
+                turning[at_motion + 1] = 2.0 * value[3]
+                strain[at_strain], strain[at_strain + 1], strain[at_strain + 2] = value[5], value[0], value[1]
+            else:
+                mass[at_motion], strain[at_strain] = value[1], value[0]
+            at_motion += n
+            at_strain += 2 * n - 1
+    for node in range(pieces + 1):
+        for k in range(n):
+            mass[at_motion] = inertia[node, k]
+            strain[at_strain] = 0.0 if math.isinf(stiffness[node, k]) else stiffness[node, k]
+            if k == 1:
+                turning[at_motion] = polar[node]
+            at_motion += 1
+            at_strain += 1
+    return mass, turning, strain
+
+
+@njit(cache=True, nogil=True)
+def energy_rows(
+    squared: FloatArray,
+    states: FloatArray,
+    fractions: FloatArray,
+    lengths: FloatArray,
+    given: FloatArray,
+    element: IntArray,
+    motion: FloatArray,
+    strain: FloatArray,
+) -> None:
+    """Fill in what the energies of fields with node states (k, p + 1, 2n) are sums of squares of.
+
+    Piece by piece and at every fraction (g,) of it, ``motion`` (k, p g n + ...) takes the displacements and
+    ``strain`` (k, p g (2n − 1) + ...) the rotation (of a beam) and the forces; both end with the displacements of
+    the nodes, n each.
+    """
+    size, pieces = states.shape[2], element.size
+    n = size // 2
+    transfers = np.empty((lengths.size, fractions.size, size, size))
+    state = np.empty(size)
+    for k in range(squared.size):
+        if k == 0 or squared[k] != squared[k - 1]:
+            for e in range(lengths.size):
+                piece_transfers(lengths[e], given[e], squared[k], squared[k], fractions, transfers[e])
+        at_motion, at_strain = 0, 0
+        for piece in range(pieces):
+            for g in range(fractions.size):
+                transfer = transfers[element[piece], g]
+                for row in range(size):
+                    state[row] = 0.0
+                    for column in range(size):
+                        state[row] += transfer[row, column] * states[k, piece, column]
+                motion[k, at_motion : at_motion + n] = state[:n]
+                strain[k, at_strain : at_strain + size - 1] = state[1:]
+                at_motion += n
+                at_strain += size - 1
+        for node in range(pieces + 1):
+            motion[k, at_motion : at_motion + n] = states[k, node, :n]
+            strain[k, at_strain : at_strain + n] = states[k, node, :n]
+            at_motion += n
+            at_strain += n

@@ -1,0 +1,108 @@
+"""Compiled Newton steps of `rotors.exact_roots`, each root by itself.
+
+Importing this module imports numba.
+"""
+
+import cmath
+import math
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from .banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise
+from .entry_kernels import Pattern, Table, put_entries
+from .exact_roots import ACCEPTED, MOST_STEPS, SETTLED, SLOPE_STEP
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+# Slopes are taken anew after steps longer than this.
+STALE = 1e-4
+# A step larger than this part of the root starts from nowhere near it, and is shortened.
+LONGEST_STEP = 0.3
+
+
+@njit(cache=True, nogil=True)
+def form(rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexArray, right: ComplexArray) -> complex:
+    """yᴴ A x of one matrix."""
+    total = 0.0j
+    for entry in range(rows.size):
+        total += np.conj(left[rows[entry]]) * values[entry] * right[columns[entry]]
+    return total
+
+
+@njit(cache=True, nogil=True)
+def newton(
+    roots: ComplexArray,
+    vectors: ComplexArray,
+    bases: ComplexArray,
+    rate: complex,
+    mass: float,
+    table: Table,
+    pattern: Pattern,
+    residuals: FloatArray,
+    scales: FloatArray,
+) -> None:
+    """Newton's method from starting values (w,) and vectors (w, order), in place.
+
+    The speed of rotation is Ω = base + rate λ, the unit of force the inertia force of a ``mass``, as
+    `rotors.spatial_chain.SpatialChain.force_scale`. ``residuals`` and ``scales`` (w,) take the last correction, as a
+    part of the root, and the unit of force in each vector.
+    """
+    rows, columns, envelope, lower, upper = pattern
+    order = envelope.shape[0]
+    beams = np.empty((table[1][0].size, 1, 4, 4), dtype=np.complex128)
+    rods = np.empty((table[2][0].size, 1, 2, 2), dtype=np.complex128)
+    values, slopes = np.empty(rows.size, dtype=np.complex128), np.empty(rows.size, dtype=np.complex128)
+    behind = np.empty(rows.size, dtype=np.complex128)
+    matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
+    left = np.empty((1, order), dtype=np.complex128)
+    pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
+    for root in range(roots.size):
+        at, base, right, last = roots[root], bases[root], vectors[root : root + 1], math.inf
+        residuals[root] = math.inf
+        for step in range(MOST_STEPS):
+            scale = min(max(abs(at) ** 2 * mass, 1e-30), 1.0)
+            # Slopes of the last step do for a root that has hardly moved since: they are not in the residual.
+            if last > STALE:
+                width = SLOPE_STEP * abs(at)
+                ahead, back = at + width, at - width
+                put_entries(ahead, base + rate * ahead, scale, table, beams, rods, slopes)
+                put_entries(back, base + rate * back, scale, table, beams, rods, behind)
+                for entry in range(rows.size):
+                    slopes[entry] = (slopes[entry] - behind[entry]) / (2.0 * width)
+            put_entries(at, base + rate * at, scale, table, beams, rods, values)
+            largest = fill(rows, columns, lower, values, matrix)
+            factor(matrix, lower, envelope, pivots, ends, TINY * largest)
+            for _ in range(2 if step == 0 else 1):
+                left[0] = right[0]
+                adjoint(matrix, lower, envelope, pivots, ends, left[0])
+                orthonormalise(left)
+                right[0] = left[0]
+                forward_back(matrix, lower, envelope, pivots, ends, right[0])
+                orthonormalise(right)
+            left[0] = right[0]
+            adjoint(matrix, lower, envelope, pivots, ends, left[0])
+            orthonormalise(left)
+            top = form(rows, columns, values, left[0], right[0])
+            bottom = form(rows, columns, slopes, left[0], right[0])
+            change = -top / bottom if bottom != 0.0 else complex(math.inf, 0.0)
+            share = abs(change) / abs(at)
+            if share > LONGEST_STEP:
+                change = LONGEST_STEP * abs(at) * cmath.exp(1j * cmath.phase(change))
+            scales[root] = scale
+            # Rounding alone moves a settled root: it stays where its last good step brought it.
+            rounding = share < ACCEPTED and share >= 0.5 * last
+            if not rounding and cmath.isfinite(change):
+                at += change
+            # What is left after the step, from how the last two steps fell.
+            forecast = math.inf
+            if share < math.sqrt(ACCEPTED) and last < 1.0:
+                forecast = share**2 * max(1.0, share / last**2) + STALE * share
+            residuals[root] = share if rounding else min(share, forecast)
+            last = share
+            if rounding or share <= SETTLED or forecast <= SETTLED:
+                break
+        roots[root] = at

@@ -1,0 +1,50 @@
+"""Compiled inertias of complex motions, for `rotors.spatial_field`.
+
+Importing this module imports numba.
+"""
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from .entry_kernels import Pieces
+from .piece_kernels import piece_transfers
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@njit(cache=True, nogil=True)
+def inertia_shares(
+    pieces: Pieces,
+    translation: ComplexArray,
+    rotation: ComplexArray,
+    states: ComplexArray,
+    fractions: FloatArray,
+    along: FloatArray,
+    nodal: FloatArray,
+) -> FloatArray:
+    """Σ over Gauss points and nodes of the weights times |r|² and |β|², of every motion, (w,).
+
+    ``states`` (w, p + 1, 4) continue from the left end of every piece at ω² of (w,) ``translation`` and ``rotation``;
+    the weights are ``along`` (e, g, 2) at the ``fractions`` (g,) of the pieces and ``nodal`` (p + 1, 2).
+    """
+    lengths, given, element = pieces
+    transfers = np.empty((lengths.size, fractions.size, 4, 4), dtype=np.complex128)
+    totals = np.zeros(states.shape[0])
+    for w in range(states.shape[0]):
+        for e in range(lengths.size):
+            piece_transfers(lengths[e], given[e], translation[w], rotation[w], fractions, transfers[e])
+        for piece in range(element.size):
+            state, e = states[w, piece], element[piece]
+            for g in range(fractions.size):
+                transfer = transfers[e, g]
+                for row in range(2):
+                    value = transfer[row, 0] * state[0] + transfer[row, 1] * state[1]
+                    value += transfer[row, 2] * state[2] + transfer[row, 3] * state[3]
+                    totals[w] += along[e, g, row] * (value.real**2 + value.imag**2)
+        for node in range(states.shape[1]):
+            for row in range(2):
+                value = states[w, node, row]
+                totals[w] += nodal[node, row] * (value.real**2 + value.imag**2)
+    return totals
