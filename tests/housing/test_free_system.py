@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy import sparse
 
 from housing import HousingError, LumpedMass, Material, Matrices, Patch, assemble, attach
-from housing.free_system import FreeSystem
+from housing.free_system import FreeMass, FreeSystem
 from housing.symmetric import SymmetricMatrix
 from meshes import Mesh
 
@@ -38,7 +38,8 @@ def test_any_degrees_of_freedom_may_be_fixed(matrices: Matrices, data: st.DataOb
     free = np.setdiff1d(np.arange(order), fixed)
     if not len(free):
         return
-    system = FreeSystem(matrices, fixed, threads=data.draw(st.integers(1, 3)))
+    system = FreeSystem(matrices, fixed)
+    by_threads = FreeMass(matrices, free, data.draw(st.integers(2, 3)), least=1)
     np.testing.assert_array_equal(system.free, free)
     stiffness, mass = (whole.toarray()[np.ix_(free, free)] for whole in (matrices.stiffness, matrices.mass))
     np.testing.assert_array_equal(system.stiffness.full().toarray(), stiffness)
@@ -46,6 +47,7 @@ def test_any_degrees_of_freedom_may_be_fixed(matrices: Matrices, data: st.DataOb
     np.testing.assert_allclose(system.shifted(shift).full().toarray(), shifted, atol=1e-15 * np.abs(shifted).max())
     np.testing.assert_array_equal(system.shifted(shift).rows, system.stiffness.rows)
     vectors = np.random.default_rng(len(free)).standard_normal((len(free), 3))
+    np.testing.assert_array_equal(by_threads @ vectors, system.mass @ vectors)
     for found, expected in ((system.mass, mass), (system.stiffness, stiffness)):
         scale = np.abs(expected) @ np.abs(vectors)
         assert (np.abs(found @ vectors - expected @ vectors) <= 1e-14 * scale).all()
