@@ -35,7 +35,7 @@ class FreeSystem:
     fixed : ndarray of int, optional
         Degrees of freedom held at zero.
     threads : int
-        That multiply the mass with vectors; the products are the same to the last bit for any number.
+        That multiply K and M with vectors; the products are the same to the last bit for any number.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class FreeSystem:
         return values
 
     def _matrix(self, values: FloatArray) -> SymmetricMatrix:
-        return SymmetricMatrix(self._pointer, self._rows, values)
+        return SymmetricMatrix(self._pointer, self._rows, values, self._threads)
 
 
 class FreeMass:
