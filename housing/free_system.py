@@ -22,6 +22,7 @@ IntArray = npt.NDArray[np.int64]
 
 _FLOOR = 0.06  # part of a limit: its square is small beside the wanted eigenvalues
 _ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
+_WORTH_A_THREAD = 2**16  # entries of the scalar mass: fewer are multiplied sooner than a thread starts
 
 
 class FreeSystem:
@@ -34,7 +35,7 @@ class FreeSystem:
     fixed : ndarray of int, optional
         Degrees of freedom held at zero.
     threads : int
-        That multiply the mass with vectors; the products are the same to the last bit for any number.
+        That multiply K and M with vectors; the products are the same to the last bit for any number.
 
     Attributes
     ----------
@@ -109,7 +110,7 @@ class FreeSystem:
         return values
 
     def _matrix(self, values: FloatArray) -> SymmetricMatrix:
-        return SymmetricMatrix(self._pointer, self._rows, values)
+        return SymmetricMatrix(self._pointer, self._rows, values, self._threads)
 
 
 class FreeMass:
@@ -122,13 +123,16 @@ class FreeMass:
         Ascending.
     threads : int
         Each multiplies a share of the rows.
+    least : int
+        Entries that a thread is started for; of a small mass there are fewer threads.
     """
 
-    def __init__(self, matrices: Matrices, free: IntArray, threads: int = 1) -> None:
+    def __init__(self, matrices: Matrices, free: IntArray, threads: int = 1, *, least: int = _WORTH_A_THREAD) -> None:
         kept = np.unique(free // 3)
         scalar = matrices.scalar_mass
         if len(kept) < matrices.n_nodes:
             scalar = sparse.csr_array(scalar[kept][:, kept])
+        threads = max(1, min(threads, scalar.nnz // least))
         ends = [len(kept) * share // threads for share in range(threads + 1)]
         self._shares = [scalar[first:last] for first, last in pairwise(ends)] if threads > 1 else [scalar]
         self._order = 3 * len(kept)
@@ -152,6 +156,8 @@ class FreeMass:
 
     def _multiply(self, columns: FloatArray) -> FloatArray:
         """The scalar mass times some columns; scipy's products let other threads run."""
+        if len(self._shares) == 1:
+            return np.asarray(self._shares[0] @ columns)
         product = np.empty((self._order // 3, columns.shape[1]))
 
         def fill(share: int) -> None:

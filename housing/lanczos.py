@@ -31,6 +31,7 @@ _TOLERANCE = 1e-10  # of a Ritz pair's residual, as a part of ν
 _BLOCK = 8
 _DEPENDENT = 1e-11  # what is left of a column, as a part of it, where it lay in the basis
 _NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
+_ORTHONORMAL = 1e-14  # how far products of a new block's columns may be from those of orthonormal ones
 _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
 
 
@@ -100,10 +101,13 @@ def shift_invert(
             outside = remainder @ mixture[begin:]
             errors = np.linalg.norm(outside, axis=0)
             if whole or (np.all(sign * wanted > 0.0) and np.all(errors < _TOLERANCE * np.abs(wanted))):
-                vectors = basis[:, :size] @ mixture + found.block @ (outside / wanted)
-                vectors /= np.sqrt(np.einsum("ij,ij->j", vectors, mass @ vectors))
+                # Basis and block are orthonormal, so that the norms follow from the coefficients.
+                step = outside / wanted
+                norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))
                 order = np.argsort(1.0 / wanted)
-                return shift + 1.0 / wanted[order], vectors[:, order]
+                vectors = basis[:, :size] @ (mixture / norms)[:, order]
+                vectors += found.block @ (step / norms)[:, order]
+                return shift + 1.0 / wanted[order], vectors
         small[size : size + len(remainder), begin:size] = remainder
         small[begin:size, size : size + len(remainder)] = remainder.T
     raise IncompleteModesError(
@@ -148,19 +152,23 @@ def _orthonormal(basis: FloatArray, recent: list[FloatArray], block: FloatArray,
     block -= basis @ again
     within += again
     inertia = mass @ block
-    left = np.sqrt(np.maximum(np.einsum("ij,ij->j", block, inertia), 0.0))
+    products = block.T @ inertia
+    left = np.sqrt(np.maximum(products.diagonal(), 0.0))
     given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
     kept = left > _DEPENDENT * given
-    correlations = (block.T @ inertia)[np.ix_(kept, kept)] / np.outer(left[kept], left[kept])
-    values, turn = np.linalg.eigh(correlations)
+    values, turn = np.linalg.eigh(products[np.ix_(kept, kept)] / np.outer(left[kept], left[kept]))
     mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
     mixture[kept] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[kept, None]
-    new, new_inertia = block @ mixture, inertia @ mixture
+    new, new_inertia, shares = block @ mixture, inertia @ mixture, mixture.T @ products
     if new.shape[1]:
         # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
         if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
-            new = new - basis @ (basis.T @ (mass @ new))
+            new -= basis @ (basis.T @ (mass @ new))
             new_inertia = mass @ new
-        unit = np.linalg.inv(np.linalg.cholesky(new.T @ new_inertia)).T
-        new, new_inertia = new @ unit, new_inertia @ unit
-    return _Addition(new, new_inertia, np.vstack([within, new.T @ inertia]))
+            shares = new.T @ inertia
+        own = new.T @ new_inertia
+        if np.abs(own - np.eye(len(own))).max() > _ORTHONORMAL:
+            unit = np.linalg.inv(np.linalg.cholesky(own)).T
+            new, new_inertia = new @ unit, new_inertia @ unit
+            shares = new.T @ inertia
+    return _Addition(new, new_inertia, np.vstack([within, shares]))

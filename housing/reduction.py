@@ -15,7 +15,9 @@ definite on the complement too. In the sweep
 the error becomes (I - A⁻¹ K) E. Both matrices are diagonal in the modes, so that each discarded mode's part is
 multiplied by -σ / (λ - σ): small for σ slightly below zero, where the plain sweep settles quickly, and for modes well
 above a positive σ. Conjugate gradients preconditioned by A⁻¹ take the same sweeps, need fewer of them, and converge for
-the modes just above a positive σ too: a handful of eigenvalues λ / (λ - σ) of A⁻¹ K apart from a cluster at one.
+the modes just above a positive σ too: a handful of eigenvalues λ / (λ - σ) of A⁻¹ K apart from a cluster at one. The
+directions of all loads serve each of them (block conjugate gradients, O'Leary 1980, Linear Algebra and its
+Applications 29), so that with r loads r - 1 of these eigenvalues take no sweeps of their own.
 
 The span of X is then made a set of modes of its own: orthonormal in M to Φ and in itself, with a diagonal stiffness
 (Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2006, chapter 17, on residual attachment modes; after
@@ -55,6 +57,7 @@ STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
 _SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
+_ALIKE = 1e-12  # part of the largest energy of a sweep's directions below which one is rounding
 _MOST_SWEEPS = 200
 
 
@@ -207,24 +210,37 @@ def _static_response(
 ) -> tuple[FloatArray, int]:
     """X with K X = (I - M V Vᵀ) F and Vᵀ M X = 0 for some modes V, and the sweeps it took.
 
-    Conjugate gradients in the M-orthogonal complement of V, preconditioned by A⁻¹, each column by itself, until a
-    sweep moves no column by more than a part ``settled`` in the norm of the strain energy. ``known`` [m/N] is
-    compliance beside the columns' own to measure against, where little may be left.
+    Block conjugate gradients in the M-orthogonal complement of V, preconditioned by A⁻¹: each sweep takes all columns'
+    directions D, with Dᵀ K D = I, to the least of every column's energy. They go on until a sweep moves no column by
+    more than a part ``settled`` in the norm of the strain energy. ``known`` [m/N] is compliance beside the columns' own
+    to measure against, where little may be left.
     """
     x = np.zeros_like(loads)
     left = loads - inertia @ (vectors.T @ loads)
-    direction, before = np.zeros_like(loads), np.ones(loads.shape[1])
+    directions = held = np.zeros((len(loads), 0))
+    scale = np.ones(0)
     for sweep in range(1, _MOST_SWEEPS + 1):
         step = solve(left)
         step -= vectors @ (inertia.T @ step)
-        power = np.einsum("ij,ij->j", left, step)
-        direction = step + direction * (_ratio(power, before) if sweep > 1 else 0.0)
-        before = power
-        product = np.asarray(stiffness @ direction)
-        length = _ratio(power, np.einsum("ij,ij->j", direction, product))
-        x += direction * length
-        left = left - product * length
-        if np.all(length * power <= settled**2 * (known + np.einsum("ij,ij->j", loads, x))):
+        product = np.asarray(stiffness @ step)
+        if sweep > 1:
+            before = held.T @ step
+            step -= directions @ before
+            product -= held @ before
+        energy = step.T @ product
+        if sweep == 1:
+            # Loads count by the response that they find, so that forces and moments count alike.
+            scale = _ratio(np.ones(len(energy)), np.sqrt(np.maximum(energy.diagonal(), 0.0)))
+        shares, mixture = np.linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
+        # A direction that the others have already waits until it is no longer rounding beside them.
+        new = shares > _ALIKE * max(shares.max(initial=0.0), 0.0)
+        mixture = scale[:, None] * mixture[:, new] / np.sqrt(shares[new])
+        directions, held = step @ mixture, product @ mixture
+        length = directions.T @ left
+        x += directions @ length
+        left -= held @ length
+        moved = np.einsum("ij,ij->j", length, length)
+        if np.all(moved <= settled**2 * (known + np.einsum("ij,ij->j", loads, x))):
             return x - vectors @ (inertia.T @ x), sweep
     raise ReductionError(
         f"the static response to the ports' loads has not settled after {_MOST_SWEEPS} sweeps: the stiffness is not "

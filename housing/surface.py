@@ -1,12 +1,13 @@
 """Integration over parts of the surface, and the surface point nearest to a place."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
 
 from housing.errors import HousingError
-from meshes import ElementBlock, Facets, Mesh
+from meshes import ElementBlock, ElementKind, Facets, Mesh
 from meshes.shapes import quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
@@ -152,11 +153,16 @@ def _candidates(
 def _bulge(nodes: FloatArray, block: ElementBlock) -> float:
     """How far a facet may lie from the plane triangles between its corners [m], from above; 0 where it is flat."""
     first = block.of.n_corners
-    weights, _ = shape_functions(block.of.corners, np.array(block.of.places, dtype=np.float64).T)
-    offset = np.linalg.norm(nodes - weights @ nodes[:first], axis=1).max()
+    offset = np.linalg.norm(nodes - _corner_shares(block.of) @ nodes[:first], axis=1).max()
     twist = np.linalg.norm(nodes[0] - nodes[1] + nodes[2] - nodes[3]) if first == 4 else 0.0
     # The shape functions of middle nodes add up to at most 3 in size, and a twisted facet bends by a quarter.
     return float(3.0 * offset + twist)
+
+
+@cache
+def _corner_shares(of: ElementKind) -> FloatArray:
+    """The corners' shape functions at each node, shape (n_nodes, n_corners)."""
+    return shape_functions(of.corners, np.array(of.places, dtype=np.float64).T)[0]
 
 
 # Plane triangles between the corners of a facet.

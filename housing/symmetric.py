@@ -1,5 +1,6 @@
 """A sparse symmetric matrix by its lower triangle, as factorisations take it."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -10,6 +11,8 @@ from scipy import sparse
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+
+_WORTH_A_THREAD = 2**22  # multiplications of one triangle: fewer are done sooner than a thread starts
 
 
 class Operator(Protocol):
@@ -34,11 +37,15 @@ class SymmetricMatrix:
     rows : ndarray of int
         Ascending within a column, the diagonal first.
     values : ndarray
+    threads : int
+        With two, the lower triangle and the upper one are multiplied at once; the products are the same to the last
+        bit.
     """
 
     pointer: IntArray
     rows: IntArray
     values: FloatArray
+    threads: int = 1
 
     @classmethod
     def of(cls, matrix: sparse.csr_array) -> "SymmetricMatrix":
@@ -69,7 +76,13 @@ class SymmetricMatrix:
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
         own = self.diagonal() if vectors.ndim == 1 else self.diagonal()[:, None]
-        product = np.asarray(self.lower @ vectors)
-        product += self.lower.T @ vectors
+        if self.threads > 1 and vectors.size * len(self.values) > _WORTH_A_THREAD * len(own):
+            with ThreadPoolExecutor(1) as pool:
+                upper = pool.submit(lambda: self.lower.T @ vectors)
+                product = np.asarray(self.lower @ vectors)
+                product += upper.result()
+        else:
+            product = np.asarray(self.lower @ vectors)
+            product += self.lower.T @ vectors
         product -= own * vectors
         return product

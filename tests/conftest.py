@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable
+from functools import cache
 from itertools import combinations_with_replacement
 from math import floor, log10
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from meshes import KINDS, ElementBlock, Mesh
+from meshes import KINDS, ElementBlock, ElementKind, Mesh
 
 Published = Callable[..., None]
 BlockOf = Callable[..., Mesh]
@@ -165,16 +166,18 @@ def _block_of(
     brick = np.array(KINDS["hexahedron"].places)
     grid = np.stack(np.meshgrid(*map(np.arange, cells), indexing="ij"), axis=-1).reshape(-1, 1, 3)
     corners = (grid + brick)[:, _CUTS[of.corners]].reshape(-1, of.n_corners, 3)
-    # In a brick of a regular grid every node is a corner or half way between two.
-    places = np.array(KINDS[of.corners].places)
-    ends = [_ends(np.array(place), places) for place in of.places]
+    ends = _ends(of)
     nodes = np.stack([corners[:, pair].mean(axis=1) for pair in ends], axis=1)
     lattice, inverse = np.unique(np.round(4 * nodes).astype(int).reshape(-1, 3), axis=0, return_inverse=True)
     points = bend(lattice / 4 * np.array(size) / np.array(cells))
     return Mesh(points, (ElementBlock(kind, inverse.reshape(len(corners), -1)),))
 
 
-def _ends(place: npt.NDArray[np.float64], corners: npt.NDArray[np.float64]) -> list[int]:
-    """Two corners whose mean a place is; the same corner twice where it is one."""
-    pairs = combinations_with_replacement(range(len(corners)), 2)
-    return next(list(pair) for pair in pairs if np.allclose(corners[list(pair)].mean(axis=0), place))
+@cache
+def _ends(of: ElementKind) -> list[list[int]]:
+    """Two corners whose mean each node is, the same one twice where it is a corner: in a regular grid all are such."""
+    corners = np.array(KINDS[of.corners].places)
+    pairs = np.array(list(combinations_with_replacement(range(len(corners)), 2)))
+    off = np.abs(corners[pairs].mean(axis=1) - np.array(of.places)[:, None]).max(axis=2)
+    assert (off.min(axis=1) < 1e-12).all()
+    return [list(map(int, pairs[chosen])) for chosen in off.argmin(axis=1)]

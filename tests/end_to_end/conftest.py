@@ -44,6 +44,24 @@ def gearwhine(capfd: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: py
     return run
 
 
+@pytest.fixture(scope="session")
+def _answers() -> dict[tuple[str, ...], Outcome]:
+    return {}
+
+
+@pytest.fixture
+def answer(gearwhine: Command, _answers: dict[tuple[str, ...], Outcome]) -> Command:
+    """The command where nothing but its answer counts: what was asked before, by any test, is not solved again."""
+
+    def ask(*arguments: str) -> Outcome:
+        assert not {"-o", "--output"} & set(arguments), "an answer from before leaves no files"
+        if arguments not in _answers:
+            _answers[arguments] = gearwhine(*arguments)
+        return _answers[arguments]
+
+    return ask
+
+
 @pytest.fixture
 def start_process(tmp_path: Path) -> Callable[..., "subprocess.Popen[str]"]:
     """The command as a process of its own, in an empty working folder."""

@@ -1,6 +1,7 @@
 """Matrices on the free degrees of freedom against the same rows and columns cut from the whole ones."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -9,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 
-from housing import HousingError, LumpedMass, Material, Matrices, Patch, assemble, attach
-from housing.free_system import FreeSystem
+from housing import HousingError, LumpedMass, Material, Matrices, Patch, assemble, attach, symmetric
+from housing.free_system import FreeMass, FreeSystem
 from housing.symmetric import SymmetricMatrix
 from meshes import Mesh
 
@@ -38,7 +39,8 @@ def test_any_degrees_of_freedom_may_be_fixed(matrices: Matrices, data: st.DataOb
     free = np.setdiff1d(np.arange(order), fixed)
     if not len(free):
         return
-    system = FreeSystem(matrices, fixed, threads=data.draw(st.integers(1, 3)))
+    system = FreeSystem(matrices, fixed)
+    by_threads = FreeMass(matrices, free, data.draw(st.integers(2, 3)), least=1)
     np.testing.assert_array_equal(system.free, free)
     stiffness, mass = (whole.toarray()[np.ix_(free, free)] for whole in (matrices.stiffness, matrices.mass))
     np.testing.assert_array_equal(system.stiffness.full().toarray(), stiffness)
@@ -46,6 +48,7 @@ def test_any_degrees_of_freedom_may_be_fixed(matrices: Matrices, data: st.DataOb
     np.testing.assert_allclose(system.shifted(shift).full().toarray(), shifted, atol=1e-15 * np.abs(shifted).max())
     np.testing.assert_array_equal(system.shifted(shift).rows, system.stiffness.rows)
     vectors = np.random.default_rng(len(free)).standard_normal((len(free), 3))
+    np.testing.assert_array_equal(by_threads @ vectors, system.mass @ vectors)
     for found, expected in ((system.mass, mass), (system.stiffness, stiffness)):
         scale = np.abs(expected) @ np.abs(vectors)
         assert (np.abs(found @ vectors - expected @ vectors) <= 1e-14 * scale).all()
@@ -78,3 +81,17 @@ def test_a_symmetric_matrix_is_its_lower_triangle() -> None:
     np.testing.assert_array_equal(matrix.full().toarray(), dense)
     vectors = rng.standard_normal((6, 2))
     np.testing.assert_allclose(matrix @ vectors, dense @ vectors, rtol=1e-13)
+
+
+def test_two_threads_multiply_as_one_does() -> None:
+    """A matrix large enough that the second thread is started."""
+    n = 3000
+    rng = np.random.default_rng(2)
+    diagonals = [rng.standard_normal(n - offset) for offset in range(20)]
+    lower = sparse.csc_array(sparse.diags_array(diagonals, offsets=[-offset for offset in range(20)]))
+    whole = sparse.csr_array(lower + sparse.tril(lower, k=-1).T)
+    one, two = SymmetricMatrix.of(whole), replace(SymmetricMatrix.of(whole), threads=2)
+    vectors = rng.standard_normal((n, 100))
+    assert vectors.size * len(one.values) > symmetric._WORTH_A_THREAD * n
+    np.testing.assert_array_equal(two @ vectors, one @ vectors)
+    np.testing.assert_allclose(two @ vectors, whole @ vectors, rtol=1e-10, atol=1e-12)

@@ -221,6 +221,36 @@ def test_a_shift_between_kept_and_discarded_modes_does_as_well(
     compare_with_direct_solution(*dense(beam[1], clamped, port, shift=float(shift / values[0])), cut=count)
 
 
+@pytest.mark.parametrize("count", [3, 8, 20])
+def test_loads_together_take_fewer_sweeps_than_the_slowest_alone(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, count: int
+) -> None:
+    """With the shift just below a discarded mode, whose direction all the loads then share."""
+    ends = dense(beam[1], clamped, port)[4]
+    shift = 0.02 * ends[count - 1] + 0.98 * ends[count]
+    stiffness, mass, solve, place, values, vectors, ports, free = dense(
+        beam[1], clamped, port, shift=float(shift / ends[0])
+    )
+
+    def sweeps(rows: sparse.csr_array) -> int:
+        attached = residual_attachments(
+            stiffness,
+            mass,
+            solve,
+            values[:count],
+            vectors[:, :count],
+            rows,
+            shift=place,
+            floor=1e-3 * float(values[0]),
+            free=free,
+            n_nodes=beam[1].n_nodes,
+        )
+        return attached.proof.sweeps
+
+    alone = [sweeps(sparse.csr_array(ports[[row]])) for row in range(ports.shape[0])]
+    assert sweeps(ports) < max(alone)
+
+
 def compare_with_direct_solution(
     stiffness: sparse.csr_array,
     mass: sparse.csr_array,
