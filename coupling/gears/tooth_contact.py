@@ -65,7 +65,7 @@ class PairStates:
     present : ndarray of bool, shape (n, m)
         Whether the pair is where it can touch.
     stiffness : ndarray, shape (n, m)
-        [N/m], 0 where absent.
+        [N/m], 0 where absent; of an uneven face, of the slices on the path of contact, each by itself.
     deviation : ndarray, shape (n, m)
         Gap by profile and pitch [m], infinite where absent; that of first touch where the face is not even.
     kind : ndarray of int, shape (n, m)
@@ -307,8 +307,10 @@ class ToothContact:
                 deviation[these] = curves.deviation(position[these])
             else:
                 state = face_state(self.faces, curves, position[these])
-                shares = curves.stiffness(position[these][:, None] + self.faces.shift) / self.faces.z.size
-                stiffness[these] = np.where(state.meeting, shares, 0.0).sum(axis=1)
+                at = position[these][:, None] + self.faces.shift
+                on_path = (at >= 0.0) & (at < self.contact_ratio)
+                shares = curves.stiffness(at) / self.faces.z.size
+                stiffness[these] = np.where(on_path, shares, 0.0).sum(axis=1)
                 deviation[these] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
         return PairStates(position, present, stiffness, deviation + gap, kind, gap)

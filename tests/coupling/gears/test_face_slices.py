@@ -14,6 +14,7 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     TipRelief,
     face_slices,
+    mesh_stiffness,
     static_transmission_error,
     tooth_contact,
 )
@@ -155,6 +156,13 @@ def test_whole_overlap_keeps_the_length_of_contact_and_so_the_error() -> None:
         swings.append(static_transmission_error(contact, FORCE, PHASES).peak_to_peak_transmission_error)
     assert pair.overlap_ratio == pytest.approx(1.0)
     assert swings[0] > swings[1] > 8.0 * swings[2]
+
+
+def test_mean_mesh_stiffness_is_that_of_the_period() -> None:
+    pair = helical(11.0)
+    contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair))
+    over_period = mesh_stiffness(contact, np.arange(997) / 997.0)
+    assert over_period.mean() == pytest.approx(contact.mean_stiffness, rel=1e-3)
 
 
 @pytest.fixture(scope="module")
