@@ -1,8 +1,8 @@
-"""The gear pairs of a case: geometry, contact law, mesh stiffness and static transmission error."""
+"""The gear pairs of a case: geometry, contact law, and the mesh at rest under its load."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,8 @@ class SolvedPair:
     given : GearPair
         As in the case.
     geometry : coupling.gears.GearPairGeometry
+    model : coupling.gears.StiffnessModel
+        Of its teeth.
     contact : coupling.gears.ToothContact
         With its damping.
     static : coupling.gears.StaticMesh
@@ -42,10 +44,21 @@ class SolvedPair:
 
     given: GivenPair
     geometry: room.GearPairGeometry
+    model: room.StiffnessModel
     contact: room.ToothContact
     static: room.StaticMesh
     hunting: room.StaticMesh | None
     mesh_frequency: float | None
+
+    @property
+    def torque(self) -> float:
+        """On the driver, that the mesh carries [N m]."""
+        return self.static.force * self.geometry.driver.base_radius
+
+    @property
+    def has_single_pairs(self) -> bool:
+        """Whether the model is of pairs of teeth, which share the load, or of the mesh as one spring."""
+        return math.isclose(self.contact.contact_ratio, self.geometry.contact_ratio, rel_tol=1e-9)
 
 
 def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ...]:
@@ -64,7 +77,8 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
         progress(f"gear pair {pair.driver} -> {pair.driven}")
         geometry = pair_geometry(case, pair)
         force = abs(torque) / geometry.driver.base_radius
-        contact = room.tooth_contact(geometry, _model(pair, number, geometry, force))
+        model = _model(pair, number, geometry, force)
+        contact = room.tooth_contact(geometry, model)
         depth = _FADING * force / contact.mean_stiffness
         contact = contact.with_damping(_damping(case, pair, contact), depth)
         static = room.static_transmission_error(contact, force)
@@ -72,7 +86,7 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
         if contact.pitch_gaps.size:
             phases = room.mesh_period_phases(contact, _HUNTING_POINTS, periods=contact.pitch_gaps.size)
             hunting = room.static_transmission_error(contact, force, phases)
-        solved.append(SolvedPair(pair, geometry, contact, static, hunting, frequency))
+        solved.append(SolvedPair(pair, geometry, model, contact, static, hunting, frequency))
     return tuple(solved)
 
 
@@ -84,44 +98,6 @@ def pair_geometry(case: Case, pair: GivenPair) -> room.GearPairGeometry:
         axes = case.rotor_named(driver.rotor).axis, case.rotor_named(driven.rotor).axis
         distance = float(np.hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]))
     return room.GearPairGeometry(build_gear(case, driver), build_gear(case, driven), distance)
-
-
-def gears_document(solved: tuple[SolvedPair, ...]) -> dict[str, Any]:
-    """The gear pairs as the command's JSON."""
-    return {"pairs": [_pair_document(pair) for pair in solved]}
-
-
-def _pair_document(pair: SolvedPair) -> dict[str, Any]:
-    phases = pair.static.phases
-    stiffness = room.mesh_stiffness(pair.contact, phases)
-    teeth = pair.geometry.driver.teeth
-    return {
-        "driver": pair.given.driver,
-        "driven": pair.given.driven,
-        "model": pair.given.stiffness.model,
-        "contact_ratio": pair.geometry.contact_ratio,
-        "mesh_frequency_hz": pair.mesh_frequency,
-        "mean_force_n": pair.static.force,
-        "stiffness_n_per_m": {
-            "mean": pair.contact.mean_stiffness,
-            "min": float(stiffness.min()),
-            "max": float(stiffness.max()),
-        },
-        "transmission_error_m": {
-            "mean": pair.static.mean_transmission_error,
-            "peak_to_peak": pair.static.peak_to_peak_transmission_error,
-            "over_hunting_period": None
-            if pair.hunting is None
-            else {
-                "mean": pair.hunting.mean_transmission_error,
-                "peak_to_peak": pair.hunting.peak_to_peak_transmission_error,
-            },
-        },
-        "roll_angle_rad": (2.0 * np.pi * phases / teeth).tolist(),
-        "stiffness": stiffness.tolist(),
-        "loaded_stiffness": pair.static.tangent_stiffness.tolist(),
-        "transmission_error": pair.static.transmission_error.tolist(),
-    }
 
 
 def _model(pair: GivenPair, number: int, geometry: room.GearPairGeometry, force: float) -> room.StiffnessModel:

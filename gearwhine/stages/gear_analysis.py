@@ -1,0 +1,164 @@
+"""What a gear pair's teeth do: who carries, how hard they press, what torques change, and which relief suits them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling.gears as room
+from gearwhine.case import Case
+from gearwhine.progress import Progress, silent
+from gearwhine.stages.gears import SolvedPair
+
+FloatArray = npt.NDArray[np.float64]
+
+HARMONICS = 8
+_LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # of the case's torque, in a Harris map
+
+
+@dataclass(frozen=True, eq=False)
+class PairAnalysis:
+    """A solved gear pair, looked at from all sides.
+
+    Attributes
+    ----------
+    solved : SolvedPair
+    unloaded : coupling.gears.StaticMesh
+        Without load, at the phases of ``solved.static``.
+    pressure : ndarray, shape (n, m) or (n, m, s), or None
+        Hertzian pressure of every pair at every phase [Pa], see `coupling.gears.mesh_pressure`. None without load,
+        single pairs or a face width in the case.
+    pitch_pressure : float or None
+        The largest at the pitch point [Pa].
+    harris : coupling.gears.HarrisMap or None
+        From a tenth to twice the case's torque, with all teeth alike: without pitch deviations and damage. None
+        unless asked for, and without a torque.
+    optimum : coupling.gears.ReliefOptimum or None
+        The relief that suits the case's torque, with all teeth alike; None unless asked for, and without a torque or
+        single pairs.
+    """
+
+    solved: SolvedPair
+    unloaded: room.StaticMesh
+    pressure: FloatArray | None
+    pitch_pressure: float | None
+    harris: room.HarrisMap | None = None
+    optimum: room.ReliefOptimum | None = None
+
+    @property
+    def label(self) -> str:
+        """The pair's gears."""
+        return f"{self.solved.given.driver} → {self.solved.given.driven}"
+
+    @property
+    def harmonics(self) -> FloatArray:
+        """Amplitudes of the transmission error at the mesh frequency and its multiples [m], (8,).
+
+        Over the whole hunting period where mesh periods differ: what is not of the mesh frequency averages out.
+        """
+        mesh, hunting = self.solved.static, self.solved.hunting
+        if hunting is not None:
+            periods = self.solved.contact.hunting_period
+            over = hunting.transmission_error.reshape(periods, -1).mean(axis=0)
+            mesh = replace(hunting, phases=hunting.phases[: over.size], transmission_error=over)
+        return room.transmission_error_harmonics(mesh, HARMONICS)
+
+    @property
+    def as_given(self) -> float | None:
+        """Peak to peak at the case's torque with all teeth alike [m]; None without a Harris map."""
+        if self.harris is None:
+            return None
+        return float(self.harris.peak_to_peak[np.abs(self.harris.forces - self.solved.static.force).argmin()])
+
+    @property
+    def pairs_in_contact(self) -> dict[int, float]:
+        """For how much of the mesh period so many pairs carry; each phase stands for up to half way to the next."""
+        static = self.solved.static
+        touching = (static.pair_forces > 0.0).sum(axis=1)
+        around = np.concatenate([[static.phases[-1] - 1.0], static.phases, [static.phases[0] + 1.0]])
+        part = 0.5 * (around[2:] - around[:-2])
+        return {int(count): float(part[touching == count].sum()) for count in np.unique(touching)}
+
+    @property
+    def loaded_contact_ratio(self) -> float:
+        """How many pairs carry in the mean: less than the contact ratio by relief, more by corner contact."""
+        return sum(count * part for count, part in self.pairs_in_contact.items())
+
+    @property
+    def corner_force(self) -> float:
+        """The largest force that a pair carries outside its path of contact, in the middle of the face [N]."""
+        static, end = self.solved.static, self.solved.geometry.contact_ratio
+        outside = (static.positions < 0.0) | (static.positions > end)
+        return float(static.pair_forces[outside].max(initial=0.0))
+
+
+def analyse_pairs(case: Case, solved: Sequence[SolvedPair]) -> tuple[PairAnalysis, ...]:
+    """Look at each solved pair under the case's torque and without."""
+    return tuple(_analysis(case, pair) for pair in solved)
+
+
+def over_torques(pairs: Sequence[PairAnalysis], progress: Progress = silent) -> tuple[PairAnalysis, ...]:
+    """The same pairs with their Harris maps and optimal reliefs, where the case has a torque."""
+    found = []
+    for pair in pairs:
+        if pair.solved.static.force > 0.0:
+            progress(f"Harris map of {pair.label}")
+            pair = replace(pair, harris=_harris_map(pair.solved))
+            if pair.solved.has_single_pairs:
+                progress(f"best tip relief of {pair.label}")
+                pair = replace(pair, optimum=_best_relief(pair.solved))
+        found.append(pair)
+    return tuple(found)
+
+
+def _analysis(case: Case, pair: SolvedPair) -> PairAnalysis:
+    unloaded = room.static_transmission_error(pair.contact, 0.0, pair.static.phases)
+    # A width that only stands in for one that is not given says nothing of the pressure.
+    wide = all(case.gear_named(name).face_width is not None for name in (pair.given.driver, pair.given.driven))
+    if pair.static.force == 0.0 or not pair.has_single_pairs or not wide:
+        return PairAnalysis(pair, unloaded, None, None)
+    pressure = room.mesh_pressure(pair.geometry, pair.contact, pair.static)
+    return PairAnalysis(pair, unloaded, pressure, _pitch_pressure(pair))
+
+
+def _pitch_pressure(pair: SolvedPair) -> float:
+    """The largest pressure while a pair, or a slice of its face, passes the pitch point [Pa]."""
+    pitch, faces = pair.geometry.pitch_point_position, pair.contact.faces
+    shift = np.zeros(1) if faces is None else faces.shift
+    mesh = room.static_transmission_error(pair.contact, pair.static.force, np.unique((pitch - shift) % 1.0))
+    pressure = room.mesh_pressure(pair.geometry, pair.contact, mesh).reshape(*mesh.positions.shape, -1)
+    passing = np.isclose(mesh.positions[..., None] + shift, pitch, rtol=0.0, atol=1e-9)
+    return float(pressure[passing].max())
+
+
+def _harris_map(pair: SolvedPair) -> room.HarrisMap:
+    contact = pair.contact
+    if contact.hunting_period > 1:
+        contact = room.tooth_contact(
+            _alike(pair.geometry), pair.model, corner_contact=_has_corners(contact), faces=contact.faces
+        )
+    return room.harris_map(contact, pair.static.force * np.linspace(_LEAST, _MOST, _TORQUES))
+
+
+def _best_relief(pair: SolvedPair) -> room.ReliefOptimum:
+    given = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
+    return room.optimal_tip_relief(
+        _alike(pair.geometry),
+        pair.model,
+        [pair.static.force],
+        shape="linear" if given is None else given.shape,
+        corner_contact=_has_corners(pair.contact),
+        faces=pair.contact.faces,
+    )
+
+
+def _alike(pair: room.GearPairGeometry) -> room.GearPairGeometry:
+    """A pair of gears with all their teeth alike: a relief is cut for all of them."""
+    driver, driven = (replace(gear, pitch_deviations=(), faults=()) for gear in (pair.driver, pair.driven))
+    return replace(pair, driver=driver, driven=driven)
+
+
+def _has_corners(contact: room.ToothContact) -> bool:
+    """Whether pairs touch beyond their path of contact."""
+    return bool(contact.stiffness.knots[0] < 0.0)

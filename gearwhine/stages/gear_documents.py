@@ -1,0 +1,193 @@
+"""Gear pairs as the command's JSON: keys with their units, angles in rad, positions in base pitches."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling.gears as room
+from gearwhine.stages.gear_analysis import PairAnalysis
+from gearwhine.stages.gears import SolvedPair
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def gears_document(pairs: tuple[PairAnalysis, ...]) -> dict[str, Any]:
+    """The gear pairs as the command's JSON."""
+    return {"pairs": [_pair_document(pair) for pair in pairs]}
+
+
+def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
+    solved, geometry = pair.solved, pair.solved.geometry
+    phases = solved.static.phases
+    stiffness = room.mesh_stiffness(solved.contact, phases)
+    return {
+        "driver": solved.given.driver,
+        "driven": solved.given.driven,
+        "model": solved.given.stiffness.model,
+        "contact_ratio": geometry.contact_ratio,
+        "overlap_ratio": geometry.overlap_ratio,
+        "total_contact_ratio": geometry.total_contact_ratio,
+        "centre_distance_m": geometry.working_centre_distance,
+        "working_pressure_angle_rad": geometry.working_pressure_angle,
+        "backlash_m": solved.given.backlash,
+        "mesh_frequency_hz": solved.mesh_frequency,
+        "torque_n_m": solved.torque,
+        "mean_force_n": solved.static.force,
+        "gears": [_gear(geometry, gear) for gear in (geometry.driver, geometry.driven)],
+        "path_of_contact": _path_of_contact(geometry),
+        "stiffness_n_per_m": {
+            "mean": solved.contact.mean_stiffness,
+            "min": float(stiffness.min()),
+            "max": float(stiffness.max()),
+            "loaded_mean": solved.static.mean_stiffness,
+        },
+        "transmission_error_m": {
+            "mean": solved.static.mean_transmission_error,
+            "peak_to_peak": solved.static.peak_to_peak_transmission_error,
+            "harmonics": pair.harmonics.tolist(),
+            "unloaded_peak_to_peak": pair.unloaded.peak_to_peak_transmission_error,
+            "over_hunting_period": _over_hunting_period(solved),
+        },
+        "load_sharing": _load_sharing(pair),
+        "contact_pressure_pa": _pressure(pair),
+        "harris_map": None if pair.harris is None else _harris_map(geometry, pair.harris),
+        "optimal_tip_relief": None if pair.optimum is None else _optimum(pair, pair.optimum),
+        "roll_angle_rad": (2.0 * np.pi * phases / geometry.driver.teeth).tolist(),
+        "stiffness": stiffness.tolist(),
+        "loaded_stiffness": solved.static.tangent_stiffness.tolist(),
+        "transmission_error": solved.static.transmission_error.tolist(),
+        "unloaded_transmission_error": pair.unloaded.transmission_error.tolist(),
+    }
+
+
+def _gear(pair: room.GearPairGeometry, gear: room.Gear) -> dict[str, Any]:
+    """A gear's proportions, and what a shop measures to know them."""
+    document = {
+        "name": gear.name,
+        "teeth": gear.teeth,
+        "module_m": gear.module,
+        "pressure_angle_rad": gear.pressure_angle,
+        "helix_angle_rad": gear.helix_angle,
+        "profile_shift": gear.profile_shift,
+        "face_width_m": gear.face_width,
+        "diameters_m": {
+            "tip": 2.0 * gear.tip_radius,
+            "reference": 2.0 * gear.pitch_radius,
+            "base": 2.0 * gear.base_radius,
+            "form": 2.0 * gear.form_radius,
+            "root": 2.0 * gear.root_circle_radius,
+        },
+        "normal_thickness_m": {
+            "reference": room.normal_tooth_thickness(gear, gear.pitch_radius),
+            "tip": room.normal_tooth_thickness(gear, gear.tip_radius),
+        },
+        "tip_clearance_m": pair.tip_clearance(gear),
+        "span": None,
+        "over_balls": None,
+        "tip_relief": None if gear.tip_relief is None else _relief(gear, gear.tip_relief),
+    }
+    # Not every gear can be measured in every way: a face too narrow, teeth too short.
+    try:
+        span = room.span_measurement(gear)
+        document["span"] = {"teeth": span.teeth, "length_m": span.length}
+    except room.GearError:
+        pass
+    try:
+        balls = room.over_balls(gear)
+        document["over_balls"] = {"ball_diameter_m": balls.diameter, "length_m": balls.length}
+    except room.GearError:
+        pass
+    return document
+
+
+def _relief(gear: room.Gear, relief: room.TipRelief) -> dict[str, Any]:
+    start = relief.start(gear.roll_angle(gear.tip_radius), gear.base_radius)
+    return {"amount_m": relief.amount, "start_roll_angle_rad": start, "shape": relief.shape}
+
+
+def _path_of_contact(geometry: room.GearPairGeometry) -> list[dict[str, Any]]:
+    path = room.path_of_contact(geometry)
+    columns = {
+        "position_base_pitches": path.position,
+        "driver_roll_angle_rad": path.driver_roll_angle,
+        "driven_roll_angle_rad": path.driven_roll_angle,
+        "driver_radius_m": path.driver_radius,
+        "driven_radius_m": path.driven_radius,
+        "driver_specific_sliding": path.driver_sliding,
+        "driven_specific_sliding": path.driven_sliding,
+    }
+    return [
+        {"point": point} | {key: float(values[row]) for key, values in columns.items()}
+        for row, point in enumerate(room.POINTS_OF_CONTACT)
+    ]
+
+
+def _over_hunting_period(solved: SolvedPair) -> dict[str, float] | None:
+    if solved.hunting is None:
+        return None
+    return {
+        "mean": solved.hunting.mean_transmission_error,
+        "peak_to_peak": solved.hunting.peak_to_peak_transmission_error,
+    }
+
+
+def _load_sharing(pair: PairAnalysis) -> dict[str, Any] | None:
+    """How many pairs carry for how long, and the part of the load that one has along its path."""
+    static = pair.solved.static
+    if static.force == 0.0 or not pair.solved.has_single_pairs:
+        return None
+    present = pair.solved.contact.pairs(static.phases).present
+    order = np.argsort(static.positions[present], kind="stable")
+    positions, shares = static.positions[present][order], static.load_shares[present][order]
+    return {
+        "pairs_in_contact": {str(count): part for count, part in pair.pairs_in_contact.items()},
+        "loaded_contact_ratio": pair.loaded_contact_ratio,
+        "largest_share": float(shares.max()),
+        "corner_force_n": pair.corner_force,
+        "position_base_pitches": positions.tolist(),
+        "driver_roll_angle_rad": pair.solved.geometry.driver_roll_angle(positions).tolist(),
+        "share": shares.tolist(),
+    }
+
+
+def _pressure(pair: PairAnalysis) -> dict[str, float | None] | None:
+    """The largest pressure on the path of contact and where it is, and the largest at the pitch point."""
+    if pair.pressure is None:
+        return None
+    geometry, faces = pair.solved.geometry, pair.solved.contact.faces
+    positions = pair.solved.static.positions
+    if faces is not None:
+        positions = positions[..., None] + faces.shift
+    known = np.nan_to_num(pair.pressure, nan=0.0, posinf=np.inf)
+    place = np.unravel_index(int(known.argmax()), known.shape)
+    return {
+        "max": float(known[place]),
+        "at_driver_roll_angle_rad": float(geometry.driver_roll_angle(positions[place])),
+        "pitch_point": pair.pitch_pressure,
+    }
+
+
+def _harris_map(geometry: room.GearPairGeometry, harris: room.HarrisMap) -> dict[str, Any]:
+    torques = harris.forces * geometry.driver.base_radius
+    return {
+        "torque_n_m": torques.tolist(),
+        "peak_to_peak_m": harris.peak_to_peak.tolist(),
+        "quietest_torque_n_m": harris.quietest * geometry.driver.base_radius,
+    }
+
+
+def _optimum(pair: PairAnalysis, optimum: room.ReliefOptimum) -> dict[str, Any]:
+    """The relief that suits the torque, beside that of the case and none at all."""
+    gears = pair.solved.geometry.driver, pair.solved.geometry.driven
+    starts = (_relief(gear, optimum.relief)["start_roll_angle_rad"] for gear in gears)
+    return {
+        "shape": optimum.relief.shape,
+        "amount_m": optimum.relief.amount,
+        "length_m": optimum.relief.length,
+        **dict(zip(("driver_start_roll_angle_rad", "driven_start_roll_angle_rad"), starts, strict=True)),
+        "torque_n_m": pair.solved.torque,
+        "peak_to_peak_m": float(optimum.peak_to_peak[0]),
+        "peak_to_peak_without_relief_m": float(optimum.unmodified[0]),
+        "peak_to_peak_as_given_m": pair.as_given,
+    }
