@@ -1,5 +1,0 @@
-"""x"""
-
-
-def draw_gear_pairs(folder, pairs, progress):
-    return []
