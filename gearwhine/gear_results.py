@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 import coupling.gears as room
 from gearwhine.rotor_results import Variables, padded
-from gearwhine.stages.gear_analysis import PairAnalysis
+from gearwhine.stages.gear_analysis import PairAnalysis, first_touch
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -22,7 +22,6 @@ def write_gears(pairs: Sequence[PairAnalysis], variables: Variables, coordinates
     coordinates["mesh_phase"] = ("mesh_phase", grid, _unit("1", "part of the mesh period"))
     contacts = [pair.solved.contact for pair in pairs]
     loaded = [room.static_transmission_error(pair.solved.contact, pair.solved.static.force, grid) for pair in pairs]
-    unloaded = [room.static_transmission_error(contact, 0.0, grid) for contact in contacts]
     over_phases = ("gear_pair", "mesh_phase")
     for name, unit, what, rows in (
         (
@@ -47,7 +46,7 @@ def write_gears(pairs: Sequence[PairAnalysis], variables: Variables, coordinates
             "unloaded_transmission_error",
             "m",
             "transmission error without load, along the line of action",
-            [mesh.transmission_error for mesh in unloaded],
+            [first_touch(contact, grid) for contact in contacts],
         ),
     ):
         variables[name] = (over_phases, np.array(rows), _unit(unit, what))

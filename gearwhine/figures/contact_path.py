@@ -36,7 +36,9 @@ def draw_contact_path(
     rolls = np.degrees(pair.driver_roll_angle(positions))
     below = FOOT + _SLIDING + _BETWEEN
     middle = _PRESSURE + _BETWEEN if pressure is not None else 0.0
-    note = "A to E: start of the driver's active profile, lowest point of single contact, pitch point, highest, end"
+    note = (
+        "A, E: the driver's active profile starts and ends; B: the pair before leaves; C: pitch point; D: the next one"
+    )
     if contact.touching_range[0] < 0.0:
         note += "; beyond A and E " + ("the face's other parts" if contact.faces is not None else "corners touch")
     figure = sheet(HEAD + _LETTERS + _SHARE + _BETWEEN + middle + _SLIDING + FOOT, title, note)

@@ -1,4 +1,4 @@
-"""Flanks as an inspection chart shows them: profile over the roll angle, helix across the face, pitch tooth by tooth."""
+"""Flanks as an inspection chart has them: profile over the roll angle, helix across the face, pitch tooth by tooth."""
 
 from collections.abc import Callable, Sequence
 
@@ -59,7 +59,10 @@ def draw_flank_charts(title: str, pair: GearPairGeometry, best: TipRelief | None
     rows = _rows(pair, best)
     if not rows:
         raise ValueError(f"{pair.label}: perfect involutes have no chart")
-    note = "µm over the perfect flank, along the line of action; shaded: outside the active profile"
+    note = (
+        "material over the perfect flank, profile and helix along the line of action, pitch along the pitch circle; "
+        "shaded: outside the active profile"
+    )
     figure = sheet(HEAD + _NAMES + len(rows) * (_ROW + _BETWEEN) - _BETWEEN + FOOT, title, note)
     width = 0.5 * (PANEL_WIDTH - _GAP)
     handles: list[Artist] = []

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from coupling.gears import transmission_error_harmonics
 from gearwhine.figures.contact_path import draw_contact_path
 from gearwhine.figures.contact_pattern import draw_contact_pattern
 from gearwhine.figures.flank_charts import draw_flank_charts, has_charts
@@ -17,11 +16,11 @@ from gearwhine.figures.tooth_pair import draw_tooth_pair
 from gearwhine.figures.transmission_error import draw_transmission_error
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.gear_analysis import HARMONICS, PairAnalysis
+from gearwhine.stages.gear_analysis import PairAnalysis
 
 
 def draw_gear_pairs(folder: Path, pairs: Sequence[PairAnalysis], progress: Progress = silent) -> list[str]:
-    """Draw each pair: its teeth, stiffness, transmission error and flanks, and what it does under load and over torques.
+    """Draw each pair: its teeth, stiffness, transmission error and flanks, and what it does under load and over torque.
 
     Parameters
     ----------
@@ -56,22 +55,25 @@ def _figures(pair: PairAnalysis) -> Iterator[tuple[str, Figure]]:
             f"{name}: mesh stiffness", solved.contact, solved.static, shared=loaded and solved.has_single_pairs
         ),
     )
-    harmonics = {"unloaded": transmission_error_harmonics(pair.unloaded, HARMONICS)}
+    harmonics = {"unloaded": pair.unloaded_harmonics}
     if loaded:
         harmonics["loaded"] = pair.harmonics
     yield (
         "transmission-error",
         draw_transmission_error(
             f"{name}: transmission error",
+            solved.static.phases,
             pair.unloaded,
-            solved.static if loaded else None,
             harmonics,
+            loaded=solved.static if loaded else None,
             hunting=solved.hunting,
         ),
     )
     if loaded and solved.has_single_pairs:
+        # Over a face it has a picture of its own.
         pressure = pair.pressure if pair.pressure is not None and pair.pressure.ndim == 2 else None
-        sheet = draw_contact_path(f"{name}: along the path", geometry, solved.contact, solved.static, pressure)
+        along = f"{name}: along the path of contact"
+        sheet = draw_contact_path(along, geometry, solved.contact, solved.static, pressure)
         yield "path", sheet
     if solved.static.line_loads is not None and loaded:
         sheet = draw_contact_pattern(f"{name}: contact pattern", geometry, solved.contact, solved.static)

@@ -67,7 +67,7 @@ def _draw_shares(axes: Axes, contact: ToothContact, mesh: StaticMesh) -> None:
         axes.plot(mesh.phases, share, color=SERIES[before % len(SERIES)], lw=1.3, label=_name(before))
     axes.set(ylabel="share of the load [%]", xlim=(0.0, 1.0), ylim=(-4.0, 104.0))
     axes.yaxis.set_major_locator(MultipleLocator(25.0))
-    axes.legend(loc="center right", fontsize=NOTE, framealpha=0.9, edgecolor="none")
+    axes.legend(loc="best", fontsize=NOTE, framealpha=0.9, edgecolor="none")
 
 
 def _name(before: int) -> str:

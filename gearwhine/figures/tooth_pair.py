@@ -53,8 +53,8 @@ def draw_tooth_pair(pair: GearPairGeometry, phase: float | None = None) -> Figur
     title = f"{shortened(pair.driver.name, 20)} → {shortened(pair.driven.name, 20)}: teeth in contact"
     section = "transverse section; " if pair.driver.helix_angle else ""
     note = (
-        f"{section}A to E: path of contact from the start of the driver's active profile, B and D where one pair "
-        "carries alone between them, C pitch point; red: where teeth touch now"
+        f"{section}A, E: the driver's active profile starts and ends; B: the pair before leaves; C: pitch point; "
+        "D: the next pair enters; red: where teeth touch now"
     )
     figure = sheet(HEAD + _HEIGHT + FOOT, title, note)
     axes = panel(figure, FOOT, _HEIGHT)
@@ -75,8 +75,9 @@ def draw_tooth_pair(pair: GearPairGeometry, phase: float | None = None) -> Figur
     _senses(axes, half)
     for centre, gear in zip((-1.0, 1.0), (pair.driver, pair.driven), strict=True):
         name = f"{shortened(gear.name, 24)}, {gear.teeth} teeth"
-        place = {"x": 0.02, "y": 0.5 + 0.47 * centre, "va": "top" if centre > 0.0 else "bottom"}
-        axes.text(s=name, **place, transform=axes.transAxes, size=LABEL, color=INK, parse_math=False)
+        side = "top" if centre > 0.0 else "bottom"
+        place = (0.02, 0.5 + 0.47 * centre)
+        axes.text(*place, name, va=side, transform=axes.transAxes, size=LABEL, color=INK, parse_math=False)
     handles = [Line2D([], [], color=INK, lw=0.8, label="line of action")]
     handles += [Line2D([], [], color=GREY, lw=0.8, ls=dashes, label=name) for name, dashes in _DASHES.items()]
     legend(figure, handles)

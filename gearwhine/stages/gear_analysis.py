@@ -24,8 +24,8 @@ class PairAnalysis:
     Attributes
     ----------
     solved : SolvedPair
-    unloaded : coupling.gears.StaticMesh
-        Without load, at the phases of ``solved.static``.
+    unloaded : ndarray, shape (n,)
+        Transmission error without load at the phases of ``solved.static`` [m]: where the first teeth just touch.
     pressure : ndarray, shape (n, m) or (n, m, s), or None
         Hertzian pressure of every pair at every phase [Pa], see `coupling.gears.mesh_pressure`. None without load,
         single pairs or a face width in the case.
@@ -40,7 +40,7 @@ class PairAnalysis:
     """
 
     solved: SolvedPair
-    unloaded: room.StaticMesh
+    unloaded: FloatArray
     pressure: FloatArray | None
     pitch_pressure: float | None
     harris: room.HarrisMap | None = None
@@ -65,6 +65,13 @@ class PairAnalysis:
         return room.transmission_error_harmonics(mesh, HARMONICS)
 
     @property
+    def unloaded_harmonics(self) -> FloatArray:
+        """The same without load, over the mesh period of ``solved.static`` [m], (8,)."""
+        return room.transmission_error_harmonics(
+            replace(self.solved.static, transmission_error=self.unloaded), HARMONICS
+        )
+
+    @property
     def as_given(self) -> float | None:
         """Peak to peak at the case's torque with all teeth alike [m]; None without a Harris map."""
         if self.harris is None:
@@ -87,15 +94,24 @@ class PairAnalysis:
 
     @property
     def corner_force(self) -> float:
-        """The largest force that a pair carries outside its path of contact, in the middle of the face [N]."""
-        static, end = self.solved.static, self.solved.geometry.contact_ratio
-        outside = (static.positions < 0.0) | (static.positions > end)
-        return float(static.pair_forces[outside].max(initial=0.0))
+        """The largest force that a pair's corners carry, outside its path of contact [N]."""
+        static, end, faces = self.solved.static, self.solved.geometry.contact_ratio, self.solved.contact.faces
+        if faces is None or static.line_loads is None:
+            outside = (static.positions < 0.0) | (static.positions > end)
+            return float(static.pair_forces[outside].max(initial=0.0))
+        places = static.positions[..., None] + faces.shift
+        carried = np.where((places < 0.0) | (places > end), static.line_loads, 0.0)
+        return float(carried.sum(axis=-1).max(initial=0.0)) * faces.width
 
 
 def analyse_pairs(case: Case, solved: Sequence[SolvedPair]) -> tuple[PairAnalysis, ...]:
     """Look at each solved pair under the case's torque and without."""
     return tuple(_analysis(case, pair) for pair in solved)
+
+
+def first_touch(contact: room.ToothContact, phases: FloatArray) -> FloatArray:
+    """Transmission error without load at `phases` (n,): the least gap of the pairs there [m]."""
+    return np.asarray(contact.pairs(phases).deviation.min(axis=1), dtype=np.float64)
 
 
 def over_torques(pairs: Sequence[PairAnalysis], progress: Progress = silent) -> tuple[PairAnalysis, ...]:
@@ -113,7 +129,7 @@ def over_torques(pairs: Sequence[PairAnalysis], progress: Progress = silent) -> 
 
 
 def _analysis(case: Case, pair: SolvedPair) -> PairAnalysis:
-    unloaded = room.static_transmission_error(pair.contact, 0.0, pair.static.phases)
+    unloaded = first_touch(pair.contact, pair.static.phases)
     # A width that only stands in for one that is not given says nothing of the pressure.
     wide = all(case.gear_named(name).face_width is not None for name in (pair.given.driver, pair.given.driven))
     if pair.static.force == 0.0 or not pair.has_single_pairs or not wide:

@@ -46,7 +46,7 @@ def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
             "mean": solved.static.mean_transmission_error,
             "peak_to_peak": solved.static.peak_to_peak_transmission_error,
             "harmonics": pair.harmonics.tolist(),
-            "unloaded_peak_to_peak": pair.unloaded.peak_to_peak_transmission_error,
+            "unloaded_peak_to_peak": float(np.ptp(pair.unloaded)),
             "over_hunting_period": _over_hunting_period(solved),
         },
         "load_sharing": _load_sharing(pair),
@@ -57,7 +57,7 @@ def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
         "stiffness": stiffness.tolist(),
         "loaded_stiffness": solved.static.tangent_stiffness.tolist(),
         "transmission_error": solved.static.transmission_error.tolist(),
-        "unloaded_transmission_error": pair.unloaded.transmission_error.tolist(),
+        "unloaded_transmission_error": pair.unloaded.tolist(),
     }
 
 
