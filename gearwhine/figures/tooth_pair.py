@@ -105,9 +105,10 @@ def _line_of_action(axes: Axes, pair: GearPairGeometry, phase: float, centre: Fl
     ends = _MM * np.array([tangent, tangent + pair.tangent_distance * along])
     axes.plot(*ends.T, color=INK, lw=0.7, zorder=3, label="_line of action")
     axes.plot(*place([0.0, pair.contact_ratio]).T, color=INK, lw=1.8, zorder=3, label="_path of contact")
-    for letter, point in zip(_LETTERS, place(path_of_contact(pair).position), strict=True):
+    # Letters on either side in turn: B, C and D may be near to each other.
+    for number, (letter, point) in enumerate(zip(_LETTERS, place(path_of_contact(pair).position), strict=True)):
         axes.plot(*point, marker="o", ms=3.0, mfc="white", mec=INK, mew=0.8, zorder=4, label="_point")
-        offset = (7.0 * across[0], 7.0 * across[1])
+        offset = tuple((7.0 if number % 2 == 0 else -7.0) * across)
         axes.annotate(
             letter, point, offset, textcoords="offset points", size=LABEL, color=INK, ha="center", va="center"
         )

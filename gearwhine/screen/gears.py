@@ -141,8 +141,10 @@ def _relief(pair: dict[str, Any]) -> list[str]:
     if any(gear["tip_relief"] for gear in pair["gears"]):
         lines = [
             f"The relief of {_given(pair)} leaves {given:.2f} µm peak to peak {at}{alike}, none {without:.2f} µm",
-            f"  it is quietest near {pair['harris_map']['quietest_torque_n_m']:.3g} N·m",
         ]
+        # At the least of the torques, any pair is quiet.
+        if (quietest := pair["harris_map"]["quietest_torque_n_m"]) > pair["harris_map"]["torque_n_m"][0]:
+            lines.append(f"  it is quietest near {quietest:.3g} N·m")
     else:
         lines = [f"Without relief {given:.2f} µm peak to peak {at}{alike}"]
     starts = [math.degrees(best[f"{side}_start_roll_angle_rad"]) for side in ("driver", "driven")]
