@@ -9,7 +9,14 @@ from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
-from gearwhine.stages import gear_analysis, gear_documents, housing_documents, mesh_health, rotor_documents
+from gearwhine.stages import (
+    gear_analysis,
+    gear_documents,
+    gear_torques,
+    housing_documents,
+    mesh_health,
+    rotor_documents,
+)
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
@@ -162,7 +169,7 @@ def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ro
 def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
     """The gear pairs, over torques too; with a folder, also as a results file and pictures."""
     pairs = gear_analysis.analyse_pairs(case, gear_stage.solve_gears(case, progress))
-    pairs = gear_analysis.over_torques(pairs, progress)
+    pairs = gear_torques.over_torques(pairs, progress)
 
     def write(place: Path) -> None:
         from gearwhine import figures, results

@@ -1,4 +1,4 @@
-"""What a gear pair's teeth do: who carries, how hard they press, what torques change, and which relief suits them."""
+"""What the teeth of a gear pair do under the torque of the case: who carries, how hard they press, how they err."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,13 +8,11 @@ import numpy.typing as npt
 
 import coupling.gears as room
 from gearwhine.case import Case
-from gearwhine.progress import Progress, silent
 from gearwhine.stages.gears import SolvedPair
 
 FloatArray = npt.NDArray[np.float64]
 
 HARMONICS = 8
-_LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # of the case's torque, in a Harris map
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,20 +112,6 @@ def first_touch(contact: room.ToothContact, phases: FloatArray) -> FloatArray:
     return np.asarray(contact.pairs(phases).deviation.min(axis=1), dtype=np.float64)
 
 
-def over_torques(pairs: Sequence[PairAnalysis], progress: Progress = silent) -> tuple[PairAnalysis, ...]:
-    """The same pairs with their Harris maps and optimal reliefs, where the case has a torque."""
-    found = []
-    for pair in pairs:
-        if pair.solved.static.force > 0.0:
-            progress(f"Harris map of {pair.label}")
-            pair = replace(pair, harris=_harris_map(pair.solved))
-            if pair.solved.has_single_pairs:
-                progress(f"best tip relief of {pair.label}")
-                pair = replace(pair, optimum=_best_relief(pair.solved))
-        found.append(pair)
-    return tuple(found)
-
-
 def _analysis(case: Case, pair: SolvedPair) -> PairAnalysis:
     unloaded = first_touch(pair.contact, pair.static.phases)
     # A width that only stands in for one that is not given says nothing of the pressure.
@@ -146,35 +130,3 @@ def _pitch_pressure(pair: SolvedPair) -> float:
     pressure = room.mesh_pressure(pair.geometry, pair.contact, mesh).reshape(*mesh.positions.shape, -1)
     passing = np.isclose(mesh.positions[..., None] + shift, pitch, rtol=0.0, atol=1e-9)
     return float(pressure[passing].max())
-
-
-def _harris_map(pair: SolvedPair) -> room.HarrisMap:
-    contact = pair.contact
-    if contact.hunting_period > 1:
-        contact = room.tooth_contact(
-            _alike(pair.geometry), pair.model, corner_contact=_has_corners(contact), faces=contact.faces
-        )
-    return room.harris_map(contact, pair.static.force * np.linspace(_LEAST, _MOST, _TORQUES))
-
-
-def _best_relief(pair: SolvedPair) -> room.ReliefOptimum:
-    given = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
-    return room.optimal_tip_relief(
-        _alike(pair.geometry),
-        pair.model,
-        [pair.static.force],
-        shape="linear" if given is None else given.shape,
-        corner_contact=_has_corners(pair.contact),
-        faces=pair.contact.faces,
-    )
-
-
-def _alike(pair: room.GearPairGeometry) -> room.GearPairGeometry:
-    """A pair of gears with all their teeth alike: a relief is cut for all of them."""
-    driver, driven = (replace(gear, pitch_deviations=(), faults=()) for gear in (pair.driver, pair.driven))
-    return replace(pair, driver=driver, driven=driven)
-
-
-def _has_corners(contact: room.ToothContact) -> bool:
-    """Whether pairs touch beyond their path of contact."""
-    return bool(contact.stiffness.knots[0] < 0.0)

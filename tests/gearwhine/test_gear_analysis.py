@@ -13,8 +13,9 @@ import xarray as xr
 import coupling.gears as room
 from gearwhine.case import Case, load_case
 from gearwhine.results import write
-from gearwhine.stages.gear_analysis import PairAnalysis, analyse_pairs, over_torques
+from gearwhine.stages.gear_analysis import PairAnalysis, analyse_pairs
 from gearwhine.stages.gear_documents import gears_document
+from gearwhine.stages.gear_torques import coarser_faces, over_torques
 from gearwhine.stages.gears import solve_gears
 
 
@@ -163,6 +164,18 @@ def test_a_crowned_face() -> None:
     assert pair.pitch_pressure > 1.1 * even.pitch_pressure
 
 
+def test_a_coarser_face_is_the_one_that_would_be_cut_so() -> None:
+    pair = room.GearPairGeometry(
+        replace(analysed(*EVEN).solved.geometry.driver, helix_angle=0.2),
+        replace(analysed(*EVEN).solved.geometry.driven, helix_angle=-0.2),
+    )
+    fine, expected = room.face_slices(pair, misalignment=1e-4), room.face_slices(pair, misalignment=1e-4, count=21)
+    coarse = coarser_faces(fine, 21)
+    for name in ("z", "width", "shift", "gap", "flattening", "coupling"):
+        np.testing.assert_allclose(getattr(coarse, name), getattr(expected, name), rtol=1e-12, atol=1e-18)
+    assert coarser_faces(expected, 61) is expected
+
+
 def test_the_document_of_a_loaded_pair() -> None:
     pair = document(*EVEN)
     driver, driven = pair["gears"]
@@ -220,7 +233,9 @@ def test_the_results_file_has_labelled_curves(tmp_path: Path) -> None:
         carried = (curves.load_share > 0.0).sum("tooth_pair").mean()
         assert float(carried) == pytest.approx(pair.loaded_contact_ratio, abs=5e-3)
         assert pair.harris is not None
-        swing = curves.harris_transmission_error.max("harris_step") - curves.harris_transmission_error.min("harris_step")
+        swing = curves.harris_transmission_error.max("harris_step") - curves.harris_transmission_error.min(
+            "harris_step"
+        )
         np.testing.assert_allclose(swing, pair.harris.peak_to_peak)
         np.testing.assert_allclose(curves.harris_torque, 71.77 * np.linspace(0.1, 2.0, 20))
         # Table I: relief of 0.023 and 0.025 mm at the tips.
