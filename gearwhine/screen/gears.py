@@ -43,7 +43,7 @@ def _gears(console: Console, pair: dict[str, Any]) -> None:
     for gear in pair["gears"]:
         diameters, span = gear["diameters_m"], gear["span"]
         row = [gear["name"], str(gear["teeth"]), *[f"{gear['profile_shift']:.4g}"] * shifted]
-        row.append(f"{_MM * gear['face_width_m']:.5g}")
+        row.append("" if gear["face_width_m"] is None else f"{_MM * gear['face_width_m']:.5g}")
         row += [f"{_MM * diameters[name]:.3f}" for name in ("tip", "reference", "base", "root")]
         row += [f"{_MM * gear['normal_thickness_m']['tip']:.3f}", f"{_MM * gear['tip_clearance_m']:.3f}"]
         row.append("" if span is None else f"{_MM * span['length_m']:.3f} over {span['teeth']}")
@@ -121,10 +121,9 @@ def _load(pair: dict[str, Any]) -> list[str]:
             lines.append(f"Corners carry up to {sharing['corner_force_n']:.4g} N beyond the path of contact")
     if pressure := pair["contact_pressure_pa"]:
         where = _degrees(pressure["at_driver_roll_angle_rad"], ".2f")
-        lines.append(
-            f"Contact pressure {_MEGA * pressure['max']:.0f} MPa at most, at {where} roll of the driver; "
-            f"{_MEGA * pressure['pitch_point']:.0f} MPa at the pitch point"
-        )
+        lines.append(f"Contact pressure {_MEGA * pressure['max']:.0f} MPa at most, at {where} roll of the driver")
+        if pressure["pitch_point"] is not None:
+            lines[-1] += f"; {_MEGA * pressure['pitch_point']:.0f} MPa at the pitch point"
     return lines
 
 

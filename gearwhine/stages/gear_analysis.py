@@ -22,13 +22,16 @@ class PairAnalysis:
     Attributes
     ----------
     solved : SolvedPair
+    widths_given : tuple of bool
+        Whether the case gives the face width of the driver and of the driven gear; one that only stands in for it says
+        nothing of a pressure.
     unloaded : ndarray, shape (n,)
         Transmission error without load at the phases of ``solved.static`` [m]: where the first teeth just touch.
     pressure : ndarray, shape (n, m) or (n, m, s), or None
         Hertzian pressure of every pair at every phase [Pa], see `coupling.gears.mesh_pressure`. None without load,
-        single pairs or a face width in the case.
+        single pairs or face widths in the case.
     pitch_pressure : float or None
-        The largest at the pitch point [Pa].
+        The largest at the pitch point [Pa]; None also where that is not on the path of contact.
     harris : coupling.gears.HarrisMap or None
         From a tenth to twice the case's torque, with all teeth alike: without pitch deviations and damage. None
         unless asked for, and without a torque.
@@ -38,6 +41,7 @@ class PairAnalysis:
     """
 
     solved: SolvedPair
+    widths_given: tuple[bool, bool]
     unloaded: FloatArray
     pressure: FloatArray | None
     pitch_pressure: float | None
@@ -114,17 +118,19 @@ def first_touch(contact: room.ToothContact, phases: FloatArray) -> FloatArray:
 
 def _analysis(case: Case, pair: SolvedPair) -> PairAnalysis:
     unloaded = first_touch(pair.contact, pair.static.phases)
-    # A width that only stands in for one that is not given says nothing of the pressure.
-    wide = all(case.gear_named(name).face_width is not None for name in (pair.given.driver, pair.given.driven))
-    if pair.static.force == 0.0 or not pair.has_single_pairs or not wide:
-        return PairAnalysis(pair, unloaded, None, None)
+    driver, driven = case.gear_named(pair.given.driver), case.gear_named(pair.given.driven)
+    given = driver.face_width is not None, driven.face_width is not None
+    if pair.static.force == 0.0 or not pair.has_single_pairs or not all(given):
+        return PairAnalysis(pair, given, unloaded, None, None)
     pressure = room.mesh_pressure(pair.geometry, pair.contact, pair.static)
-    return PairAnalysis(pair, unloaded, pressure, _pitch_pressure(pair))
+    return PairAnalysis(pair, given, unloaded, pressure, _pitch_pressure(pair))
 
 
-def _pitch_pressure(pair: SolvedPair) -> float:
-    """The largest pressure while a pair, or a slice of its face, passes the pitch point [Pa]."""
+def _pitch_pressure(pair: SolvedPair) -> float | None:
+    """The largest pressure while a pair, or a slice of its face, passes the pitch point [Pa]; None off the path."""
     pitch, faces = pair.geometry.pitch_point_position, pair.contact.faces
+    if not 0.0 <= pitch < pair.geometry.contact_ratio:
+        return None
     shift = np.zeros(1) if faces is None else faces.shift
     mesh = room.static_transmission_error(pair.contact, pair.static.force, np.unique((pitch - shift) % 1.0))
     pressure = room.mesh_pressure(pair.geometry, pair.contact, mesh).reshape(*mesh.positions.shape, -1)

@@ -1,5 +1,6 @@
 """Gear pairs as the command's JSON: keys with their units, angles in rad, positions in base pitches."""
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,10 @@ def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
         "mesh_frequency_hz": solved.mesh_frequency,
         "torque_n_m": solved.torque,
         "mean_force_n": solved.static.force,
-        "gears": [_gear(geometry, gear) for gear in (geometry.driver, geometry.driven)],
+        "gears": [
+            _gear(geometry, gear, wide=wide)
+            for gear, wide in zip((geometry.driver, geometry.driven), pair.widths_given, strict=True)
+        ],
         "path_of_contact": _path_of_contact(geometry),
         "stiffness_n_per_m": {
             "mean": solved.contact.mean_stiffness,
@@ -61,7 +65,7 @@ def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
     }
 
 
-def _gear(pair: room.GearPairGeometry, gear: room.Gear) -> dict[str, Any]:
+def _gear(pair: room.GearPairGeometry, gear: room.Gear, *, wide: bool) -> dict[str, Any]:
     """A gear's proportions, and what a shop measures to know them."""
     document = {
         "name": gear.name,
@@ -70,7 +74,7 @@ def _gear(pair: room.GearPairGeometry, gear: room.Gear) -> dict[str, Any]:
         "pressure_angle_rad": gear.pressure_angle,
         "helix_angle_rad": gear.helix_angle,
         "profile_shift": gear.profile_shift,
-        "face_width_m": gear.face_width,
+        "face_width_m": gear.face_width if wide else None,
         "diameters_m": {
             "tip": 2.0 * gear.tip_radius,
             "reference": 2.0 * gear.pitch_radius,
@@ -88,16 +92,12 @@ def _gear(pair: room.GearPairGeometry, gear: room.Gear) -> dict[str, Any]:
         "tip_relief": None if gear.tip_relief is None else _relief(gear, gear.tip_relief),
     }
     # Not every gear can be measured in every way: a face too narrow, teeth too short.
-    try:
+    with suppress(room.GearError):
         span = room.span_measurement(gear)
         document["span"] = {"teeth": span.teeth, "length_m": span.length}
-    except room.GearError:
-        pass
-    try:
+    with suppress(room.GearError):
         balls = room.over_balls(gear)
         document["over_balls"] = {"ball_diameter_m": balls.diameter, "length_m": balls.length}
-    except room.GearError:
-        pass
     return document
 
 

@@ -11,8 +11,9 @@ import pytest
 import xarray as xr
 
 import coupling.gears as room
-from gearwhine.case import Case, load_case
+from gearwhine.case import Case, load_case, parse_case
 from gearwhine.results import write
+from gearwhine.screen import show_gears
 from gearwhine.stages.gear_analysis import PairAnalysis, analyse_pairs
 from gearwhine.stages.gear_documents import gears_document
 from gearwhine.stages.gear_torques import coarser_faces, over_torques
@@ -176,6 +177,24 @@ def test_a_coarser_face_is_the_one_that_would_be_cut_so() -> None:
     assert coarser_faces(expected, 61) is expected
 
 
+def test_all_recess_gears_have_no_pressure_at_their_pitch_point(capsys: pytest.CaptureFixture[str]) -> None:
+    """A driven gear whose tips end below the pitch circle: contact begins when the pitch point has been passed."""
+    case = case_of(*EVEN)
+    (solved,) = solve_gears(case)
+    angle = math.radians(20.0)
+    driver = room.Gear("pinion", 60, 3e-3, angle, 0.02, profile_shift=0.5, addendum=1.3)
+    driven = room.Gear("wheel", 90, 3e-3, angle, 0.02, profile_shift=-0.5, addendum=0.4, dedendum=1.7)
+    geometry = room.GearPairGeometry(driver, driven)
+    assert geometry.pitch_point_position < 0.0
+    contact = room.tooth_contact(geometry, solved.model)
+    static = room.static_transmission_error(contact, 1000.0)
+    (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, contact=contact, static=static),))
+    assert pair.pitch_pressure is None
+    show_gears(gears_document((pair,)))
+    assert "MPa at most, at" in (out := capsys.readouterr().out)
+    assert "at the pitch point" not in out
+
+
 def test_the_document_of_a_loaded_pair() -> None:
     pair = document(*EVEN)
     driver, driven = pair["gears"]
@@ -219,6 +238,29 @@ def test_what_needs_pairs_of_teeth_is_left_out_with_one_spring() -> None:
     # A spring of 1e8 N/m yields in proportion to the torque, and never swings.
     assert max(pair["harris_map"]["peak_to_peak_m"]) < 1e-12
     assert pair["transmission_error_m"]["mean"] == pytest.approx(pair["mean_force_n"] / 1e8)
+
+
+def test_gears_by_base_radius_have_no_width_to_press_on() -> None:
+    def gear(name: str, teeth: int) -> dict[str, Any]:
+        inertia = {"mass": 0, "polar_inertia": 1e-4, "diametral_inertia": 0}
+        return {"name": name, "teeth": teeth, "base_radius": 1.5e-3 * teeth, **inertia}
+
+    spring = {"model": "square", "value": 2e8}
+    case = parse_case(
+        {
+            "gear": [gear("a", 31), gear("b", 25)],
+            "gear_pair": [{"driver": "a", "driven": "b", "stiffness": spring}],
+            "operation": {"speed": "1000 rpm", "torque": "77.5 N*m"},
+        }
+    )
+    (pair,) = over_torques(analyse_pairs(case, solve_gears(case)))
+    (given,) = gears_document((pair,))["pairs"]
+    assert given["contact_pressure_pa"] is None
+    assert [one["face_width_m"] for one in given["gears"]] == [None, None]
+    # Equal springs: two carry F / 2k, one F / k, and a relief whose two gaps add up to F / k evens that out wholly.
+    force, error = given["mean_force_n"], given["transmission_error_m"]
+    assert error["peak_to_peak"] == pytest.approx(force / 4e8)
+    assert given["optimal_tip_relief"]["peak_to_peak_m"] < 1e-3 * error["peak_to_peak"]
 
 
 def test_the_results_file_has_labelled_curves(tmp_path: Path) -> None:
