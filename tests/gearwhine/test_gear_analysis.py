@@ -1,6 +1,8 @@
 """The analysis of gear pairs: each figure against the room's own functions, closed forms, or another way to it."""
 
 import math
+import subprocess
+import sys
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -283,3 +285,14 @@ def test_the_results_file_has_labelled_curves(tmp_path: Path) -> None:
         # Table I: relief of 0.023 and 0.025 mm at the tips.
         np.testing.assert_allclose(curves.flank_deviation.isel(flank_place=-1), [-23e-6, -25e-6], rtol=1e-9)
         assert curves.hunting_phase[-1] < 28.0
+
+
+def test_the_command_compiles_nothing_and_draws_nothing_unasked() -> None:
+    """Numba, matplotlib and xarray each take longer to load than the whole work."""
+    heavy = {"numba", "matplotlib", "xarray", "skfem", "gmsh"}
+    code = (
+        f"import sys; from gearwhine.cli import run_command; run_command(['gears', 'gear-62-62', '--json', '-q']); "
+        f"print(sorted({heavy!r} & set(sys.modules)), file=sys.stderr)"
+    )
+    outcome = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert outcome.stderr.strip() == "[]"
