@@ -288,7 +288,7 @@ def test_the_results_file_has_labelled_curves(tmp_path: Path) -> None:
 
 
 def test_the_command_compiles_nothing_and_draws_nothing_unasked() -> None:
-    """Numba, matplotlib and xarray each take longer to load than the whole work."""
+    """What the work does not need is not loaded."""
     heavy = {"numba", "matplotlib", "xarray", "skfem", "gmsh"}
     code = (
         f"import sys; from gearwhine.cli import run_command; run_command(['gears', 'gear-62-62', '--json', '-q']); "
