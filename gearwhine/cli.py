@@ -147,7 +147,7 @@ def rotors(
 
 @app.command
 def gears(case: CaseName, *, common: Common = _DEFAULTS) -> None:
-    """Contact ratio, mesh stiffness and static transmission error of each gear pair."""
+    """Each gear pair: geometry, stiffness, transmission error, load sharing, pressure, Harris map, best tip relief."""
     from gearwhine.screen import show_gears
     from gearwhine.work import gears_case
 

@@ -7,11 +7,11 @@ import numpy.typing as npt
 import xarray as xr
 
 from coupling import CoupledModes
-from coupling.gears import mesh_stiffness, static_transmission_error
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
+from gearwhine.gear_results import write_gears
 from gearwhine.rotor_results import Variables, write_rotors
-from gearwhine.stages.gears import SolvedPair
+from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.rotors import SolvedRotor
 from gearwhine.stages.transient import SolvedTransient
@@ -19,7 +19,6 @@ from gearwhine.stages.transient import SolvedTransient
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
-_PHASES = 400  # of the mesh period
 
 
 def write(
@@ -27,7 +26,7 @@ def write(
     case: Case,
     housing: SolvedHousing | None,
     rotors: tuple[SolvedRotor, ...],
-    pairs: tuple[SolvedPair, ...],
+    pairs: tuple[PairAnalysis, ...],
     system: CoupledModes | None,
     transient: SolvedTransient | None,
 ) -> None:
@@ -39,7 +38,7 @@ def write(
     if rotors:
         write_rotors(rotors, variables, coordinates)
     if pairs:
-        _pairs(pairs, variables, coordinates)
+        write_gears(pairs, variables, coordinates)
     if system is not None:
         _system(system, variables, coordinates)
     if transient is not None:
@@ -97,29 +96,6 @@ def _housing(solved: SolvedHousing, variables: Variables, coordinates: Variables
         (mode, "survey_point", "component"),
         survey.reshape(len(numbers), -1, 3),
         _unit("kg-0.5", "mass-normalised mode shapes at the survey points"),
-    )
-
-
-def _pairs(solved: tuple[SolvedPair, ...], variables: Variables, coordinates: Variables) -> None:
-    grid = np.arange(_PHASES) / _PHASES
-    coordinates["gear_pair"] = ("gear_pair", [f"{pair.given.driver} -> {pair.given.driven}" for pair in solved], {})
-    coordinates["mesh_phase"] = ("mesh_phase", grid, _unit("1", "part of the mesh period"))
-    static = [static_transmission_error(pair.contact, pair.static.force, grid) for pair in solved]
-    dimensions = ("gear_pair", "mesh_phase")
-    variables["mesh_stiffness"] = (
-        dimensions,
-        np.array([mesh_stiffness(pair.contact, grid) for pair in solved]),
-        _unit("N/m", "mesh stiffness of all pairs on the path of contact"),
-    )
-    variables["loaded_mesh_stiffness"] = (
-        dimensions,
-        np.array([one.tangent_stiffness for one in static]),
-        _unit("N/m", "stiffness of the pairs that touch under the mean torque"),
-    )
-    variables["transmission_error"] = (
-        dimensions,
-        np.array([one.transmission_error for one in static]),
-        _unit("m", "static transmission error under the mean torque, along the line of action"),
     )
 
 

@@ -9,7 +9,14 @@ from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
-from gearwhine.stages import gear_documents, housing_documents, mesh_health, rotor_documents
+from gearwhine.stages import (
+    gear_analysis,
+    gear_documents,
+    gear_torques,
+    housing_documents,
+    mesh_health,
+    rotor_documents,
+)
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
@@ -44,6 +51,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
     begin = time.perf_counter()
     rotors = rotor_stage.solve_rotors(case, progress) if case.rotor else ()
     pairs = gear_stage.solve_gears(case, progress) if case.gear_pair else ()
+    analysed = gear_analysis.analyse_pairs(case, pairs)
     timed("rotors_and_gears", begin)
     begin = time.perf_counter()
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
@@ -51,7 +59,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
     if rotors:
         document |= rotor_documents.rotors_document(rotors)
     if pairs:
-        document |= gear_documents.gears_document(case, pairs)
+        document |= gear_documents.gears_document(analysed)
     comparison = None
     if housing is not None:
         document["housing"] = housing_documents.modes_document(housing)
@@ -80,10 +88,9 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
     with staging(folder, replacing=True) as place:
         progress("writing results")
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
-        results.write(place / "results.nc", case, housing, rotors, pairs, system_modes, transient)
-        if pairs:
-            figures.draw_gear_pairs(place, pairs)
-        figures.draw_teeth_of_pairs(place, gear_stage.pair_geometries(case))
+        results.write(place / "results.nc", case, housing, rotors, analysed, system_modes, transient)
+        if analysed:
+            figures.draw_gear_pairs(place, analysed, progress)
         if transient is not None:
             figures.draw_transient(place, case, transient, housing, comparison)
         if housing is not None:
@@ -160,18 +167,17 @@ def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ro
 
 
 def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
-    """The gear pairs; with a folder, also as a results file and pictures."""
-    from gearwhine import figures, results
-
-    pairs = gear_stage.solve_gears(case, progress)
+    """The gear pairs, over torques too; with a folder, also as a results file and pictures."""
+    pairs = gear_analysis.analyse_pairs(case, gear_stage.solve_gears(case, progress))
+    pairs = gear_torques.over_torques(pairs, progress)
 
     def write(place: Path) -> None:
-        results.write(place / "results.nc", case, None, (), pairs, None, None)
-        if pairs:
-            figures.draw_gear_pairs(place, pairs)
-        figures.draw_teeth_of_pairs(place, gear_stage.pair_geometries(case))
+        from gearwhine import figures, results
 
-    return _kept(gear_documents.gears_document(case, pairs), case, folder, write)
+        results.write(place / "results.nc", case, None, (), pairs, None, None)
+        figures.draw_gear_pairs(place, pairs, progress)
+
+    return _kept(gear_documents.gears_document(pairs), case, folder, write)
 
 
 def system_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:

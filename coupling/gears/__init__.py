@@ -59,6 +59,12 @@ from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.path_of_contact import POINTS_OF_CONTACT, PathOfContact, path_of_contact, specific_sliding
 from coupling.gears.piecewise import PiecewiseCubic
 from coupling.gears.pitch_gaps import back_flank_pitch_gaps, pitch_gaps
+from coupling.gears.pressure import (
+    contact_curvature_radius,
+    contact_modulus,
+    contact_pressure,
+    mesh_pressure,
+)
 from coupling.gears.profile import tooth_outline
 from coupling.gears.runout import runout_error
 from coupling.gears.static import (
@@ -146,6 +152,9 @@ __all__ = [
     "WeberBanaschekStiffness",
     "back_flank_pitch_gaps",
     "chordal_thickness",
+    "contact_curvature_radius",
+    "contact_modulus",
+    "contact_pressure",
     "cornell",
     "corner_reach",
     "elastic_ring",
@@ -163,6 +172,7 @@ __all__ = [
     "line_contact",
     "mesh_damping",
     "mesh_period_phases",
+    "mesh_pressure",
     "mesh_stiffness",
     "meshing_rotations",
     "module_from_base_radius",

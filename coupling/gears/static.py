@@ -9,18 +9,20 @@ above the n-th and not above the next deviation.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import ContactAccuracyError, GearError
-from coupling.gears.face_slices import FaceSlices, balance_faces
+from coupling.gears.face_slices import FaceSlices, balance_faces, load_faces
 from coupling.gears.face_table import face_state
 from coupling.gears.tooth_contact import ToothContact
 
 FloatArray = npt.NDArray[np.float64]
 
+_HAIR = 1e-9
+"""Compression at which an unloaded face shows its stiffness [m]."""
 _BESIDE = 1e-9
 """How far beside an event the limits of a stepping curve are taken, in mesh periods."""
 
@@ -174,7 +176,13 @@ def _balanced_faces(contact: ToothContact, faces: FaceSlices, force: float, at: 
         state = face_state(faces, curves, position[these])
         base[these], gap[these], meeting[these] = state.base, state.gap, state.meeting
     gap += states.pitch_gap[rows, columns][:, None]
-    compression, loads = balance_faces(faces, base, gap, meeting, rows, np.full(at.size, force))
+    if force > 0.0:
+        compression, loads = balance_faces(faces, base, gap, meeting, rows, np.full(at.size, force))
+    else:
+        # Without load the first slice just touches; the stiffness is that of a hair's compression.
+        compression = states.deviation.min(axis=1)
+        loads = load_faces(faces, base, gap, meeting, compression[rows] + _HAIR)
+        loads = replace(loads, force=0.0 * loads.force, line_load=0.0 * loads.line_load)
     forces, tangents = np.zeros(states.position.shape), np.zeros(states.position.shape)
     line_loads = np.zeros((*states.position.shape, slices))
     forces[rows, columns], tangents[rows, columns] = loads.force, loads.tangent

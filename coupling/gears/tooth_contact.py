@@ -204,6 +204,11 @@ class ToothContact:
         return start - reach, end + reach
 
     @property
+    def has_corners(self) -> bool:
+        """Whether pairs touch beyond their path of contact."""
+        return self._slice_range[0] < 0.0
+
+    @property
     def _slice_range(self) -> tuple[float, float]:
         return float(self.stiffness.knots[0]), float(self.stiffness.knots[-1])
 

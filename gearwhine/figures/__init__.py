@@ -1,6 +1,6 @@
 """Figures by matplotlib, made without a screen: plain arrays and the rooms' own results in, a `Figure` or a file out.
 
-``draw_transient``, ``draw_gear_pairs``, ``draw_teeth_of_pairs`` and ``draw_rotors`` write what a command shows into a
+``draw_transient``, ``draw_gear_pairs``, ``draw_tooth_pair`` and ``draw_rotors`` write what a command shows into a
 folder; the others return a figure for print, 160 mm wide, that :func:`save` writes::
 
     assembly = RotorAssembly(rotor, bearings)
@@ -10,15 +10,21 @@ folder; the others return a figure for print, 160 mm wide, that :func:`save` wri
 
 from .assembly import DrawnGear, DrawnProbe, DrawnUnbalance, RotorAssembly
 from .campbell import draw_campbell
+from .contact_path import draw_contact_path
+from .contact_pattern import draw_contact_pattern
 from .critical_map import draw_critical_map
-from .gears import draw_gear_pairs
+from .flank_charts import draw_flank_charts
+from .gear_pairs import draw_gear_pairs
+from .harris_map import draw_harris_map
+from .mesh_stiffness import draw_mesh_stiffness
 from .mode_shapes import draw_lateral_modes, draw_torsional_modes
 from .rotors import draw_rotors
 from .shaft import draw_shaft
 from .static_deflection import draw_static_deflection
 from .style import save
-from .teeth import draw_teeth, draw_teeth_of_pairs
+from .tooth_pair import draw_tooth_pair
 from .transient import draw_transient
+from .transmission_error import draw_transmission_error
 from .unbalance import ProbeResponse, draw_unbalance_response
 from .whirl_shapes import draw_whirl_modes
 
@@ -29,16 +35,21 @@ __all__ = [
     "ProbeResponse",
     "RotorAssembly",
     "draw_campbell",
+    "draw_contact_path",
+    "draw_contact_pattern",
     "draw_critical_map",
+    "draw_flank_charts",
     "draw_gear_pairs",
+    "draw_harris_map",
     "draw_lateral_modes",
+    "draw_mesh_stiffness",
     "draw_rotors",
     "draw_shaft",
     "draw_static_deflection",
-    "draw_teeth",
-    "draw_teeth_of_pairs",
+    "draw_tooth_pair",
     "draw_torsional_modes",
     "draw_transient",
+    "draw_transmission_error",
     "draw_unbalance_response",
     "draw_whirl_modes",
     "save",

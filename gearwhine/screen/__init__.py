@@ -1,8 +1,9 @@
 """What a person sees on the terminal: a function for each command, given the document that its JSON holds."""
 
 from gearwhine.screen.case import show_check, show_examples, show_mesh
+from gearwhine.screen.gears import show_gears
 from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail
-from gearwhine.screen.machine import show_gears, show_run, show_system
+from gearwhine.screen.machine import show_run, show_system
 from gearwhine.screen.rotors import show_rotors
 
 __all__ = [

@@ -1,5 +1,6 @@
 """A case before anything is solved: what it means, its mesh, the bundled ones."""
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -147,9 +148,9 @@ def contact_ratios(pair: dict[str, Any]) -> str:
 
 def tooth_line(gear: dict[str, Any]) -> str:
     """A gear's circles, and the span over its teeth."""
-    hand = {0: "spur", 1: "right", -1: "left"}[(gear["helix_angle_deg"] > 0) - (gear["helix_angle_deg"] < 0)]
-    helix = "" if hand == "spur" else f", helix {abs(gear['helix_angle_deg']):.6g}° {hand}"
-    circles = ", ".join(f"{name} {1e3 * gear[f'{name}_diameter_m']:.6g}" for name in ("tip", "form", "root"))
+    angle = math.degrees(gear["helix_angle_rad"])
+    helix = f", helix {abs(angle):.6g}° {'right' if angle > 0.0 else 'left'}" if angle else ""
+    circles = ", ".join(f"{name} {1e3 * gear['diameters_m'][name]:.6g}" for name in ("tip", "form", "root"))
     span = gear["span"]
     measured = "" if span is None else f"; span of {span['teeth']}: {1e3 * span['length_m']:.6g} mm"
     cut = " (undercut)" if gear["undercut"] else ""

@@ -1,13 +1,11 @@
-"""Gears, the coupled system, and the main job that runs everything."""
+"""The coupled system, and the main job that runs everything."""
 
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
-from rich.text import Text
 
-from gearwhine.screen.case import contact_ratios, tooth_line
 from gearwhine.screen.console import counted, open_console, percent, show_origin, show_written
 from gearwhine.screen.health import static_error_line
 from gearwhine.screen.housing import comparison_table, modes_line
@@ -48,33 +46,6 @@ def _sensors(console: Console, document: dict[str, Any]) -> None:
         )
         table.add_row(sensor["name"], f"{sensor['rms_m_per_s2']:.3g}", lines)
     console.print(table)
-
-
-def show_gears(document: dict[str, Any]) -> None:
-    """Each gear pair's figures."""
-    console = open_console()
-    for pair in document["pairs"]:
-        stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
-        console.print(Text.assemble((f"{pair['driver']} → {pair['driven']}", "bold"), f"  {pair['model']}"))
-        console.print(f"  {contact_ratios(pair)}")
-        for gear in pair["geometry"]["gears"]:
-            console.print(f"  {tooth_line(gear)}")
-        if pair["mesh_frequency_hz"] is not None:
-            console.print(
-                f"  mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mesh force {pair['mean_force_n']:.1f} N"
-            )
-        console.print(
-            f"  mesh stiffness {1e-6 * stiffness['mean']:.2f} N/µm in the mean, {1e-6 * stiffness['min']:.2f} to "
-            f"{1e-6 * stiffness['max']:.2f}"
-        )
-        console.print(f"  static transmission error {_error(error)}")
-        if error.get("over_hunting_period"):
-            console.print(f"    over the hunting period: {_error(error['over_hunting_period'])}")
-    show_written(console, document)
-
-
-def _error(error: dict[str, Any]) -> str:
-    return f"{1e6 * error['mean']:.3f} µm in the mean, {1e6 * error['peak_to_peak']:.3f} µm peak to peak"
 
 
 def show_system(document: dict[str, Any]) -> None:

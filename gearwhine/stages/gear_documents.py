@@ -1,153 +1,136 @@
-"""Gears and gear pairs as the commands' JSON: shape, contact, mesh stiffness and transmission error."""
+"""Gear pairs as the command's JSON: keys with their units, angles in rad, positions in base pitches."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import coupling.gears as room
-from gearwhine.case import Case, mesh_frequencies, pair_torques
-from gearwhine.stages.gears import SolvedPair, pair_geometries
+from gearwhine.stages.gear_analysis import PairAnalysis
+from gearwhine.stages.gear_shapes import doubts, gear_document, path_document, relief_document
+from gearwhine.stages.gears import SolvedPair
+
+FloatArray = npt.NDArray[np.float64]
 
 
-def gears_document(case: Case, solved: tuple[SolvedPair, ...]) -> dict[str, Any]:
-    """Every gear pair of the case as the command's JSON."""
-    rows, warnings = [], []
-    for row, pair in zip(pairs_document(case), solved, strict=True):
-        warnings += doubts(pair.geometry)
-        rows.append(row | {"geometry": geometry_document(pair.geometry)} | _solved(pair))
-    return {"pairs": rows} | ({"warnings": warnings} if warnings else {})
+def gears_document(pairs: tuple[PairAnalysis, ...]) -> dict[str, Any]:
+    """The gear pairs as the command's JSON."""
+    warnings = [doubt for pair in pairs for doubt in doubts(pair.solved.geometry)]
+    return {"pairs": [_pair_document(pair) for pair in pairs]} | ({"warnings": warnings} if warnings else {})
 
 
-def pairs_document(case: Case) -> list[dict[str, Any]]:
-    """What every gear pair of the case is by arithmetic alone."""
-    number = len(case.gear_pair)
-    frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
-    torques = pair_torques(case) if case.operation is not None else (None,) * number
-    rows = []
-    for pair, geometry, frequency, torque in zip(
-        case.gear_pair, pair_geometries(case), frequencies, torques, strict=True
-    ):
-        rows.append(
-            {
-                "driver": pair.driver,
-                "driven": pair.driven,
-                "model": pair.stiffness.model,
-                "ratio": geometry.ratio,
-                "contact_ratio": geometry.contact_ratio,
-                "overlap_ratio": geometry.overlap_ratio,
-                "total_contact_ratio": geometry.total_contact_ratio,
-                "centre_distance_m": geometry.working_centre_distance,
-                "working_pressure_angle_deg": _degrees(geometry.working_pressure_angle),
-                "backlash_m": {
-                    "circumferential": geometry.circumferential_backlash,
-                    "normal": geometry.normal_backlash,
-                },
-                "mesh_frequency_hz": frequency,
-                "mean_force_n": None if torque is None else abs(torque) / geometry.driver.base_radius,
-            }
-        )
-    return rows
-
-
-def geometry_document(geometry: room.GearPairGeometry) -> dict[str, Any]:
-    """The shape of both gears, and the named points of their path of contact."""
-    path = room.path_of_contact(geometry)
-    points = [
-        {
-            "point": name,
-            "position": float(path.position[place]),
-            "driver_roll_angle_deg": _degrees(path.driver_roll_angle[place]),
-            "driven_roll_angle_deg": _degrees(path.driven_roll_angle[place]),
-            "driver_radius_m": float(path.driver_radius[place]),
-            "driven_radius_m": float(path.driven_radius[place]),
-            "driver_specific_sliding": float(path.driver_sliding[place]),
-            "driven_specific_sliding": float(path.driven_sliding[place]),
-        }
-        for place, name in enumerate(room.POINTS_OF_CONTACT)
-    ]
-    gears = [
-        gear_document(gear) | {"tip_clearance_m": geometry.tip_clearance(gear)}
-        for gear in (geometry.driver, geometry.driven)
-    ]
-    return {"gears": gears, "path_of_contact": points}
-
-
-def gear_document(gear: room.Gear) -> dict[str, Any]:
-    """One gear's teeth: their sizes, and what a shop measures on them."""
+def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
+    solved, geometry = pair.solved, pair.solved.geometry
+    phases = solved.static.phases
+    stiffness = room.mesh_stiffness(solved.contact, phases)
     return {
-        "name": gear.name,
-        "teeth": gear.teeth,
-        "virtual_teeth": gear.virtual_teeth,
-        "module_m": gear.module,
-        "pressure_angle_deg": _degrees(gear.pressure_angle),
-        "helix_angle_deg": _degrees(gear.helix_angle),
-        "profile_shift": gear.profile_shift,
-        "lead_m": None if gear.helix_angle == 0.0 else gear.lead,
-        "reference_diameter_m": 2.0 * gear.pitch_radius,
-        "base_diameter_m": 2.0 * gear.base_radius,
-        "tip_diameter_m": 2.0 * gear.tip_radius,
-        "root_diameter_m": 2.0 * gear.root_circle_radius,
-        "form_diameter_m": 2.0 * gear.form_radius,
-        "rack_tip_radius_m": gear.rack_tip_radius,
-        "undercut": gear.is_undercut,
-        "tip_thickness_m": room.normal_tooth_thickness(gear, gear.tip_radius),
-        "span": _measured(lambda: room.span_measurement(gear), "teeth", "length"),
-        "over_balls": _measured(lambda: room.over_balls(gear), "diameter", "length"),
-    }
-
-
-def doubts(geometry: room.GearPairGeometry) -> list[dict[str, str]]:
-    """Warnings of what runs but is not as it should be."""
-    found = []
-    for gear in (geometry.driver, geometry.driven):
-        try:
-            room.require_tip_thickness(gear)
-        except room.ThinTipError as error:
-            found.append({"name": "thin tip", "message": str(error)})
-        if gear.is_undercut:
-            message = (
-                f"gear {gear.name!r}: the teeth are undercut, their flanks begin at a diameter of "
-                f"{2e3 * gear.form_radius:.6g} mm; a profile_shift of "
-                f"{gear.least_generating_shift + gear.profile_shift - gear.generating_shift:.4g} avoids it"
-            )
-            found.append({"name": "undercut", "message": message})
-    return found
-
-
-def _measured(measure: Callable[[], object], count: str, length: str) -> dict[str, Any] | None:
-    """A measurement, or nothing where the teeth cannot be measured so."""
-    try:
-        found = measure()
-    except room.GearError:
-        return None
-    size = getattr(found, count)
-    return {count if isinstance(size, int) else f"{count}_m": size, f"{length}_m": getattr(found, length)}
-
-
-def _solved(pair: SolvedPair) -> dict[str, Any]:
-    """Mesh stiffness and static transmission error over a mesh period."""
-    phases = pair.static.phases
-    stiffness = room.mesh_stiffness(pair.contact, phases)
-    hunting = pair.hunting
-    return {
-        "mean_force_n": pair.static.force,
+        "driver": solved.given.driver,
+        "driven": solved.given.driven,
+        "model": solved.given.stiffness.model,
+        "contact_ratio": geometry.contact_ratio,
+        "overlap_ratio": geometry.overlap_ratio,
+        "total_contact_ratio": geometry.total_contact_ratio,
+        "centre_distance_m": geometry.working_centre_distance,
+        "working_pressure_angle_rad": geometry.working_pressure_angle,
+        "backlash_m": solved.given.backlash,
+        "mesh_frequency_hz": solved.mesh_frequency,
+        "torque_n_m": solved.torque,
+        "mean_force_n": solved.static.force,
+        "gears": [
+            gear_document(geometry, gear, wide=wide)
+            for gear, wide in zip((geometry.driver, geometry.driven), pair.widths_given, strict=True)
+        ],
+        "path_of_contact": path_document(geometry),
         "stiffness_n_per_m": {
-            "mean": pair.contact.mean_stiffness,
+            "mean": solved.contact.mean_stiffness,
             "min": float(stiffness.min()),
             "max": float(stiffness.max()),
+            "loaded_mean": solved.static.mean_stiffness,
         },
-        "transmission_error_m": _error(pair.static) | {"over_hunting_period": hunting and _error(hunting)},
-        "roll_angle_rad": (2.0 * np.pi * phases / pair.geometry.driver.teeth).tolist(),
+        "transmission_error_m": {
+            "mean": solved.static.mean_transmission_error,
+            "peak_to_peak": solved.static.peak_to_peak_transmission_error,
+            "harmonics": pair.harmonics.tolist(),
+            "unloaded_peak_to_peak": float(np.ptp(pair.unloaded)),
+            "over_hunting_period": _over_hunting_period(solved),
+        },
+        "load_sharing": _load_sharing(pair),
+        "contact_pressure_pa": _pressure(pair),
+        "harris_map": None if pair.harris is None else _harris_map(geometry, pair.harris),
+        "optimal_tip_relief": None if pair.optimum is None else _optimum(pair, pair.optimum),
+        "roll_angle_rad": (2.0 * np.pi * phases / geometry.driver.teeth).tolist(),
         "stiffness": stiffness.tolist(),
-        "loaded_stiffness": pair.static.tangent_stiffness.tolist(),
-        "transmission_error": pair.static.transmission_error.tolist(),
+        "loaded_stiffness": solved.static.tangent_stiffness.tolist(),
+        "transmission_error": solved.static.transmission_error.tolist(),
+        "unloaded_transmission_error": pair.unloaded.tolist(),
     }
 
 
-def _error(static: room.StaticMesh) -> dict[str, Any]:
-    return {"mean": static.mean_transmission_error, "peak_to_peak": static.peak_to_peak_transmission_error}
+def _over_hunting_period(solved: SolvedPair) -> dict[str, float] | None:
+    if solved.hunting is None:
+        return None
+    return {
+        "mean": solved.hunting.mean_transmission_error,
+        "peak_to_peak": solved.hunting.peak_to_peak_transmission_error,
+    }
 
 
-def _degrees(angle: float) -> float:
-    return float(np.degrees(angle))
+def _load_sharing(pair: PairAnalysis) -> dict[str, Any] | None:
+    """How many pairs carry for how long, and the part of the load that one has along its path."""
+    static = pair.solved.static
+    if static.force == 0.0 or not pair.solved.has_single_pairs:
+        return None
+    present = pair.solved.contact.pairs(static.phases).present
+    order = np.argsort(static.positions[present], kind="stable")
+    positions, shares = static.positions[present][order], static.load_shares[present][order]
+    return {
+        "pairs_in_contact": {str(count): part for count, part in pair.pairs_in_contact.items()},
+        "loaded_contact_ratio": pair.loaded_contact_ratio,
+        "largest_share": float(shares.max()),
+        "corner_force_n": pair.corner_force,
+        "position_base_pitches": positions.tolist(),
+        "driver_roll_angle_rad": pair.solved.geometry.driver_roll_angle(positions).tolist(),
+        "share": shares.tolist(),
+    }
+
+
+def _pressure(pair: PairAnalysis) -> dict[str, float | None] | None:
+    """The largest pressure on the path of contact and where it is, and the largest at the pitch point."""
+    if pair.pressure is None:
+        return None
+    geometry, faces = pair.solved.geometry, pair.solved.contact.faces
+    positions = pair.solved.static.positions
+    if faces is not None:
+        positions = positions[..., None] + faces.shift
+    known = np.nan_to_num(pair.pressure, nan=0.0, posinf=np.inf)
+    place = np.unravel_index(int(known.argmax()), known.shape)
+    return {
+        "max": float(known[place]),
+        "at_driver_roll_angle_rad": float(geometry.driver_roll_angle(positions[place])),
+        "pitch_point": pair.pitch_pressure,
+    }
+
+
+def _harris_map(geometry: room.GearPairGeometry, harris: room.HarrisMap) -> dict[str, Any]:
+    torques = harris.forces * geometry.driver.base_radius
+    return {
+        "torque_n_m": torques.tolist(),
+        "peak_to_peak_m": harris.peak_to_peak.tolist(),
+        "quietest_torque_n_m": harris.quietest * geometry.driver.base_radius,
+    }
+
+
+def _optimum(pair: PairAnalysis, optimum: room.ReliefOptimum) -> dict[str, Any]:
+    """The relief that suits the torque, beside that of the case and none at all."""
+    gears = pair.solved.geometry.driver, pair.solved.geometry.driven
+    starts = (relief_document(gear, optimum.relief)["start_roll_angle_rad"] for gear in gears)
+    return {
+        "shape": optimum.relief.shape,
+        "amount_m": optimum.relief.amount,
+        "length_m": optimum.relief.length,
+        **dict(zip(("driver_start_roll_angle_rad", "driven_start_roll_angle_rad"), starts, strict=True)),
+        "torque_n_m": pair.solved.torque,
+        "peak_to_peak_m": float(optimum.peak_to_peak[0]),
+        "peak_to_peak_without_relief_m": float(optimum.unmodified[0]),
+        "peak_to_peak_as_given_m": pair.as_given,
+    }

@@ -1,5 +1,6 @@
-"""The gear pairs of a case: geometry, contact law, mesh stiffness and static transmission error."""
+"""The gear pairs of a case: geometry, contact law, and the mesh at rest under its load."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -38,6 +39,8 @@ class SolvedPair:
     given : GearPair
         As in the case.
     geometry : coupling.gears.GearPairGeometry
+    model : coupling.gears.StiffnessModel
+        Of its teeth.
     contact : coupling.gears.ToothContact
         With its damping.
     static : coupling.gears.StaticMesh
@@ -50,14 +53,25 @@ class SolvedPair:
 
     given: GivenPair
     geometry: room.GearPairGeometry
+    model: room.StiffnessModel
     contact: room.ToothContact
     static: room.StaticMesh
     hunting: room.StaticMesh | None
     mesh_frequency: float | None
 
+    @property
+    def torque(self) -> float:
+        """On the driver, that the mesh carries [N m]."""
+        return self.static.force * self.geometry.driver.base_radius
+
+    @property
+    def has_single_pairs(self) -> bool:
+        """Whether the model is of pairs of teeth, which share the load, or of the mesh as one spring."""
+        return math.isclose(self.contact.contact_ratio, self.geometry.contact_ratio, rel_tol=1e-9)
+
 
 def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ...]:
-    """Every pair of spur gears of the case; of helical ones only the geometry is known so far.
+    """Every gear pair of the case.
 
     Raises
     ------
@@ -72,9 +86,10 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
         progress(f"gear pair {pair.driver} -> {pair.driven}")
         geometry = pair_geometry(case, pair)
         force = abs(torque) / geometry.driver.base_radius
+        model = _model(pair, number, geometry, force)
         contact = room.tooth_contact(
             geometry,
-            _model(pair, number, geometry, force),
+            model,
             corner_contact=meets_with_corners(pair),
             faces=uneven_faces(case, pair, geometry),
         )
@@ -85,7 +100,7 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
         if contact.pitch_gaps.size:
             phases = room.mesh_period_phases(contact, _HUNTING_POINTS, periods=contact.pitch_gaps.size)
             hunting = room.static_transmission_error(contact, force, phases)
-        solved.append(SolvedPair(pair, geometry, contact, static, hunting, frequency))
+        solved.append(SolvedPair(pair, geometry, model, contact, static, hunting, frequency))
     return tuple(solved)
 
 

@@ -19,7 +19,7 @@ from gearwhine.case import (
 from gearwhine.progress import Progress, silent
 from gearwhine.stages import mesh_health
 from gearwhine.stages.build import build_rotor
-from gearwhine.stages.gear_documents import doubts, geometry_document, pairs_document
+from gearwhine.stages.gear_shapes import doubts, geometry_document, pairs_document
 from gearwhine.stages.gears import pair_geometries
 
 _RPM = 60.0 / (2.0 * np.pi)

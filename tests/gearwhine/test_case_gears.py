@@ -7,9 +7,11 @@ import pytest
 
 from gearwhine.case import dump_case, parse_case
 from gearwhine.screen.case import show_check
-from gearwhine.screen.machine import show_gears
+from gearwhine.screen.gears import show_gears
 from gearwhine.stages.build import build_gear
+from gearwhine.stages.gear_analysis import analyse_pairs
 from gearwhine.stages.gear_documents import gears_document
+from gearwhine.stages.gear_torques import over_torques
 from gearwhine.stages.gears import pair_geometry, solve_gears
 from gearwhine.stages.summary import check_document
 
@@ -81,15 +83,17 @@ def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) 
     (pair,) = document["gear_pairs"]
     assert pair["overlap_ratio"] == pytest.approx(30e-3 * math.sin(math.radians(15.0)) / (math.pi * 3.175e-3))
     assert pair["total_contact_ratio"] == geometry.total_contact_ratio
-    assert [gear["helix_angle_deg"] for gear in pair["geometry"]["gears"]] == pytest.approx([15.0, -15.0])
+    angles = [math.degrees(gear["helix_angle_rad"]) for gear in pair["geometry"]["gears"]]
+    assert angles == pytest.approx([15.0, -15.0])
     assert [point["point"] for point in pair["geometry"]["path_of_contact"]][::4] == ["SAP", "EAP"]
     show_check(document)
-    document = gears_document(HELICAL, solve_gears(HELICAL))
+    document = gears_document(over_torques(analyse_pairs(HELICAL, solve_gears(HELICAL))))
     assert document["pairs"][0]["transmission_error_m"]["peak_to_peak"] > 0.0
     show_gears(document)
     shown = " ".join(capsys.readouterr().out.split())
     assert "+ overlap" in shown
     assert "helix 15° left" in shown
+    assert "helix angle 15°, the driver's right-hand" in shown
 
 
 def test_undercut_and_thin_tips_are_warned_of() -> None:

@@ -110,20 +110,6 @@ def test_a_gap_to_nothing_is_said_in_words(gap: float | None) -> None:
     assert "ln 0.050 (below 0.1 the choice is a coin toss)" in _said(screen.show_comparison, _comparison(0.05))
 
 
-def test_the_hunting_period_has_its_own_line() -> None:
-    error: Document = {"mean": 5e-6, "peak_to_peak": 2e-6}
-    pair = {"driver": "a", "driven": "b", "model": "constant", "contact_ratio": 1.5, "mesh_frequency_hz": None}
-    pair |= {"stiffness_n_per_m": {"mean": 1e8, "min": 1e8, "max": 1e8}, "transmission_error_m": error}
-    pair |= {"overlap_ratio": 0.0, "geometry": {"gears": []}}
-    assert "hunting" not in _said(screen.show_gears, {"pairs": [pair]})
-    error["over_hunting_period"] = None
-    assert "hunting" not in _said(screen.show_gears, {"pairs": [pair]})
-    error["over_hunting_period"] = {"mean": 6e-6, "peak_to_peak": 9e-6}
-    out = _said(screen.show_gears, {"pairs": [pair]})
-    assert "static transmission error 5.000 µm in the mean, 2.000 µm peak to peak" in out
-    assert "over the hunting period: 6.000 µm in the mean, 9.000 µm peak to peak" in out
-
-
 def _modes(*, ok: bool = True, strength: float | None = None) -> Document:
     names = ["x", "y", "rotation_x"]
     lines = [

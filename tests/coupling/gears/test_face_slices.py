@@ -158,6 +158,16 @@ def test_whole_overlap_keeps_the_length_of_contact_and_so_the_error() -> None:
     assert swings[0] > swings[1] > 8.0 * swings[2]
 
 
+def test_without_load_the_first_slice_touches() -> None:
+    pair = helical(14.0, helix_deviation=HelixDeviation(crowning=6e-6, slope=3e-6))
+    contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair))
+    mesh = static_transmission_error(contact, 0.0, PHASES)
+    light = static_transmission_error(contact, 1e-3, PHASES)
+    np.testing.assert_allclose(mesh.transmission_error, light.transmission_error, atol=1e-9)
+    np.testing.assert_array_equal(mesh.pair_forces, 0.0)
+    assert np.all(mesh.tangent_stiffness > 0.0)
+
+
 def test_mean_mesh_stiffness_is_that_of_the_period() -> None:
     pair = helical(11.0)
     contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair))

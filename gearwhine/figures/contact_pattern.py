@@ -1,0 +1,114 @@
+"""The contact pattern: what every place of the flank carries while a pair of teeth passes through its mesh."""
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from coupling.gears import GearPairGeometry, StaticMesh, ToothContact, mesh_pressure, path_of_contact
+from gearwhine.figures.contact_path import mark_points
+from gearwhine.figures.style import FOOT, HEAD, INK, LABEL, MM_PER_INCH, PANEL_WIDTH, TICK, panel, sheet
+
+FloatArray = npt.NDArray[np.float64]
+
+_MAP, _BETWEEN, _LETTERS = 52.0, 6.0, 5.0  # height of a map, and rooms between them and above [mm of paper]
+_SCALE, _BESIDE, _NUMBERS = 3.0, 3.0, 13.0  # the colours' bar, the room before it and for its numbers [mm of paper]
+_PLACES = 240  # along the path of contact
+_MM, _MEGA, _N_PER_MM = 1e3, 1e-6, 1e-3
+
+
+def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh) -> Figure:
+    """Draw load per width and contact pressure over the driver's roll angle and the face.
+
+    Parameters
+    ----------
+    title
+        Of the sheet.
+    pair, contact, mesh
+        Under a load, over one mesh period, of a contact with faces.
+
+    Raises
+    ------
+    ValueError
+        For a contact whose faces are loaded evenly.
+    """
+    faces = contact.faces
+    if faces is None or mesh.line_loads is None:
+        raise ValueError(f"{pair.label}: the load is the same all over the face, which is no map")
+    places = np.linspace(*_reach(contact), _PLACES)
+    present = contact.pairs(mesh.phases).present
+    pressure = mesh_pressure(pair, contact, mesh)
+    loads, pressures = (
+        over_flank(values, mesh.positions, present, faces.shift, places) for values in (mesh.line_loads, pressure)
+    )
+    most = np.unravel_index(int(loads.argmax()), loads.shape)
+    even = mesh.force / (faces.face_width * pair.contact_ratio)
+    note = (
+        f"largest load per width {_N_PER_MM * loads[most]:.4g} N/mm, at z = {_MM * faces.z[most[0]]:.3g} mm, "
+        f"{loads[most] / even:.3g} times the even load of the mean number of pairs; pale lines: contact at one time"
+    )
+    figure = sheet(HEAD + _LETTERS + 2.0 * _MAP + _BETWEEN + FOOT, title, note)
+    rolls = np.degrees(pair.driver_roll_angle(places))
+    edges = _MM * np.concatenate([faces.z - 0.5 * faces.width, [faces.z[-1] + 0.5 * faces.width]])
+    drawn = []
+    for bottom, values, what in (
+        (FOOT + _MAP + _BETWEEN, _N_PER_MM * loads, "load per width [N/mm]"),
+        (FOOT, _MEGA * pressures, "contact pressure [MPa]"),
+    ):
+        axes = panel(figure, bottom, _MAP, width=PANEL_WIDTH - _BESIDE - _SCALE - _NUMBERS)
+        _draw_map(axes, rolls, edges, values, what)
+        _draw_lines(axes, pair, contact, mesh)
+        drawn.append(axes)
+    drawn[0].tick_params(labelbottom=False)
+    drawn[1].set_xlabel("roll angle of the driver [°]")
+    mark_points(drawn, np.degrees(path_of_contact(pair).driver_roll_angle))
+    return figure
+
+
+def over_flank(
+    values: FloatArray, positions: FloatArray, present: npt.NDArray[np.bool_], shift: FloatArray, places: FloatArray
+) -> FloatArray:
+    """Values of slices (n, m, s) of the pairs at `positions` (n, m), by slice and place along the path, (s, p).
+
+    What has no value on the way stays without one, and nothing is carried where no slice comes.
+    """
+    found = np.zeros((shift.size, places.size))
+    at, rows = positions[present], values[present]
+    order = np.argsort(at, kind="stable")
+    for number, own in enumerate(shift):
+        found[number] = np.interp(places, at[order] + own, rows[order, number], left=0.0, right=0.0)
+    return found
+
+
+def _reach(contact: ToothContact) -> tuple[float, float]:
+    """Where on the path slices can touch."""
+    assert contact.faces is not None
+    reach = float(np.abs(contact.faces.shift).max())
+    return contact.touching_range[0] + reach, contact.touching_range[1] - reach
+
+
+def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArray, what: str) -> None:
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    half = 0.5 * (rolls[1] - rolls[0])
+    sides = np.concatenate([rolls - half, [rolls[-1] + half]])
+    shown = np.ma.masked_where(~(values > 0.0), values)
+    colors = axes.pcolormesh(sides, edges, shown, cmap=colormaps["viridis"], vmin=0.0, rasterized=True, label="_map")
+    axes.grid(visible=False)
+    axes.set(ylabel="z across the face [mm]", xlim=(rolls[0], rolls[-1]), ylim=(edges[0], edges[-1]))
+    across, up = (float(inches) * MM_PER_INCH for inches in figure.get_size_inches())
+    box = axes.get_position()
+    place = (box.x1 + _BESIDE / across, box.y0, _SCALE / across, _MAP / up)
+    bar = figure.colorbar(colors, cax=figure.add_axes(place))
+    bar.ax.tick_params(labelsize=TICK, colors=INK)
+    bar.set_label(what, size=LABEL, color=INK)
+
+
+def _draw_lines(axes: Axes, pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh) -> None:
+    """Where pairs touch at one time, the middle of the mesh period."""
+    assert contact.faces is not None
+    row = int(np.abs(mesh.phases - 0.5).argmin())
+    for position in mesh.positions[row][contact.pairs(mesh.phases[row : row + 1]).present[0]]:
+        roll = np.degrees(pair.driver_roll_angle(position + contact.faces.shift))
+        axes.plot(roll, _MM * contact.faces.z, color="white", alpha=0.7, lw=0.9, zorder=3, label="_contact line")

@@ -1,0 +1,86 @@
+"""The pictures of a case's gear pairs: which there are, and the files they go to."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from gearwhine.figures.contact_path import draw_contact_path
+from gearwhine.figures.contact_pattern import draw_contact_pattern
+from gearwhine.figures.flank_charts import draw_flank_charts, has_charts
+from gearwhine.figures.harris_map import draw_harris_map
+from gearwhine.figures.mesh_stiffness import draw_mesh_stiffness
+from gearwhine.figures.style import save, shortened
+from gearwhine.figures.tooth_pair import draw_tooth_pair
+from gearwhine.figures.transmission_error import draw_transmission_error
+from gearwhine.output import file_stems
+from gearwhine.progress import Progress, silent
+from gearwhine.stages.gear_analysis import PairAnalysis
+
+
+def draw_gear_pairs(folder: Path, pairs: Sequence[PairAnalysis], progress: Progress = silent) -> list[str]:
+    """Draw each pair: its teeth, stiffness, transmission error and flanks, and what it does under load and over torque.
+
+    Parameters
+    ----------
+    folder : path
+        Where the files go, as ``gears-DRIVER-DRIVEN-teeth.png`` and so on.
+    pairs : sequence of PairAnalysis
+        What one was not asked for, or has not, is not drawn.
+    progress : callable
+        Told which pair is drawn.
+
+    Returns
+    -------
+    list of str
+        The files' names.
+    """
+    files = []
+    stems = file_stems([f"{pair.solved.given.driver}-{pair.solved.given.driven}" for pair in pairs], "gears-")
+    for stem, pair in zip(stems, pairs, strict=True):
+        progress(f"drawing gear pair {pair.label}")
+        files += [save(figure, folder / f"{stem}-{kind}.png") for kind, figure in _figures(pair)]
+    return files
+
+
+def _figures(pair: PairAnalysis) -> Iterator[tuple[str, Figure]]:
+    solved, geometry = pair.solved, pair.solved.geometry
+    name = f"{shortened(solved.given.driver, 16)} → {shortened(solved.given.driven, 16)}"
+    loaded = solved.static.force > 0.0
+    yield "teeth", draw_tooth_pair(geometry)
+    yield (
+        "stiffness",
+        draw_mesh_stiffness(
+            f"{name}: mesh stiffness", solved.contact, solved.static, shared=loaded and solved.has_single_pairs
+        ),
+    )
+    harmonics = {"unloaded": pair.unloaded_harmonics}
+    if loaded:
+        harmonics["loaded"] = pair.harmonics
+    yield (
+        "transmission-error",
+        draw_transmission_error(
+            f"{name}: transmission error",
+            solved.static.phases,
+            pair.unloaded,
+            harmonics,
+            loaded=solved.static if loaded else None,
+            hunting=solved.hunting,
+        ),
+    )
+    if loaded and solved.has_single_pairs:
+        # Over a face it has a picture of its own.
+        pressure = pair.pressure if pair.pressure is not None and pair.pressure.ndim == 2 else None
+        along = f"{name}: along the path of contact"
+        sheet = draw_contact_path(along, geometry, solved.contact, solved.static, pressure)
+        yield "path", sheet
+    if solved.static.line_loads is not None and loaded:
+        sheet = draw_contact_pattern(f"{name}: contact pattern", geometry, solved.contact, solved.static)
+        yield "pattern", sheet
+    best = None if pair.optimum is None else pair.optimum.relief
+    if best is not None or has_charts(geometry):
+        yield "flanks", draw_flank_charts(f"{name}: flanks", geometry, best)
+    if pair.harris is not None and np.ptp(pair.harris.forces) > 0.0:
+        sheet = draw_harris_map(f"{name}: Harris map", pair.harris, geometry.driver.base_radius, torque=solved.torque)
+        yield "harris-map", sheet

@@ -1,0 +1,138 @@
+"""What the teeth of a gear pair do under the torque of the case: who carries, how hard they press, how they err."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling.gears as room
+from gearwhine.case import Case
+from gearwhine.stages.gears import SolvedPair
+
+FloatArray = npt.NDArray[np.float64]
+
+HARMONICS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class PairAnalysis:
+    """A solved gear pair, looked at from all sides.
+
+    Attributes
+    ----------
+    solved : SolvedPair
+    widths_given : tuple of bool
+        Whether the case gives the face width of the driver and of the driven gear; one that only stands in for it says
+        nothing of a pressure.
+    unloaded : ndarray, shape (n,)
+        Transmission error without load at the phases of ``solved.static`` [m]: where the first teeth just touch.
+    pressure : ndarray, shape (n, m) or (n, m, s), or None
+        Hertzian pressure of every pair at every phase [Pa], see `coupling.gears.mesh_pressure`. None without load,
+        single pairs or face widths in the case.
+    pitch_pressure : float or None
+        The largest at the pitch point [Pa]; None also where that is not on the path of contact.
+    harris : coupling.gears.HarrisMap or None
+        From a tenth to twice the case's torque, with all teeth alike: without pitch deviations and damage. None
+        unless asked for, and without a torque.
+    optimum : coupling.gears.ReliefOptimum or None
+        The relief that suits the case's torque, with all teeth alike; None unless asked for, and without a torque or
+        single pairs.
+    """
+
+    solved: SolvedPair
+    widths_given: tuple[bool, bool]
+    unloaded: FloatArray
+    pressure: FloatArray | None
+    pitch_pressure: float | None
+    harris: room.HarrisMap | None = None
+    optimum: room.ReliefOptimum | None = None
+
+    @property
+    def label(self) -> str:
+        """The pair's gears."""
+        return f"{self.solved.given.driver} → {self.solved.given.driven}"
+
+    @property
+    def harmonics(self) -> FloatArray:
+        """Amplitudes of the transmission error at the mesh frequency and its multiples [m], (8,).
+
+        Over the whole hunting period where mesh periods differ: what is not of the mesh frequency averages out.
+        """
+        mesh, hunting = self.solved.static, self.solved.hunting
+        if hunting is not None:
+            periods = self.solved.contact.hunting_period
+            over = hunting.transmission_error.reshape(periods, -1).mean(axis=0)
+            mesh = replace(hunting, phases=hunting.phases[: over.size], transmission_error=over)
+        return room.transmission_error_harmonics(mesh, HARMONICS)
+
+    @property
+    def unloaded_harmonics(self) -> FloatArray:
+        """The same without load, over the mesh period of ``solved.static`` [m], (8,)."""
+        return room.transmission_error_harmonics(
+            replace(self.solved.static, transmission_error=self.unloaded), HARMONICS
+        )
+
+    @property
+    def as_given(self) -> float | None:
+        """Peak to peak at the case's torque with all teeth alike [m]; None without a Harris map."""
+        if self.harris is None:
+            return None
+        return float(self.harris.peak_to_peak[np.abs(self.harris.forces - self.solved.static.force).argmin()])
+
+    @property
+    def pairs_in_contact(self) -> dict[int, float]:
+        """For how much of the mesh period so many pairs carry; each phase stands for up to half way to the next."""
+        static = self.solved.static
+        touching = (static.pair_forces > 0.0).sum(axis=1)
+        around = np.concatenate([[static.phases[-1] - 1.0], static.phases, [static.phases[0] + 1.0]])
+        part = 0.5 * (around[2:] - around[:-2])
+        return {int(count): float(part[touching == count].sum()) for count in np.unique(touching)}
+
+    @property
+    def loaded_contact_ratio(self) -> float:
+        """How many pairs carry in the mean: less than the contact ratio by relief, more by corner contact."""
+        return sum(count * part for count, part in self.pairs_in_contact.items())
+
+    @property
+    def corner_force(self) -> float:
+        """The largest force that a pair's corners carry, outside its path of contact [N]."""
+        static, end, faces = self.solved.static, self.solved.geometry.contact_ratio, self.solved.contact.faces
+        if faces is None or static.line_loads is None:
+            outside = (static.positions < 0.0) | (static.positions > end)
+            return float(static.pair_forces[outside].max(initial=0.0))
+        places = static.positions[..., None] + faces.shift
+        carried = np.where((places < 0.0) | (places > end), static.line_loads, 0.0)
+        return float(carried.sum(axis=-1).max(initial=0.0)) * faces.width
+
+
+def analyse_pairs(case: Case, solved: Sequence[SolvedPair]) -> tuple[PairAnalysis, ...]:
+    """Look at each solved pair under the case's torque and without."""
+    return tuple(_analysis(case, pair) for pair in solved)
+
+
+def first_touch(contact: room.ToothContact, phases: FloatArray) -> FloatArray:
+    """Transmission error without load at `phases` (n,): the least gap of the pairs there [m]."""
+    return np.asarray(contact.pairs(phases).deviation.min(axis=1), dtype=np.float64)
+
+
+def _analysis(case: Case, pair: SolvedPair) -> PairAnalysis:
+    unloaded = first_touch(pair.contact, pair.static.phases)
+    driver, driven = case.gear_named(pair.given.driver), case.gear_named(pair.given.driven)
+    given = driver.face_width is not None, driven.face_width is not None
+    if pair.static.force == 0.0 or not pair.has_single_pairs or not all(given):
+        return PairAnalysis(pair, given, unloaded, None, None)
+    pressure = room.mesh_pressure(pair.geometry, pair.contact, pair.static)
+    return PairAnalysis(pair, given, unloaded, pressure, _pitch_pressure(pair))
+
+
+def _pitch_pressure(pair: SolvedPair) -> float | None:
+    """The largest pressure while a pair, or a slice of its face, passes the pitch point [Pa]; None off the path."""
+    pitch, faces = pair.geometry.pitch_point_position, pair.contact.faces
+    if not 0.0 <= pitch < pair.geometry.contact_ratio:
+        return None
+    shift = np.zeros(1) if faces is None else faces.shift
+    mesh = room.static_transmission_error(pair.contact, pair.static.force, np.unique((pitch - shift) % 1.0))
+    pressure = room.mesh_pressure(pair.geometry, pair.contact, mesh).reshape(*mesh.positions.shape, -1)
+    passing = np.isclose(mesh.positions[..., None] + shift, pitch, rtol=0.0, atol=1e-9)
+    return float(pressure[passing].max())

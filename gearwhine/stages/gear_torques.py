@@ -1,0 +1,79 @@
+"""Gear pairs over torques: their Harris maps, and the tip relief that suits the case's torque best."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling.gears as room
+from gearwhine.progress import Progress, silent
+from gearwhine.stages.gear_analysis import PairAnalysis
+from gearwhine.stages.gears import SolvedPair
+
+FloatArray = npt.NDArray[np.float64]
+
+_SEARCHED_SLICES = 21  # of a face, while the best relief is sought
+_LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # of the case's torque, in a Harris map
+
+
+def over_torques(pairs: Sequence[PairAnalysis], progress: Progress = silent) -> tuple[PairAnalysis, ...]:
+    """The same pairs with their Harris maps and optimal reliefs, where the case has a torque."""
+    found = []
+    for pair in pairs:
+        if pair.solved.static.force > 0.0:
+            progress(f"Harris map of {pair.label}")
+            pair = replace(pair, harris=_harris_map(pair.solved))
+            if pair.solved.has_single_pairs:
+                progress(f"best tip relief of {pair.label}")
+                pair = replace(pair, optimum=_best_relief(pair.solved))
+        found.append(pair)
+    return tuple(found)
+
+
+def _harris_map(pair: SolvedPair) -> room.HarrisMap:
+    contact = pair.contact
+    if contact.hunting_period > 1:
+        contact = room.tooth_contact(
+            _alike(pair.geometry), pair.model, corner_contact=contact.has_corners, faces=contact.faces
+        )
+    return room.harris_map(contact, pair.static.force * np.linspace(_LEAST, _MOST, _TORQUES))
+
+
+def _best_relief(pair: SolvedPair) -> room.ReliefOptimum:
+    given = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
+    geometry, force, faces = _alike(pair.geometry), pair.static.force, pair.contact.faces
+    corners = pair.contact.has_corners
+    found = room.optimal_tip_relief(
+        geometry,
+        pair.model,
+        [force],
+        shape="linear" if given is None else given.shape,
+        corner_contact=corners,
+        faces=None if faces is None else coarser_faces(faces, _SEARCHED_SLICES),
+    )
+    if faces is None:
+        return found
+
+    def swing(relief: room.TipRelief | None) -> FloatArray:
+        driver, driven = (replace(gear, tip_relief=relief) for gear in (geometry.driver, geometry.driven))
+        relieved = replace(geometry, driver=driver, driven=driven)
+        contact = room.tooth_contact(relieved, pair.model, corner_contact=corners, faces=faces)
+        return np.array([room.static_transmission_error(contact, force).peak_to_peak_transmission_error])
+
+    return replace(found, peak_to_peak=swing(found.relief), unmodified=swing(None))
+
+
+def coarser_faces(faces: room.FaceSlices, count: int) -> room.FaceSlices:
+    """The same face in at most `count` slices: quick enough to search with, and as good for finding a place."""
+    if faces.z.size <= count:
+        return faces
+    z = faces.face_width * ((np.arange(count) + 0.5) / count - 0.5)
+    shift, gap = (np.interp(z, faces.z, values) for values in (faces.shift, faces.gap))
+    return replace(faces, z=z, width=faces.face_width / count, shift=shift, gap=gap)
+
+
+def _alike(pair: room.GearPairGeometry) -> room.GearPairGeometry:
+    """A pair of gears with all their teeth alike: a relief is cut for all of them."""
+    driver, driven = (replace(gear, pitch_deviations=(), faults=()) for gear in (pair.driver, pair.driven))
+    return replace(pair, driver=driver, driven=driven)
