@@ -71,7 +71,7 @@ def test_without_a_load(capsys: pytest.CaptureFixture[str]) -> None:
 def test_gears_without_relief_are_told_what_would_suit_them(capsys: pytest.CaptureFixture[str]) -> None:
     given = document("gear-62-62")
     out = said(capsys, given)
-    error = 1e6 * given["pairs"][0]["transmission_error_m"]["peak_to_peak"]
+    error = 1e6 * given["pairs"][0]["optimal_tip_relief"]["peak_to_peak_as_given_m"]
     assert f"Without relief {error:.2f} µm peak to peak at 100 N·m" in out
     assert "Best linear relief" in out
     assert "quietest" not in out
