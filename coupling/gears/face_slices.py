@@ -15,9 +15,7 @@ their coupling; contact adds, wherever there is any,
 k_h the stiffness of the flattening per width. So a slice that carries takes its neighbours along, and a tooth's ends,
 with nothing beyond them, are softer. Alike across the face it is the spur gear's law exactly.
 
-T is the energy of a tooth whose deflection varies across the face. A cantilever of thickness t(y) that is deflected by
-``W(z) phi(y)`` twists with ``int G t^3/3 phi'^2 dy`` and shears across with ``int 5/6 G t phi^2 dy``, per W'^2; both
-must yield, like springs in series. phi is a cantilever's shape under a load at the middle of the path of contact.
+T is that of both teeth in series (:mod:`coupling.gears.face_coupling`).
 """
 
 from __future__ import annotations
@@ -29,10 +27,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import ContactAccuracyError
-from coupling.gears.geometry import Gear
+from coupling.gears.face_coupling import tooth_coupling
 from coupling.gears.hertz import hertz_compliance
 from coupling.gears.pair_geometry import GearPairGeometry
-from coupling.gears.profile import tooth_outline
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -131,21 +128,6 @@ def face_slices(
         flattening=1.0 / (hertz_compliance(geometry.driver, geometry.driven) * b),
         coupling=1.0 / sum(1.0 / coupling for coupling in couplings) if count > 1 else 0.0,
     )
-
-
-def tooth_coupling(gear: Gear, radius: float) -> float:
-    """T of one tooth [N], with the load at `radius` [m]."""
-    across, along = tooth_outline(gear)[: 2 * 60 - 1].T
-    height = along - along[0]
-    load = float(np.interp(radius, np.hypot(across, along), height))
-    below = height <= load
-    y, thickness = height[below], -2.0 * across[below]
-    share = y / load
-    shape, slope = share**2 * (3.0 - share) / 2.0, 1.5 * share * (2.0 - share) / load
-    shear_modulus = gear.youngs_modulus / (2.0 * (1.0 + gear.poisson_ratio))
-    twist = shear_modulus * np.trapezoid(thickness**3 / 3.0 * slope**2, y)
-    shear = shear_modulus * np.trapezoid(5.0 / 6.0 * thickness * shape**2, y)
-    return float(1.0 / (1.0 / twist + 1.0 / shear))
 
 
 def tooth_stiffness(slices: FaceSlices, stiffness: FloatArray) -> FloatArray:

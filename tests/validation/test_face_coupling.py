@@ -1,0 +1,118 @@
+"""The coupling of a face against three-dimensional finite elements of one wide tooth, held at its foot.
+
+The tooth of the 28-tooth rig gear (TM-104434, Table I), 12 modules wide, of 27-node bricks: a load on a short piece of
+the face, at the height of the pitch circle and spread through the thickness so that it dents nothing; deflections in
+the middle plane. The slices' foundation gets k_b from the same elements under an even load, and T from theory alone.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.sparse.linalg import SuperLU, splu
+from skfem import Basis, ElementHex2, ElementVector, MeshHex
+from skfem.models.elasticity import lame_parameters, linear_elasticity
+
+from coupling.gears import Gear, tooth_outline
+from coupling.gears.face_coupling import tooth_coupling
+
+FloatArray = npt.NDArray[np.float64]
+
+GEAR = Gear("rig", 28, 3.175e-3, math.radians(20.0), 6.35e-3)
+THICK, HIGH, LONG = 3, 6, 30
+WIDTH = 12.0 * GEAR.module
+
+
+@dataclass(frozen=True)
+class Tooth:
+    """The factored model: middle-plane places and deflections at the load's height."""
+
+    factor: SuperLU
+    free: npt.NDArray[np.intp]
+    places: FloatArray
+    at_height: npt.NDArray[np.intp]
+    z: FloatArray
+    middle: npt.NDArray[np.intp]
+
+    def deflection(self, share: FloatArray) -> FloatArray:
+        """Middle-plane deflection under a load with given shares of its quadratic nodes along the face, N."""
+        load = np.zeros(self.places.shape[1])
+        through = _simpson(2 * THICK + 1)
+        ratios = np.unique(np.round(self.places[0, self.at_height] / self.places[0, self.at_height].max(), 9))
+        for dof in self.at_height:
+            along = int(np.abs(self.z - self.places[2, dof]).argmin())
+            across = int(np.abs(ratios - self.places[0, dof] / self.places[0, self.at_height].max()).argmin())
+            load[dof] = share[along] * through[across]
+        answer = np.zeros_like(load)
+        answer[self.free] = self.factor.solve(load[self.free])
+        return np.asarray(answer[self.middle])
+
+
+def _simpson(count: int) -> FloatArray:
+    weights = np.ones(count)
+    weights[1:-1:2], weights[2:-1:2] = 4.0, 2.0
+    return weights / weights.sum()
+
+
+@pytest.fixture(scope="module")
+def tooth() -> Tooth:
+    across, along = tooth_outline(GEAR)[:119].T
+    height, half = along - along[0], -across
+    load = float(np.interp(GEAR.pitch_radius, np.hypot(across, along), height))
+    below = round(HIGH * load / height[-1])
+    levels = np.concatenate([np.linspace(0, load, below + 1), np.linspace(load, height[-1], HIGH - below + 1)[1:]])
+    block = MeshHex.init_tensor(np.linspace(-1, 1, THICK + 1), levels, np.linspace(-WIDTH / 2, WIDTH / 2, LONG + 1))
+    points = block.p.copy()
+    points[0] *= np.interp(points[1], height, half)
+    basis = Basis(MeshHex(points, block.t), ElementVector(ElementHex2()), intorder=4)
+    stiffness = linear_elasticity(*lame_parameters(GEAR.youngs_modulus, GEAR.poisson_ratio)).assemble(basis)
+    places = basis.doflocs
+    free = np.flatnonzero(np.abs(places[1]) > 1e-9)
+    across_dofs = np.concatenate([basis.nodal_dofs[0], basis.edge_dofs[0], basis.facet_dofs[0], basis.interior_dofs[0]])
+    at_height = np.intersect1d(np.flatnonzero(np.abs(places[1] - load) < 1e-9), across_dofs)
+    middle = at_height[np.abs(places[0, at_height]) < 1e-12]
+    middle = middle[np.argsort(places[2, middle])]
+    factor = splu(
+        stiffness[free][:, free].tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        options={"SymmetricMode": True},
+        diag_pivot_thresh=0.0,
+    )
+    z = np.unique(np.round(places[2, at_height], 12))
+    return Tooth(factor, free, places, at_height, z, middle)
+
+
+# At the load, one module and two modules along the face from it.
+@pytest.mark.parametrize(("place", "bars"), [(0.0, (0.12, 0.12, 0.3)), (-0.5, (0.17, 0.12, 0.3))])
+def test_a_short_load_spreads_as_far_as_theory_says(tooth: Tooth, place: float, bars: tuple[float, ...]) -> None:
+    even = tooth.deflection(_simpson(tooth.z.size))
+    base = 1.0 / (float(even[even.size // 2]) * WIDTH)
+    node = int(np.abs(tooth.z - place * (WIDTH - WIDTH / LONG)).argmin())
+    node += node % 2 == 0
+    share = np.zeros(tooth.z.size)
+    share[node] = 1.0
+    found = tooth.deflection(share)
+
+    coupling = tooth_coupling(GEAR, GEAR.pitch_radius)
+    away = GEAR.module * np.arange(3.0)
+    theirs = np.interp(tooth.z[node] + away, tooth.z, found)
+    ours, third = (on_foundation(base, share * coupling, tooth.z[node], away) for share in (1.0, 1.0 / 3.0))
+    np.testing.assert_array_less(np.abs(ours / theirs - 1.0), bars)
+    # A coupling of a third would not do.
+    assert np.all(np.abs(third / theirs - 1.0) > bars)
+
+
+def on_foundation(base: float, coupling: float, at: float, away: FloatArray) -> FloatArray:
+    """Deflection [m] at distances from a piece of the face that carries 1 N, on Pasternak's foundation."""
+    count = 40 * LONG
+    width = WIDTH / count
+    z = width * (np.arange(count) + 0.5) - WIDTH / 2
+    link = coupling / width**2
+    matrix = np.diag(np.full(count, base + 2.0 * link)) - link * (np.eye(count, k=1) + np.eye(count, k=-1))
+    matrix[0, 0] -= link
+    matrix[-1, -1] -= link
+    loaded = np.where(np.abs(z - at) < 0.5 * WIDTH / LONG, 1.0, 0.0)
+    deflection = np.linalg.solve(matrix, loaded / (loaded.sum() * width))
+    return np.interp(at + away, z, deflection)
