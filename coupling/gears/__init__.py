@@ -45,6 +45,7 @@ from coupling.gears.face_slices import FaceSlices, face_slices
 from coupling.gears.faults import Fault, MissingTooth, Spall, Wear
 from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
+from coupling.gears.friction import MeshFriction, mesh_friction
 from coupling.gears.gear_checks import require_tip_thickness
 from coupling.gears.geometry import Gear
 from coupling.gears.harris_map import HarrisMap, harris_map, transmission_error_harmonics
@@ -121,6 +122,7 @@ __all__ = [
     "Iso6336Stiffness",
     "Iso6336Values",
     "LineContact",
+    "MeshFriction",
     "MismatchedGearsError",
     "MissingTooth",
     "NoContactError",
@@ -171,6 +173,7 @@ __all__ = [
     "iso6336_stiffness",
     "line_contact",
     "mesh_damping",
+    "mesh_friction",
     "mesh_period_phases",
     "mesh_pressure",
     "mesh_stiffness",

@@ -1,0 +1,97 @@
+r"""Sliding friction of a mesh under a steady load: its force, which turns at the pitch point, its moments, its loss.
+
+At the distances xi_k and xi_i of a contact from both tangent points the flanks move along each other, across the line
+of action, with ``w_k xi_k`` and ``w_i xi_i``; these are equal at the pitch point. Before it the driven flank is the
+faster one and draws the driver's along with mu F, after it the force is turned round. With t the direction in which the
+driver's flank moves, on the driver
+
+    Q = sum_j mu F_j sgn(w_i xi_i - w_k xi_k),        M_k = sum_j mu F_j sgn(...) xi_k,
+
+on the driven gear -Q and, against its turning, ``sum_j mu F_j sgn(...) xi_i``; the power lost is
+``sum_j mu F_j |w_k xi_k - w_i xi_i|``. The loads are those without friction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import require_finite
+from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.static import StaticMesh, period_mean
+from coupling.gears.tooth_contact import ToothContact
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MeshFriction:
+    """Friction of a loaded mesh at n phases.
+
+    Attributes
+    ----------
+    phases : ndarray, shape (n,)
+        Mesh periods.
+    force : ndarray, shape (n,)
+        Q on the driver, across the line of action in the direction in which its flanks move [N].
+    driver_moment, driven_moment : ndarray, shape (n,)
+        On the driver in the sense of its turning, on the driven gear against its own [N m].
+    loss : ndarray, shape (n,)
+        Energy lost per radian of the driver's turning [J/rad]: with the driver's speed, the power.
+    efficiency : float
+        What is left of the work put in, in the mean over the mesh period.
+    """
+
+    phases: FloatArray
+    force: FloatArray
+    driver_moment: FloatArray
+    driven_moment: FloatArray
+    loss: FloatArray
+    efficiency: float
+
+
+def mesh_friction(
+    geometry: GearPairGeometry, contact: ToothContact, mesh: StaticMesh, coefficient: float
+) -> MeshFriction:
+    """Friction of a gear mesh under its static loads.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+    contact : ToothContact
+        What `mesh` was solved with.
+    mesh : StaticMesh
+        With phases over whole mesh periods.
+    coefficient : float
+        Of friction, mu.
+
+    Raises
+    ------
+    GearError
+        For a coefficient that is negative or not finite.
+    """
+    require_finite("friction coefficient", coefficient, minimum=0.0)
+    if contact.faces is not None and mesh.line_loads is not None:
+        positions = mesh.positions[..., None] + contact.faces.shift
+        forces = mesh.line_loads * contact.faces.width
+    else:
+        positions, forces = mesh.positions[..., None], mesh.pair_forces[..., None]
+    # Corners slide where the path ends.
+    positions = np.clip(positions, 0.0, geometry.contact_ratio)
+    driver = geometry.driver_roll_angle(positions) * geometry.driver.base_radius
+    driven = geometry.driven_roll_angle(positions) * geometry.driven.base_radius
+    sliding = driven / geometry.ratio - driver  # over the driver's speed
+    friction = coefficient * forces * np.sign(sliding)
+    lost = np.asarray((friction * sliding).sum(axis=(1, 2)))
+    put_in = mesh.force * geometry.driver.base_radius
+    mean = period_mean(mesh.phases, lost)
+    return MeshFriction(
+        mesh.phases,
+        np.asarray(friction.sum(axis=(1, 2))),
+        np.asarray((friction * driver).sum(axis=(1, 2))),
+        np.asarray((friction * driven).sum(axis=(1, 2))),
+        lost,
+        1.0 - mean / put_in if put_in > 0.0 else 1.0,
+    )
