@@ -244,8 +244,9 @@ def _fields(
     neighbours = np.full(n, 2.0)
     neighbours[0] -= 1.0
     neighbours[-1] -= 1.0
-    diagonal = (base + flat + link * neighbours).T
-    fixed, rising = -(flat * np.where(touching, gap, 0.0)).T, flat.T.copy()
+    # Slices first, so that each step of the elimination runs through memory.
+    diagonal = np.ascontiguousarray((base + flat + link * neighbours).T)
+    fixed, rising = np.ascontiguousarray(-(flat * gap).T), np.ascontiguousarray(flat.T)
     # Thomas' elimination along the face, all pairs at once: the matrix is diagonally dominant.
     pivot = diagonal[0]
     pivots = [pivot]
