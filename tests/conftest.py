@@ -1,4 +1,4 @@
-"""Shared by all tests: blocks of every kind of element, and published values beside ours with their page."""
+"""Shared by all tests: blocks of all elements, published values beside ours with their page, what runs first."""
 
 from collections import defaultdict
 from collections.abc import Callable
@@ -51,6 +51,26 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         metavar="FILE",
         help="write the published values that the tests met, beside ours, to a Markdown file",
     )
+
+
+# Folders with files that take long, the longest first.
+_LONG = ("validation", "end_to_end", "property", "housing")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    # xdist would begin with the files of many tests, and those of few and long ones would keep one process at the end.
+    config.option.loadscopereorder = False
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the folders of long files, so that processes that share the files end together."""
+    tests = Path(__file__).parent
+
+    def turn(item: pytest.Item) -> int:
+        folder = item.path.relative_to(tests).parts[0] if item.path.is_relative_to(tests) else ""
+        return _LONG.index(folder) if folder in _LONG else len(_LONG)
+
+    items.sort(key=turn)
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -67,6 +68,9 @@ def start_process(tmp_path: Path) -> Callable[..., "subprocess.Popen[str]"]:
     """The command as a process of its own, in an empty working folder."""
     root = Path(__file__).parent.parent.parent
     environment = os.environ | {"PYTHONPATH": str(root)}
+    # Tests that a shell runs in the background ignore Ctrl-C, and so would the command, which they send it to.
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def start(*arguments: str) -> "subprocess.Popen[str]":
         return subprocess.Popen(
