@@ -196,3 +196,8 @@ def test_impossible_flanks_say_why(make: object, words: str) -> None:
     assert callable(make)
     with pytest.raises(GearError, match=words):
         make()
+
+
+def test_a_spall_beside_the_flank_is_refused() -> None:
+    with pytest.raises(GearError, match=r"gear 'pinion': a spall must lie on the flank, .*got 100 to 120 degrees"):
+        replace(PINION, faults=(Spall(0, math.radians(100.0), math.radians(120.0), 20e-6),))
