@@ -127,7 +127,7 @@ def _least_left(gear: Gear) -> float:
                 getattr(part, name)
                 for part in (
                     fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, 100)),
-                    flank_points(gear, np.linspace(*ends, 100)[:-1]),
+                    flank_points(gear, np.linspace(ends[0], ends[1], 100)[:-1]),
                 )
             ]
         )

@@ -315,3 +315,15 @@ def test_damage_shows_over_the_hunting_period() -> None:
     assert error.max() > sound.transmission_error.max() + 1e-6
     over = gears_document(analyse_pairs(case, (solved,)))["pairs"][0]["transmission_error_m"]["over_hunting_period"]
     assert over["peak_to_peak"] == pytest.approx(float(np.ptp(error)))
+
+
+def test_what_the_curves_leave_out_or_no_teeth_bear_is_said() -> None:
+    def names(*settings: str) -> list[str]:
+        case = case_of("spur-pair", *settings)
+        found = gears_document(analyse_pairs(case, solve_gears(case))).get("warnings", [])
+        return [warning["name"] for warning in found]
+
+    assert names() == []
+    assert names("gear.pinion.errors.runout='30 um'") == ["runout"]
+    assert names("operation.torque='1000 N*m'") == []
+    assert names("operation.torque='5000 N*m'") == ["overload"]
