@@ -50,6 +50,7 @@ from coupling.gears.gear_checks import require_tip_thickness
 from coupling.gears.geometry import Gear
 from coupling.gears.harris_map import HarrisMap, harris_map, transmission_error_harmonics
 from coupling.gears.hertz import LineContact, hertz_compliance, line_contact
+from coupling.gears.hunting import hunting_mesh
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
 from coupling.gears.modifications import RootRelief, TipRelief
@@ -168,6 +169,7 @@ __all__ = [
     "gear_outline",
     "harris_map",
     "hertz_compliance",
+    "hunting_mesh",
     "inverse_involute",
     "involute",
     "iso6336_stiffness",

@@ -2,10 +2,12 @@ r"""A crack at the foot of a tooth, and what the tooth yields more because of it
 
 The crack runs from the root circle on the loaded side into the tooth, straight, across the whole face. Material beyond
 it carries no bending: above the crack the section that is left reaches from the sound flank to a line through the
-crack's tip along the tooth's axis (Wu, Zuo and Parey, J. Sound Vib. 317, 2008, and many after them). With the half
-thickness x at height y, that at the root x_r, and depth q at the angle a to the axis,
+crack's tip along the tooth's axis (Wu, Zuo and Parey, J. Sound Vib. 317, 2008, and many after them). Where that line
+would not come out of the loaded flank, because the crack's tip is nearer to the axis than the tooth's corner, or beyond
+the axis, it leans so as to end at that corner: a line along the axis would leave no section there to carry the load.
+With the half thickness x at height y, that at the root x_r, at the tip x_a, and depth q at the angle a to the axis,
 
-    t(y) = min(2 x, x + x_c),    x_c = x_r - q sin(a),
+    t(y) = min(2 x, x + x_c + max(0, x_a - x_c) (y - y_r) / (y_a - y_r)),    x_c = x_r - q sin(a),
 
 takes the place of 2 x in the bending, shear and compression of :mod:`coupling.gears.beam_compliance`. The flanks'
 contact and the body below are as in a sound tooth.
@@ -28,7 +30,7 @@ from coupling.gears.profile import fillet_points, flank_points, load_angle
 FloatArray = npt.NDArray[np.float64]
 
 _LEAST_LEFT = 0.1
-"""Least part of the root section that a crack may leave."""
+"""Least part of any section that a crack may leave."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _PANELS = 24
 
@@ -67,12 +69,14 @@ class ToothCrack:
         Raises
         ------
         GearError
-            For a crack through nine tenths of the tooth's foot or more.
+            For a crack that leaves less than a tenth of some section of the tooth.
         """
-        root = float(fillet_points(gear, np.array(math.pi / 2.0)).half_thickness)
+        low = fillet_points(gear, np.array(math.pi / 2.0))
+        root = float(low.half_thickness)
         left = root - self.depth * math.sin(self.angle)
-        if root + left < 2.0 * _LEAST_LEFT * root:
-            deepest = 2.0 * (1.0 - _LEAST_LEFT) * root / math.sin(self.angle)
+        least = _least_left(gear)
+        if left < least:
+            deepest = (root - least) / math.sin(self.angle)
             raise GearError(
                 f"gear {gear.name!r}: a crack of {self.depth * 1e3:.4g} mm goes through the foot of the tooth; "
                 f"at most {deepest * 1e3:.4g} mm at this angle, or a missing tooth"
@@ -87,6 +91,8 @@ class ToothCrack:
         part = (0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 / _PANELS * _NODES).ravel()
         weight = np.tile(0.5 / _PANELS * _WEIGHTS, _PANELS)
         modulus, shear = gear.youngs_modulus * gear.face_width, shear_modulus(gear) * gear.face_width
+        corner = flank_points(gear, load_angle(gear, np.array(gear.tip_radius)))
+        lean = np.maximum(0.0, corner.half_thickness - left) / (corner.height - low.height)
         total = np.zeros(radius.shape)
         foot, end = math.pi / 2.0, gear.fillet_end
         for points, length in (
@@ -95,7 +101,7 @@ class ToothCrack:
         ):
             climb = length * weight * points.height_rate
             whole = 2.0 * points.half_thickness
-            kept = np.minimum(whole, points.half_thickness + left)
+            kept = np.minimum(whole, points.half_thickness + left + lean * (points.height - low.height))
             moment = cosine * (load.height - points.height) - sine * load.half_thickness
             bending = 12.0 * moment**2 * (kept**-3 - whole**-3) / modulus
             stretching = (1.2 * cosine**2 / shear + sine**2 / modulus) * (1.0 / kept - 1.0 / whole)
@@ -105,3 +111,27 @@ class ToothCrack:
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
         """None."""
         return ()
+
+
+def _least_left(gear: Gear) -> float:
+    """Least x_c [m] with which every section keeps its least part p: ``x_c >= -((1 - 2 p) x + x_a v) / (1 - v)``.
+
+    ``v`` runs from 0 at the root circle to 1 at the tooth's corner; that is ``t >= 2 p x`` with the leaning line.
+    """
+    low = fillet_points(gear, np.array(math.pi / 2.0))
+    ends = load_angle(gear, np.array([gear.form_radius, gear.tip_radius]))
+    corner = flank_points(gear, ends[1])
+    half, height = (
+        np.concatenate(
+            [
+                getattr(part, name)
+                for part in (
+                    fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, 100)),
+                    flank_points(gear, np.linspace(ends[0], ends[1], 100)[:-1]),
+                )
+            ]
+        )
+        for name in ("half_thickness", "height")
+    )
+    up = (height - low.height) / (corner.height - low.height)
+    return float(np.max(-((1.0 - 2.0 * _LEAST_LEFT) * half + corner.half_thickness * up) / (1.0 - up)))

@@ -5,7 +5,8 @@ compression ``u`` beyond its first touch. On a grid of both they are bicubic: wi
 contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is
 that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's slope, whatever
 the table may miss of the slices' own solution, and motion on it conserves energy. Beyond the last ``u`` the force goes
-on with its tangent.
+on with its tangent. Where a corner of the profiles, such as a spall's edge, meets the first slice of the face and
+the last, which is at once over a spur gear's, the splines along the positions end and begin.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from coupling.gears.face_slices import FaceSlices, load_faces, tooth_stiffness
-from coupling.gears.pair_curves import PairCurves
+from coupling.gears.pair_curves import PairCurves, corners_of
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -26,6 +27,10 @@ POSITIONS = 160
 DEPTHS = 24
 _DEEPEST = 0.02
 """In modules: compression up to which the table goes, beyond what evens out the face."""
+_FEWEST = 4
+"""Intervals between corners, at least."""
+_APART = 1e-6
+"""Corners nearer to each other than this, in base pitches, are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,9 +75,9 @@ def face_state(slices: FaceSlices, curves: PairCurves, position: FloatArray) -> 
 
 def face_table(slices: FaceSlices, kinds: tuple[PairCurves, ...], module: float) -> FaceTable:
     """Table of every kind of pair; `module` [m] sets how deep it goes."""
-    start, end = kinds[0].stiffness.knots[[0, -1]]
     reach = float(np.abs(slices.shift).max()) if slices.z.size > 1 else 0.0
-    knots = np.linspace(start - reach, end + reach, POSITIONS + 1)
+    pieces = _pieces(_breaks(kinds, reach))
+    knots = np.concatenate([*(piece[:-1] for piece in pieces[:-1]), pieces[-1]])
     deepest = _DEEPEST * module + 1.5 * float(np.ptp(slices.gap))
     unit = deepest / DEPTHS**2
     compressions = unit * np.arange(DEPTHS + 1.0) ** 2
@@ -89,16 +94,40 @@ def face_table(slices: FaceSlices, kinds: tuple[PairCurves, ...], module: float)
         force = loads.force.reshape(shape)
         rise = loads.tangent.reshape(shape) * 2.0 * unit * np.arange(DEPTHS + 1.0)
         force[:, 0] = 0.0
-        touches.append(_powers(knots, gap[:, None])[:, 0])
-        cells.append(_cells(_powers(knots, force), _powers(knots, rise), unit))
+        touches.append(_powers(pieces, gap[:, None])[:, 0])
+        cells.append(_cells(_powers(pieces, force), _powers(pieces, rise), unit))
     return FaceTable(knots, np.array(touches), np.array(cells), unit)
 
 
-def _powers(knots: FloatArray, values: FloatArray) -> FloatArray:
-    """Cubic splines through columns of values at knots, (m, columns, 4), in a variable from 0 to 1."""
-    spacing = knots[1] - knots[0]
-    coefficients = np.asarray(CubicSpline(knots, values, axis=0).c)[::-1]
-    return np.asarray(np.moveaxis(coefficients, 0, -1) * spacing ** np.arange(4), dtype=np.float64)
+def _breaks(kinds: tuple[PairCurves, ...], reach: float) -> FloatArray:
+    """Ends of the positions, and between them where corners come to the face and leave it, `reach` from its middle."""
+    start, end = kinds[0].stiffness.knots[[0, -1]]
+    corners = np.concatenate([corners_of(curve) for kind in kinds for curve in (kind.stiffness, kind.deviation)])
+    breaks = np.unique(np.concatenate([corners - reach, corners + reach]))
+    first, last = start - reach, end + reach
+    breaks = breaks[(breaks > first + _APART) & (breaks < last - _APART)]
+    return np.concatenate([[first], breaks[np.diff(breaks, append=np.inf) > _APART], [last]])
+
+
+def _pieces(breaks: FloatArray) -> list[FloatArray]:
+    """Knots from each break to the next, both included, as evenly spaced as the breaks allow."""
+    spacing = (breaks[-1] - breaks[0]) / POSITIONS
+    # Rounding must not cost an interval more.
+    counts = np.maximum(np.ceil(np.diff(breaks) / spacing - 1e-9).astype(int), _FEWEST)
+    return [
+        np.linspace(low, high, count + 1)
+        for low, high, count in zip(breaks[:-1], breaks[1:], counts.tolist(), strict=True)
+    ]
+
+
+def _powers(pieces: list[FloatArray], values: FloatArray) -> FloatArray:
+    """Cubic splines through columns of values at each piece's knots, (m, columns, 4), in a variable from 0 to 1."""
+    found, first = [], 0
+    for knots in pieces:
+        coefficients = np.asarray(CubicSpline(knots, values[first : first + knots.size], axis=0).c)[::-1]
+        found.append(np.moveaxis(coefficients, 0, -1) * (knots[1] - knots[0]) ** np.arange(4))
+        first += knots.size - 1
+    return np.asarray(np.concatenate(found), dtype=np.float64)
 
 
 def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:

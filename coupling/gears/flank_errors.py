@@ -60,11 +60,6 @@ class ProfileDeviation:
                 raise GearError("profile deviation table: the roll angles must increase")
 
     @property
-    def is_smooth(self) -> bool:
-        """Whether it has no corners, so that only `table` would make any."""
-        return not self.table
-
-    @property
     def corners(self) -> tuple[float, ...]:
         """Roll angles where the profile has corners [rad]."""
         return tuple(roll for roll, _ in self.table)

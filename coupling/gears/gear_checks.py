@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coupling.gears.errors import GearError, PointedToothError, ThinTipError, UndercutError, require_finite
+from coupling.gears.faults import Spall
 
 if TYPE_CHECKING:
     from coupling.gears.geometry import Gear
@@ -162,3 +163,9 @@ def check_flanks(gear: Gear) -> None:
     for fault in gear.faults:
         if fault.tooth is not None and fault.tooth >= gear.teeth:
             raise GearError(f"{label}a fault is on tooth {fault.tooth}; the teeth are numbered 0 to {gear.teeth - 1}")
+        if isinstance(fault, Spall) and not (fault.start_roll_angle < tip and fault.end_roll_angle > form):
+            raise GearError(
+                f"{label}a spall must lie on the flank, between the roll angles of the form circle and the tip, "
+                f"{math.degrees(form):.4g} and {math.degrees(tip):.4g} degrees, got "
+                f"{math.degrees(fault.start_roll_angle):.4g} to {math.degrees(fault.end_roll_angle):.4g} degrees"
+            )

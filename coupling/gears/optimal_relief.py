@@ -121,7 +121,9 @@ def optimal_tip_relief(
         return float(swings(contact_of(TipRelief(amount, length=length, shape=shape))[1]).max())
 
     _, plain = contact_of(None)
-    deflection = static_transmission_error(plain, max(forces), phases).mean_transmission_error
+    # Counted from first touch, which a crown or a deviation puts before or after nominal motion.
+    loaded, unloaded = (static_transmission_error(plain, force, phases) for force in (max(forces), 0.0))
+    deflection = loaded.mean_transmission_error - unloaded.mean_transmission_error
     longest = _LONGEST * 0.5 * geometry.path_length
     shortest, deepest = 0.05 * longest, _DEEPEST * deflection
     amounts, lengths = np.linspace(0.0, deepest, _GRID + 1)[1:], np.linspace(shortest, longest, _GRID)

@@ -17,7 +17,8 @@ import numpy.typing as npt
 from coupling.gears.errors import ContactAccuracyError, GearError
 from coupling.gears.face_slices import FaceSlices, balance_faces, load_faces
 from coupling.gears.face_table import face_state
-from coupling.gears.tooth_contact import ToothContact
+from coupling.gears.faults import NEVER
+from coupling.gears.tooth_contact import PairStates, ToothContact
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -123,16 +124,17 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
     Raises
     ------
     GearError
-        For a negative or non-finite load.
+        For a negative or non-finite load, or where so many teeth are missing that none meet.
     ContactAccuracyError
         If the pairs' forces miss the load by more than rounding.
     """
     if not (math.isfinite(force) and force >= 0.0):
         raise GearError(f"static mesh: the load must be at least 0 N, got {force!r}")
     at = mesh_period_phases(contact) if phases is None else np.atleast_1d(np.asarray(phases, dtype=np.float64))
-    if contact.faces is not None:
-        return _balanced_faces(contact, contact.faces, force, at)
     states = contact.pairs(at)
+    _require_teeth(states, at)
+    if contact.faces is not None:
+        return _balanced_faces(contact, contact.faces, force, at, states)
     order = np.argsort(states.deviation, axis=1)
     stiffness = np.take_along_axis(states.stiffness, order, axis=1)
     gap = np.take_along_axis(states.deviation, order, axis=1)
@@ -163,9 +165,20 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
     return StaticMesh(force, at, compression, states.position, forces, tangent, secant)
 
 
-def _balanced_faces(contact: ToothContact, faces: FaceSlices, force: float, at: FloatArray) -> StaticMesh:
+def _require_teeth(states: PairStates, at: FloatArray) -> None:
+    """Raise `GearError` at a phase where every pair that could touch lacks a tooth."""
+    apart = states.deviation.min(axis=1) > 0.5 * NEVER
+    if np.any(apart):
+        raise GearError(
+            f"static mesh: no teeth meet at phase {at[apart][0]:.4g}, counted in mesh periods; so many neighbours are "
+            "missing that the gears turn free until the next ones strike. Let fewer neighbouring teeth be missing"
+        )
+
+
+def _balanced_faces(
+    contact: ToothContact, faces: FaceSlices, force: float, at: FloatArray, states: PairStates
+) -> StaticMesh:
     """The loaded mesh where the load spreads unevenly over the face."""
-    states = contact.pairs(at)
     rows, columns = np.nonzero(states.present)
     position, kind = states.position[rows, columns], states.kind[rows, columns]
     slices = faces.z.size

@@ -144,9 +144,18 @@ class Fault(Table):
             "crack": ("tooth", "depth"),
             "missing-tooth": ("tooth",),
         }
+        takes = {
+            "wear": ("depth", "tooth", "shape"),
+            "spall": (*needs["spall"], "width"),
+            "crack": (*needs["crack"], "angle"),
+            "missing-tooth": needs["missing-tooth"],
+        }
         for key in needs[self.kind]:
             if getattr(self, key) is None:
                 raise wrong(f"'{key}' of a fault of kind {self.kind!r}", key)
+        for key, field in type(self).model_fields.items():
+            if key not in ("kind", *takes[self.kind]) and getattr(self, key) != field.default:
+                raise wrong(f"no '{key}' of a fault of kind {self.kind!r}", key)
         if self.kind == "spall":
             assert self.start_roll_angle is not None
             assert self.end_roll_angle is not None

@@ -138,8 +138,13 @@ class Finding:
 
 
 def look_up(document: object, location: Location) -> object:
-    """Return what stands at a location of nested tables and lists; ``NOTHING`` where there is nothing."""
+    """Return what stands at a location of nested tables and lists; ``NOTHING`` where there is nothing.
+
+    A table that stands for a list of one is its first entry.
+    """
     for step in location:
+        if step == 0 and isinstance(document, Mapping):
+            continue
         in_table = isinstance(document, Mapping) and step in document
         in_list = isinstance(document, (list, tuple)) and isinstance(step, int) and 0 <= step < len(document)
         if not (in_table or in_list):

@@ -12,10 +12,13 @@ from gearwhine.stages.gears import SolvedPair
 
 FloatArray = npt.NDArray[np.float64]
 
+_MOST_YIELDING = 0.1
+"""In modules: what no teeth yield before they break."""
+
 
 def gears_document(pairs: tuple[PairAnalysis, ...]) -> dict[str, Any]:
     """The gear pairs as the command's JSON."""
-    warnings = [doubt for pair in pairs for doubt in doubts(pair.solved.geometry)]
+    warnings = [doubt for pair in pairs for doubt in [*doubts(pair.solved.geometry), *_left_out(pair)]]
     return {"pairs": [_pair_document(pair) for pair in pairs]} | ({"warnings": warnings} if warnings else {})
 
 
@@ -64,6 +67,27 @@ def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
         "transmission_error": solved.static.transmission_error.tolist(),
         "unloaded_transmission_error": pair.unloaded.tolist(),
     }
+
+
+def _left_out(pair: PairAnalysis) -> list[dict[str, str]]:
+    """What the case has and the mesh at rest does not show, or cannot bear."""
+    solved, geometry = pair.solved, pair.solved.geometry
+    found = []
+    for gear in (geometry.driver, geometry.driven):
+        if gear.eccentricity > 0.0:
+            message = (
+                f"gear {gear.name!r}: its eccentricity adds {1e6 * gear.eccentricity:.4g} µm once per turn, either "
+                "way, to the transmission error; the motion has it, the curves here are without it"
+            )
+            found.append({"name": "runout", "message": message})
+    yielding = solved.static.mean_transmission_error - float(pair.unloaded.mean())
+    if yielding > _MOST_YIELDING * geometry.driver.module:
+        message = (
+            f"{geometry.label}: the teeth yield {1e6 * yielding:.4g} µm under {solved.torque:.4g} N·m, "
+            f"{yielding / geometry.driver.module:.2g} modules; none bear so much, and the model is of small deflections"
+        )
+        found.append({"name": "overload", "message": message})
+    return found
 
 
 def _over_hunting_period(solved: SolvedPair) -> dict[str, float] | None:

@@ -27,7 +27,6 @@ FloatArray = npt.NDArray[np.float64]
 
 # The mesh's damping is all there from this part of the mean compression on.
 _FADING = 0.1
-_HUNTING_POINTS = 60  # a mesh period, over the hunting period
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class SolvedPair:
     static : coupling.gears.StaticMesh
         Over one mesh period, the first.
     hunting : coupling.gears.StaticMesh or None
-        Over the whole hunting period, where pitch deviations make the mesh periods differ.
+        Over the whole hunting period, where pitch deviations or damaged teeth make the mesh periods differ.
     mesh_frequency : float or None
         [Hz]; None where the case gives no speed.
     """
@@ -96,10 +95,7 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
         depth = _FADING * force / contact.mean_stiffness
         contact = contact.with_damping(_damping(case, pair, contact), depth)
         static = room.static_transmission_error(contact, force)
-        hunting = None
-        if contact.pitch_gaps.size:
-            phases = room.mesh_period_phases(contact, _HUNTING_POINTS, periods=contact.pitch_gaps.size)
-            hunting = room.static_transmission_error(contact, force, phases)
+        hunting = room.hunting_mesh(contact, force) if contact.hunting_period > 1 else None
         solved.append(SolvedPair(pair, geometry, model, contact, static, hunting, frequency))
     return tuple(solved)
 

@@ -93,6 +93,18 @@ ONE_WRONG = {
         "gear[0].fault[0].end_roll_angle",
         "beyond start_roll_angle",
     ),
+    "crack of a part of the face": (
+        "gear.0.fault",
+        {"kind": "crack", "tooth": 1, "depth": "1 mm", "width": "2 mm"},
+        "gear[0].fault[0].width",
+        "no 'width' of a fault of kind 'crack', got '2 mm'",
+    ),
+    "one fault's value": (
+        "gear.0.fault",
+        {"kind": "missing-tooth", "tooth": 99},
+        "gear[0].fault[0].tooth",
+        "a tooth from 0 to 27, got 99",
+    ),
     "relief from nowhere": ("gear.0.tip_relief", {"amount": "10 um"}, "gear[0].tip_relief", "exactly one of"),
     "end relief without length": (
         "gear.0.errors",

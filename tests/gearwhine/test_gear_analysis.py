@@ -299,3 +299,31 @@ def test_the_command_compiles_nothing_and_draws_nothing_unasked() -> None:
     )
     outcome = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert outcome.stderr.strip() == "[]"
+
+
+def test_damage_shows_over_the_hunting_period() -> None:
+    fault = "gear.pinion.fault={kind='crack',tooth=3,depth='3 mm'}"
+    case = case_of("spur-pair", fault)
+    (solved,) = solve_gears(case)
+    assert solved.hunting is not None
+    sound = analysed(*EVEN).solved.static
+    phases, error = solved.hunting.phases, solved.hunting.transmission_error
+    # Tooth 3 meets from phase 3 to 3 and the contact ratio; corners reach half a base pitch further at most.
+    touched = (phases > 2.5) & (phases < 3.5 + solved.geometry.contact_ratio)
+    away = np.interp(phases % 1.0, sound.phases, sound.transmission_error)
+    np.testing.assert_allclose(error[~touched], away[~touched], atol=1e-8)
+    assert error.max() > sound.transmission_error.max() + 1e-6
+    over = gears_document(analyse_pairs(case, (solved,)))["pairs"][0]["transmission_error_m"]["over_hunting_period"]
+    assert over["peak_to_peak"] == pytest.approx(float(np.ptp(error)))
+
+
+def test_what_the_curves_leave_out_or_no_teeth_bear_is_said() -> None:
+    def names(*settings: str) -> list[str]:
+        case = case_of("spur-pair", *settings)
+        found = gears_document(analyse_pairs(case, solve_gears(case))).get("warnings", [])
+        return [warning["name"] for warning in found]
+
+    assert names() == []
+    assert names("gear.pinion.errors.runout='30 um'") == ["runout"]
+    assert names("operation.torque='1000 N*m'") == []
+    assert names("operation.torque='5000 N*m'") == ["overload"]

@@ -39,7 +39,7 @@ def test_extra_compliance_is_that_of_the_sections_left(depth: float) -> None:
         lever = float(np.interp(height, along, half))
         below = along <= height
         y, x = along[below], half[below]
-        kept = np.minimum(2.0 * x, x + left)
+        kept = np.minimum(2.0 * x, x + left + max(0.0, half[-1] - left) * (y - along[0]) / (along[-1] - along[0]))
         moment = math.cos(beta) * (height - y) - math.sin(beta) * lever
         more = 12.0 * moment**2 / modulus * (kept**-3 - (2.0 * x) ** -3)
         more += (1.2 * math.cos(beta) ** 2 / shear + math.sin(beta) ** 2 / modulus) * (1.0 / kept - 0.5 / x)
@@ -72,3 +72,37 @@ def test_a_crack_through_the_foot_is_refused() -> None:
         ToothCrack(0, 8e-3).extra_compliance(GEAR, ROLLS)
     with pytest.raises(GearError, match="angle must be above 0"):
         ToothCrack(0, 1e-3, 0.0)
+
+
+@pytest.mark.parametrize("depth", [4.5e-3, 5.5e-3, 6.5e-3])
+def test_a_crack_beyond_the_axis_leaves_a_section_that_carries(depth: float) -> None:
+    """At most as soft as a cantilever of the thinnest section that is left, bent over the height of the load.
+
+    A line along the axis would leave nothing of the tooth's upper part, and the compliance would have a pole there.
+    """
+    across, along = tooth_outline(GEAR, 400)[: 2 * 400 - 1].T
+    half, up = -across, (along - along[0]) / (along[-1] - along[0])
+    left = half[0] - depth * math.sin(math.radians(70.0))
+    thinnest = float(np.min(half + left + (half[-1] - left) * up))
+    modulus, shear = GEAR.youngs_modulus * GEAR.face_width, GEAR.youngs_modulus / 2.6 * GEAR.face_width
+    heights = np.interp(GEAR.base_radius * np.hypot(1.0, ROLLS), np.hypot(across, along), along) - along[0]
+    most = 4.0 * heights**3 / (modulus * thinnest**3) + (1.2 / shear + 1.0 / modulus) * heights / thinnest
+    found = ToothCrack(0, depth).extra_compliance(GEAR, ROLLS)
+    shallower = ToothCrack(0, depth - 1e-4).extra_compliance(GEAR, ROLLS)
+    assert np.all(found < most)
+    assert np.all((shallower < found) & (found < 1.5 * shallower))
+    assert np.all(np.diff(found) > 0.0)
+
+
+@pytest.mark.parametrize("gear", [GEAR, replace(GEAR, teeth=12, allow_undercut=True), replace(GEAR, teeth=90)])
+def test_the_deepest_crack_leaves_a_tenth_of_the_thinnest_section(gear: Gear) -> None:
+    across, along = tooth_outline(gear, 400)[: 2 * 400 - 1].T
+    half, up = -across, (along - along[0]) / (along[-1] - along[0])
+    rolls = np.linspace(gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius), 5)
+    with pytest.raises(GearError, match="at most") as refused:
+        ToothCrack(0, 1.0).extra_compliance(gear, rolls)
+    deepest = 1e-3 * float(str(refused.value).split("at most ")[1].split()[0])
+    left = half[0] - deepest * math.sin(math.radians(70.0))
+    kept = half + left + np.maximum(0.0, half[-1] - left) * up
+    assert np.min(kept / (2.0 * half)) == pytest.approx(0.1, abs=2e-3)
+    assert np.all(np.isfinite(ToothCrack(0, 0.999 * deepest).extra_compliance(gear, rolls)))

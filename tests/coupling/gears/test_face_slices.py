@@ -12,6 +12,7 @@ from coupling.gears import (
     GearPairGeometry,
     HelixDeviation,
     PotentialEnergyStiffness,
+    Spall,
     TipRelief,
     face_slices,
     mesh_stiffness,
@@ -186,6 +187,18 @@ def test_the_table_carries_what_the_slices_carry(uneven) -> None:  # type: ignor
     for phase, force in zip(random.uniform(0.0, 1.0, 40), random.uniform(100.0, 2.0 * FORCE, 40), strict=True):
         compression = static_transmission_error(uneven, force, [phase]).transmission_error[0]
         assert tooth_force(phase, compression, 0.0, *law)[0] == pytest.approx(force, abs=3e-3 * FORCE)
+
+
+@pytest.mark.parametrize(("degrees", "miss"), [(0.0, 1e-3), (0.02, 0.02), (14.0, 0.05)])
+def test_the_table_carries_what_the_slices_carry_beside_a_deep_spall(degrees: float, miss: float) -> None:
+    middle = PINION.roll_angle(PINION.pitch_radius)
+    pair = helical(degrees, faults=(Spall(3, middle - 0.02, middle + 0.03, 0.2e-3),))
+    contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair, misalignment=2e-4))
+    phases = np.arange(2.0, 6.0, 0.013)
+    mesh = static_transmission_error(contact, FORCE, phases)
+    law = contact.kernel_arguments
+    found = [tooth_force(at, deep, 0.0, *law)[0] for at, deep in zip(phases, mesh.transmission_error, strict=True)]
+    np.testing.assert_allclose(found, FORCE, rtol=miss)
 
 
 @pytest.mark.parametrize("depth", [2e-6, 14e-6, 60e-6, 300e-6])

@@ -19,8 +19,10 @@ from coupling.gears import (
     Spall,
     TipRelief,
     Wear,
+    face_slices,
     flank_gap,
     hertz_compliance,
+    hunting_mesh,
     static_transmission_error,
     tooth_contact,
 )
@@ -196,3 +198,22 @@ def test_impossible_flanks_say_why(make: object, words: str) -> None:
     assert callable(make)
     with pytest.raises(GearError, match=words):
         make()
+
+
+def test_a_spall_beside_the_flank_is_refused() -> None:
+    with pytest.raises(GearError, match=r"gear 'pinion': a spall must lie on the flank, .*got 100 to 120 degrees"):
+        replace(PINION, faults=(Spall(0, math.radians(100.0), math.radians(120.0), 20e-6),))
+
+
+@pytest.mark.parametrize("uneven", [False, True])
+def test_a_gap_in_the_teeth_wider_than_any_pair_reaches_is_refused(uneven: bool) -> None:
+    """One missing tooth leaves its neighbours two base pitches apart, which they bridge; three leave four."""
+    for missing, bridged in ((3,), True), ((3, 4, 5), False):
+        pair = GearPairGeometry(replace(PINION, faults=tuple(MissingTooth(tooth) for tooth in missing)), WHEEL)
+        faces = face_slices(pair, misalignment=1e-4, count=5) if uneven else None
+        contact = tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True, faces=faces)
+        if bridged:
+            assert hunting_mesh(contact, 1000.0).transmission_error.max() < 1e-3
+            continue
+        with pytest.raises(GearError, match=r"no teeth meet at phase \d"):
+            hunting_mesh(contact, 1000.0)

@@ -11,6 +11,7 @@ from coupling.gears import (
     GearError,
     GearPairGeometry,
     PotentialEnergyStiffness,
+    ProfileDeviation,
     SquareStiffness,
     TipRelief,
     harris_map,
@@ -96,3 +97,14 @@ def test_a_range_of_loads_is_a_compromise(best) -> None:  # type: ignore[no-unty
 def test_loads_that_ask_for_nothing(forces: list[float]) -> None:
     with pytest.raises(GearError, match="load"):
         optimal_tip_relief(PLAIN, MODEL, forces)
+
+
+def test_a_light_load_on_a_face_that_stands_out() -> None:
+    """Material that stands out puts the mesh ahead of nominal motion; the relief is sought beyond its first touch."""
+    proud = replace(GEAR, profile_deviation=ProfileDeviation(crowning=-20e-6))
+    pair = GearPairGeometry(proud, GEAR)
+    assert static_transmission_error(tooth_contact(pair, MODEL), 0.01 * DESIGN).mean_transmission_error < 0.0
+    found = optimal_tip_relief(pair, MODEL, [0.01 * DESIGN])
+    assert found.relief.amount >= 0.0
+    assert np.all(np.isfinite(found.tried))
+    assert found.peak_to_peak[0] <= found.tried.min()

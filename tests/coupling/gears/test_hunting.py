@@ -1,0 +1,62 @@
+"""The mesh over the hunting period: the same as phase by phase, with few mesh periods solved."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coupling.gears import (
+    Gear,
+    GearPairGeometry,
+    PotentialEnergyStiffness,
+    Spall,
+    ToothContact,
+    ToothCrack,
+    Wear,
+    face_slices,
+    hunting_mesh,
+    mesh_period_phases,
+    static_transmission_error,
+    tooth_contact,
+)
+from coupling.gears.hunting import _different_periods
+
+PINION = Gear("pinion", 17, 3e-3, math.radians(20.0), 20e-3, profile_shift=0.2)
+WHEEL = Gear("wheel", 22, 3e-3, math.radians(20.0), 20e-3, profile_shift=-0.2)
+FORCE = 3000.0
+
+
+def contact_of(*, helix: float = 0.0, pitched: bool = False) -> ToothContact:
+    roll = PINION.roll_angle(PINION.pitch_radius)
+    spall = Spall(9, roll - 0.05, roll + 0.05, 5e-6)
+    pinion = replace(PINION, helix_angle=helix, faults=(ToothCrack(3, 2e-3), spall))
+    wheel = replace(WHEEL, helix_angle=-helix, faults=(Wear(4e-6, tooth=5),))
+    if pitched:
+        wheel = replace(wheel, pitch_deviations=tuple(1e-6 * math.sin(n) for n in range(22)))
+    pair = GearPairGeometry(pinion, wheel)
+    faces = face_slices(pair, count=7) if helix else None
+    return tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True, faces=faces)
+
+
+@pytest.mark.parametrize(("helix", "pitched"), [(0.0, False), (0.0, True), (math.radians(15.0), False)])
+def test_every_phase_is_that_of_the_mesh_by_itself(helix: float, pitched: bool) -> None:
+    contact = contact_of(helix=helix, pitched=pitched)
+    found = hunting_mesh(contact, FORCE, points=7)
+    phases = mesh_period_phases(contact, 7, periods=17 * 22)
+    expected = static_transmission_error(contact, FORCE, phases)
+    np.testing.assert_array_equal(found.phases, phases)
+    for name in ("transmission_error", "positions", "pair_forces", "tangent_stiffness", "secant_stiffness"):
+        # A phase in a later mesh period has fewer digits left for where in it the pairs are.
+        values = getattr(expected, name)
+        np.testing.assert_allclose(getattr(found, name), values, rtol=1e-7, atol=1e-9 * np.abs(values).max())
+    assert (found.line_loads is None) == (helix == 0.0)
+
+
+def test_damage_makes_few_mesh_periods_differ() -> None:
+    first, which = _different_periods(contact_of())
+    assert which.size == 17 * 22
+    assert first.size < 40
+    none = np.zeros(0, dtype=np.int64)
+    sound = replace(contact_of(), variants=(), pair_variants=none, back_pair_variants=none)
+    assert hunting_mesh(sound, FORCE, points=5).phases.size < 2 * 17
