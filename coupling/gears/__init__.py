@@ -47,6 +47,7 @@ from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
 from coupling.gears.friction import MeshFriction, mesh_friction
 from coupling.gears.gear_checks import require_tip_thickness
+from coupling.gears.gear_contact import tooth_contact
 from coupling.gears.geometry import Gear
 from coupling.gears.harris_map import HarrisMap, harris_map, transmission_error_harmonics
 from coupling.gears.hertz import LineContact, hertz_compliance, line_contact
@@ -96,7 +97,7 @@ from coupling.gears.thickness import (
     tooth_thickness,
 )
 from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, potential_energy
-from coupling.gears.tooth_contact import PairStates, ToothContact, tooth_contact
+from coupling.gears.tooth_contact import PairStates, ToothContact
 from coupling.gears.tooth_size import module_from_base_radius, module_from_diametral_pitch
 from coupling.gears.weber_banaschek import weber_banaschek
 

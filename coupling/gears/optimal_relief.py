@@ -11,12 +11,13 @@ from scipy.optimize import minimize
 
 from coupling.gears.errors import GearError, require_finite
 from coupling.gears.face_slices import FaceSlices
+from coupling.gears.gear_contact import tooth_contact
 from coupling.gears.modifications import ReliefShape, TipRelief
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
 from coupling.gears.static import static_transmission_error
 from coupling.gears.stiffness_models import StiffnessModel
-from coupling.gears.tooth_contact import ToothContact, tooth_contact
+from coupling.gears.tooth_contact import ToothContact
 
 FloatArray = npt.NDArray[np.float64]
 
