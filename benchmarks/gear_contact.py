@@ -51,11 +51,11 @@ MODELS: dict[str, StiffnessModel] = {
 
 
 @njit
-def summed(calls, compression, *law):  # type: ignore[no-untyped-def]
+def summed(calls, compression, a, b, c, d, e, f, g, h):  # type: ignore[no-untyped-def]
     """Forces of a mesh that turns on by a seventieth of a period at each call."""
     total = 0.0
     for call in range(calls):
-        total += tooth_force(call / 70.0, compression, 0.01, *law)[0]
+        total += tooth_force(call / 70.0, compression, 0.01, a, b, c, d, e, f, g, h)[0]
     return total
 
 

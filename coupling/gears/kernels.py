@@ -131,21 +131,22 @@ def tooth_force(
     while position < end:
         # The knots are nearly uniform: a guess, then a few steps.
         at = min(int((position - start) * per_length), pieces - 1)
-        while at > 0 and knots[at] > position:
+        while knots[at] > position and at > 0:
             at -= 1
-        while at < pieces - 1 and knots[at + 1] <= position:
+        while knots[at + 1] <= position and at < pieces - 1:
             at += 1
         gap_of_pair = 0.0
         if pair_gaps.size > 0:
             pair = number % pair_gaps.size
             gap_of_pair, kind = pair_gaps[pair], pair_kinds[pair]
-        cubic = curves[kind, at]
         span = knots[at + 1] - knots[at]
         u = (position - knots[at]) / span
-        approach = compression - gap_of_pair - (cubic[4] + u * (cubic[5] + u * (cubic[6] + u * cubic[7])))
+        # Single entries: a view of the row would be counted, in and out, at every call.
+        c4, c5, c6, c7 = curves[kind, at, 4], curves[kind, at, 5], curves[kind, at, 6], curves[kind, at, 7]
+        approach = compression - gap_of_pair - (c4 + u * (c5 + u * (c6 + u * c7)))
         if approach > 0.0 and faces.size > 0:
             pair_force, pair_tangent, pair_energy, pair_slope = face_force(faces[kind, at], face_depth, u, approach)
-            gap_slope = cubic[5] + u * (2.0 * cubic[6] + 3.0 * u * cubic[7])
+            gap_slope = c5 + u * (2.0 * c6 + 3.0 * u * c7)
             force += pair_force
             tangent += pair_tangent
             energy += pair_energy
@@ -153,9 +154,10 @@ def tooth_force(
             touching += 1
             deepest = max(deepest, approach)
         elif approach > 0.0:
-            k = cubic[0] + u * (cubic[1] + u * (cubic[2] + u * cubic[3]))
-            k_slope = cubic[1] + u * (2.0 * cubic[2] + 3.0 * u * cubic[3])
-            gap_slope = cubic[5] + u * (2.0 * cubic[6] + 3.0 * u * cubic[7])
+            c0, c1, c2, c3 = curves[kind, at, 0], curves[kind, at, 1], curves[kind, at, 2], curves[kind, at, 3]
+            k = c0 + u * (c1 + u * (c2 + u * c3))
+            k_slope = c1 + u * (2.0 * c2 + 3.0 * u * c3)
+            gap_slope = c5 + u * (2.0 * c6 + 3.0 * u * c7)
             force += k * approach
             tangent += k
             energy += 0.5 * k * approach * approach
