@@ -210,11 +210,6 @@ class ToothContact:
         return float(self.stiffness.knots[0]), float(self.stiffness.knots[-1])
 
     @property
-    def largest_pair_count(self) -> int:
-        """The most pairs that are ever on the path of contact at once."""
-        return math.ceil(self.contact_ratio)
-
-    @property
     def hunting_numbers(self) -> int:
         """Pairs that differ, h: 0 where all are alike."""
         return max(self.pitch_gaps.size, self.pair_variants.size)

@@ -84,7 +84,7 @@ def test_slices_against_a_dense_solution_of_the_unilateral_problem(seed: int) ->
     expected = nnls(factor.T, np.linalg.solve(factor, compression - gap), maxiter=1000)[0]
     found = load_faces(slices, base[None], gap[None], np.ones((1, n), dtype=np.bool_), np.array([compression]))
     np.testing.assert_allclose(found.line_load[0], expected, atol=1e-8 * expected.max())
-    assert (expected == 0.0).any() or seed > 2  # some of them lose contact
+    assert (expected == 0.0).any()  # some slices stand clear
     step = 1e-10
     ahead = load_faces(slices, base[None], gap[None], np.ones((1, n), dtype=np.bool_), np.array([compression + step]))
     assert (ahead.force[0] - found.force[0]) / step == pytest.approx(found.tangent[0], rel=1e-4)
