@@ -5,9 +5,7 @@ imported where it is used, so that ``--help`` answers at once.
 """
 
 import os
-import signal
 import sys
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from gearwhine import __version__
+from gearwhine.interruption import interruptible
 
 if TYPE_CHECKING:
     from gearwhine.case import Case
@@ -247,12 +246,13 @@ def run_command(arguments: list[str]) -> int:
 
     Only what nobody foresaw leaves a traceback.
     """
+    with interruptible():
+        return _run_command(arguments)
+
+
+def _run_command(arguments: list[str]) -> int:
     from gearwhine.failures import explain
 
-    # A polite kill unwinds like Ctrl-C does, so that staged files are cleared away.
-    if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, _interrupt)
-    outer, sys.unraisablehook = sys.unraisablehook, _unraisable
     try:
         app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
@@ -271,28 +271,7 @@ def run_command(arguments: list[str]) -> int:
             sys.stderr.write(f"{note}\n")
         sys.stderr.write(f"gearwhine: {message}\n")
         return code
-    finally:
-        sys.unraisablehook = outer
     return 0
-
-
-_AGAIN = 0.05
-"""After how long a dropped interruption comes again [s]."""
-
-
-def _unraisable(trouble: "sys.UnraisableHookArgs") -> None:
-    """Interrupt again where Python drops an interruption, as in the callback of a weak reference; tell all else."""
-    if issubclass(trouble.exc_type, KeyboardInterrupt):
-        # A signal to the thread itself: it ends a wait as well.
-        again = threading.Timer(_AGAIN, signal.pthread_kill, (threading.main_thread().ident, signal.SIGTERM))
-        again.daemon = True
-        again.start()
-    else:
-        sys.__unraisablehook__(trouble)
-
-
-def _interrupt(number: int, frame: object) -> None:
-    raise KeyboardInterrupt
 
 
 def _on_case(

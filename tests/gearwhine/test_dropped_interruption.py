@@ -1,8 +1,10 @@
-"""An interruption that Python drops, in the callback of a weak reference, comes again and is no traceback."""
+"""Interruptions at awkward moments: where Python drops them, and within an import, which is let finish."""
 
 import signal
+import sys
 import time
 import weakref
+from pathlib import Path
 
 import pytest
 
@@ -23,12 +25,55 @@ def test_an_interruption_in_a_callback_ends_the_command(
         assert watched() is None
         time.sleep(10.0)
 
-    before = signal.getsignal(signal.SIGTERM)
     monkeypatch.setattr(cli, "app", work)
     begin = time.perf_counter()
-    try:
-        assert cli.run_command([]) == 130
-    finally:
-        signal.signal(signal.SIGTERM, before)
+    assert cli.run_command([]) == 130
     assert time.perf_counter() - begin < 9.0
     assert capsys.readouterr().err == "gearwhine: interrupted; the output folder holds no half-written file\n"
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_an_import_is_not_cut_short(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, how: signal.Signals) -> None:
+    (tmp_path / "slow_to_begin.py").write_text(
+        f"import signal, time\nsignal.raise_signal({int(how)})\ntime.sleep(0.2)\nwhole = True\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def work(*_: object, **__: object) -> None:
+        import slow_to_begin
+
+        assert slow_to_begin.whole
+        time.sleep(10.0)
+
+    monkeypatch.setattr(cli, "app", work)
+    begin = time.perf_counter()
+    assert cli.run_command([]) == 130
+    assert time.perf_counter() - begin < 9.0
+    assert sys.modules.pop("slow_to_begin").whole
+
+
+def test_what_falls_apart_by_an_interruption_is_not_told(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class HalfBuilt:
+        def __init__(self) -> None:
+            signal.raise_signal(signal.SIGINT)
+            self.handle = 0
+
+        def __del__(self) -> None:
+            del self.handle
+
+    monkeypatch.setattr(cli, "app", lambda *_, **__: HalfBuilt())
+    assert cli.run_command([]) == 130
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_the_handlers_are_given_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    def handlers() -> list[object]:
+        return [signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM), sys.unraisablehook]
+
+    before, within = handlers(), []
+    monkeypatch.setattr(cli, "app", lambda *_, **__: within.extend(handlers()))
+    assert cli.run_command([]) == 0
+    assert handlers() == before
+    assert not set(within) & set(before)
