@@ -15,17 +15,29 @@ numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
 """
 
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
-from coupling.connector import ContactConnector, LinearConnector
+from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.errors import CouplingError, TransientError
 from coupling.histories import Histories, histories, transient_outputs
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
+from coupling.marching import Block, Checkpoint, march_blocks
 from coupling.modes import CoupledModes, coupled_modes
+from coupling.settings import TransientOutputs, TransientSettings
 from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, spectrum_peaks
 from coupling.statics import static_equilibrium
-from coupling.system import CoupledSystem, HarmonicLoad
-from coupling.transient import EnergyBalance, TransientOutputs, TransientResult, TransientSettings, simulate
+from coupling.system import CoupledSystem, HarmonicLoad, TimedLoad
+from coupling.transient import (
+    EnergyBalance,
+    TransientFigures,
+    TransientResult,
+    sample_times,
+    simulate,
+    transient_figures,
+)
+from coupling.turning import Turning
 
 __all__ = [
+    "Block",
+    "Checkpoint",
     "Component",
     "ContactConnector",
     "CoupledModes",
@@ -43,11 +55,15 @@ __all__ = [
     "Peak",
     "RotorComponent",
     "Spectrum",
+    "SpeedTable",
+    "TimedLoad",
     "Torque",
     "TransientError",
+    "TransientFigures",
     "TransientOutputs",
     "TransientResult",
     "TransientSettings",
+    "Turning",
     "Unbalance",
     "Window",
     "amplitude_spectrum",
@@ -55,9 +71,12 @@ __all__ = [
     "coupled_modes",
     "histories",
     "housing_component",
+    "march_blocks",
     "rotor_component",
+    "sample_times",
     "simulate",
     "spectrum_peaks",
     "static_equilibrium",
+    "transient_figures",
     "transient_outputs",
 ]

@@ -11,13 +11,16 @@ MacNeal's residual flexibility without its mass), and keeps the static complianc
 back in truth: at a circular frequency w it errs by w C/K of its bearing, the kept coordinates by the square of that.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.component import Component
-from coupling.system import CoupledSystem, HarmonicLoad
+from coupling.connector import LinearConnector
+from coupling.low_rank import common_span
+from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -29,7 +32,7 @@ class Condensed:
     Attributes
     ----------
     system : CoupledSystem
-        One component of the m kept coordinates, in their order.
+        Of the m kept coordinates, in their order, and a connector that stands for all ties.
     kept : ndarray of int, shape (m,)
         Which of the n coordinates these are.
     recovery : ndarray, shape (n, m)
@@ -42,31 +45,58 @@ class Condensed:
 
 
 def condensed(system: CoupledSystem) -> Condensed:
-    """The system without the residual coordinates that are stiffer than all others; the same where it has none."""
+    """The system without the residual coordinates that are stiffer than all others; the same where it has none.
+
+    Also the same where its ties change with the speed: the condensation would have to change with them.
+    """
     stiff = _stiff(system)
-    if not stiff.any():
+    if not stiff.any() or len(system.tie_rates) > 1:
         return Condensed(system, np.arange(system.size), np.eye(system.size))
     kept = ~stiff
-    recovery = np.zeros((system.size, int(kept.sum())))
-    recovery[kept] = np.eye(recovery.shape[1])
-    stiffness = system.stiffness
-    recovery[stiff] = -np.linalg.solve(stiffness[np.ix_(stiff, stiff)], stiffness[np.ix_(stiff, kept)])
-    kinds = tuple(kind for kind, stays in zip(system.kinds, kept, strict=True) if stays)
-    whole = Component(
-        name="machine",
-        kinds=kinds,
-        stiffness=recovery.T @ stiffness @ recovery,
-        damping=recovery.T @ system.damping @ recovery,
-        gyroscopic=np.zeros((len(kinds), len(kinds))),
+    held, left = np.flatnonzero(stiff), np.flatnonzero(kept)
+    stiffness, damping = system.stiffness, system.damping
+    follow = -np.linalg.solve(stiffness[np.ix_(held, held)], stiffness[np.ix_(held, left)])
+    recovery = np.zeros((system.size, len(left)))
+    recovery[left], recovery[held] = np.eye(len(left)), follow
+    # What the kept coordinates gain: ties between them that act in few directions.
+    crossing = damping[np.ix_(left, held)] @ follow
+    tied = [part[np.ix_(left, left)] for part in system.ties()]
+    tied[0] = tied[0] + stiffness[np.ix_(left, held)] @ follow
+    tied[1] = (
+        tied[1] + crossing + follow.T @ damping[np.ix_(held, left)] + follow.T @ damping[np.ix_(held, held)] @ follow
     )
+    directions, (tie_stiffness, tie_damping) = common_span(tied)
     less = CoupledSystem(
-        components=(whole,),
-        speeds=(0.0,),
+        components=tuple(_part(component, among) for component, among in _members(system, kept)),
+        speeds=system.speeds,
+        linear=(LinearConnector("ties", directions, tie_stiffness, tie_damping),),
         contacts=tuple(replace(contact, direction=contact.direction @ recovery) for contact in system.contacts),
         load=system.load @ recovery,
-        harmonic_loads=tuple(HarmonicLoad(one.frequency, one.amplitude @ recovery) for one in system.harmonic_loads),
+        harmonic_loads=tuple(replace(one, amplitude=one.amplitude @ recovery) for one in system.harmonic_loads),
+        timed_loads=tuple(replace(one, direction=one.direction @ recovery) for one in system.timed_loads),
+        swing=system.swing @ recovery,
     )
-    return Condensed(less, np.flatnonzero(kept), recovery)
+    return Condensed(less, left, recovery)
+
+
+def _members(system: CoupledSystem, kept: npt.NDArray[np.bool_]) -> Iterator[tuple[Component, npt.NDArray[np.int64]]]:
+    """Each component, and which of its own coordinates stay."""
+    start = 0
+    for component in system.components:
+        yield component, np.flatnonzero(kept[start : start + component.size])
+        start += component.size
+
+
+def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
+    """A component of some of the coordinates."""
+    square = np.ix_(among, among)
+    return Component(
+        component.name,
+        tuple(component.kinds[i] for i in among),
+        component.stiffness[square],
+        component.damping[square],
+        component.gyroscopic[square],
+    )
 
 
 def highest_frequency(system: CoupledSystem) -> float:
@@ -78,8 +108,9 @@ def highest_frequency(system: CoupledSystem) -> float:
 def _stiff(system: CoupledSystem) -> npt.NDArray[np.bool_]:
     """Residual coordinates beyond the highest frequency of the others, unless a load or a contact acts on them."""
     loaded = system.load != 0.0
-    for amplitude in [load.amplitude for load in system.harmonic_loads]:
-        loaded = loaded | (amplitude != 0.0)
+    loaded |= system.swing != 0.0
+    for load in [*(one.amplitude for one in system.harmonic_loads), *(one.direction for one in system.timed_loads)]:
+        loaded = loaded | (load != 0.0)
     for direction in system.contact_directions.T:
         loaded = loaded | (direction != 0.0)
     beyond = np.diag(system.stiffness) > highest_frequency(system) ** 2

@@ -29,18 +29,50 @@ class LinearConnector:
         K [N/m], not necessarily symmetric.
     damping : ndarray, shape (d, d)
         C [N s/m].
+    over_speed : SpeedTable, optional
+        K and C at other speeds than the nominal one, where they depend on it.
     """
 
     name: str
     directions: FloatArray
     stiffness: FloatArray
     damping: FloatArray
+    over_speed: "SpeedTable | None" = None
 
     def __post_init__(self) -> None:
         d = self.directions.shape[1]
         for what, matrix in (("stiffness", self.stiffness), ("damping", self.damping)):
             if matrix.shape != (d, d):
                 raise CouplingError(f"{self.name}: {what} of shape {matrix.shape}; expected ({d}, {d})")
+
+
+@dataclass(frozen=True)
+class SpeedTable:
+    """A linear law over speed, linear between t speeds and constant beyond them.
+
+    Attributes
+    ----------
+    rates : ndarray, shape (t,)
+        Speeds as parts of the nominal one, ascending.
+    stiffness : ndarray, shape (t, d, d)
+        K [N/m].
+    damping : ndarray, shape (t, d, d)
+        C [N s/m].
+    """
+
+    rates: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+
+    def at(self, rate: float) -> tuple[FloatArray, FloatArray]:
+        """K and C at a speed."""
+        after = min(max(int(np.searchsorted(self.rates, rate)), 1), len(self.rates) - 1)
+        gap = self.rates[after] - self.rates[after - 1]
+        part = min(max(float((rate - self.rates[after - 1]) / gap), 0.0), 1.0)
+        first, second = (
+            matrix[after - 1] + part * (matrix[after] - matrix[after - 1]) for matrix in (self.stiffness, self.damping)
+        )
+        return first, second
 
 
 @dataclass(frozen=True)

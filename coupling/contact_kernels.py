@@ -11,34 +11,37 @@ from numba import njit
 
 from coupling.gears.kernels import tooth_force
 from coupling.kernel_arrays import Contacts
+from coupling.small_systems import solve_in_place
 
 FloatArray = npt.NDArray[np.float64]
 
 _NEWTON_STEPS = 30
 
+# Columns of the laws' table: what the contact law gives, see coupling.gears.kernels.tooth_force.
+FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE = 0, 1, 2, 3, 4
+
 
 @njit(cache=True, nogil=True)
-def compression_of(contacts: Contacts, k: int, q: FloatArray, v: FloatArray, time: float) -> tuple[float, float]:
-    """δ and δ' of a contact."""
-    delta, rate = -contacts.clearance[k], 0.0
-    for i in range(q.size):
-        delta += contacts.direction[k, i] * q[i]
-        rate += contacts.direction[k, i] * v[i]
+def deviation_of(contacts: Contacts, k: int, turned: float, speed: float) -> tuple[float, float]:
+    """What runout and clearance take from a contact's compression [m], and its rate [m/s]."""
+    value, rate = contacts.clearance[k], 0.0
     for m in range(contacts.errors.shape[1]):
         amplitude, w = contacts.errors[k, m, 0], contacts.errors[k, m, 1]
-        angle = w * time + contacts.errors[k, m, 2]
-        delta -= amplitude * math.cos(angle)
-        rate += amplitude * w * math.sin(angle)
-    return delta, rate
+        if amplitude != 0.0:
+            angle = w * turned + contacts.errors[k, m, 2]
+            value += amplitude * math.cos(angle)
+            rate -= amplitude * w * speed * math.sin(angle)
+    return value, rate
 
 
 @njit(cache=True, nogil=True)
-def law_of(
-    contacts: Contacts, k: int, time: float, delta: float, rate: float
-) -> tuple[float, float, float, float, float, int]:
-    """The contact law of one contact; see :func:`coupling.gears.kernels.tooth_force`."""
-    return tooth_force(
-        contacts.phase[k] + contacts.rate[k] * time,
+def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray) -> None:
+    """Fill in a contact's row of the laws' table."""
+    if delta <= contacts.first_touch[k]:
+        laws[k, :] = 0.0
+        return
+    law = tooth_force(
+        contacts.phase[k] + contacts.rate[k] * turned,
         delta,
         rate,
         contacts.knots[k, : contacts.pieces[k] + 1],
@@ -50,93 +53,52 @@ def law_of(
         contacts.faces[k, : contacts.face_kinds[k], : contacts.pieces[k]],
         contacts.face_depth[k],
     )
-
-
-@njit(cache=True, nogil=True)
-def contact_state(contacts: Contacts, time: float, delta: FloatArray, rate: FloatArray, force: FloatArray) -> float:
-    """Fill in the forces; returns the energy stored in the teeth."""
-    energy = 0.0
-    for k in range(force.size):
-        law = law_of(contacts, k, time, delta[k], rate[k])
-        force[k] = law[0]
-        energy += law[3]
-    return energy
-
-
-@njit(cache=True, nogil=True)
-def contact_energy(contacts: Contacts, q: FloatArray, v: FloatArray, time: float) -> float:
-    """Energy stored in the teeth at a time [J]."""
-    energy = 0.0
-    for k in range(contacts.phase.size):
-        delta, rate = compression_of(contacts, k, q, v, time)
-        energy += law_of(contacts, k, time, delta, rate)[3]
-    return energy
+    laws[k, FORCE], laws[k, TANGENT], laws[k, DAMPING] = law[0], law[1], law[2]
+    laws[k, ENERGY], laws[k, PHASE_SLOPE] = law[3], law[4]
 
 
 @njit(cache=True, nogil=True)
 def settle(
     contacts: Contacts,
-    q: FloatArray,
-    v: FloatArray,
-    time: float,
+    turned: float,
+    free: FloatArray,
+    free_rate: FloatArray,
     flexibility: FloatArray,
     by_displacement: float,
     by_velocity: float,
-    force: FloatArray,
+    delta: FloatArray,
+    rate: FloatArray,
+    laws: FloatArray,
+    jacobian: FloatArray,
+    residual: FloatArray,
 ) -> bool:
-    """Contact forces from the motion without contact, by Newton's method on the compressions.
+    """Contact forces from the compressions and rates without contact, by Newton's method on the compressions.
 
-    The law is piecewise linear, so the method ends after a few steps with the right set of touching pairs.
+    Fills in compressions, rates and laws. The law is piecewise linear but for wide faces, so the method ends after a
+    few steps with the right set of touching pairs.
     """
-    c = force.size
-    free, free_rate = np.zeros(c), np.zeros(c)
-    delta = np.zeros(c)
-    stiff = np.zeros(c)
-    for k in range(c):
-        free[k], free_rate[k] = compression_of(contacts, k, q, v, time)
-        delta[k] = free[k]
+    c = free.size
+    per = by_velocity / by_displacement
+    delta[:] = free
     for _ in range(_NEWTON_STEPS):
         for k in range(c):
-            rate = free_rate[k] + by_velocity / by_displacement * (delta[k] - free[k])
-            law = law_of(contacts, k, time, delta[k], rate)
-            force[k] = law[0]
-            stiff[k] = law[1] + law[2] * by_velocity / by_displacement
-        jacobian, residual = np.eye(c), np.zeros(c)
+            rate[k] = free_rate[k] + per * (delta[k] - free[k])
+            take_law(contacts, k, turned, delta[k], rate[k], laws)
         largest, scale = 0.0, 1e-300
         for k in range(c):
-            residual[k] = free[k] - delta[k]
+            residual[k, 0] = free[k] - delta[k]
             for j in range(c):
-                residual[k] -= by_displacement * flexibility[k, j] * force[j]
-                jacobian[k, j] += by_displacement * flexibility[k, j] * stiff[j]
+                residual[k, 0] -= by_displacement * flexibility[k, j] * laws[j, FORCE]
             scale = max(scale, abs(free[k]) + abs(delta[k]))
-            largest = max(largest, abs(residual[k]))
+            largest = max(largest, abs(residual[k, 0]))
         if largest <= 1e-13 * scale:
             return True
-        _solve_in_place(jacobian, residual)
         for k in range(c):
-            delta[k] += residual[k]
+            for j in range(c):
+                stiff = laws[j, TANGENT] + laws[j, DAMPING] * per
+                jacobian[k, j] = by_displacement * flexibility[k, j] * stiff
+            jacobian[k, k] += 1.0
+        solve_in_place(jacobian, residual)
+        for k in range(c):
+            delta[k] += residual[k, 0]
     return False
-
-
-@njit(cache=True, nogil=True)
-def _solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
-    """Gaussian elimination with row exchanges for the few contacts; `right` becomes the solution."""
-    n = right.size
-    for column in range(n):
-        pivot = column
-        for row in range(column + 1, n):
-            if abs(matrix[row, column]) > abs(matrix[pivot, column]):
-                pivot = row
-        if pivot != column:
-            for j in range(n):
-                matrix[column, j], matrix[pivot, j] = matrix[pivot, j], matrix[column, j]
-            right[column], right[pivot] = right[pivot], right[column]
-        for row in range(column + 1, n):
-            factor = matrix[row, column] / matrix[column, column]
-            for j in range(column, n):
-                matrix[row, j] -= factor * matrix[column, j]
-            right[row] -= factor * right[column]
-    for row in range(n - 1, -1, -1):
-        for j in range(row + 1, n):
-            right[row] -= matrix[row, j] * right[j]
-        right[row] /= matrix[row, row]

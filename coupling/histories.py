@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.machine import Machine, MountedGear
+from coupling.settings import TransientOutputs
 from coupling.system import embed
-from coupling.transient import TransientOutputs, TransientResult
+from coupling.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

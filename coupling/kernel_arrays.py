@@ -1,6 +1,6 @@
 """The plain arrays that the time-stepping kernels take, by name.
 
-n coordinates, c contacts, h harmonic loads; :mod:`coupling.step` fills them from a coupled system.
+n coordinates, c contacts, r ties, h harmonic loads; :mod:`coupling.step` fills them from a coupled system.
 """
 
 from typing import NamedTuple
@@ -11,42 +11,57 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-
-class StepMatrices(NamedTuple):
-    """What the step needs for each of m step sizes; n coordinates, c contacts, h harmonic loads."""
-
-    size: FloatArray  # (m,) h [s]
-    propagator: FloatArray  # (m, 2 n, n) Pᵀ: rows for q*, then for v*
-    constant: FloatArray  # (m, n) S⁻¹ F of the constant load
-    cosine: FloatArray  # (m, h, n) S⁻¹ Re F_w
-    sine: FloatArray  # (m, h, n) S⁻¹ Im F_w
-    contact: FloatArray  # (m, c, n) Wᵀ
-    flexibility: FloatArray  # (m, c, c) H
+BY_TIME, BY_TURNING, BY_UNBALANCE = 0, 1, 2
 
 
 class Dynamics(NamedTuple):
-    """The system itself."""
+    """The system itself: diagonal but for the gyroscopic blocks and a few directions, the ties."""
 
-    stiffness: FloatArray  # (n, n) Kᵀ
-    damping: FloatArray  # (n, n) Cᵀ
-    skew: FloatArray  # (n, n) (K - Kᵀ) / 2, transposed
-    has_skew: bool
-    loss_diagonal: FloatArray  # (n,) symmetric part of C: diagonal ...
-    loss_rows: FloatArray  # (r, n) ... plus rows of low rank ...
-    loss_weights: FloatArray  # (r,) ... with these weights
+    stiffness: FloatArray  # (n,) diagonal of the components' K
+    damping: FloatArray  # (n,) and of their C
+    block_start: IntArray  # (g,) first coordinate of each gyroscopic block
+    block_size: IntArray  # (g,)
+    gyroscopic: FloatArray  # (g, b, b) Gᵀ at nominal speed, padded
+    ties: FloatArray  # (n, r) U, orthonormal: all else in K and C is U K_t Uᵀ and U C_t Uᵀ
+    tie_rates: FloatArray  # (t,) speeds, as parts of the nominal one, at which these are given
+    tie_stiffness: FloatArray  # (t, r, r) K_t
+    tie_damping: FloatArray  # (t, r, r) C_t
+    has_skew: bool  # whether K_t is not symmetric
     constant: FloatArray  # (n,) F
-    resolved: IntArray  # numbers of the coordinates that the error measure looks at
+    swing: FloatArray  # (n,) load of an angular acceleration s'' of one
     frequency: FloatArray  # (h,) w [rad/s]
+    follows: IntArray  # (h,) what the load follows: BY_TIME ...
     cosine: FloatArray  # (h, n) Re F_w
     sine: FloatArray  # (h, n) Im F_w
+    timed_times: FloatArray  # (k, l) [s], padded
+    timed_values: FloatArray  # (k, l)
+    timed_sizes: IntArray  # (k,)
+    timed_rows: FloatArray  # (k, n)
+    resolved: FloatArray  # (n,) 1 for coordinates that the error measure looks at, else 0
     beta: float
     gamma: float
+
+
+class StepMatrices(NamedTuple):
+    """What the step needs for each of m step sizes; slot 0 is for sizes that occur once."""
+
+    size: FloatArray  # (m,) h [s]
+    base: FloatArray  # (m, n) inverse of the diagonal of S
+    blocks: FloatArray  # (m, g, b, b) inverses of its gyroscopic blocks, transposed
+    tie_stiffness: FloatArray  # (m, r, r) K_t
+    tie_damping: FloatArray  # (m, r, r) C_t
+    ties: FloatArray  # (m, r, n) (B U)ᵀ, B the inverse without ties
+    between: FloatArray  # (m, r, r) Uᵀ B U
+    link: FloatArray  # (m, r, r) (I + E Uᵀ B U)⁻¹ E, E = γ h C_t + β h² K_t
+    contact: FloatArray  # (m, c, n) Wᵀ = (S⁻¹ D)ᵀ
+    contact_ties: FloatArray  # (m, c, r) (Uᵀ W)ᵀ
+    flexibility: FloatArray  # (m, c, c) Dᵀ W
 
 
 class Contacts(NamedTuple):
     """The tooth contacts, padded to common lengths."""
 
-    direction: FloatArray  # (c, n) Dᵀ
+    direction: FloatArray  # (n, c) D
     knots: FloatArray  # (c, pieces + 1)
     curves: FloatArray  # (c, kinds of pairs, pieces, 8): cubics of the stiffness and of the gap
     pieces: IntArray  # (c,)
@@ -63,6 +78,7 @@ class Contacts(NamedTuple):
     face_kinds: IntArray  # (c,) 0 where it does not
     face_depth: FloatArray  # (c,)
     pairs: IntArray  # (c,) pairs of teeth in a hunting period; 0 where all are alike
+    first_touch: FloatArray  # (c,) compression below which no pair can touch [m]
 
 
 class Segments(NamedTuple):
@@ -71,22 +87,24 @@ class Segments(NamedTuple):
     start: FloatArray  # (s,)
     end: FloatArray  # (s,)
     steps: IntArray  # (s,)
-    kind: IntArray  # (s,) which step matrices
+    kind: IntArray  # (s,) which step matrices; -1: those of this stretch alone
+    turned: FloatArray  # (s, 3) s, s' and s'' at the start
 
 
 class Outputs(NamedTuple):
     """What is written at each sample."""
 
-    displacement: FloatArray  # (k0, n)
-    velocity: FloatArray  # (k1, n)
-    acceleration: FloatArray  # (k2, n)
+    displacement: FloatArray  # (n, k0)
+    velocity: FloatArray  # (n, k1)
+    acceleration: FloatArray  # (n, k2)
 
 
 class Samples(NamedTuple):
-    """Where it is written; row i is the time first + i * interval."""
+    """Where it is written: sample i is of the time first + i * interval, in row i - offset."""
 
     first: float
     interval: float
+    offset: int
     displacement: FloatArray  # (samples, k0)
     velocity: FloatArray  # (samples, k1)
     acceleration: FloatArray  # (samples, k2)

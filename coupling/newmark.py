@@ -1,24 +1,22 @@
-r"""The time-stepping kernels: Newmark-β in modal coordinates with tooth contacts, compiled.
+r"""The time-stepping kernel: Newmark-β in modal coordinates with tooth contacts, compiled.
 
 Importing this module imports numba.
 
 One step of size h from (q, v, a), with the mass the identity and the contacts' directions D:
 
     q* = q + h v + (1/2 - β) h² a,            v* = v + (1 - γ) h a,
-    S a₁ = F(t₁) - K q* - C v* - D f,         S = I + γ h C + β h² K,
-    q₁ = q* + β h² a₁,                        v₁ = v* + γ h a₁.
+    S a₁ = F(t₁) - K q* - (C + s' G) v* - s'' G q* - D f,
+    q₁ = q* + β h² a₁,                        v₁ = v* + γ h a₁,
 
-S depends on h alone, so with P = S⁻¹ [K C], W = S⁻¹ D and H = Dᵀ W known for each step size,
-
-    a₁ = S⁻¹ F - P [q*; v*] - W f
-
-and only the few contact forces f remain unknown: their compressions
+S as in :mod:`coupling.step_kernels`, where K and C are diagonal but for the ties U. With W = S⁻¹ D and H = Dᵀ W only
+the few contact forces f remain unknown: their compressions
 
     δ = δ* - β h² H f(δ, δ'),    δ' = δ'* - γ h H f(δ, δ'),
 
 δ* and δ'* being those without contact, are found by Newton's method on a system as small as the number of
-contacts. With β = 1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an
-undamped linear system.
+contacts. What ties and contacts see of the motion, Uᵀq and Dᵀq, is carried along by the same recurrence as q. With
+β = 1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear
+system.
 """
 
 import math
@@ -27,14 +25,18 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from coupling.contact_kernels import compression_of, contact_state, law_of, settle
-from coupling.kernel_arrays import Contacts, Dynamics, Outputs, Samples, Segments, StepMatrices
+from coupling.contact_kernels import DAMPING, ENERGY, FORCE, PHASE_SLOPE, deviation_of, settle, take_law
+from coupling.kernel_arrays import BY_TIME, BY_UNBALANCE, Contacts, Dynamics, Outputs, Samples, Segments, StepMatrices
+from coupling.step_kernels import add_gyroscopic, apply_base, build_step, tie_matrices
 
 FloatArray = npt.NDArray[np.float64]
 
 # Contacts are evaluated this part of a segment inside its ends, so that a pair that enters or leaves exactly
 # there counts on one side only.
-_INSIDE = 1e-7
+INSIDE = 1e-7
+
+# Columns of the contacts' totals.
+IMPULSE, APART, PEAK, LAST_TOUCH = 0, 1, 2, 3
 
 
 @njit(cache=True, nogil=True)
@@ -61,18 +63,19 @@ def march(
     next_sample : int
         Number of the first sample not yet written.
     stored : float
-        Energy in the teeth just before the first segment [J].
+        Energy just before the first segment in the teeth, and in the ties where they change with the speed [J].
     totals : ndarray, shape (4,)
-        Work of the loads, energy lost to damping, work of the turning teeth on the contacts (added to), and the
+        Work of the loads, energy lost to damping, work of what turns on the contacts and ties (added to), and the
         largest kinetic energy [J].
-    contact_totals : ndarray, shape (c, 3)
-        For each contact ∫ force dt [N s], time apart [s] (both added to) and the largest force [N].
+    contact_totals : ndarray, shape (c, 4)
+        For each contact ∫ force dt [N s], time apart [s] (both added to), the largest force [N], and when the flanks
+        last touched [s].
 
     Returns
     -------
     next_sample : int
     stored : float
-        Energy in the teeth at the end [J].
+        The same at the end [J].
     curvature : float
         Σ |a₁ - 2 a + a₋₁|² over the steps that have two before them, of the coordinates to be resolved.
     acceleration : float
@@ -80,158 +83,312 @@ def march(
     unsettled : int
         Steps whose contact forces Newton's method left unsettled.
     """
-    n, c = q.size, contacts.phase.size
-    a, before, after = np.zeros(n), np.zeros(n), np.zeros(n)
-    start = np.zeros(2 * n)  # q* and v*
-    q1, v1 = np.zeros(n), np.zeros(n)
-    force, force1 = np.zeros(c), np.zeros(c)
-    delta, rate = np.zeros(c), np.zeros(c)
-    powers, powers1 = np.zeros(3), np.zeros(3)
+    n, r = dynamics.ties.shape
+    c = contacts.phase.size
+    a, before, free, pushed = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
+    q0, v0, load, x, y = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
+    # What the ties see of q, v and a, and what the contacts do.
+    tq, tv, ta, tq0, tv0 = np.zeros(r), np.zeros(r), np.zeros(r), np.zeros(r), np.zeros(r)
+    tie_push, seen_by_ties, response = np.zeros(r), np.zeros(r), np.zeros(r)
+    dq, dv, da, dq0, dv0 = np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c)
+    delta, rate, delta_free, rate_free, slip = np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c)
+    laws, spare, jacobian, residual = np.zeros((c, 5)), np.zeros((c, 5)), np.zeros((c, c)), np.zeros((c, 1))
+    force_before = np.zeros(c)
+    powers, powers_before = np.zeros(3), np.zeros(3)
     curvature, acceleration, unsettled = 0.0, 0.0, 0
     beta, gamma = dynamics.beta, dynamics.gamma
-    resolved = dynamics.resolved
 
     for segment in range(segments.start.size):
         t0, t1, count = segments.start[segment], segments.end[segment], segments.steps[segment]
-        kind = segments.kind[segment]
+        turned0, speed0, swing = segments.turned[segment, 0], segments.turned[segment, 1], segments.turned[segment, 2]
         h = (t1 - t0) / count
-        inside = _INSIDE * (t1 - t0)
+        inside = INSIDE * (t1 - t0)
+        slot = segments.kind[segment]
+        middle_speed = speed0 + 0.5 * swing * (t1 - t0)
+        if slot < 0:
+            slot = 0
+            build_step(dynamics, contacts, h, middle_speed, swing, slot, matrices)
+        stiffness, damping = matrices.tie_stiffness[slot], matrices.tie_damping[slot]
+        between, link = matrices.between[slot], matrices.link[slot]
+
         # The teeth change at the event: forces, powers and energy start afresh from the new set of pairs.
-        for i in range(c):
-            delta[i], rate[i] = compression_of(contacts, i, q, v, t0 + inside)
-        fresh = contact_state(contacts, t0 + inside, delta, rate, force)
+        _gather(dynamics.ties, q, tq)
+        _gather(dynamics.ties, v, tv)
+        _gather(contacts.direction, q, dq)
+        _gather(contacts.direction, v, dv)
+        speed = speed0 + swing * inside
+        turned = turned0 + inside * (speed0 + 0.5 * swing * inside)
+        for k in range(c):
+            gone, slip[k] = deviation_of(contacts, k, turned, speed)
+            delta[k], rate[k] = dq[k] - gone, dv[k] - slip[k]
+            take_law(contacts, k, turned, delta[k], rate[k], laws)
+        fresh = _stored(dynamics, stiffness, tq, laws)
         totals[2] += fresh - stored
         stored = fresh
-        _acceleration(dynamics, contacts, q, v, t0, force, a)
-        _powers(dynamics, contacts, q, v, t0 + inside, delta, rate, force, powers)
+        _load_at(dynamics, t0, turned0, speed0, swing, load)
+        for i in range(n):
+            a[i] = load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
+        add_gyroscopic(dynamics, -middle_speed, v, a)
+        if swing != 0.0:
+            add_gyroscopic(dynamics, -swing, q, a)
+        for j in range(r):
+            tie_push[j] = 0.0
+            for k in range(r):
+                tie_push[j] += stiffness[j, k] * tq[k] + damping[j, k] * tv[k]
+        for i in range(n):
+            for j in range(r):
+                a[i] -= dynamics.ties[i, j] * tie_push[j]
+            for k in range(c):
+                a[i] -= contacts.direction[i, k] * laws[k, FORCE]
+        _gather(dynamics.ties, a, ta)
+        _gather(contacts.direction, a, da)
+        _powers(
+            dynamics, contacts, damping, stiffness, swing, speed, q, v, load, tq, tv, rate, slip, laws, powers_before
+        )
+        for k in range(c):
+            force_before[k] = laws[k, FORCE]
 
         for step in range(count):
             t = t0 + step * h
-            time = t0 + (step + 1) * h
-            seen = time - inside if step == count - 1 else time
+            after = (step + 1) * h
+            speed_before = speed0 + swing * step * h
+            turned_before = turned0 + step * h * (speed0 + 0.5 * swing * step * h)
+            speed = speed0 + swing * after
+            turned = turned0 + after * (speed0 + 0.5 * swing * after)
+            _load_at(dynamics, t0 + after, turned, speed, swing, load)
+            old, new = (0.5 - beta) * h * h, (1.0 - gamma) * h
             for i in range(n):
-                start[i] = q[i] + h * v[i] + (0.5 - beta) * h * h * a[i]
-                start[n + i] = v[i] + (1.0 - gamma) * h * a[i]
-                after[i] = matrices.constant[kind, i]
-            for w in range(dynamics.frequency.size):
-                cosine, sine = math.cos(dynamics.frequency[w] * time), math.sin(dynamics.frequency[w] * time)
-                for i in range(n):
-                    after[i] += cosine * matrices.cosine[kind, w, i] - sine * matrices.sine[kind, w, i]
-            for j in range(2 * n):
-                value = start[j]
-                for i in range(n):
-                    after[i] -= matrices.propagator[kind, j, i] * value
-            for i in range(n):
-                q1[i] = start[i] + beta * h * h * after[i]
-                v1[i] = start[n + i] + gamma * h * after[i]
-            settled = settle(contacts, q1, v1, seen, matrices.flexibility[kind], beta * h * h, gamma * h, force1)
-            if not settled:
-                unsettled += 1
+                q0[i] = q[i] + h * v[i] + old * a[i]
+                v0[i] = v[i] + new * a[i]
+                pushed[i] = load[i] - dynamics.stiffness[i] * q0[i] - dynamics.damping[i] * v0[i]
+            for j in range(r):
+                tq0[j] = tq[j] + h * tv[j] + old * ta[j]
+                tv0[j] = tv[j] + new * ta[j]
             for k in range(c):
-                for i in range(n):
-                    after[i] -= matrices.contact[kind, k, i] * force1[k]
-            for i in range(n):
-                q1[i] = start[i] + beta * h * h * after[i]
-                v1[i] = start[n + i] + gamma * h * after[i]
+                dq0[k] = dq[k] + h * dv[k] + old * da[k]
+                dv0[k] = dv[k] + new * da[k]
+            add_gyroscopic(dynamics, -middle_speed, v0, pushed)
+            if swing != 0.0:
+                add_gyroscopic(dynamics, -swing, q0, pushed)
+            apply_base(dynamics, matrices, slot, pushed, free)
 
-            for k in range(c):
-                delta[k], rate[k] = compression_of(contacts, k, q1, v1, seen)
-            stored = contact_state(contacts, seen, delta, rate, force1)
-            _powers(dynamics, contacts, q1, v1, seen, delta, rate, force1, powers1)
-            for k in range(3):
-                totals[k] += 0.5 * h * (powers[k] + powers1[k])
-                powers[k] = powers1[k]
+            # a = B (r - U y) - B U link (Uᵀ B (r - U y)), y what the ties push.
+            _gather(dynamics.ties, free, seen_by_ties)
+            for j in range(r):
+                tie_push[j] = 0.0
+                for k in range(r):
+                    tie_push[j] += stiffness[j, k] * tq0[k] + damping[j, k] * tv0[k]
+            for j in range(r):
+                response[j] = seen_by_ties[j]
+                for k in range(r):
+                    response[j] -= between[j, k] * tie_push[k]
+            for j in range(r):
+                for k in range(r):
+                    tie_push[j] += link[j, k] * response[k]
+            for j in range(r):
+                value = tie_push[j]
+                for i in range(n):
+                    free[i] -= matrices.ties[slot, j, i] * value
+                for k in range(r):
+                    seen_by_ties[k] -= between[k, j] * value
+
+            displaced, moved = beta * h * h, gamma * h
+            if c > 0:
+                # The last look at the teeth is just inside the segment.
+                if step == count - 1:
+                    speed = speed0 + swing * (after - inside)
+                    turned = turned0 + (after - inside) * (speed0 + 0.5 * swing * (after - inside))
+                _gather(contacts.direction, free, da)
+                for k in range(c):
+                    gone, slip[k] = deviation_of(contacts, k, turned, speed)
+                    delta_free[k] = dq0[k] + displaced * da[k] - gone
+                    rate_free[k] = dv0[k] + moved * da[k] - slip[k]
+                if not settle(
+                    contacts,
+                    turned,
+                    delta_free,
+                    rate_free,
+                    matrices.flexibility[slot],
+                    displaced,
+                    moved,
+                    delta,
+                    rate,
+                    laws,
+                    jacobian,
+                    residual,
+                ):
+                    unsettled += 1
+                for k in range(c):
+                    force = laws[k, FORCE]
+                    if force != 0.0:
+                        for i in range(n):
+                            free[i] -= matrices.contact[slot, k, i] * force
+                        for j in range(r):
+                            seen_by_ties[j] -= matrices.contact_ties[slot, k, j] * force
+                        for j in range(c):
+                            da[j] -= matrices.flexibility[slot, j, k] * force
+
+            next_sample = _sample(
+                contacts, outputs, samples, next_sample, t, h, turned_before, speed_before, swing,
+                q, v, a, q0, v0, free, displaced, moved, x, y, spare, delta_free,
+            )  # fmt: skip
             kinetic = 0.0
-            for i in range(n):
-                kinetic += 0.5 * v1[i] * v1[i]
-            totals[3] = max(totals[3], kinetic)
-            for k in range(c):
-                contact_totals[k, 0] += 0.5 * h * (force[k] + force1[k])
-                if force1[k] == 0.0:
-                    contact_totals[k, 1] += h
-                contact_totals[k, 2] = max(contact_totals[k, 2], force1[k])
-                force[k] = force1[k]
-
             if step > 0:
-                for i in resolved:
-                    second = after[i] - 2.0 * a[i] + before[i]
-                    curvature += second * second
-                    acceleration += after[i] * after[i]
-            next_sample = _sample(contacts, outputs, samples, next_sample, t, h, q, v, a, q1, v1, after)
+                for i in range(n):
+                    second = free[i] - 2.0 * a[i] + before[i]
+                    curvature += dynamics.resolved[i] * second * second
+                    acceleration += dynamics.resolved[i] * free[i] * free[i]
             for i in range(n):
-                before[i], a[i], q[i], v[i] = a[i], after[i], q1[i], v1[i]
+                before[i], a[i] = a[i], free[i]
+                q[i], v[i] = q0[i] + displaced * free[i], v0[i] + moved * free[i]
+                kinetic += v[i] * v[i]
+            for j in range(r):
+                ta[j] = seen_by_ties[j]
+                tq[j], tv[j] = tq0[j] + displaced * ta[j], tv0[j] + moved * ta[j]
+            for k in range(c):
+                dq[k], dv[k] = dq0[k] + displaced * da[k], dv0[k] + moved * da[k]
+
+            stored = _stored(dynamics, stiffness, tq, laws)
+            _powers(dynamics, contacts, damping, stiffness, swing, speed, q, v, load, tq, tv, rate, slip, laws, powers)
+            for k in range(3):
+                totals[k] += 0.5 * h * (powers_before[k] + powers[k])
+                powers_before[k] = powers[k]
+            totals[3] = max(totals[3], 0.5 * kinetic)
+            for k in range(c):
+                force = laws[k, FORCE]
+                contact_totals[k, IMPULSE] += 0.5 * h * (force_before[k] + force)
+                if force == 0.0:
+                    contact_totals[k, APART] += h
+                else:
+                    contact_totals[k, LAST_TOUCH] = t + h
+                contact_totals[k, PEAK] = max(contact_totals[k, PEAK], force)
+                force_before[k] = force
     return next_sample, stored, curvature, acceleration, unsettled
 
 
 @njit(cache=True, nogil=True)
-def _acceleration(
-    dynamics: Dynamics,
-    contacts: Contacts,
-    q: FloatArray,
-    v: FloatArray,
-    time: float,
-    force: FloatArray,
-    out: FloatArray,
-) -> None:
-    """The acceleration that satisfies the equation of motion."""
-    n = q.size
-    for i in range(n):
-        out[i] = dynamics.constant[i]
+def stored_energy(
+    dynamics: Dynamics, contacts: Contacts, q: FloatArray, v: FloatArray, turned: float, speed: float
+) -> float:
+    """Energy in the teeth, and in the ties where they change with the speed [J], at a state."""
+    r, c = dynamics.ties.shape[1], contacts.phase.size
+    stiffness, damping, laws = np.zeros((r, r)), np.zeros((r, r)), np.zeros((c, 5))
+    tie_matrices(dynamics, speed, stiffness, damping)
+    tq, dq, dv = np.zeros(r), np.zeros(c), np.zeros(c)
+    _gather(dynamics.ties, q, tq)
+    _gather(contacts.direction, q, dq)
+    _gather(contacts.direction, v, dv)
+    for k in range(c):
+        gone, slip = deviation_of(contacts, k, turned, speed)
+        take_law(contacts, k, turned, dq[k] - gone, dv[k] - slip, laws)
+    return _stored(dynamics, stiffness, tq, laws)
+
+
+@njit(cache=True, nogil=True)
+def _gather(columns: FloatArray, x: FloatArray, out: FloatArray) -> None:
+    """Columnsᵀ x, for columns (n, k) that stand beside each other in memory."""
+    for j in range(out.size):
+        out[j] = 0.0
+    if out.size > 0:
+        for i in range(x.size):
+            value = x[i]
+            for j in range(out.size):
+                out[j] += columns[i, j] * value
+
+
+@njit(cache=True, nogil=True)
+def _stored(dynamics: Dynamics, stiffness: FloatArray, tq: FloatArray, laws: FloatArray) -> float:
+    """Energy in the teeth, and in the ties where they change with the speed."""
+    energy = 0.0
+    if dynamics.tie_rates.size > 1:
+        for i in range(tq.size):
+            for j in range(tq.size):
+                energy += 0.5 * tq[i] * stiffness[i, j] * tq[j]
+    for k in range(laws.shape[0]):
+        energy += laws[k, ENERGY]
+    return energy
+
+
+@njit(cache=True, nogil=True)
+def _load_at(dynamics: Dynamics, time: float, turned: float, speed: float, swing: float, out: FloatArray) -> None:
+    """All loads at a time."""
+    n = out.size
+    out[:] = dynamics.constant
+    if swing != 0.0:
+        for i in range(n):
+            out[i] += swing * dynamics.swing[i]
     for w in range(dynamics.frequency.size):
-        cosine, sine = math.cos(dynamics.frequency[w] * time), math.sin(dynamics.frequency[w] * time)
+        frequency, follows = dynamics.frequency[w], dynamics.follows[w]
+        angle = frequency * (time if follows == BY_TIME else turned)
+        cosine, sine = math.cos(angle), math.sin(angle)
+        if follows == BY_UNBALANCE:
+            # (s'² - i s''/w) e^{iws}: what an eccentric mass feels, by differentiating twice.
+            square, side = speed * speed, swing / frequency
+            cosine, sine = square * cosine + side * sine, square * sine - side * cosine
         for i in range(n):
             out[i] += cosine * dynamics.cosine[w, i] - sine * dynamics.sine[w, i]
-    for j in range(n):
+    for m in range(dynamics.timed_sizes.size):
+        last = dynamics.timed_sizes[m] - 1
+        low, high = 0, last
+        while high - low > 1:
+            middle = (low + high) // 2
+            if dynamics.timed_times[m, middle] <= time:
+                low = middle
+            else:
+                high = middle
+        begin, end = dynamics.timed_times[m, low], dynamics.timed_times[m, high]
+        part = min(max((time - begin) / (end - begin), 0.0), 1.0) if end > begin else 0.0
+        value = dynamics.timed_values[m, low] + part * (dynamics.timed_values[m, high] - dynamics.timed_values[m, low])
         for i in range(n):
-            out[i] -= dynamics.stiffness[j, i] * q[j] + dynamics.damping[j, i] * v[j]
-    for k in range(force.size):
-        for i in range(n):
-            out[i] -= contacts.direction[k, i] * force[k]
+            out[i] += value * dynamics.timed_rows[m, i]
 
 
 @njit(cache=True, nogil=True)
 def _powers(
     dynamics: Dynamics,
     contacts: Contacts,
+    damping: FloatArray,
+    stiffness: FloatArray,
+    swing: float,
+    speed: float,
     q: FloatArray,
     v: FloatArray,
-    time: float,
-    delta: FloatArray,
+    load: FloatArray,
+    tq: FloatArray,
+    tv: FloatArray,
     rate: FloatArray,
-    force: FloatArray,
+    slip: FloatArray,
+    laws: FloatArray,
     out: FloatArray,
 ) -> None:
     """Power of the loads, power lost, power of the turning teeth [W].
 
     With the teeth's energy U(p, δ), δ = dᵀq - e: the turning teeth give ∂U/∂p p' - f e', and the damping takes
-    v C v + c δ'². Together with the loads they change the energy of motion, springs and teeth.
+    v C v + c δ'². Together with the loads they change the energy of motion, springs and teeth. The drive that speeds
+    a tilted shaft up works by s'' G.
     """
-    n = q.size
-    out[:] = 0.0
+    n, r = dynamics.ties.shape
+    given, lost, turning = 0.0, 0.0, 0.0
     for i in range(n):
-        out[0] += dynamics.constant[i] * v[i]
-        out[1] += dynamics.loss_diagonal[i] * v[i] * v[i]
-    for w in range(dynamics.frequency.size):
-        cosine, sine = math.cos(dynamics.frequency[w] * time), math.sin(dynamics.frequency[w] * time)
-        for i in range(n):
-            out[0] += (cosine * dynamics.cosine[w, i] - sine * dynamics.sine[w, i]) * v[i]
-    for r in range(dynamics.loss_weights.size):
-        value = 0.0
-        for i in range(n):
-            value += dynamics.loss_rows[r, i] * v[i]
-        out[1] += dynamics.loss_weights[r] * value * value
+        given += load[i] * v[i]
+        lost += dynamics.damping[i] * v[i] * v[i]
+    if swing != 0.0:
+        for g in range(dynamics.block_start.size):
+            first, size = dynamics.block_start[g], dynamics.block_size[g]
+            for j in range(size):
+                for i in range(size):
+                    given -= swing * v[first + i] * dynamics.gyroscopic[g, j, i] * q[first + j]
+    for i in range(r):
+        for j in range(r):
+            lost += tv[i] * damping[i, j] * tv[j]
     if dynamics.has_skew:
-        for j in range(n):
-            for i in range(n):
-                out[1] += v[i] * dynamics.skew[j, i] * q[j]
-    for k in range(force.size):
-        law = law_of(contacts, k, time, delta[k], rate[k])
-        error_rate = rate[k]
-        for i in range(n):
-            error_rate -= contacts.direction[k, i] * v[i]
-        # δ' = d v - e', so what is left of δ' is -e'.
-        out[2] += law[4] * contacts.rate[k] + force[k] * error_rate
-        out[1] += law[2] * rate[k] * rate[k]
+        for i in range(r):
+            for j in range(r):
+                lost += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
+    for k in range(laws.shape[0]):
+        turning += laws[k, PHASE_SLOPE] * contacts.rate[k] * speed - laws[k, FORCE] * slip[k]
+        lost += laws[k, DAMPING] * rate[k] * rate[k]
+    out[0], out[1], out[2] = given, lost, turning
 
 
 @njit(cache=True, nogil=True)
@@ -242,40 +399,54 @@ def _sample(
     number: int,
     t: float,
     h: float,
+    turned0: float,
+    speed0: float,
+    swing: float,
     q: FloatArray,
     v: FloatArray,
     a: FloatArray,
-    q1: FloatArray,
-    v1: FloatArray,
+    q0: FloatArray,
+    v0: FloatArray,
     a1: FloatArray,
+    displaced: float,
+    moved: float,
+    x: FloatArray,
+    y: FloatArray,
+    laws: FloatArray,
+    work: FloatArray,
 ) -> int:
     """Write the samples that fall into the step from t to t + h.
 
     Displacement and velocity by cubic Hermite interpolation, acceleration linear: errors below the step's own.
     """
     n = q.size
-    x, y = np.empty(n), np.empty(n)
-    while number < samples.force.shape[0]:
+    while number - samples.offset < samples.force.shape[0]:
         time = samples.first + number * samples.interval
         if time > t + h:
             break
+        row = number - samples.offset
         s = max((time - t) / h, 0.0)
         old, slope_old = (1.0 + 2.0 * s) * (1.0 - s) ** 2, s * (1.0 - s) ** 2 * h
         new, slope_new = s * s * (3.0 - 2.0 * s), s * s * (s - 1.0) * h
         for i in range(n):
-            x[i] = old * q[i] + slope_old * v[i] + new * q1[i] + slope_new * v1[i]
-            y[i] = old * v[i] + slope_old * a[i] + new * v1[i] + slope_new * a1[i]
-        for k in range(contacts.phase.size):
-            delta, rate = compression_of(contacts, k, x, y, time)
-            samples.compression[number, k] = delta
-            samples.force[number, k] = law_of(contacts, k, time, delta, rate)[0]
-        for k in range(outputs.displacement.shape[0]):
-            samples.displacement[number, k] = np.sum(outputs.displacement[k] * x)
-        for k in range(outputs.velocity.shape[0]):
-            samples.velocity[number, k] = np.sum(outputs.velocity[k] * y)
+            q1, v1 = q0[i] + displaced * a1[i], v0[i] + moved * a1[i]
+            x[i] = old * q[i] + slope_old * v[i] + new * q1 + slope_new * v1
+            y[i] = old * v[i] + slope_old * a[i] + new * v1 + slope_new * a1[i]
+        _gather(outputs.displacement, x, samples.displacement[row])
+        _gather(outputs.velocity, y, samples.velocity[row])
+        if contacts.phase.size > 0:
+            after = s * h
+            speed = speed0 + swing * after
+            turned = turned0 + after * (speed0 + 0.5 * swing * after)
+            _gather(contacts.direction, x, samples.compression[row])
+            _gather(contacts.direction, y, work)
+            for k in range(contacts.phase.size):
+                gone, slip = deviation_of(contacts, k, turned, speed)
+                samples.compression[row, k] -= gone
+                take_law(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws)
+                samples.force[row, k] = laws[k, FORCE]
         for i in range(n):
             x[i] = (1.0 - s) * a[i] + s * a1[i]
-        for k in range(outputs.acceleration.shape[0]):
-            samples.acceleration[number, k] = np.sum(outputs.acceleration[k] * x)
+        _gather(outputs.acceleration, x, samples.acceleration[row])
         number += 1
     return number

@@ -5,10 +5,25 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from coupling.kernel_arrays import Contacts, Dynamics, Outputs, Samples, Segments, StepMatrices
+from coupling.kernel_arrays import (
+    BY_TIME,
+    BY_TURNING,
+    BY_UNBALANCE,
+    Contacts,
+    Dynamics,
+    Outputs,
+    Samples,
+    Segments,
+    StepMatrices,
+)
+from coupling.low_rank import common_span
 from coupling.system import CoupledSystem
+from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_FOLLOWS = {"time": BY_TIME, "turning": BY_TURNING, "unbalance": BY_UNBALANCE}
 
 
 class _Rows(Protocol):
@@ -18,15 +33,6 @@ class _Rows(Protocol):
     def velocity(self) -> FloatArray: ...
     @property
     def acceleration(self) -> FloatArray: ...
-
-
-class _Grid(Protocol):
-    @property
-    def duration(self) -> float: ...
-    @property
-    def record_from(self) -> float: ...
-    @property
-    def sample_interval(self) -> float: ...
 
 
 class KernelArrays(NamedTuple):
@@ -39,111 +45,148 @@ class KernelArrays(NamedTuple):
 
 def kernel_arrays(system: CoupledSystem, outputs: _Rows, beta: float, gamma: float) -> KernelArrays:
     """Lay out the system and the rows to record."""
-    rows = (np.ascontiguousarray(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
+    rows = (np.ascontiguousarray(rows.T) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
     return KernelArrays(_dynamics(system, beta, gamma), _contacts(system), Outputs(*rows))
 
 
-def empty_samples(system: CoupledSystem, outputs: _Rows, grid: _Grid) -> Samples:
-    """Room for the samples from ``record_from`` up to, not including, the end."""
-    count = int(np.ceil((grid.duration - grid.record_from) / grid.sample_interval - 1e-6))
+def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: int, count: int) -> Samples:
+    """Room for some samples."""
+    rows, contacts = arrays.outputs, arrays.contacts.phase.size
     return Samples(
-        first=grid.record_from,
-        interval=grid.sample_interval,
-        displacement=np.zeros((count, len(outputs.displacement))),
-        velocity=np.zeros((count, len(outputs.velocity))),
-        acceleration=np.zeros((count, len(outputs.acceleration))),
-        compression=np.zeros((count, len(system.contacts))),
-        force=np.zeros((count, len(system.contacts))),
+        first=first,
+        interval=interval,
+        offset=offset,
+        displacement=np.zeros((count, rows.displacement.shape[1])),
+        velocity=np.zeros((count, rows.velocity.shape[1])),
+        acceleration=np.zeros((count, rows.acceleration.shape[1])),
+        compression=np.zeros((count, contacts)),
+        force=np.zeros((count, contacts)),
     )
 
 
 class StepCache:
-    """The matrices of every step size met so far; see :mod:`coupling.newmark` for what they are.
+    """The matrices of every step size met so far; see :mod:`coupling.step_kernels` for what they are.
 
-    Few sizes occur: the stretches between events repeat with the mesh period. Sizes that agree to nine digits are
-    one.
+    At steady speed few sizes occur: the stretches between events repeat with the mesh period. Sizes that agree to nine
+    digits are one. Where the speed varies no size occurs twice, and the kernel builds each in slot 0.
     """
 
-    def __init__(self, system: CoupledSystem, beta: float, gamma: float) -> None:
-        self._system, self._beta, self._gamma = system, beta, gamma
+    _ROOM = 8
+
+    def __init__(self, arrays: KernelArrays, turning: Turning) -> None:
+        self._arrays, self._steady, self._rate = arrays, turning.is_steady, float(turning.rates[0])
         self._kinds: dict[float, int] = {}
-        self._parts: list[tuple[FloatArray, ...]] = []
-        self._stacked: StepMatrices | None = None
+        self.matrices = _room_for_steps(arrays, self._ROOM)
 
     def kind(self, size: float) -> int:
         """The number of a step size [s]."""
+        from coupling.step_kernels import build_step
+
+        if not self._steady:
+            return -1
         key = float(f"{size:.9e}")
         if key not in self._kinds:
-            self._kinds[key] = len(self._parts)
-            self._parts.append(self._build(key))
-            self._stacked = None
+            slot = len(self._kinds) + 1
+            if slot == len(self.matrices.size):
+                larger = _room_for_steps(self._arrays, 2 * slot)
+                for old, new in zip(self.matrices, larger, strict=True):
+                    new[:slot] = old
+                self.matrices = larger
+            self._kinds[key] = slot
+            build_step(self._arrays.dynamics, self._arrays.contacts, key, 1.0, 0.0, slot, self.matrices)
         return self._kinds[key]
 
-    def matrices(self) -> StepMatrices:
-        """All of them, stacked."""
-        if not self._parts:
-            self.kind(1.0)
-        if self._stacked is None:
-            self._stacked = StepMatrices(
-                *(np.ascontiguousarray(np.stack(part)) for part in zip(*self._parts, strict=True))
-            )
-        return self._stacked
 
-    def _build(self, h: float) -> tuple[FloatArray, ...]:
-        system, n = self._system, self._system.size
-        stiffness, damping = system.stiffness, system.damping
-        inverse = np.linalg.inv(np.eye(n) + self._gamma * h * damping + self._beta * h * h * stiffness)
-        cosine, sine = _harmonics(system)
-        directions = system.contact_directions
-        return (
-            np.array(h),
-            np.vstack([(inverse @ stiffness).T, (inverse @ damping).T]),
-            inverse @ system.load,
-            cosine @ inverse.T,
-            sine @ inverse.T,
-            (inverse @ directions).T,
-            directions.T @ inverse @ directions,
-        )
-
-
-def cut(cache: StepCache, bounds: FloatArray, step: float) -> Segments:
+def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> Segments:
     """Stretches between bounds, each cut into at least two equal steps no longer than ``step`` [s]."""
     start, end = bounds[:-1], bounds[1:]
     counts = np.maximum(np.ceil((end - start) / step - 1e-9), 2).astype(np.int64)
     kinds = np.array([cache.kind(float(size)) for size in (end - start) / counts], dtype=np.int64)
-    return Segments(np.ascontiguousarray(start), np.ascontiguousarray(end), counts, kinds)
+    turned = np.column_stack(turning.at(start)).reshape(-1, 3)
+    return Segments(np.ascontiguousarray(start), np.ascontiguousarray(end), counts, kinds, turned)
 
 
-def _harmonics(system: CoupledSystem) -> tuple[FloatArray, FloatArray]:
-    amplitudes = np.array([load.amplitude for load in system.harmonic_loads], dtype=np.complex128)
-    amplitudes = amplitudes.reshape(-1, system.size)
-    return np.ascontiguousarray(amplitudes.real), np.ascontiguousarray(amplitudes.imag)
+def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
+    n, r = arrays.dynamics.ties.shape
+    c = arrays.contacts.phase.size
+    g, b = arrays.dynamics.gyroscopic.shape[:2]
+    return StepMatrices(
+        size=np.zeros(m),
+        base=np.zeros((m, n)),
+        blocks=np.zeros((m, g, b, b)),
+        tie_stiffness=np.zeros((m, r, r)),
+        tie_damping=np.zeros((m, r, r)),
+        ties=np.zeros((m, r, n)),
+        between=np.zeros((m, r, r)),
+        link=np.zeros((m, r, r)),
+        contact=np.zeros((m, c, n)),
+        contact_ties=np.zeros((m, c, r)),
+        flexibility=np.zeros((m, c, c)),
+    )
 
 
 def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
-    stiffness, damping = system.stiffness, system.damping
-    skew = 0.5 * (stiffness - stiffness.T)
-    symmetric = 0.5 * (damping + damping.T)
-    # Components damp their own coordinates; connectors add a few directions, found here as eigenvectors.
-    diagonal = np.concatenate([component.damping.diagonal() for component in system.components])
-    values, vectors = np.linalg.eigh(symmetric - np.diag(diagonal))
-    kept = np.abs(values) > 1e-12 * max(float(np.abs(values).max(initial=0.0)), 1e-300)
-    cosine, sine = _harmonics(system)
+    n = system.size
+    starts, sizes, gyroscopic = _gyroscopic_blocks(system)
+    # Components are mostly diagonal; whatever else they hold joins the ties.
+    whole = system.own_stiffness, system.own_damping
+    diagonals = [matrix.diagonal().copy() for matrix in whole]
+    beside = [matrix - np.diag(diagonal) for matrix, diagonal in zip(whole, diagonals, strict=True)]
+    rates = system.tie_rates
+    matrices = [own + tie for rate in rates for own, tie in zip(beside, system.ties(float(rate)), strict=True)]
+    directions, cores = common_span(matrices)
+    tie_stiffness, tie_damping = np.array(cores[0::2]), np.array(cores[1::2])
+    skew = np.abs(tie_stiffness - tie_stiffness.transpose(0, 2, 1)).max(initial=0.0)
+    amplitudes = np.array([load.amplitude for load in system.harmonic_loads], dtype=np.complex128).reshape(-1, n)
+    longest = max((len(load.times) for load in system.timed_loads), default=0)
+    times, values = np.zeros((len(system.timed_loads), longest)), np.zeros((len(system.timed_loads), longest))
+    for row, load in enumerate(system.timed_loads):
+        times[row, : len(load.times)], values[row, : len(load.times)] = load.times, load.values
     return Dynamics(
-        stiffness=np.ascontiguousarray(stiffness.T),
-        damping=np.ascontiguousarray(damping.T),
-        skew=np.ascontiguousarray(skew.T),
-        has_skew=bool(np.abs(skew).max() > 1e-12 * np.abs(stiffness).max()),
-        loss_diagonal=diagonal,
-        loss_rows=np.ascontiguousarray(vectors[:, kept].T),
-        loss_weights=values[kept],
+        stiffness=diagonals[0],
+        damping=diagonals[1],
+        block_start=starts,
+        block_size=sizes,
+        gyroscopic=gyroscopic,
+        ties=np.ascontiguousarray(directions),
+        tie_rates=rates,
+        tie_stiffness=tie_stiffness,
+        tie_damping=tie_damping,
+        has_skew=bool(skew > 1e-12 * np.abs(tie_stiffness).max(initial=0.0)),
         constant=system.load,
-        resolved=np.flatnonzero(system.resolved),
+        swing=system.swing,
         frequency=np.array([load.frequency for load in system.harmonic_loads], dtype=np.float64),
-        cosine=cosine,
-        sine=sine,
+        follows=np.array([_FOLLOWS[load.follows] for load in system.harmonic_loads], dtype=np.int64),
+        cosine=np.ascontiguousarray(amplitudes.real),
+        sine=np.ascontiguousarray(amplitudes.imag),
+        timed_times=times,
+        timed_values=values,
+        timed_sizes=np.array([len(load.times) for load in system.timed_loads], dtype=np.int64),
+        timed_rows=np.array([load.direction for load in system.timed_loads], dtype=np.float64).reshape(-1, n),
+        resolved=system.resolved.astype(np.float64),
         beta=beta,
         gamma=gamma,
+    )
+
+
+def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, FloatArray]:
+    """First coordinate, size and transposed matrix of each component's gyroscopic terms at nominal speed."""
+    found = []
+    start = 0
+    for component, speed in zip(system.components, system.speeds, strict=True):
+        touched = np.flatnonzero(np.any(component.gyroscopic != 0.0, axis=0))
+        if speed != 0.0 and touched.size:
+            among = slice(touched[0], touched[-1] + 1)
+            found.append((start + int(touched[0]), speed * component.gyroscopic[among, among].T))
+        start += component.size
+    largest = max((len(matrix) for _, matrix in found), default=0)
+    blocks = np.zeros((len(found), largest, largest))
+    for block, (_, matrix) in zip(blocks, found, strict=True):
+        block[: len(matrix), : len(matrix)] = matrix
+    return (
+        np.array([first for first, _ in found], dtype=np.int64),
+        np.array([len(matrix) for _, matrix in found], dtype=np.int64),
+        blocks,
     )
 
 
@@ -160,6 +203,7 @@ def _contacts(system: CoupledSystem) -> Contacts:
     pair_kinds = np.zeros((c, max(pairs, default=0)), dtype=np.int64)
     face_shapes = [argument[6].shape for argument in arguments]
     faces = np.zeros((c, *(max((shape[axis] for shape in face_shapes), default=0) for axis in range(3)), 20))
+    first_touch = np.zeros(c)
     for k, (contact, (places, cubics, _, _, gaps, numbers, cells, _)) in enumerate(
         zip(system.contacts, arguments, strict=True)
     ):
@@ -169,8 +213,11 @@ def _contacts(system: CoupledSystem) -> Contacts:
         pair_gaps[k, : pairs[k]] = gaps
         pair_kinds[k, : pairs[k]] = numbers
         faces[k, : face_shapes[k][0], : face_shapes[k][1], : face_shapes[k][2]] = cells
+        # No cubic c₀ + c₁ u + ... falls below c₀ and its negative coefficients together on 0 ≤ u ≤ 1.
+        lowest = (cubics[:, :, 4] + np.minimum(cubics[:, :, 5:], 0.0).sum(axis=2)).min()
+        first_touch[k] = lowest + gaps.min(initial=0.0)
     return Contacts(
-        direction=np.ascontiguousarray(system.contact_directions.T),
+        direction=np.ascontiguousarray(system.contact_directions),
         knots=knots,
         curves=curves,
         pieces=np.array(pieces, dtype=np.int64),
@@ -187,4 +234,5 @@ def _contacts(system: CoupledSystem) -> Contacts:
         face_kinds=np.array([shape[0] for shape in face_shapes], dtype=np.int64),
         face_depth=np.array([argument[7] for argument in arguments], dtype=np.float64),
         pairs=np.array(pairs, dtype=np.int64),
+        first_touch=first_touch,
     )

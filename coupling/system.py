@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -22,12 +23,44 @@ class HarmonicLoad:
     Attributes
     ----------
     frequency : float
-        w [rad/s].
+        w [rad/s], at the nominal speeds.
     amplitude : ndarray of complex, shape (n,)
+    follows : "time", "turning" or "unbalance"
+        What becomes of it where the speeds are not the nominal ones, see :mod:`coupling.turning`: it keeps its
+        frequency; it turns with the machine, e^{iws}; or it turns and is what an eccentric mass feels,
+        (s'² - i s''/w) e^{iws}.
     """
 
     frequency: float
     amplitude: ComplexArray
+    follows: Literal["time", "turning", "unbalance"] = "time"
+
+
+@dataclass(frozen=True)
+class TimedLoad:
+    """A load that varies in time: direction times a value that is linear between the times, constant beyond them.
+
+    Attributes
+    ----------
+    times : ndarray, shape (l,)
+        [s], ascending.
+    values : ndarray, shape (l,)
+    direction : ndarray, shape (n,)
+    """
+
+    times: FloatArray
+    values: FloatArray
+    direction: FloatArray
+
+    def __post_init__(self) -> None:
+        if self.times.shape != self.values.shape or self.times.ndim != 1 or not self.times.size:
+            raise CouplingError(f"a load of {self.values.shape} values at {self.times.shape} times; expected as many")
+        if np.any(np.diff(self.times) <= 0.0):
+            raise CouplingError("the times of a load do not ascend")
+
+    def at(self, time: float) -> FloatArray:
+        """The load at a time, shape (n,)."""
+        return np.asarray(np.interp(time, self.times, self.values) * self.direction)
 
 
 @dataclass(frozen=True)
@@ -48,6 +81,10 @@ class CoupledSystem:
     load : ndarray, shape (n,)
         F, constant; zero by default.
     harmonic_loads : tuple of HarmonicLoad
+    timed_loads : tuple of TimedLoad
+    swing : ndarray, shape (n,)
+        Load of an angular acceleration s'' = 1/s of the nominal speeds: the shafts' own inertia, and the torque that
+        the drive adds to overcome it; zero by default.
     """
 
     components: tuple[Component, ...]
@@ -56,14 +93,17 @@ class CoupledSystem:
     contacts: tuple[ContactConnector, ...] = ()
     load: FloatArray = field(default_factory=lambda: np.zeros(0))
     harmonic_loads: tuple[HarmonicLoad, ...] = ()
+    timed_loads: tuple[TimedLoad, ...] = ()
+    swing: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         if len(self.speeds) != len(self.components):
             raise CouplingError(f"{len(self.speeds)} speeds for {len(self.components)} components; expected as many")
-        if self.load.shape == (0,):
-            object.__setattr__(self, "load", np.zeros(self.size))
-        if self.load.shape != (self.size,):
-            raise CouplingError(f"a load of shape {self.load.shape}; expected ({self.size},)")
+        for what in ("load", "swing"):
+            if getattr(self, what).shape == (0,):
+                object.__setattr__(self, what, np.zeros(self.size))
+            if getattr(self, what).shape != (self.size,):
+                raise CouplingError(f"a {what} of shape {getattr(self, what).shape}; expected ({self.size},)")
 
     @cached_property
     def size(self) -> int:
@@ -85,21 +125,47 @@ class CoupledSystem:
         return np.array([kind != "residual" for kind in self.kinds])
 
     @cached_property
+    def own_stiffness(self) -> FloatArray:
+        """K of the components alone [1/s²], shape (n, n)."""
+        return self._blocks([component.stiffness for component in self.components])
+
+    @cached_property
+    def own_damping(self) -> FloatArray:
+        """C of the components alone, without gyroscopic terms [1/s], shape (n, n)."""
+        return self._blocks([component.damping for component in self.components])
+
+    @cached_property
     def stiffness(self) -> FloatArray:
         """K without the tooth contacts [1/s²], shape (n, n)."""
-        total = self._blocks([component.stiffness for component in self.components])
-        for connector in self.linear:
-            total += connector.directions @ connector.stiffness @ connector.directions.T
-        return total
+        return self.own_stiffness + self.ties()[0]
 
     @cached_property
     def damping(self) -> FloatArray:
         """C with the gyroscopic terms and without the tooth contacts [1/s], shape (n, n)."""
+        return self.own_damping + self.gyroscopic + self.ties()[1]
+
+    @cached_property
+    def gyroscopic(self) -> FloatArray:
+        """G of all components, each times its nominal speed [1/s], shape (n, n): skew, and a part of C."""
         pairs = zip(self.components, self.speeds, strict=True)
-        total = self._blocks([component.damping + speed * component.gyroscopic for component, speed in pairs])
+        return self._blocks([speed * component.gyroscopic for component, speed in pairs])
+
+    @cached_property
+    def tie_rates(self) -> FloatArray:
+        """Speeds, as parts of the nominal one, between which the linear connectors change linearly, shape (t,)."""
+        tables = [connector.over_speed.rates for connector in self.linear if connector.over_speed is not None]
+        return np.unique(np.concatenate(tables)) if tables else np.ones(1)
+
+    def ties(self, rate: float = 1.0) -> tuple[FloatArray, FloatArray]:
+        """What the linear connectors add to K and C at a speed, shapes (n, n)."""
+        stiffness, damping = np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
         for connector in self.linear:
-            total += connector.directions @ connector.damping @ connector.directions.T
-        return total
+            law = (connector.stiffness, connector.damping)
+            if connector.over_speed is not None:
+                law = connector.over_speed.at(rate)
+            for total, matrix in zip((stiffness, damping), law, strict=True):
+                total += connector.directions @ matrix @ connector.directions.T
+        return stiffness, damping
 
     @cached_property
     def contact_directions(self) -> FloatArray:

@@ -1,0 +1,83 @@
+"""Where time is cut: at every event, so that no step crosses a jump, and into blocks, so that memory stays flat."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.condensation import highest_frequency
+from coupling.errors import TransientError
+from coupling.system import CoupledSystem
+from coupling.turning import Turning
+
+FloatArray = npt.NDArray[np.float64]
+
+_POINTS_PER_PERIOD = 6  # of the highest coordinate; what moves much gets more, by the tolerance
+_STEPS_PER_SEGMENT = 64  # where no event cuts the time
+_SAME_TIME = 1e-6  # part of the coarsest step within which two events are one
+_SAMPLES_PER_BLOCK = 32768
+_STEPS_PER_BLOCK = 1 << 20
+_MOST_BLOCKS = 1 << 24
+
+
+def coarsest_step(system: CoupledSystem, turning: Turning, largest: float) -> float:
+    """The step that nothing refines [s]: enough for the highest natural frequency, and for the fastest turning."""
+    highest = highest_frequency(system)
+    resolving = 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
+    return float(min(largest / max(1.0, float(turning.rates.max())), resolving))
+
+
+def same_time(step: float) -> float:
+    """Span within which two events are one [s]."""
+    return _SAME_TIME * step
+
+
+def block_ends(duration: float, interval: float, step: float) -> FloatArray:
+    """Ends of stretches that hold a limited number of samples and steps, from 0 to the duration [s].
+
+    Raises
+    ------
+    TransientError
+        Where there would be more of them than any run can take.
+    """
+    count = np.ceil(max(duration / (interval * _SAMPLES_PER_BLOCK), duration / (step * _STEPS_PER_BLOCK), 1.0))
+    if not count < _MOST_BLOCKS:
+        raise TransientError(f"{duration:g} s at steps of {step:.2g} s and samples every {interval:.2g} s have no end")
+    return np.asarray(duration * np.arange(int(count) + 1) / int(count))
+
+
+def boundaries(
+    system: CoupledSystem, turning: Turning, start: float, end: float, step: float, others: tuple[float, ...]
+) -> FloatArray:
+    """Start, events and end of a block, with long stretches cut evenly [s]."""
+    inner = [np.array([time for time in others if start < time < end])]
+    inner += [times[(times > start) & (times < end)] for times in _known_times(system, turning)]
+    (turned_from,), (turned_to,) = (turning.at(time)[0] for time in (start, end))
+    for contact in system.contacts:
+        inner.append(turning.times_of(contact.event_times(float(turned_from), float(turned_to))))
+    times = np.unique(np.concatenate([*inner, [start, end]]))
+    times = times[np.isfinite(times) & (times >= start) & (times <= end)]
+    # Events that rounding alone holds apart are one.
+    near = same_time(step)
+    times = times[np.concatenate([[True], np.diff(times) > near])]
+    if times[-1] < end and len(times) > 1:
+        times = np.append(times[:-1], end)
+    pieces = np.maximum(np.ceil(np.diff(times) / (_STEPS_PER_SEGMENT * step)), 1.0).astype(np.int64)
+    if pieces.max() == 1:
+        return np.asarray(times)
+    cuts = [begin + (stop - begin) * np.arange(n) / n for begin, stop, n in zip(times, times[1:], pieces, strict=False)]
+    return np.concatenate([*cuts, times[-1:]])
+
+
+def _known_times(system: CoupledSystem, turning: Turning) -> Iterator[FloatArray]:
+    """Times at which loads and speeds change their slope."""
+    if len(turning.times) > 1:
+        yield turning.times
+        # The ties change their slope over speed where these speeds are met.
+        for rate in system.tie_rates if len(system.tie_rates) > 1 else ():
+            before, after = turning.rates[:-1] - rate, turning.rates[1:] - rate
+            crossing = before * after < 0.0
+            part = before[crossing] / (before[crossing] - after[crossing])
+            yield turning.times[:-1][crossing] + part * np.diff(turning.times)[crossing]
+    for load in system.timed_loads:
+        yield load.times

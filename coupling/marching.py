@@ -1,0 +1,323 @@
+"""The march through time, block by block: each block's samples with the state from which the next one goes on.
+
+Time is cut at every event (a pair of teeth entering or leaving contact), so no step crosses a jump of the mesh
+stiffness. The stretches between are cut into equal steps. The local error of Newmark's method is that of its
+period: one oscillation of circular frequency w advances by (w h)²/12 too little for each radian it turns. Its
+mean over what is moving is measured by the second difference of the acceleration,
+
+    error = |a₁ - 2 a₀ + a₋₁| / (12 |a|),
+
+and stretches are repeated with finer steps until it is below the tolerance. Residual coordinates of the housing have
+no part in this measure: they stand for static compliance, and their own frequencies are not meant to be followed. The
+stiffest of them are not marched at all, see :mod:`coupling.condensation`.
+"""
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.boundaries import block_ends, boundaries, coarsest_step, same_time
+from coupling.condensation import condensed
+from coupling.errors import TransientError
+from coupling.settings import TransientOutputs, TransientSettings
+from coupling.statics import static_equilibrium
+from coupling.step import KernelArrays, StepCache, cut, empty_samples, kernel_arrays
+from coupling.system import CoupledSystem
+from coupling.turning import Turning
+
+FloatArray = npt.NDArray[np.float64]
+
+_SEGMENTS_PER_CHUNK = 48  # stretches between two looks at the error
+_FINEST_LEVEL = 24  # 4096 times finer than the coarsest step
+_RUNAWAY = 1e4  # times the motion at rest: beyond, the machine is unstable, not lively
+_GONE = 20.0  # mesh periods without a touch after which teeth that fly off count as lost
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """Where a march stands: all that it needs to go on, bit for bit as if it had never stopped.
+
+    Attributes
+    ----------
+    block : int
+        Blocks done.
+    sample : int
+        Samples written.
+    time : float
+        [s].
+    q, v : ndarray, shape (n,)
+        State of the coordinates that are followed.
+    stored : float
+        Energy in the teeth, and in the ties where they change with the speed [J].
+    totals : ndarray, shape (4,)
+        Work of the loads, energy lost, work of what turns, and the largest kinetic energy [J].
+    contact_totals : ndarray, shape (c, 4)
+        Impulse [N s], time apart [s], largest force [N] since the record began, and time of the last touch [s].
+    level : int
+        How fine the steps are.
+    steps, rejected, unsettled : int
+        Taken, repeated, and taken with forces that Newton's method left unsettled.
+    worst : float
+        Largest accepted error measure.
+    smallest : float
+        Step [s].
+    start_energy, energy, highest, lowest : float
+        Energy held at the start, now, and at its extremes [J].
+    seconds : float
+        Time taken by the stepping [s].
+    """
+
+    block: int
+    sample: int
+    time: float
+    q: FloatArray
+    v: FloatArray
+    stored: float
+    totals: FloatArray
+    contact_totals: FloatArray
+    level: int
+    steps: int
+    rejected: int
+    unsettled: int
+    worst: float
+    smallest: float
+    start_energy: float
+    energy: float
+    highest: float
+    lowest: float
+    seconds: float
+
+    def as_arrays(self) -> dict[str, npt.NDArray[Any]]:
+        """Every field as an array, to be kept on file."""
+        return {field.name: np.asarray(getattr(self, field.name)) for field in fields(self)}
+
+    @staticmethod
+    def from_arrays(arrays: Mapping[str, npt.NDArray[Any]]) -> "Checkpoint":
+        """The checkpoint that gave such arrays."""
+        values: dict[str, Any] = {field.name: np.asarray(arrays[field.name]) for field in fields(Checkpoint)}
+        return Checkpoint(**{name: value if value.ndim else value.item() for name, value in values.items()})
+
+
+@dataclass(frozen=True)
+class Block:
+    """A stretch of the record, s samples, and where the march stands after it.
+
+    Attributes
+    ----------
+    first : int
+        Number of its first sample.
+    displacement, velocity, acceleration : ndarray, shapes (s, k)
+        The rows asked for.
+    compression, force : ndarray, shape (s, c)
+        Of each contact [m], [N].
+    after : Checkpoint
+    count : int
+        Blocks of the whole run.
+    """
+
+    first: int
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    compression: FloatArray
+    force: FloatArray
+    after: Checkpoint
+    count: int
+
+
+def march_blocks(
+    system: CoupledSystem,
+    settings: TransientSettings,
+    outputs: TransientOutputs,
+    *,
+    turning: Turning | None = None,
+    initial: tuple[FloatArray, FloatArray] | None = None,
+    after: Checkpoint | None = None,
+    progress: Callable[[float], None] = lambda fraction: None,
+) -> Iterator[Block]:
+    """March the coupled system through time and hand its record over block by block.
+
+    Parameters
+    ----------
+    after : Checkpoint, optional
+        Go on from here: the same system, settings, outputs and turning as those that led to it.
+
+    Other parameters and errors are those of :func:`coupling.simulate`.
+    """
+    turning = turning or Turning.steady()
+    followed = condensed(system)
+    if followed.system is not system:
+        system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
+        outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
+        initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
+    run = _Run(system, settings, outputs, turning)
+    state = after or run.start(initial)
+    total = settings.samples
+    for number in range(state.block, len(run.ends) - 1):
+        first = state.sample
+        last = number == len(run.ends) - 2
+        count = total - first if last else _samples_until(settings, float(run.ends[number + 1]), first, total)
+        samples = empty_samples(run.arrays, settings.record_from, settings.sample_interval, first, count)
+        state = run.through(number, state, samples, progress)
+        rows = slice(state.sample - first)
+        yield Block(
+            first=first,
+            displacement=samples.displacement[rows],
+            velocity=samples.velocity[rows],
+            acceleration=samples.acceleration[rows],
+            compression=samples.compression[rows],
+            force=samples.force[rows],
+            after=state,
+            count=len(run.ends) - 1,
+        )
+
+
+def _samples_until(settings: TransientSettings, end: float, first: int, total: int) -> int:
+    """Room for the samples up to the end of a block: rounding may let one more or less fall into it."""
+    upto = int(np.ceil((end - settings.record_from) / settings.sample_interval)) + 2
+    return min(max(upto - first, 0), total - first)
+
+
+class _Run:
+    """What stays the same through a march."""
+
+    def __init__(
+        self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
+    ) -> None:
+        self.system, self.settings, self.turning = system, settings, turning
+        self.arrays: KernelArrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)
+        self.cache = StepCache(self.arrays, turning)
+        self.base = coarsest_step(system, turning, settings.largest_step)
+        self.ends = block_ends(settings.duration, settings.sample_interval, self.base)
+        pushing = sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
+        self.pushing = np.linalg.norm(system.load) + np.linalg.norm(pushing)
+        # Nothing that stays together moves so much further than its loads press it.
+        self.reach = float(_resting(system, turning, pushing).max(initial=0.0))
+
+    def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
+        """Static equilibrium under the loads of the start, unless another state is given."""
+        system, (_, rates, swings) = self.system, self.turning.at(0.0)
+        load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.swing)
+        q, v = initial or (static_equilibrium(replace(system, load=load)), np.zeros(system.size))
+        q, v = q.astype(np.float64), v.astype(np.float64)
+        first = float(self._bounds(0)[1])
+        turned, rates, _ = self.turning.at(1e-7 * first)
+        stored = self._stored(q, v, float(turned[0]), float(rates[0]))
+        energy = self._held(q, v) + stored
+        return Checkpoint(
+            block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(4),
+            contact_totals=np.zeros((len(system.contacts), 4)), level=0, steps=0, rejected=0, unsettled=0, worst=0.0,
+            smallest=self.base, start_energy=energy, energy=energy, highest=energy, lowest=energy, seconds=0.0,
+        )  # fmt: skip
+
+    def through(self, number: int, before: Checkpoint, samples: Any, progress: Callable[[float], None]) -> Checkpoint:
+        """One block."""
+        from coupling.newmark import march
+
+        settings, cache = self.settings, self.cache
+        bounds = self._bounds(number)
+        # An event may stand for the start of the record, when rounding alone holds the two apart.
+        first_record = int(np.searchsorted(bounds, settings.record_from - same_time(self.base)))
+        if bounds[0] > settings.record_from:
+            first_record = -1
+        state, position = before, 0
+        if number == before.block == 0 and before.steps == 0:
+            # Compiled before the clock starts.
+            self._march(march, state, cut(cache, self.turning, bounds[:1], 1.0), samples)
+        # Forces too small to see: below this an acceleration is rounding, and its curvature means nothing.
+        quiet = (1e-9 * float(np.linalg.norm(self.system.stiffness @ state.q) + self.pushing)) ** 2
+        bound = _RUNAWAY * (np.abs(state.q).max(initial=0.0) + self.reach)
+        bound += _RUNAWAY * float(np.linalg.norm(state.v)) * settings.duration if number == 0 else 0.0
+        bound = bound if bound > 0.0 else np.inf
+        clock = time.perf_counter() - before.seconds
+        while position < len(bounds) - 1:
+            last = min(position + _SEGMENTS_PER_CHUNK, len(bounds) - 1)
+            if position < first_record < last:
+                last = first_record
+            segments = cut(cache, self.turning, bounds[position : last + 1], self.base * 2.0 ** (-0.5 * state.level))
+            if position == first_record:
+                fresh = np.column_stack([np.zeros_like(state.contact_totals[:, :3]), state.contact_totals[:, 3]])
+                state = replace(state, contact_totals=fresh)
+            trial, curvature, acceleration = self._march(march, state, segments, samples)
+            steps = int(segments.steps.sum())
+            if not np.isfinite(curvature) or not float(np.abs(trial.q).max(initial=0.0)) < bound:
+                raise TransientError(self._lost(float(bounds[position]), state))
+            error = float(np.sqrt(curvature / (acceleration + quiet * steps + 1e-300))) / 12.0
+            if error > settings.tolerance:
+                level = state.level + max(1, int(np.ceil(np.log2(error / settings.tolerance))))
+                if level > _FINEST_LEVEL:
+                    finest = self.base * 2.0 ** (-0.5 * _FINEST_LEVEL)
+                    raise TransientError(
+                        f"after t = {bounds[position]:.6g} s the tolerance {settings.tolerance:g} asks for steps below "
+                        f"{finest:.1e} s; raise the tolerance or keep fewer high modes"
+                    )
+                state = replace(state, level=level, rejected=state.rejected + steps)
+                continue
+            energy = self._held(trial.q, trial.v) + trial.stored
+            state = replace(
+                trial,
+                time=float(bounds[last]),
+                steps=state.steps + steps,
+                worst=max(state.worst, error),
+                smallest=min(state.smallest, float(((segments.end - segments.start) / segments.steps).min())),
+                level=max(state.level - 1, 0) if error < settings.tolerance / 3.0 else state.level,
+                energy=energy,
+                highest=max(state.highest, energy),
+                lowest=min(state.lowest, energy),
+            )
+            position = last
+            progress(float(bounds[position] / settings.duration))
+        return replace(state, block=number + 1, seconds=time.perf_counter() - clock)
+
+    def _bounds(self, number: int) -> FloatArray:
+        ends = float(self.ends[number]), float(self.ends[number + 1])
+        return boundaries(self.system, self.turning, *ends, self.base, (self.settings.record_from,))
+
+    def _march(self, kernel: Any, state: Checkpoint, segments: Any, samples: Any) -> tuple[Checkpoint, float, float]:
+        """The kernel on copies of what it changes."""
+        q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))
+        head = (q, v, self.arrays.dynamics, self.arrays.contacts, self.cache.matrices, segments, self.arrays.outputs)
+        sample, stored, curvature, acceleration, unsettled = kernel(
+            *head, samples, state.sample, state.stored, totals, contacts
+        )
+        moved = replace(state, q=q, v=v, totals=totals, contact_totals=contacts, sample=sample, stored=stored)
+        return replace(moved, unsettled=state.unsettled + unsettled), curvature, acceleration
+
+    def _held(self, q: FloatArray, v: FloatArray) -> float:
+        """Energy of motion and of the springs that do not change [J]."""
+        dynamics = self.arrays.dynamics
+        energy = 0.5 * v @ v + 0.5 * q @ (dynamics.stiffness * q)
+        if len(dynamics.tie_rates) == 1:
+            tied = q @ dynamics.ties
+            energy += 0.5 * tied @ dynamics.tie_stiffness[0] @ tied
+        return float(energy)
+
+    def _stored(self, q: FloatArray, v: FloatArray, turned: float, rate: float) -> float:
+        from coupling.newmark import stored_energy
+
+        return float(stored_energy(self.arrays.dynamics, self.arrays.contacts, q, v, turned, rate))
+
+    def _lost(self, begin: float, state: Checkpoint) -> str:
+        """What happened where the motion grows beyond bounds."""
+        for contact, last in zip(self.system.contacts, state.contact_totals[:, 3], strict=True):
+            if contact.drives and (begin - last) * abs(contact.rate) > _GONE:
+                return (
+                    f"the teeth of {contact.name} came apart at t = {last:.6g} s and did not meet again: nothing "
+                    "presses them together; look at the torques in and out, and whether the driver leads"
+                )
+        return (
+            f"the motion diverged after t = {begin:.6g} s; the linear part may be unstable: look for "
+            "negative damping ratios among the coupled modes"
+        )
+
+
+def _resting(system: CoupledSystem, turning: Turning, pushing: FloatArray | float) -> FloatArray:
+    """Coordinates that the loads' amplitudes would hold if they stood still, shape (n,)."""
+    fastest = max(1.0, float(turning.rates.max())) ** 2
+    loads = sum((fastest * np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size)) + pushing
+    stiffness = np.abs(np.diag(system.mean_stiffness()))
+    return np.asarray(loads / np.where(stiffness > 0.0, stiffness, np.inf))

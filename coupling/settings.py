@@ -1,0 +1,67 @@
+"""How far and how finely to march, and what to record."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TransientSettings:
+    """How far and how finely to march.
+
+    Attributes
+    ----------
+    duration : float
+        [s], from static equilibrium at t = 0.
+    record_from : float
+        Samples and contact figures start here [s].
+    sample_interval : float
+        [s]; outputs are written at this even spacing whatever the steps.
+    largest_step : float
+        [s].
+    tolerance : float
+        Of the error measure above.
+    beta, gamma : float
+        Newmark's parameters; 1/4 and 1/2 are the only pair that neither gains nor loses energy.
+    """
+
+    duration: float
+    record_from: float
+    sample_interval: float
+    largest_step: float
+    tolerance: float = 1e-4
+    beta: float = 0.25
+    gamma: float = 0.5
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.record_from < self.duration < np.inf:
+            raise CouplingError(f"recording from {self.record_from} s of {self.duration} s; expected a part of it")
+        for what in ("sample_interval", "largest_step", "tolerance", "beta"):
+            value = getattr(self, what)
+            if not 0.0 < value < np.inf:
+                raise CouplingError(f"{what} of {value}; expected a positive number")
+
+    @property
+    def samples(self) -> int:
+        """Number of samples from ``record_from`` up to, not including, the end."""
+        return int(np.ceil((self.duration - self.record_from) / self.sample_interval - 1e-6))
+
+
+@dataclass(frozen=True)
+class TransientOutputs:
+    """Rows to record: each a linear combination of the n coordinates.
+
+    Attributes
+    ----------
+    displacement, velocity, acceleration : ndarray, shapes (k, n)
+        What is taken of the coordinates, of their rates, and of their accelerations.
+    """
+
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray

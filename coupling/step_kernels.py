@@ -1,0 +1,145 @@
+"""The matrices of a step size, compiled: inverses of a diagonal with gyroscopic blocks, corrected for the ties.
+
+Importing this module imports numba.
+
+With the mass the identity, one step of Newmark's method solves S a = r with
+
+    S = I + γ h (C + s' G) + β h² (K + s'' G) = S₀ + U E Uᵀ,        E = γ h C_t + β h² K_t,
+
+S₀ diagonal but for one block for each shaft that turns, U the few directions of bearings, mounts and the like. With
+B = S₀⁻¹, by Sherman, Morrison and Woodbury,
+
+    S⁻¹ = B - B U (I + E Uᵀ B U)⁻¹ E Uᵀ B.
+"""
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from coupling.kernel_arrays import Contacts, Dynamics, StepMatrices
+from coupling.small_systems import solve_in_place
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@njit(cache=True, nogil=True)
+def tie_matrices(dynamics: Dynamics, speed: float, stiffness: FloatArray, damping: FloatArray) -> None:
+    """K_t and C_t at a speed, linear between those at which they are given, into two arrays (r, r)."""
+    rates, last = dynamics.tie_rates, dynamics.tie_rates.size - 1
+    at = 0
+    while at < last - 1 and speed > rates[at + 1]:
+        at += 1
+    part = 0.0
+    if last > 0:
+        part = min(max((speed - rates[at]) / (rates[at + 1] - rates[at]), 0.0), 1.0)
+    after = min(at + 1, last)
+    for i in range(stiffness.shape[0]):
+        for j in range(stiffness.shape[0]):
+            low, high = dynamics.tie_stiffness[at, i, j], dynamics.tie_stiffness[after, i, j]
+            stiffness[i, j] = low + part * (high - low)
+            low, high = dynamics.tie_damping[at, i, j], dynamics.tie_damping[after, i, j]
+            damping[i, j] = low + part * (high - low)
+
+
+@njit(cache=True, nogil=True)
+def add_gyroscopic(dynamics: Dynamics, factor: float, x: FloatArray, out: FloatArray) -> None:
+    """Add factor G x."""
+    for g in range(dynamics.block_start.size):
+        first, size = dynamics.block_start[g], dynamics.block_size[g]
+        for j in range(size):
+            value = factor * x[first + j]
+            for i in range(size):
+                out[first + i] += dynamics.gyroscopic[g, j, i] * value
+
+
+@njit(cache=True, nogil=True)
+def apply_base(dynamics: Dynamics, matrices: StepMatrices, slot: int, x: FloatArray, out: FloatArray) -> None:
+    """B x, into another array."""
+    for i in range(x.size):
+        out[i] = matrices.base[slot, i] * x[i]
+    for g in range(dynamics.block_start.size):
+        first, size = dynamics.block_start[g], dynamics.block_size[g]
+        for i in range(size):
+            out[first + i] = 0.0
+        for j in range(size):
+            value = x[first + j]
+            for i in range(size):
+                out[first + i] += matrices.blocks[slot, g, j, i] * value
+
+
+@njit(cache=True, nogil=True)
+def build_step(
+    dynamics: Dynamics,
+    contacts: Contacts,
+    h: float,
+    speed: float,
+    acceleration: float,
+    slot: int,
+    matrices: StepMatrices,
+) -> None:
+    """Fill a slot for steps of size h at a speed s' and an angular acceleration s''."""
+    n, r = dynamics.ties.shape
+    c = contacts.phase.size
+    by_velocity, by_displacement = dynamics.gamma * h, dynamics.beta * h * h
+    matrices.size[slot] = h
+    for i in range(n):
+        diagonal = 1.0 + by_velocity * dynamics.damping[i] + by_displacement * dynamics.stiffness[i]
+        matrices.base[slot, i] = 1.0 / diagonal
+    turning = by_velocity * speed + by_displacement * acceleration
+    for g in range(dynamics.block_start.size):
+        first, size = dynamics.block_start[g], dynamics.block_size[g]
+        # Of the transposed block, whose inverse is the transposed inverse.
+        block, inverse = np.zeros((size, size)), np.eye(size)
+        for i in range(size):
+            for j in range(size):
+                block[i, j] = turning * dynamics.gyroscopic[g, i, j]
+            block[i, i] += 1.0 / matrices.base[slot, first + i]
+        solve_in_place(block, inverse)
+        matrices.blocks[slot, g, :size, :size] = inverse
+
+    stiffness, damping = matrices.tie_stiffness[slot], matrices.tie_damping[slot]
+    tie_matrices(dynamics, speed, stiffness, damping)
+    column, found = np.zeros(n), np.zeros(n)
+    for k in range(r):
+        column[:] = dynamics.ties[:, k]
+        apply_base(dynamics, matrices, slot, column, found)
+        matrices.ties[slot, k] = found
+        for j in range(r):
+            value = 0.0
+            for i in range(n):
+                value += dynamics.ties[i, j] * found[i]
+            matrices.between[slot, j, k] = value
+    across, link = np.eye(r), np.zeros((r, r))
+    for i in range(r):
+        for j in range(r):
+            e = by_velocity * damping[i, j] + by_displacement * stiffness[i, j]
+            link[i, j] = e
+            for k in range(r):
+                across[i, k] += e * matrices.between[slot, j, k]
+    solve_in_place(across, link)
+    matrices.link[slot] = link
+
+    tied, held = np.zeros(r), np.zeros(r)
+    for k in range(c):
+        column[:] = contacts.direction[:, k]
+        apply_base(dynamics, matrices, slot, column, found)
+        for j in range(r):
+            tied[j] = 0.0
+            for i in range(n):
+                tied[j] += dynamics.ties[i, j] * found[i]
+        for j in range(r):
+            held[j] = 0.0
+            for i in range(r):
+                held[j] += link[j, i] * tied[i]
+        for j in range(r):
+            for i in range(n):
+                found[i] -= matrices.ties[slot, j, i] * held[j]
+            for i in range(r):
+                tied[i] -= matrices.between[slot, i, j] * held[j]
+        matrices.contact[slot, k] = found
+        matrices.contact_ties[slot, k] = tied
+        for j in range(c):
+            value = 0.0
+            for i in range(n):
+                value += contacts.direction[i, j] * found[i]
+            matrices.flexibility[slot, j, k] = value

@@ -1,0 +1,94 @@
+"""How a machine turns: its angle over time, as the time that a machine at its nominal speeds would need for it.
+
+All that turns is written for steady nominal speeds: mesh phases, runout, unbalance, gyroscopic terms. A machine that
+runs up or down turns through the same angles at other times. Its *turned time* s(t) is the time at which the machine
+at nominal speeds would have come as far, so that everything that depends on the angle depends on s, and
+
+    s'  is the speed and  s''  the angular acceleration, as parts of the nominal speed.
+
+At steady nominal speed s = t. The speed is piecewise linear here, s piecewise quadratic: angles, and the times at
+which the teeth come into contact and leave it, are exact.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Speed over time, as a part of the nominal one; linear between k times, and constant before and after them.
+
+    Attributes
+    ----------
+    times : ndarray, shape (k,)
+        [s], ascending.
+    rates : ndarray, shape (k,)
+        s', not negative: a machine that turned back would load its other flanks.
+    """
+
+    times: FloatArray
+    rates: FloatArray
+
+    def __post_init__(self) -> None:
+        if self.times.ndim != 1 or self.times.shape != self.rates.shape or not self.times.size:
+            raise CouplingError(
+                f"{self.times.shape} times and {self.rates.shape} speeds; expected as many, at least one"
+            )
+        if not (np.all(np.isfinite(self.times)) and np.all(np.isfinite(self.rates))):
+            raise CouplingError("a speed over time that is not finite")
+        if np.any(np.diff(self.times) <= 0.0):
+            raise CouplingError("the times of a speed over time do not ascend")
+        if np.any(self.rates < 0.0):
+            raise CouplingError("a speed over time changes its sign; expected one sense of rotation")
+
+    @staticmethod
+    def steady() -> "Turning":
+        """At the nominal speeds all along."""
+        return Turning(np.zeros(1), np.ones(1))
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether the speeds are the nominal ones all along."""
+        return bool(np.all(self.rates == 1.0))
+
+    @cached_property
+    def _pieces(self) -> FloatArray:
+        """Rows t, s, s' and s'' from which on a piece runs; the first begins in the infinite past."""
+        gaps = np.diff(self.times)
+        slopes = np.concatenate([[0.0], np.diff(self.rates) / gaps, [0.0]])
+        turned = np.concatenate([[0.0], np.cumsum(0.5 * (self.rates[1:] + self.rates[:-1]) * gaps)])
+        begins = np.concatenate([self.times[:1], self.times])
+        pieces = np.column_stack(
+            [begins, np.concatenate([turned[:1], turned]), np.concatenate([self.rates[:1], self.rates]), slopes]
+        )
+        # s = 0 at t = 0.
+        pieces[:, 1] -= self._through(pieces, np.zeros(1))[0][0]
+        return np.asarray(pieces)
+
+    def _through(self, pieces: FloatArray, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        rows = pieces[np.searchsorted(self.times, times, side="right")]
+        after = times - rows[:, 0]
+        return rows[:, 1] + after * (rows[:, 2] + 0.5 * rows[:, 3] * after), rows[:, 2] + rows[:, 3] * after, rows[:, 3]
+
+    def at(self, times: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """s [s], s' and s'' [1/s] just after some times [s], shapes (m,)."""
+        return self._through(self._pieces, np.atleast_1d(np.asarray(times, dtype=np.float64)))
+
+    def times_of(self, turned: FloatArray) -> FloatArray:
+        """Times at which the machine has turned so far [s], NaN where it never does, shape (m,)."""
+        pieces = self._pieces
+        rows = pieces[1:][np.maximum(np.searchsorted(pieces[1:, 1], turned, side="right") - 1, 0)]
+        rows = np.where((turned < pieces[1, 1])[:, None], pieces[0], rows)
+        far = turned - rows[:, 1]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            # The root of a quadratic in the form that loses no digits where the speed hardly changes.
+            root = np.sqrt(rows[:, 2] ** 2 + 2.0 * rows[:, 3] * far)
+            after = np.where(far == 0.0, 0.0, 2.0 * far / (rows[:, 2] + root))
+        return np.asarray(np.where(np.isfinite(after), rows[:, 0] + after, np.nan))
