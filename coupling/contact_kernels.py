@@ -21,20 +21,20 @@ _NEWTON_STEPS = 30
 FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE = 0, 1, 2, 3, 4
 
 
-@njit(cache=True, nogil=True)
-def deviation_of(contacts: Contacts, k: int, turned: float, speed: float) -> tuple[float, float]:
+@njit(cache=True, nogil=True, error_model="numpy")
+def deviation_of(clearance: FloatArray, errors: FloatArray, k: int, turned: float, speed: float) -> tuple[float, float]:
     """What runout and clearance take from a contact's compression [m], and its rate [m/s]."""
-    value, rate = contacts.clearance[k], 0.0
-    for m in range(contacts.errors.shape[1]):
-        amplitude, w = contacts.errors[k, m, 0], contacts.errors[k, m, 1]
+    value, rate = clearance[k], 0.0
+    for m in range(errors.shape[1]):
+        amplitude, w = errors[k, m, 0], errors[k, m, 1]
         if amplitude != 0.0:
-            angle = w * turned + contacts.errors[k, m, 2]
+            angle = w * turned + errors[k, m, 2]
             value += amplitude * math.cos(angle)
             rate -= amplitude * w * speed * math.sin(angle)
     return value, rate
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray) -> None:
     """Fill in a contact's row of the laws' table."""
     if delta <= contacts.first_touch[k]:
@@ -57,7 +57,7 @@ def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: floa
     laws[k, ENERGY], laws[k, PHASE_SLOPE] = law[3], law[4]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def settle(
     contacts: Contacts,
     turned: float,

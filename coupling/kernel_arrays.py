@@ -22,7 +22,7 @@ class Dynamics(NamedTuple):
     block_start: IntArray  # (g,) first coordinate of each gyroscopic block
     block_size: IntArray  # (g,)
     gyroscopic: FloatArray  # (g, b, b) Gᵀ at nominal speed, padded
-    ties: FloatArray  # (n, r) U, orthonormal: all else in K and C is U K_t Uᵀ and U C_t Uᵀ
+    ties: FloatArray  # (r, n) Uᵀ, orthonormal: all else in K and C is U K_t Uᵀ and U C_t Uᵀ
     tie_rates: FloatArray  # (t,) speeds, as parts of the nominal one, at which these are given
     tie_stiffness: FloatArray  # (t, r, r) K_t
     tie_damping: FloatArray  # (t, r, r) C_t
@@ -61,7 +61,7 @@ class StepMatrices(NamedTuple):
 class Contacts(NamedTuple):
     """The tooth contacts, padded to common lengths."""
 
-    direction: FloatArray  # (n, c) D
+    direction: FloatArray  # (c, n) Dᵀ
     knots: FloatArray  # (c, pieces + 1)
     curves: FloatArray  # (c, kinds of pairs, pieces, 8): cubics of the stiffness and of the gap
     pieces: IntArray  # (c,)
@@ -94,9 +94,9 @@ class Segments(NamedTuple):
 class Outputs(NamedTuple):
     """What is written at each sample."""
 
-    displacement: FloatArray  # (n, k0)
-    velocity: FloatArray  # (n, k1)
-    acceleration: FloatArray  # (n, k2)
+    displacement: FloatArray  # (k0, n)
+    velocity: FloatArray  # (k1, n)
+    acceleration: FloatArray  # (k2, n)
 
 
 class Samples(NamedTuple):

@@ -163,14 +163,14 @@ def march_blocks(
         count = total - first if last else _samples_until(settings, float(run.ends[number + 1]), first, total)
         samples = empty_samples(run.arrays, settings.record_from, settings.sample_interval, first, count)
         state = run.through(number, state, samples, progress)
-        rows = slice(state.sample - first)
+        written = slice(state.sample - first)
         yield Block(
             first=first,
-            displacement=samples.displacement[rows],
-            velocity=samples.velocity[rows],
-            acceleration=samples.acceleration[rows],
-            compression=samples.compression[rows],
-            force=samples.force[rows],
+            displacement=samples.displacement[written],
+            velocity=samples.velocity[written],
+            acceleration=samples.acceleration[written],
+            compression=samples.compression[written],
+            force=samples.force[written],
             after=state,
             count=len(run.ends) - 1,
         )
@@ -292,7 +292,7 @@ class _Run:
         dynamics = self.arrays.dynamics
         energy = 0.5 * v @ v + 0.5 * q @ (dynamics.stiffness * q)
         if len(dynamics.tie_rates) == 1:
-            tied = q @ dynamics.ties
+            tied = dynamics.ties @ q
             energy += 0.5 * tied @ dynamics.tie_stiffness[0] @ tied
         return float(energy)
 

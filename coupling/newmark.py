@@ -27,7 +27,7 @@ from numba import njit
 
 from coupling.contact_kernels import DAMPING, ENERGY, FORCE, PHASE_SLOPE, deviation_of, settle, take_law
 from coupling.kernel_arrays import BY_TIME, BY_UNBALANCE, Contacts, Dynamics, Outputs, Samples, Segments, StepMatrices
-from coupling.step_kernels import add_gyroscopic, apply_base, build_step, tie_matrices
+from coupling.step_kernels import add_gyroscopic, apply_base, build_step, project, tie_matrices
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,7 +39,7 @@ INSIDE = 1e-7
 IMPULSE, APART, PEAK, LAST_TOUCH = 0, 1, 2, 3
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def march(
     q: FloatArray,
     v: FloatArray,
@@ -83,7 +83,7 @@ def march(
     unsettled : int
         Steps whose contact forces Newton's method left unsettled.
     """
-    n, r = dynamics.ties.shape
+    r, n = dynamics.ties.shape
     c = contacts.phase.size
     a, before, free, pushed = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     q0, v0, load, x, y = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
@@ -93,10 +93,13 @@ def march(
     dq, dv, da, dq0, dv0 = np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c)
     delta, rate, delta_free, rate_free, slip = np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c)
     laws, spare, jacobian, residual = np.zeros((c, 5)), np.zeros((c, 5)), np.zeros((c, c)), np.zeros((c, 1))
-    force_before = np.zeros(c)
+    force_before, work = np.zeros(c), np.zeros(dynamics.gyroscopic.shape[2])
     powers, powers_before = np.zeros(3), np.zeros(3)
     curvature, acceleration, unsettled = 0.0, 0.0, 0
     beta, gamma = dynamics.beta, dynamics.gamma
+    # Taken out of their tuples here: a tuple that changes hands has each of its arrays counted, in and out.
+    gyroscopic, first, size = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size
+    changing, has_skew = dynamics.tie_rates.size > 1, dynamics.has_skew
 
     for segment in range(segments.start.size):
         t0, t1, count = segments.start[segment], segments.end[segment], segments.steps[segment]
@@ -106,44 +109,59 @@ def march(
         slot = segments.kind[segment]
         middle_speed = speed0 + 0.5 * swing * (t1 - t0)
         if slot < 0:
-            slot = 0
+            slot = -1 - slot  # 0, in a form that is no constant: a constant would compile all anew
             build_step(dynamics, contacts, h, middle_speed, swing, slot, matrices)
         stiffness, damping = matrices.tie_stiffness[slot], matrices.tie_damping[slot]
         between, link = matrices.between[slot], matrices.link[slot]
 
         # The teeth change at the event: forces, powers and energy start afresh from the new set of pairs.
-        _gather(dynamics.ties, q, tq)
-        _gather(dynamics.ties, v, tv)
-        _gather(contacts.direction, q, dq)
-        _gather(contacts.direction, v, dv)
+        project(dynamics.ties, q, tq)
+        project(dynamics.ties, v, tv)
+        project(contacts.direction, q, dq)
+        project(contacts.direction, v, dv)
         speed = speed0 + swing * inside
         turned = turned0 + inside * (speed0 + 0.5 * swing * inside)
         for k in range(c):
-            gone, slip[k] = deviation_of(contacts, k, turned, speed)
+            gone, slip[k] = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
             delta[k], rate[k] = dq[k] - gone, dv[k] - slip[k]
             take_law(contacts, k, turned, delta[k], rate[k], laws)
-        fresh = _stored(dynamics, stiffness, tq, laws)
+        fresh = _stored(changing, stiffness, tq, laws)
         totals[2] += fresh - stored
         stored = fresh
         _load_at(dynamics, t0, turned0, speed0, swing, load)
         for i in range(n):
             a[i] = load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
-        add_gyroscopic(dynamics, -middle_speed, v, a)
+        add_gyroscopic(gyroscopic, first, size, -middle_speed, v, a, work)
         if swing != 0.0:
-            add_gyroscopic(dynamics, -swing, q, a)
+            # The drive that speeds a tilted shaft up works on it: counted among the loads.
+            add_gyroscopic(gyroscopic, first, size, -swing, q, load, work)
+            add_gyroscopic(gyroscopic, first, size, -swing, q, a, work)
         for j in range(r):
             tie_push[j] = 0.0
             for k in range(r):
                 tie_push[j] += stiffness[j, k] * tq[k] + damping[j, k] * tv[k]
         for i in range(n):
             for j in range(r):
-                a[i] -= dynamics.ties[i, j] * tie_push[j]
+                a[i] -= dynamics.ties[j, i] * tie_push[j]
             for k in range(c):
-                a[i] -= contacts.direction[i, k] * laws[k, FORCE]
-        _gather(dynamics.ties, a, ta)
-        _gather(contacts.direction, a, da)
+                a[i] -= contacts.direction[k, i] * laws[k, FORCE]
+        project(dynamics.ties, a, ta)
+        project(contacts.direction, a, da)
         _powers(
-            dynamics, contacts, damping, stiffness, swing, speed, q, v, load, tq, tv, rate, slip, laws, powers_before
+            dynamics.damping,
+            contacts.rate,
+            damping,
+            stiffness,
+            has_skew,
+            speed,
+            v,
+            load,
+            tq,
+            tv,
+            rate,
+            slip,
+            laws,
+            powers_before,
         )
         for k in range(c):
             force_before[k] = laws[k, FORCE]
@@ -167,13 +185,13 @@ def march(
             for k in range(c):
                 dq0[k] = dq[k] + h * dv[k] + old * da[k]
                 dv0[k] = dv[k] + new * da[k]
-            add_gyroscopic(dynamics, -middle_speed, v0, pushed)
+            add_gyroscopic(gyroscopic, first, size, -middle_speed, v0, pushed, work)
             if swing != 0.0:
-                add_gyroscopic(dynamics, -swing, q0, pushed)
-            apply_base(dynamics, matrices, slot, pushed, free)
+                add_gyroscopic(gyroscopic, first, size, -swing, q0, pushed, work)
+            apply_base(matrices.base, matrices.blocks, first, size, slot, pushed, free, work)
 
             # a = B (r - U y) - B U link (Uᵀ B (r - U y)), y what the ties push.
-            _gather(dynamics.ties, free, seen_by_ties)
+            project(dynamics.ties, free, seen_by_ties)
             for j in range(r):
                 tie_push[j] = 0.0
                 for k in range(r):
@@ -198,9 +216,9 @@ def march(
                 if step == count - 1:
                     speed = speed0 + swing * (after - inside)
                     turned = turned0 + (after - inside) * (speed0 + 0.5 * swing * (after - inside))
-                _gather(contacts.direction, free, da)
+                project(contacts.direction, free, da)
                 for k in range(c):
-                    gone, slip[k] = deviation_of(contacts, k, turned, speed)
+                    gone, slip[k] = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
                     delta_free[k] = dq0[k] + displaced * da[k] - gone
                     rate_free[k] = dv0[k] + moved * da[k] - slip[k]
                 if not settle(
@@ -228,7 +246,8 @@ def march(
                         for j in range(c):
                             da[j] -= matrices.flexibility[slot, j, k] * force
 
-            next_sample = _sample(
+            if samples.first + next_sample * samples.interval <= t + h:
+                next_sample = _sample(
                 contacts, outputs, samples, next_sample, t, h, turned_before, speed_before, swing,
                 q, v, a, q0, v0, free, displaced, moved, x, y, spare, delta_free,
             )  # fmt: skip
@@ -248,8 +267,25 @@ def march(
             for k in range(c):
                 dq[k], dv[k] = dq0[k] + displaced * da[k], dv0[k] + moved * da[k]
 
-            stored = _stored(dynamics, stiffness, tq, laws)
-            _powers(dynamics, contacts, damping, stiffness, swing, speed, q, v, load, tq, tv, rate, slip, laws, powers)
+            if swing != 0.0:
+                add_gyroscopic(gyroscopic, first, size, -swing, q, load, work)
+            stored = _stored(changing, stiffness, tq, laws)
+            _powers(
+                dynamics.damping,
+                contacts.rate,
+                damping,
+                stiffness,
+                has_skew,
+                speed,
+                v,
+                load,
+                tq,
+                tv,
+                rate,
+                slip,
+                laws,
+                powers,
+            )
             for k in range(3):
                 totals[k] += 0.5 * h * (powers_before[k] + powers[k])
                 powers_before[k] = powers[k]
@@ -266,41 +302,30 @@ def march(
     return next_sample, stored, curvature, acceleration, unsettled
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def stored_energy(
     dynamics: Dynamics, contacts: Contacts, q: FloatArray, v: FloatArray, turned: float, speed: float
 ) -> float:
     """Energy in the teeth, and in the ties where they change with the speed [J], at a state."""
-    r, c = dynamics.ties.shape[1], contacts.phase.size
+    r, c = dynamics.ties.shape[0], contacts.phase.size
     stiffness, damping, laws = np.zeros((r, r)), np.zeros((r, r)), np.zeros((c, 5))
     tie_matrices(dynamics, speed, stiffness, damping)
+    changing = dynamics.tie_rates.size > 1
     tq, dq, dv = np.zeros(r), np.zeros(c), np.zeros(c)
-    _gather(dynamics.ties, q, tq)
-    _gather(contacts.direction, q, dq)
-    _gather(contacts.direction, v, dv)
+    project(dynamics.ties, q, tq)
+    project(contacts.direction, q, dq)
+    project(contacts.direction, v, dv)
     for k in range(c):
-        gone, slip = deviation_of(contacts, k, turned, speed)
+        gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
         take_law(contacts, k, turned, dq[k] - gone, dv[k] - slip, laws)
-    return _stored(dynamics, stiffness, tq, laws)
+    return _stored(changing, stiffness, tq, laws)
 
 
-@njit(cache=True, nogil=True)
-def _gather(columns: FloatArray, x: FloatArray, out: FloatArray) -> None:
-    """Columnsᵀ x, for columns (n, k) that stand beside each other in memory."""
-    for j in range(out.size):
-        out[j] = 0.0
-    if out.size > 0:
-        for i in range(x.size):
-            value = x[i]
-            for j in range(out.size):
-                out[j] += columns[i, j] * value
-
-
-@njit(cache=True, nogil=True)
-def _stored(dynamics: Dynamics, stiffness: FloatArray, tq: FloatArray, laws: FloatArray) -> float:
+@njit(cache=True, nogil=True, error_model="numpy")
+def _stored(changing: bool, stiffness: FloatArray, tq: FloatArray, laws: FloatArray) -> float:
     """Energy in the teeth, and in the ties where they change with the speed."""
     energy = 0.0
-    if dynamics.tie_rates.size > 1:
+    if changing:
         for i in range(tq.size):
             for j in range(tq.size):
                 energy += 0.5 * tq[i] * stiffness[i, j] * tq[j]
@@ -309,14 +334,12 @@ def _stored(dynamics: Dynamics, stiffness: FloatArray, tq: FloatArray, laws: Flo
     return energy
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _load_at(dynamics: Dynamics, time: float, turned: float, speed: float, swing: float, out: FloatArray) -> None:
     """All loads at a time."""
     n = out.size
-    out[:] = dynamics.constant
-    if swing != 0.0:
-        for i in range(n):
-            out[i] += swing * dynamics.swing[i]
+    for i in range(n):
+        out[i] = dynamics.constant[i] + swing * dynamics.swing[i]
     for w in range(dynamics.frequency.size):
         frequency, follows = dynamics.frequency[w], dynamics.follows[w]
         angle = frequency * (time if follows == BY_TIME else turned)
@@ -343,15 +366,14 @@ def _load_at(dynamics: Dynamics, time: float, turned: float, speed: float, swing
             out[i] += value * dynamics.timed_rows[m, i]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _powers(
-    dynamics: Dynamics,
-    contacts: Contacts,
+    component_damping: FloatArray,
+    phase_rate: FloatArray,
     damping: FloatArray,
     stiffness: FloatArray,
-    swing: float,
+    has_skew: bool,
     speed: float,
-    q: FloatArray,
     v: FloatArray,
     load: FloatArray,
     tq: FloatArray,
@@ -364,34 +386,27 @@ def _powers(
     """Power of the loads, power lost, power of the turning teeth [W].
 
     With the teeth's energy U(p, δ), δ = dᵀq - e: the turning teeth give ∂U/∂p p' - f e', and the damping takes
-    v C v + c δ'². Together with the loads they change the energy of motion, springs and teeth. The drive that speeds
-    a tilted shaft up works by s'' G.
+    v C v + c δ'². Together with the loads they change the energy of motion, springs and teeth.
     """
-    n, r = dynamics.ties.shape
+    n, r = v.size, tv.size
     given, lost, turning = 0.0, 0.0, 0.0
     for i in range(n):
         given += load[i] * v[i]
-        lost += dynamics.damping[i] * v[i] * v[i]
-    if swing != 0.0:
-        for g in range(dynamics.block_start.size):
-            first, size = dynamics.block_start[g], dynamics.block_size[g]
-            for j in range(size):
-                for i in range(size):
-                    given -= swing * v[first + i] * dynamics.gyroscopic[g, j, i] * q[first + j]
+        lost += component_damping[i] * v[i] * v[i]
     for i in range(r):
         for j in range(r):
             lost += tv[i] * damping[i, j] * tv[j]
-    if dynamics.has_skew:
+    if has_skew:
         for i in range(r):
             for j in range(r):
                 lost += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
     for k in range(laws.shape[0]):
-        turning += laws[k, PHASE_SLOPE] * contacts.rate[k] * speed - laws[k, FORCE] * slip[k]
+        turning += laws[k, PHASE_SLOPE] * phase_rate[k] * speed - laws[k, FORCE] * slip[k]
         lost += laws[k, DAMPING] * rate[k] * rate[k]
     out[0], out[1], out[2] = given, lost, turning
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _sample(
     contacts: Contacts,
     outputs: Outputs,
@@ -432,21 +447,21 @@ def _sample(
             q1, v1 = q0[i] + displaced * a1[i], v0[i] + moved * a1[i]
             x[i] = old * q[i] + slope_old * v[i] + new * q1 + slope_new * v1
             y[i] = old * v[i] + slope_old * a[i] + new * v1 + slope_new * a1[i]
-        _gather(outputs.displacement, x, samples.displacement[row])
-        _gather(outputs.velocity, y, samples.velocity[row])
+        project(outputs.displacement, x, samples.displacement[row])
+        project(outputs.velocity, y, samples.velocity[row])
         if contacts.phase.size > 0:
             after = s * h
             speed = speed0 + swing * after
             turned = turned0 + after * (speed0 + 0.5 * swing * after)
-            _gather(contacts.direction, x, samples.compression[row])
-            _gather(contacts.direction, y, work)
+            project(contacts.direction, x, samples.compression[row])
+            project(contacts.direction, y, work)
             for k in range(contacts.phase.size):
-                gone, slip = deviation_of(contacts, k, turned, speed)
+                gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
                 samples.compression[row, k] -= gone
                 take_law(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws)
                 samples.force[row, k] = laws[k, FORCE]
         for i in range(n):
             x[i] = (1.0 - s) * a[i] + s * a1[i]
-        _gather(outputs.acceleration, x, samples.acceleration[row])
+        project(outputs.acceleration, x, samples.acceleration[row])
         number += 1
     return number

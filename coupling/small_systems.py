@@ -10,7 +10,7 @@ from numba import njit
 FloatArray = npt.NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
     """Gaussian elimination with row exchanges; the columns of ``right`` (n, k) become the solutions."""
     n, columns = right.shape

@@ -23,6 +23,7 @@ from coupling.turning import Turning
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+_WIDTH = 16  # rows that the compiled loops take at a time
 _FOLLOWS = {"time": BY_TIME, "turning": BY_TURNING, "unbalance": BY_UNBALANCE}
 
 
@@ -45,7 +46,7 @@ class KernelArrays(NamedTuple):
 
 def kernel_arrays(system: CoupledSystem, outputs: _Rows, beta: float, gamma: float) -> KernelArrays:
     """Lay out the system and the rows to record."""
-    rows = (np.ascontiguousarray(rows.T) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
+    rows = (np.ascontiguousarray(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
     return KernelArrays(_dynamics(system, beta, gamma), _contacts(system), Outputs(*rows))
 
 
@@ -56,9 +57,9 @@ def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: i
         first=first,
         interval=interval,
         offset=offset,
-        displacement=np.zeros((count, rows.displacement.shape[1])),
-        velocity=np.zeros((count, rows.velocity.shape[1])),
-        acceleration=np.zeros((count, rows.acceleration.shape[1])),
+        displacement=np.zeros((count, len(rows.displacement))),
+        velocity=np.zeros((count, len(rows.velocity))),
+        acceleration=np.zeros((count, len(rows.acceleration))),
         compression=np.zeros((count, contacts)),
         force=np.zeros((count, contacts)),
     )
@@ -107,7 +108,7 @@ def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> 
 
 
 def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
-    n, r = arrays.dynamics.ties.shape
+    r, n = arrays.dynamics.ties.shape
     c = arrays.contacts.phase.size
     g, b = arrays.dynamics.gyroscopic.shape[:2]
     return StepMatrices(
@@ -148,7 +149,7 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
         block_start=starts,
         block_size=sizes,
         gyroscopic=gyroscopic,
-        ties=np.ascontiguousarray(directions),
+        ties=np.ascontiguousarray(directions.T),
         tie_rates=rates,
         tie_stiffness=tie_stiffness,
         tie_damping=tie_damping,
@@ -179,7 +180,7 @@ def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, Float
             among = slice(touched[0], touched[-1] + 1)
             found.append((start + int(touched[0]), speed * component.gyroscopic[among, among].T))
         start += component.size
-    largest = max((len(matrix) for _, matrix in found), default=0)
+    largest = -(-max((len(matrix) for _, matrix in found), default=0) // _WIDTH) * _WIDTH
     blocks = np.zeros((len(found), largest, largest))
     for block, (_, matrix) in zip(blocks, found, strict=True):
         block[: len(matrix), : len(matrix)] = matrix
@@ -217,7 +218,7 @@ def _contacts(system: CoupledSystem) -> Contacts:
         lowest = (cubics[:, :, 4] + np.minimum(cubics[:, :, 5:], 0.0).sum(axis=2)).min()
         first_touch[k] = lowest + gaps.min(initial=0.0)
     return Contacts(
-        direction=np.ascontiguousarray(system.contact_directions),
+        direction=np.ascontiguousarray(system.contact_directions.T),
         knots=knots,
         curves=curves,
         pieces=np.array(pieces, dtype=np.int64),

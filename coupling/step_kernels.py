@@ -20,9 +20,10 @@ from coupling.kernel_arrays import Contacts, Dynamics, StepMatrices
 from coupling.small_systems import solve_in_place
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def tie_matrices(dynamics: Dynamics, speed: float, stiffness: FloatArray, damping: FloatArray) -> None:
     """K_t and C_t at a speed, linear between those at which they are given, into two arrays (r, r)."""
     rates, last = dynamics.tie_rates, dynamics.tie_rates.size - 1
@@ -41,33 +42,58 @@ def tie_matrices(dynamics: Dynamics, speed: float, stiffness: FloatArray, dampin
             damping[i, j] = low + part * (high - low)
 
 
-@njit(cache=True, nogil=True)
-def add_gyroscopic(dynamics: Dynamics, factor: float, x: FloatArray, out: FloatArray) -> None:
-    """Add factor G x."""
-    for g in range(dynamics.block_start.size):
-        first, size = dynamics.block_start[g], dynamics.block_size[g]
-        for j in range(size):
-            value = factor * x[first + j]
-            for i in range(size):
-                out[first + i] += dynamics.gyroscopic[g, j, i] * value
+# Sums may be taken in any order, so that they vectorise; the compiled order is always the same.
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+def project(rows: FloatArray, x: FloatArray, out: FloatArray) -> None:
+    """Rows x, for a few rows (k, n)."""
+    for j in range(rows.shape[0]):
+        value = 0.0
+        for i in range(rows.shape[1]):
+            value += rows[j, i] * x[i]
+        out[j] = value
 
 
-@njit(cache=True, nogil=True)
-def apply_base(dynamics: Dynamics, matrices: StepMatrices, slot: int, x: FloatArray, out: FloatArray) -> None:
-    """B x, into another array."""
+@njit(cache=True, nogil=True, error_model="numpy")
+def add_gyroscopic(
+    blocks: FloatArray, first: IntArray, size: IntArray, factor: float, x: FloatArray, out: FloatArray, work: FloatArray
+) -> None:
+    """Add factor G x, by G's blocks; ``work`` (b,) is overwritten."""
+    for g in range(first.size):
+        # Of the padded width: loops of sixteen vectorise, those of the block's own size may not.
+        work[:] = 0.0
+        for j in range(size[g]):
+            value = factor * x[first[g] + j]
+            for i in range(work.size):
+                work[i] += blocks[g, j, i] * value
+        for i in range(size[g]):
+            out[first[g] + i] += work[i]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def apply_base(
+    base: FloatArray,
+    blocks: FloatArray,
+    first: IntArray,
+    size: IntArray,
+    slot: int,
+    x: FloatArray,
+    out: FloatArray,
+    work: FloatArray,
+) -> None:
+    """B x, into another array; ``work`` (b,) is overwritten."""
     for i in range(x.size):
-        out[i] = matrices.base[slot, i] * x[i]
-    for g in range(dynamics.block_start.size):
-        first, size = dynamics.block_start[g], dynamics.block_size[g]
-        for i in range(size):
-            out[first + i] = 0.0
-        for j in range(size):
-            value = x[first + j]
-            for i in range(size):
-                out[first + i] += matrices.blocks[slot, g, j, i] * value
+        out[i] = base[slot, i] * x[i]
+    for g in range(first.size):
+        work[:] = 0.0
+        for j in range(size[g]):
+            value = x[first[g] + j]
+            for i in range(work.size):
+                work[i] += blocks[slot, g, j, i] * value
+        for i in range(size[g]):
+            out[first[g] + i] = work[i]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def build_step(
     dynamics: Dynamics,
     contacts: Contacts,
@@ -78,7 +104,7 @@ def build_step(
     matrices: StepMatrices,
 ) -> None:
     """Fill a slot for steps of size h at a speed s' and an angular acceleration s''."""
-    n, r = dynamics.ties.shape
+    r, n = dynamics.ties.shape
     c = contacts.phase.size
     by_velocity, by_displacement = dynamics.gamma * h, dynamics.beta * h * h
     matrices.size[slot] = h
@@ -95,20 +121,23 @@ def build_step(
                 block[i, j] = turning * dynamics.gyroscopic[g, i, j]
             block[i, i] += 1.0 / matrices.base[slot, first + i]
         solve_in_place(block, inverse)
-        matrices.blocks[slot, g, :size, :size] = inverse
+        for i in range(size):
+            for j in range(size):
+                matrices.blocks[slot, g, i, j] = inverse[i, j]
 
     stiffness, damping = matrices.tie_stiffness[slot], matrices.tie_damping[slot]
     tie_matrices(dynamics, speed, stiffness, damping)
-    column, found = np.zeros(n), np.zeros(n)
+    tied, seen = np.zeros(r), np.zeros(c)
+    column, found, work = np.zeros(n), np.zeros(n), np.zeros(dynamics.gyroscopic.shape[2])
     for k in range(r):
-        column[:] = dynamics.ties[:, k]
-        apply_base(dynamics, matrices, slot, column, found)
-        matrices.ties[slot, k] = found
+        for i in range(n):
+            column[i] = dynamics.ties[k, i]
+        apply_base(matrices.base, matrices.blocks, dynamics.block_start, dynamics.block_size, slot, column, found, work)
+        for i in range(n):
+            matrices.ties[slot, k, i] = found[i]
+        project(dynamics.ties, found, tied)
         for j in range(r):
-            value = 0.0
-            for i in range(n):
-                value += dynamics.ties[i, j] * found[i]
-            matrices.between[slot, j, k] = value
+            matrices.between[slot, j, k] = tied[j]
     across, link = np.eye(r), np.zeros((r, r))
     for i in range(r):
         for j in range(r):
@@ -117,16 +146,16 @@ def build_step(
             for k in range(r):
                 across[i, k] += e * matrices.between[slot, j, k]
     solve_in_place(across, link)
-    matrices.link[slot] = link
-
-    tied, held = np.zeros(r), np.zeros(r)
-    for k in range(c):
-        column[:] = contacts.direction[:, k]
-        apply_base(dynamics, matrices, slot, column, found)
+    for i in range(r):
         for j in range(r):
-            tied[j] = 0.0
-            for i in range(n):
-                tied[j] += dynamics.ties[i, j] * found[i]
+            matrices.link[slot, i, j] = link[i, j]
+
+    held = np.zeros(r)
+    for k in range(c):
+        for i in range(n):
+            column[i] = contacts.direction[k, i]
+        apply_base(matrices.base, matrices.blocks, dynamics.block_start, dynamics.block_size, slot, column, found, work)
+        project(dynamics.ties, found, tied)
         for j in range(r):
             held[j] = 0.0
             for i in range(r):
@@ -136,10 +165,10 @@ def build_step(
                 found[i] -= matrices.ties[slot, j, i] * held[j]
             for i in range(r):
                 tied[i] -= matrices.between[slot, i, j] * held[j]
-        matrices.contact[slot, k] = found
-        matrices.contact_ties[slot, k] = tied
+        for i in range(n):
+            matrices.contact[slot, k, i] = found[i]
+        for j in range(r):
+            matrices.contact_ties[slot, k, j] = tied[j]
+        project(contacts.direction, found, seen)
         for j in range(c):
-            value = 0.0
-            for i in range(n):
-                value += contacts.direction[i, j] * found[i]
-            matrices.flexibility[slot, j, k] = value
+            matrices.flexibility[slot, j, k] = seen[j]

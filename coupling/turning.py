@@ -39,7 +39,7 @@ class Turning:
     def __post_init__(self) -> None:
         if self.times.ndim != 1 or self.times.shape != self.rates.shape or not self.times.size:
             raise CouplingError(
-                f"{self.times.shape} times and {self.rates.shape} speeds; expected as many, at least one"
+                f"speeds of shape {self.rates.shape} at times of shape {self.times.shape}; expected as many"
             )
         if not (np.all(np.isfinite(self.times)) and np.all(np.isfinite(self.rates))):
             raise CouplingError("a speed over time that is not finite")
