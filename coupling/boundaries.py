@@ -14,6 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _POINTS_PER_PERIOD = 6  # of the highest coordinate; what moves much gets more, by the tolerance
 _STEPS_PER_SEGMENT = 64  # where no event cuts the time
+_SPEED_GAIN = 5e-4  # change of speed, as a part of the nominal one, within which a stretch's matrices stay the same
 _SAME_TIME = 1e-6  # part of the coarsest step within which two events are one
 _SAMPLES_PER_BLOCK = 32768
 _STEPS_PER_BLOCK = 1 << 20
@@ -62,7 +63,10 @@ def boundaries(
     times = times[np.concatenate([[True], np.diff(times) > near])]
     if times[-1] < end and len(times) > 1:
         times = np.append(times[:-1], end)
-    pieces = np.maximum(np.ceil(np.diff(times) / (_STEPS_PER_SEGMENT * step)), 1.0).astype(np.int64)
+    # Matrices are those of a stretch's mean speed.
+    gained = np.abs(np.diff(turning.at(times)[1]))
+    pieces = np.maximum(np.ceil(np.diff(times) / (_STEPS_PER_SEGMENT * step)), np.ceil(gained / _SPEED_GAIN))
+    pieces = np.maximum(np.minimum(pieces, np.ceil(np.diff(times) / (8.0 * step))), 1.0).astype(np.int64)
     if pieces.max() == 1:
         return np.asarray(times)
     cuts = [begin + (stop - begin) * np.arange(n) / n for begin, stop, n in zip(times, times[1:], pieces, strict=False)]

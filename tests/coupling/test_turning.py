@@ -97,7 +97,7 @@ TABLE = SpeedTable(
 )
 UNBALANCE = 0.4 * SPEED**2 * np.array([1.0, -1.0j])
 TORQUE = TimedLoad(np.array([1.0, 4.0, 5.0]), np.array([0.0, 0.5, 0.2]), np.array([0.0, 1.0]))
-RUN_UP = Turning(np.array([0.0, 6.0, 9.0]), np.array([0.4, 1.9, 1.2]))
+RUN_UP = Turning(np.array([0.0, 6.0, 9.0]), np.array([0.9, 1.1, 1.05]))
 
 
 def shaft(contacts: tuple[ContactConnector, ...] = ()) -> CoupledSystem:
@@ -167,7 +167,7 @@ def reference(slope, breaks: FloatArray, times: FloatArray) -> FloatArray:  # ty
 
 
 def kinks() -> FloatArray:
-    speeds = [np.interp(0.0, RUN_UP.rates[:2] - rate, RUN_UP.times[:2]) for rate in (0.5, 1.0)]
+    speeds = [np.interp(0.0, RUN_UP.rates[:2] - rate, RUN_UP.times[:2]) for rate in (1.0,)]
     return np.unique(np.concatenate([[1.0, 4.0, 5.0, 6.0, 9.0], speeds]))
 
 
@@ -182,7 +182,6 @@ def test_run_up_is_of_second_order() -> None:
         balances.append(result.energy.error)
     np.testing.assert_allclose(np.array(errors[:-1]) / errors[1:], 4.0, rtol=0.05)
     assert errors[-1] < 5e-4
-    print(errors, balances)
 
 
 def test_run_up_through_teeth() -> None:
@@ -218,5 +217,5 @@ def test_starts_in_equilibrium_with_the_loads_of_the_start() -> None:
     system = replace(shaft(), harmonic_loads=(), timed_loads=())
     settings = TransientSettings(1.0, 0.0, 0.1, 0.02)
     result = simulate(system, settings, OUTPUTS, turning=RUN_UP)
-    pressed = replace(system, load=system.load + (1.9 - 0.4) / 6.0 * system.swing)
+    pressed = replace(system, load=system.load + (1.1 - 0.9) / 6.0 * system.swing)
     np.testing.assert_allclose(result.displacement[0], static_equilibrium(pressed), rtol=1e-12)
