@@ -51,11 +51,12 @@ MODELS: dict[str, StiffnessModel] = {
 
 
 @njit
-def summed(calls, compression, a, b, c, d, e, f, g, h):  # type: ignore[no-untyped-def]
-    """Forces of a mesh that turns on by a seventieth of a period at each call."""
+def summed(calls, compression, a, b, c, d, e, f, g, h, i):  # type: ignore[no-untyped-def]
+    """All that the law says of a mesh that turns on by a seventieth of a period at each call, so that all is made."""
     total = 0.0
     for call in range(calls):
-        total += tooth_force(call / 70.0, compression, 0.01, a, b, c, d, e, f, g, h)[0]
+        law = tooth_force(call / 70.0, compression, 0.01, a, b, c, d, e, f, g, h, i)
+        total += law[0] + law[1] + law[2] + law[3] + law[4] + law[5]
     return total
 
 

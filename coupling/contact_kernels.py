@@ -32,7 +32,7 @@ def compression_of(contacts: Contacts, k: int, q: FloatArray, v: FloatArray, tim
     return delta, rate
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def law_of(
     contacts: Contacts, k: int, time: float, delta: float, rate: float
 ) -> tuple[float, float, float, float, float, int]:
@@ -41,13 +41,14 @@ def law_of(
         contacts.phase[k] + contacts.rate[k] * time,
         delta,
         rate,
-        contacts.knots[k, : contacts.pieces[k] + 1],
-        contacts.curves[k, : contacts.kinds[k], : contacts.pieces[k]],
+        contacts.reach[k, 0],
+        contacts.reach[k, 1],
+        contacts.reach[k, 2],
+        contacts.curves[k],
         contacts.damping[k],
         contacts.damping_depth[k],
-        contacts.pair_gaps[k, : contacts.pairs[k]],
-        contacts.pair_kinds[k, : contacts.pairs[k]],
-        contacts.faces[k, : contacts.face_kinds[k], : contacts.pieces[k]],
+        contacts.entering[k, : contacts.pairs[k]],
+        contacts.faces[k],
         contacts.face_depth[k],
     )
 

@@ -5,7 +5,7 @@ compression ``u`` beyond its first touch. On a grid of both they are bicubic: wi
 contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is
 that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's slope, whatever
 the table may miss of the slices' own solution, and motion on it conserves energy. Beyond the last ``u`` the force goes
-on with its tangent. Where a corner of the profiles, such as a spall's edge, meets the first slice of the face and
+on with its tangent t, which is a cell too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 to wherever it leads. Where a corner of the profiles, such as a spall's edge, meets the first slice of the face and
 the last, which is at once over a spur gear's, the splines along the positions end and begin.
 """
 
@@ -43,8 +43,9 @@ class FaceTable:
         Positions of the middle of the face [base pitches].
     first_touch : ndarray, shape (v, m, 4)
         Cubics of the gap at which a pair first touches [m].
-    cells : ndarray, shape (v, m, d, 20)
-        Coefficients c_mn of the force [N], row by row, and the four of U_0 [J].
+    cells : ndarray, shape (v, d + 1, m, 20)
+        Coefficients c_mn of the force [N], row by row, and the four of U_0 [J]. Cells of one depth lie side by side, as
+        the pairs of a mesh are about equally deep; the last ones are those beyond the table.
     depth_unit : float
         a [m].
     """
@@ -131,7 +132,7 @@ def _powers(pieces: list[FloatArray], values: FloatArray) -> FloatArray:
 
 
 def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
-    """Coefficients (m, d, 20) from those of the force and of its derivative by r along the positions, (m, d + 1, 4)."""
+    """Coefficients (d + 1, m, 20) from those of the force and its derivative by r along the positions, (m, d + 1, 4)."""
     low, high, rise_low, rise_high = force[:, :-1], force[:, 1:], rise[:, :-1], rise[:, 1:]
     powers = np.stack(
         [
@@ -142,9 +143,15 @@ def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
         ],
         axis=-1,
     )
+    # Beyond: straight in the compression, so of second degree in rho.
+    last = low.shape[1]
+    straight = rise[:, -1] / (2.0 * last)
+    beyond = np.stack([force[:, -1], rise[:, -1], straight, 0.0 * straight], axis=-1)
+    powers = np.concatenate([powers, beyond[:, None]], axis=1)
     n = np.arange(4.0)
-    begin = np.arange(low.shape[1], dtype=np.float64)
+    begin = np.arange(last + 1.0)
     weights = 2.0 * unit * (begin[:, None] / (n + 1.0) + 1.0 / (n + 2.0))
     gained = np.einsum("jimn,in->jim", powers, weights)
     energy = np.cumsum(gained, axis=1) - gained
-    return np.concatenate([powers.reshape(*low.shape[:2], 16), energy], axis=-1)
+    cells = np.concatenate([powers.reshape(*powers.shape[:2], 16), energy], axis=-1)
+    return np.ascontiguousarray(cells.swapaxes(0, 1))
