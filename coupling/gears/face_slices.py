@@ -25,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg.lapack import dptsv
 
 from coupling.gears.errors import ContactAccuracyError
 from coupling.gears.face_coupling import tooth_coupling
@@ -244,24 +245,17 @@ def _fields(
     neighbours = np.full(n, 2.0)
     neighbours[0] -= 1.0
     neighbours[-1] -= 1.0
-    # Slices first, so that each step of the elimination runs through memory.
-    diagonal = np.ascontiguousarray((base + flat + link * neighbours).T)
-    fixed, rising = np.ascontiguousarray(-(flat * gap).T), np.ascontiguousarray(flat.T)
-    # Thomas' elimination along the face, all pairs at once: the matrix is diagonally dominant.
-    pivot = diagonal[0]
-    pivots = [pivot]
-    for i in range(1, n):
-        factor = link / pivot
-        pivot = diagonal[i] - link * factor
-        pivots.append(pivot)
-        fixed[i] += factor * fixed[i - 1]
-        rising[i] += factor * rising[i - 1]
-    fixed[-1] /= pivot
-    rising[-1] /= pivot
-    for i in range(n - 2, -1, -1):
-        fixed[i] = (fixed[i] + link * fixed[i + 1]) / pivots[i]
-        rising[i] = (rising[i] + link * rising[i + 1]) / pivots[i]
-    return fixed.T, rising.T
+    diagonal = base + flat + link * neighbours
+    beside = np.full(diagonal.shape, -link)
+    beside[:, -1] = 0.0  # where one pair's face ends and the next one's begins
+    right = np.stack([-(flat * gap), flat])
+    # One symmetric tridiagonal matrix of all pairs, diagonally dominant; its two right-hand sides as LAPACK has them.
+    _, _, fields, info = dptsv(
+        diagonal.ravel(), beside.ravel()[:-1], right.reshape(2, -1).T, overwrite_d=1, overwrite_e=1, overwrite_b=1
+    )
+    if info != 0:
+        raise ContactAccuracyError("the slices of the face yield without bound; check the stiffness of the teeth")
+    return fields[:, 0].reshape(diagonal.shape), fields[:, 1].reshape(diagonal.shape)
 
 
 def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:

@@ -64,7 +64,7 @@ def face_force(
     w2 = power * ((1.0 / 3.0) * begin + 0.25 * rho)
     w3 = power * rho * (0.25 * begin + 0.2 * rho)
     force = v0 + rho * (v1 + rho * (v2 + rho * v3))
-    tangent = (v1 + rho * (2.0 * v2 + 3.0 * rho * v3)) * (0.5 * per_unit / r)
+    tangent = (v1 + rho * (2.0 * v2 + 3.0 * rho * v3)) * (0.5 * per_unit / (begin + rho))
     energy = (v4 + v0 * w0) + (v1 * w1 + v2 * w2) + v3 * w3
     slope = (d4 + d0 * w0) + (d1 * w1 + d2 * w2) + d3 * w3
     return force, tangent, energy, slope
@@ -141,7 +141,7 @@ def tooth_force(
     next_at, next_kind, next_u, next_approach, next_root = 0, 0, 0.0, -1.0, 0.0
     more = True
     while more:
-        # Where the next pair is, one pair ahead of its forces: looking up and the root wait, and need not be waited for.
+        # Where the next pair is, one pair ahead of its forces, which need not wait for looking it up and for the root.
         at, kind, u, approach, root = next_at, next_kind, next_u, next_approach, next_root
         more = position < end
         if more:
@@ -168,17 +168,21 @@ def tooth_force(
             touching += 1
             deepest = max(deepest, approach)
             if uneven:
-                pair_force, k, pair_energy, pair_slope = face_force(faces, kind, at, face_depth, per_depth, u, root)
+                pair_force, pair_tangent, pair_energy, pair_slope = face_force(
+                    faces, kind, at, face_depth, per_depth, u, root
+                )
+                force += pair_force
+                tangent += pair_tangent
+                energy += pair_energy
+                slope += (pair_slope - pair_force * gap_slope) * per_width
             else:
                 c0, c1, c2, c3 = table[kind, at, 7], table[kind, at, 8], table[kind, at, 9], table[kind, at, 10]
                 k = c0 + u * (c1 + u * (c2 + u * c3))
-                pair_force = k * approach
-                pair_energy = 0.5 * pair_force * approach
-                pair_slope = 0.5 * (c1 + u * (2.0 * c2 + 3.0 * u * c3)) * approach * approach
-            force += pair_force
-            tangent += k
-            energy += pair_energy
-            slope += (pair_slope - pair_force * gap_slope) * per_width
+                k_slope = c1 + u * (2.0 * c2 + 3.0 * u * c3)
+                force += k * approach
+                tangent += k
+                energy += 0.5 * k * approach * approach
+                slope += (0.5 * k_slope * approach - k * gap_slope) * approach * per_width
     if touching == 0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
     if deepest < damping_depth:

@@ -41,7 +41,7 @@ import numpy.typing as npt
 
 from coupling.gears.errors import GearError
 from coupling.gears.face_slices import FaceSlices
-from coupling.gears.face_table import face_state, face_table
+from coupling.gears.face_table import FaceState, face_state, face_table
 from coupling.gears.law_table import law_table
 from coupling.gears.pair_curves import PairCurves, corners_of, curve_table
 from coupling.gears.pair_geometry import IntArray
@@ -70,6 +70,8 @@ class PairStates:
         Number of the kind of pair.
     pitch_gap : ndarray, shape (n, m)
         The part of the gap that pitch deviations make [m].
+    faces : FaceState or None
+        Where the face is not even, the slices of the pairs that are present, row by row, without their pitch gaps.
     """
 
     position: FloatArray
@@ -78,6 +80,7 @@ class PairStates:
     deviation: FloatArray
     kind: IntArray
     pitch_gap: FloatArray
+    faces: FaceState | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,20 +295,20 @@ class ToothContact:
         entered = number.astype(np.int64)[:, None] - behind
         kind = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
         stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
-        for variant, curves in enumerate(self.kinds):
-            these = present & (kind == variant)
-            if self.faces is None:
+        state = None
+        if self.faces is None:
+            for variant, curves in enumerate(self.kinds):
+                these = present & (kind == variant)
                 stiffness[these] = curves.stiffness(position[these])
                 deviation[these] = curves.deviation(position[these])
-            else:
-                state = face_state(self.faces, curves, position[these])
-                at = position[these][:, None] + self.faces.shift
-                on_path = (at >= 0.0) & (at < self.contact_ratio)
-                shares = curves.stiffness(at) / self.faces.z.size
-                stiffness[these] = np.where(on_path, shares, 0.0).sum(axis=1)
-                deviation[these] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
+        else:
+            state = face_state(self.faces, self.kinds, position[present], kind[present])
+            at = position[present][:, None] + self.faces.shift
+            on_path = (at >= 0.0) & (at < self.contact_ratio)
+            stiffness[present] = np.where(on_path, state.whole / self.faces.z.size, 0.0).sum(axis=1)
+            deviation[present] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
-        return PairStates(position, present, stiffness, deviation + gap, kind, gap)
+        return PairStates(position, present, stiffness, deviation + gap, kind, gap, state)
 
     def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
         """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
