@@ -163,15 +163,17 @@ def load_faces(
         Where the set of touching slices does not settle.
     """
     touching = meeting & (compression[:, None] > gap)
+    fixed, rising = _fields(slices, base, gap, touching)
     for _ in range(_MOST_ROUNDS):
-        fixed, rising = _fields(slices, base, gap, touching)
         excess = compression[:, None] - gap - (fixed + compression[:, None] * rising)
         touches = meeting & (excess > 0.0)
-        if np.array_equal(touches, touching):
+        changed = (touches != touching).any(axis=1)
+        if not changed.any():
             load = np.where(touching, slices.flattening * excess, 0.0)
             tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
             return FaceLoads(load, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
         touching = touches
+        fixed[changed], rising[changed] = _fields(slices, base[changed], gap[changed], touching[changed])
     raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
 
 
@@ -205,8 +207,8 @@ def balance_faces(
     # Every slice that could touch: the set shrinks to the right one from there.
     touching = meeting.copy()
     touched = nearest
+    fixed, rising = _fields(slices, base, gap, touching)
     for _ in range(_MOST_ROUNDS):
-        fixed, rising = _fields(slices, base, gap, touching)
         constant = np.where(touching, -gap - fixed, 0.0).sum(axis=1)
         slope = np.where(touching, 1.0 - rising, 0.0).sum(axis=1)
         scale = slices.flattening * slices.width
@@ -220,9 +222,11 @@ def balance_faces(
         none = np.bincount(owner, touches.any(axis=1), meshes) == 0
         if none.any():
             touches |= none[owner][:, None] & meeting & (gap <= nearest[owner][:, None])
-        if np.array_equal(touches, touching):
+        changed = (touches != touching).any(axis=1)
+        if not changed.any():
             break
         touching = touches
+        fixed[changed], rising[changed] = _fields(slices, base[changed], gap[changed], touching[changed])
     else:
         raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
     load = np.where(touching, slices.flattening * (own - gap - (fixed + own * rising)), 0.0)
