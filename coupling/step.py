@@ -174,7 +174,7 @@ def _contacts(system: CoupledSystem) -> Contacts:
 
 def _padded(arrays: list[FloatArray], dimensions: int) -> FloatArray:
     """All of them in one, with zeros up to the longest of each axis."""
-    shape = np.array([array.shape for array in arrays]).reshape(-1, dimensions).max(axis=0, initial=0)
+    shape = np.array([array.shape for array in arrays], dtype=np.int64).reshape(-1, dimensions).max(axis=0, initial=0)
     together = np.zeros((len(arrays), *shape))
     for one, array in zip(together, arrays, strict=True):
         one[tuple(slice(length) for length in array.shape)] = array
