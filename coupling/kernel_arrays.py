@@ -62,21 +62,17 @@ class Contacts(NamedTuple):
     """The tooth contacts, padded to common lengths."""
 
     direction: FloatArray  # (c, n) Dᵀ
-    knots: FloatArray  # (c, pieces + 1)
-    curves: FloatArray  # (c, kinds of pairs, pieces, 8): cubics of the stiffness and of the gap
-    pieces: IntArray  # (c,)
-    kinds: IntArray  # (c,)
+    reach: FloatArray  # (c, 3): first and last position of a pair [base pitches], rows of the curves per base pitch
+    curves: FloatArray  # (c, kinds of pairs, pieces + 1, 11): `coupling.gears.law_table`
     damping: FloatArray  # (c,)
     damping_depth: FloatArray  # (c,)
     phase: FloatArray  # (c,)
     rate: FloatArray  # (c,)
     errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
     clearance: FloatArray  # (c,)
-    pair_gaps: FloatArray  # (c, pairs)
-    pair_kinds: IntArray  # (c, pairs)
-    faces: FloatArray  # (c, kinds of pairs, pieces, depths, 20): cells where the load spreads over the face
-    face_kinds: IntArray  # (c,) 0 where it does not
-    face_depth: FloatArray  # (c,)
+    entering: FloatArray  # (c, pairs, 2): gap and kind of each pair of teeth
+    faces: FloatArray  # (c, kinds of pairs, depths, pieces, 20): cells where the load spreads over the face
+    face_depth: FloatArray  # (c,) 0 where it does not
     pairs: IntArray  # (c,) pairs of teeth in a hunting period; 0 where all are alike
     first_touch: FloatArray  # (c,) compression below which no pair can touch [m]
 

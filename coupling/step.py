@@ -194,46 +194,38 @@ def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, Float
 def _contacts(system: CoupledSystem) -> Contacts:
     c = len(system.contacts)
     arguments = [contact.contact.kernel_arguments for contact in system.contacts]
-    kinds, pieces = ([argument[1].shape[axis] for argument in arguments] for axis in (0, 1))
-    pairs = [argument[4].size for argument in arguments]
     harmonics = max((len(contact.errors) for contact in system.contacts), default=0)
-    knots = np.zeros((c, max(pieces, default=0) + 1))
-    curves = np.zeros((c, max(kinds, default=0), max(pieces, default=0), 8))
     errors = np.zeros((c, harmonics, 3))
-    pair_gaps = np.zeros((c, max(pairs, default=0)))
-    pair_kinds = np.zeros((c, max(pairs, default=0)), dtype=np.int64)
-    face_shapes = [argument[6].shape for argument in arguments]
-    faces = np.zeros((c, *(max((shape[axis] for shape in face_shapes), default=0) for axis in range(3)), 20))
     first_touch = np.zeros(c)
-    for k, (contact, (places, cubics, _, _, gaps, numbers, cells, _)) in enumerate(
-        zip(system.contacts, arguments, strict=True)
-    ):
-        knots[k, : pieces[k] + 1] = places
-        curves[k, : kinds[k], : pieces[k]] = cubics
+    for k, (contact, argument) in enumerate(zip(system.contacts, arguments, strict=True)):
         errors[k, : len(contact.errors)] = contact.errors
-        pair_gaps[k, : pairs[k]] = gaps
-        pair_kinds[k, : pairs[k]] = numbers
-        faces[k, : face_shapes[k][0], : face_shapes[k][1], : face_shapes[k][2]] = cells
         # No cubic c₀ + c₁ u + ... falls below c₀ and its negative coefficients together on 0 ≤ u ≤ 1.
-        lowest = (cubics[:, :, 4] + np.minimum(cubics[:, :, 5:], 0.0).sum(axis=2)).min()
-        first_touch[k] = lowest + gaps.min(initial=0.0)
+        gaps = argument[3][:, :-1, 3:7]
+        lowest = (gaps[..., 0] + np.minimum(gaps[..., 1:], 0.0).sum(axis=-1)).min()
+        first_touch[k] = lowest + argument[6][:, 0].min(initial=0.0)
+    entering = [argument[6] for argument in arguments]
     return Contacts(
         direction=np.ascontiguousarray(system.contact_directions.T),
-        knots=knots,
-        curves=curves,
-        pieces=np.array(pieces, dtype=np.int64),
-        kinds=np.array(kinds, dtype=np.int64),
-        damping=np.array([argument[2] for argument in arguments], dtype=np.float64),
-        damping_depth=np.array([argument[3] for argument in arguments], dtype=np.float64),
+        reach=np.array([argument[:3] for argument in arguments], dtype=np.float64).reshape(c, 3),
+        curves=_padded([argument[3] for argument in arguments], 3),
+        damping=np.array([argument[4] for argument in arguments], dtype=np.float64),
+        damping_depth=np.array([argument[5] for argument in arguments], dtype=np.float64),
         phase=np.array([contact.phase for contact in system.contacts], dtype=np.float64),
         rate=np.array([contact.rate for contact in system.contacts], dtype=np.float64),
         errors=errors,
         clearance=np.array([contact.clearance for contact in system.contacts], dtype=np.float64),
-        pair_gaps=pair_gaps,
-        pair_kinds=pair_kinds,
-        faces=faces,
-        face_kinds=np.array([shape[0] for shape in face_shapes], dtype=np.int64),
-        face_depth=np.array([argument[7] for argument in arguments], dtype=np.float64),
-        pairs=np.array(pairs, dtype=np.int64),
+        entering=_padded(entering, 2),
+        faces=_padded([argument[7] for argument in arguments], 4),
+        face_depth=np.array([argument[8] for argument in arguments], dtype=np.float64),
+        pairs=np.array([len(pairs) for pairs in entering], dtype=np.int64),
         first_touch=first_touch,
     )
+
+
+def _padded(arrays: list[FloatArray], dimensions: int) -> FloatArray:
+    """All of them in one, with zeros up to the longest of each axis."""
+    shape = np.array([array.shape for array in arrays], dtype=np.int64).reshape(-1, dimensions).max(axis=0, initial=0)
+    together = np.zeros((len(arrays), *shape))
+    for one, array in zip(together, arrays, strict=True):
+        one[tuple(slice(length) for length in array.shape)] = array
+    return together

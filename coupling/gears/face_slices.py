@@ -25,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg.lapack import dptsv
 
 from coupling.gears.errors import ContactAccuracyError
 from coupling.gears.face_coupling import tooth_coupling
@@ -162,15 +163,17 @@ def load_faces(
         Where the set of touching slices does not settle.
     """
     touching = meeting & (compression[:, None] > gap)
+    fixed, rising = _fields(slices, base, gap, touching)
     for _ in range(_MOST_ROUNDS):
-        fixed, rising = _fields(slices, base, gap, touching)
         excess = compression[:, None] - gap - (fixed + compression[:, None] * rising)
         touches = meeting & (excess > 0.0)
-        if np.array_equal(touches, touching):
+        changed = (touches != touching).any(axis=1)
+        if not changed.any():
             load = np.where(touching, slices.flattening * excess, 0.0)
             tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
             return FaceLoads(load, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
         touching = touches
+        fixed[changed], rising[changed] = _fields(slices, base[changed], gap[changed], touching[changed])
     raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
 
 
@@ -204,8 +207,8 @@ def balance_faces(
     # Every slice that could touch: the set shrinks to the right one from there.
     touching = meeting.copy()
     touched = nearest
+    fixed, rising = _fields(slices, base, gap, touching)
     for _ in range(_MOST_ROUNDS):
-        fixed, rising = _fields(slices, base, gap, touching)
         constant = np.where(touching, -gap - fixed, 0.0).sum(axis=1)
         slope = np.where(touching, 1.0 - rising, 0.0).sum(axis=1)
         scale = slices.flattening * slices.width
@@ -219,9 +222,11 @@ def balance_faces(
         none = np.bincount(owner, touches.any(axis=1), meshes) == 0
         if none.any():
             touches |= none[owner][:, None] & meeting & (gap <= nearest[owner][:, None])
-        if np.array_equal(touches, touching):
+        changed = (touches != touching).any(axis=1)
+        if not changed.any():
             break
         touching = touches
+        fixed[changed], rising[changed] = _fields(slices, base[changed], gap[changed], touching[changed])
     else:
         raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
     load = np.where(touching, slices.flattening * (own - gap - (fixed + own * rising)), 0.0)
@@ -244,24 +249,17 @@ def _fields(
     neighbours = np.full(n, 2.0)
     neighbours[0] -= 1.0
     neighbours[-1] -= 1.0
-    # Slices first, so that each step of the elimination runs through memory.
-    diagonal = np.ascontiguousarray((base + flat + link * neighbours).T)
-    fixed, rising = np.ascontiguousarray(-(flat * gap).T), np.ascontiguousarray(flat.T)
-    # Thomas' elimination along the face, all pairs at once: the matrix is diagonally dominant.
-    pivot = diagonal[0]
-    pivots = [pivot]
-    for i in range(1, n):
-        factor = link / pivot
-        pivot = diagonal[i] - link * factor
-        pivots.append(pivot)
-        fixed[i] += factor * fixed[i - 1]
-        rising[i] += factor * rising[i - 1]
-    fixed[-1] /= pivot
-    rising[-1] /= pivot
-    for i in range(n - 2, -1, -1):
-        fixed[i] = (fixed[i] + link * fixed[i + 1]) / pivots[i]
-        rising[i] = (rising[i] + link * rising[i + 1]) / pivots[i]
-    return fixed.T, rising.T
+    diagonal = base + flat + link * neighbours
+    beside = np.full(diagonal.shape, -link)
+    beside[:, -1] = 0.0  # where one pair's face ends and the next one's begins
+    right = np.stack([-(flat * gap), flat])
+    # One symmetric tridiagonal matrix of all pairs, diagonally dominant; its two right-hand sides as LAPACK has them.
+    _, _, fields, info = dptsv(
+        diagonal.ravel(), beside.ravel()[:-1], right.reshape(2, -1).T, overwrite_d=1, overwrite_e=1, overwrite_b=1
+    )
+    if info != 0:
+        raise ContactAccuracyError("the slices of the face yield without bound; check the stiffness of the teeth")
+    return fields[:, 0].reshape(diagonal.shape), fields[:, 1].reshape(diagonal.shape)
 
 
 def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:

@@ -5,8 +5,9 @@ compression ``u`` beyond its first touch. On a grid of both they are bicubic: wi
 contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is
 that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's slope, whatever
 the table may miss of the slices' own solution, and motion on it conserves energy. Beyond the last ``u`` the force goes
-on with its tangent. Where a corner of the profiles, such as a spall's edge, meets the first slice of the face and
-the last, which is at once over a spur gear's, the splines along the positions end and begin.
+on with its tangent t, which is a cell too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 to wherever it leads. Where
+a corner of the profiles, such as a spall's edge, meets the first slice of the face and the last, which is at once over
+a spur gear's, the splines along the positions end and begin.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from coupling.gears.pair_curves import PairCurves, corners_of
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
 
 POSITIONS = 160
 DEPTHS = 24
@@ -43,8 +45,9 @@ class FaceTable:
         Positions of the middle of the face [base pitches].
     first_touch : ndarray, shape (v, m, 4)
         Cubics of the gap at which a pair first touches [m].
-    cells : ndarray, shape (v, m, d, 20)
-        Coefficients c_mn of the force [N], row by row, and the four of U_0 [J].
+    cells : ndarray, shape (v, d + 1, m, 20)
+        Coefficients c_mn of the force [N], row by row, and the four of U_0 [J]. Cells of one depth lie side by side, as
+        the pairs of a mesh are about equally deep; the last ones are those beyond the table.
     depth_unit : float
         a [m].
     """
@@ -57,20 +60,26 @@ class FaceTable:
 
 @dataclass(frozen=True, eq=False)
 class FaceState:
-    """The slices of pairs at given positions, (p, n) each: k_b [N/m per m], gap [m], and whether they can touch."""
+    """The slices of pairs at given positions, (p, n) each.
 
+    Stiffness of a pair whose whole face were like the slice [N/m], k_b [N/m per m], gap [m], whether they can touch.
+    """
+
+    whole: FloatArray
     base: FloatArray
     gap: FloatArray
     meeting: BoolArray
 
 
-def face_state(slices: FaceSlices, curves: PairCurves, position: FloatArray) -> FaceState:
-    """Slices of pairs of one kind whose faces' middles are at `position` (p,) in base pitches."""
+def face_state(slices: FaceSlices, kinds: tuple[PairCurves, ...], position: FloatArray, kind: IntArray) -> FaceState:
+    """Slices of pairs of some kinds, `kind` (p,), whose faces' middles are at `position` (p,) in base pitches."""
     at = position[:, None] + slices.shift
-    start, end = curves.stiffness.knots[[0, -1]]
-    meeting = (at >= start) & (at <= end)
-    base = tooth_stiffness(slices, curves.stiffness(at))
-    return FaceState(base, curves.deviation(at) + slices.gap, meeting)
+    start, end = kinds[0].stiffness.knots[[0, -1]]
+    whole, gap = np.zeros(at.shape), np.zeros(at.shape)
+    for number, curves in enumerate(kinds):
+        these = kind == number
+        whole[these], gap[these] = curves.stiffness(at[these]), curves.deviation(at[these])
+    return FaceState(whole, tooth_stiffness(slices, whole), gap + slices.gap, (at >= start) & (at <= end))
 
 
 def face_table(slices: FaceSlices, kinds: tuple[PairCurves, ...], module: float) -> FaceTable:
@@ -82,8 +91,8 @@ def face_table(slices: FaceSlices, kinds: tuple[PairCurves, ...], module: float)
     unit = deepest / DEPTHS**2
     compressions = unit * np.arange(DEPTHS + 1.0) ** 2
     touches, cells = [], []
-    for curves in kinds:
-        state = face_state(slices, curves, knots)
+    for number in range(len(kinds)):
+        state = face_state(slices, kinds, knots, np.full(knots.size, number))
         gap = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         # At the very ends nothing may meet for rounding: as at the next position.
         gap = np.where(np.isfinite(gap), gap, np.nanmax(np.where(np.isfinite(gap), gap, np.nan)))
@@ -131,7 +140,7 @@ def _powers(pieces: list[FloatArray], values: FloatArray) -> FloatArray:
 
 
 def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
-    """Coefficients (m, d, 20) from those of the force and of its derivative by r along the positions, (m, d + 1, 4)."""
+    """Coefficients (d + 1, m, 20) from those of force and derivative by r along the positions, (m, d + 1, 4)."""
     low, high, rise_low, rise_high = force[:, :-1], force[:, 1:], rise[:, :-1], rise[:, 1:]
     powers = np.stack(
         [
@@ -142,9 +151,15 @@ def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
         ],
         axis=-1,
     )
+    # Beyond: straight in the compression, so of second degree in rho.
+    last = low.shape[1]
+    straight = rise[:, -1] / (2.0 * last)
+    beyond = np.stack([force[:, -1], rise[:, -1], straight, 0.0 * straight], axis=-1)
+    powers = np.concatenate([powers, beyond[:, None]], axis=1)
     n = np.arange(4.0)
-    begin = np.arange(low.shape[1], dtype=np.float64)
+    begin = np.arange(last + 1.0)
     weights = 2.0 * unit * (begin[:, None] / (n + 1.0) + 1.0 / (n + 2.0))
     gained = np.einsum("jimn,in->jim", powers, weights)
     energy = np.cumsum(gained, axis=1) - gained
-    return np.concatenate([powers.reshape(*low.shape[:2], 16), energy], axis=-1)
+    cells = np.concatenate([powers.reshape(*powers.shape[:2], 16), energy], axis=-1)
+    return np.ascontiguousarray(cells.swapaxes(0, 1))

@@ -97,14 +97,13 @@ def pair_kinds(
     )
 
 
-def curve_table(kinds: Sequence[PairCurves]) -> tuple[FloatArray, FloatArray]:
-    """All curves on common knots (m + 1,), and their cubics (v, m, 8): stiffness, then gap."""
-    curves = [curve for kind in kinds for curve in (kind.stiffness, kind.deviation)]
+def curve_table(kinds: Sequence[PairCurves]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """All curves on common knots (m + 1,): the cubics of the gaps and of the stiffnesses, (v, m, 4) both."""
+    curves = [curve for kind in kinds for curve in (kind.deviation, kind.stiffness)]
     knots = np.unique(np.concatenate([curve.knots for curve in curves]))
     knots = knots[np.concatenate([[True], np.diff(knots) > _SAME_KNOT])]
     cubics = np.array([_on_common(curve, knots) for curve in curves])
-    shape = len(kinds), knots.size - 1
-    return knots, np.ascontiguousarray(cubics.reshape(shape[0], 2, shape[1], 4).swapaxes(1, 2)).reshape(*shape, 8)
+    return knots, cubics[0::2], cubics[1::2]
 
 
 def corners_of(curve: PiecewiseCubic) -> FloatArray:

@@ -18,6 +18,7 @@ the gear: a web that is not in the middle of the face, and spokes, also tilt the
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -27,12 +28,20 @@ from coupling.gears.errors import StiffnessModelError
 from coupling.gears.foundation import held_radius
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import load_angle, root_half_angle
-from coupling.gears.ring_body import Annulus, root_flexibility
+from coupling.gears.ring_body import Annulus, RootFlexibility, root_flexibility
 
 FloatArray = npt.NDArray[np.float64]
 
 SOLID_HOLD = 1.0 / 3.0
 """Where a gear without a bore is held, in root circle radii."""
+
+
+@lru_cache(maxsize=64)
+def kept_root_flexibility(
+    rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float
+) -> RootFlexibility:
+    """`root_flexibility`, kept: it is the same for all radii, and models ask for some radii at a time."""
+    return root_flexibility(rings, half_angle, poisson_ratio, kappa)
 
 
 def ring_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-stress") -> FloatArray:
@@ -85,7 +94,7 @@ def _compliance(
     plane_modulus(gear, state)  # refuses an unknown state
     nu = gear.poisson_ratio
     kappa = (3.0 - nu) / (1.0 + nu) if state == "plane-stress" else 3.0 - 4.0 * nu
-    arc = root_flexibility(rings, root_half_angle(gear), nu, kappa)
+    arc = kept_root_flexibility(rings, root_half_angle(gear), nu, kappa)
     beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
     torque = gear.base_radius / gear.root_circle_radius
     across, along = np.cos(beta), np.sin(beta)

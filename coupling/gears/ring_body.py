@@ -122,9 +122,9 @@ def root_flexibility(
     across = np.array([np.concatenate([first_odd, first_even]), np.concatenate([np.zeros(odd.size), whole])])
     along = np.concatenate([first_even, -first_odd])[None, :]
     scale = 1.0 + poisson_ratio  # E / (2 mu)
-    return RootFlexibility(
-        lateral=scale * _least_work(lateral, across), radial=float(scale * _least_work(radial, along)[0, 0])
-    )
+    held = np.asarray(scale * _least_work(lateral, across), dtype=np.float64)
+    held.setflags(write=False)
+    return RootFlexibility(lateral=held, radial=float(scale * _least_work(radial, along)[0, 0]))
 
 
 def _energy(

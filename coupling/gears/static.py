@@ -16,7 +16,6 @@ import numpy.typing as npt
 
 from coupling.gears.errors import ContactAccuracyError, GearError
 from coupling.gears.face_slices import FaceSlices, balance_faces, load_faces
-from coupling.gears.face_table import face_state
 from coupling.gears.faults import NEVER
 from coupling.gears.tooth_contact import PairStates, ToothContact
 
@@ -134,7 +133,7 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
     states = contact.pairs(at)
     _require_teeth(states, at)
     if contact.faces is not None:
-        return _balanced_faces(contact, contact.faces, force, at, states)
+        return _balanced_faces(contact.faces, force, at, states)
     order = np.argsort(states.deviation, axis=1)
     stiffness = np.take_along_axis(states.stiffness, order, axis=1)
     gap = np.take_along_axis(states.deviation, order, axis=1)
@@ -175,20 +174,12 @@ def _require_teeth(states: PairStates, at: FloatArray) -> None:
         )
 
 
-def _balanced_faces(
-    contact: ToothContact, faces: FaceSlices, force: float, at: FloatArray, states: PairStates
-) -> StaticMesh:
+def _balanced_faces(faces: FaceSlices, force: float, at: FloatArray, states: PairStates) -> StaticMesh:
     """The loaded mesh where the load spreads unevenly over the face."""
+    assert states.faces is not None
     rows, columns = np.nonzero(states.present)
-    position, kind = states.position[rows, columns], states.kind[rows, columns]
-    slices = faces.z.size
-    base, gap = np.ones((rows.size, slices)), np.zeros((rows.size, slices))
-    meeting = np.zeros((rows.size, slices), dtype=np.bool_)
-    for number, curves in enumerate(contact.kinds):
-        these = kind == number
-        state = face_state(faces, curves, position[these])
-        base[these], gap[these], meeting[these] = state.base, state.gap, state.meeting
-    gap += states.pitch_gap[rows, columns][:, None]
+    base, meeting = states.faces.base, states.faces.meeting
+    gap = states.faces.gap + states.pitch_gap[rows, columns][:, None]
     if force > 0.0:
         compression, loads = balance_faces(faces, base, gap, meeting, rows, np.full(at.size, force))
     else:
@@ -197,7 +188,7 @@ def _balanced_faces(
         loads = load_faces(faces, base, gap, meeting, compression[rows] + _HAIR)
         loads = replace(loads, force=0.0 * loads.force, line_load=0.0 * loads.line_load)
     forces, tangents = np.zeros(states.position.shape), np.zeros(states.position.shape)
-    line_loads = np.zeros((*states.position.shape, slices))
+    line_loads = np.zeros((*states.position.shape, faces.z.size))
     forces[rows, columns], tangents[rows, columns] = loads.force, loads.tangent
     line_loads[rows, columns] = loads.line_load
     beyond = compression - states.deviation.min(axis=1)

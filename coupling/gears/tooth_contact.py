@@ -41,14 +41,15 @@ import numpy.typing as npt
 
 from coupling.gears.errors import GearError
 from coupling.gears.face_slices import FaceSlices
-from coupling.gears.face_table import face_state, face_table
+from coupling.gears.face_table import FaceState, face_state, face_table
+from coupling.gears.law_table import law_table
 from coupling.gears.pair_curves import PairCurves, corners_of, curve_table
 from coupling.gears.pair_geometry import IntArray
 from coupling.gears.piecewise import PiecewiseCubic
 
 FloatArray = npt.NDArray[np.float64]
 
-KernelArguments = tuple[FloatArray, FloatArray, float, float, FloatArray, IntArray, FloatArray, float]
+KernelArguments = tuple[float, float, float, FloatArray, float, float, FloatArray, FloatArray, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +70,8 @@ class PairStates:
         Number of the kind of pair.
     pitch_gap : ndarray, shape (n, m)
         The part of the gap that pitch deviations make [m].
+    faces : FaceState or None
+        Where the face is not even, the slices of the pairs that are present, row by row, without their pitch gaps.
     """
 
     position: FloatArray
@@ -77,6 +80,7 @@ class PairStates:
     deviation: FloatArray
     kind: IntArray
     pitch_gap: FloatArray
+    faces: FaceState | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,30 +167,24 @@ class ToothContact:
     def kernel_arguments(self) -> KernelArguments:
         """Everything `coupling.gears.kernels.tooth_force` wants after phase, compression and rate.
 
-        Knots (m + 1,), the cubics of stiffness and of gap of every kind of pair (v, m, 8) on them, damping and its
-        depth, and for every pair of the hunting period its gap and its kind, (h,) both.
+        First and last position, rows per base pitch and the table (v, m + 1, 11) of `coupling.gears.law_table`, damping
+        and its depth, gap and kind of every pair of the hunting period (h, 2), the cells (v, d, m, 20) of
+        `coupling.gears.face_table` and their unit, 0 without any.
         """
-        if self.faces is None:
-            (knots, table), cells, depth = curve_table(self.kinds), np.zeros((0, 0, 0, 20)), 1.0
-        else:
-            (knots, table), cells, depth = self._face_arguments
-        return (
-            knots,
-            table,
-            float(self.damping),
-            float(self.damping_depth),
-            np.zeros(self.hunting_numbers) + (self.pitch_gaps if self.pitch_gaps.size else 0.0),
-            np.zeros(self.hunting_numbers, dtype=np.int64) + (self.pair_variants if self.pair_variants.size else 0),
-            cells,
-            depth,
-        )
+        entering = np.zeros((self.hunting_numbers, 2))
+        if self.pitch_gaps.size:
+            entering[:, 0] = self.pitch_gaps
+        if self.pair_variants.size:
+            entering[:, 1] = self.pair_variants
+        curves, (cells, depth) = self._law_tables
+        return (*curves, float(self.damping), float(self.damping_depth), entering, cells, depth)
 
     @cached_property
-    def _face_arguments(self) -> tuple[tuple[FloatArray, FloatArray], FloatArray, float]:
-        assert self.faces is not None
+    def _law_tables(self) -> tuple[tuple[float, float, float, FloatArray], tuple[FloatArray, float]]:
+        if self.faces is None:
+            return law_table(*curve_table(self.kinds)), (np.zeros((0, 0, 0, 20)), 0.0)
         made = face_table(self.faces, self.kinds, self.module)
-        curves = np.concatenate([np.zeros_like(made.first_touch), made.first_touch], axis=-1)
-        return (made.knots, np.ascontiguousarray(curves)), made.cells, made.depth_unit
+        return law_table(made.knots, made.first_touch, 0.0 * made.first_touch), (made.cells, made.depth_unit)
 
     @property
     def kinds(self) -> tuple[PairCurves, ...]:
@@ -297,20 +295,20 @@ class ToothContact:
         entered = number.astype(np.int64)[:, None] - behind
         kind = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
         stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
-        for variant, curves in enumerate(self.kinds):
-            these = present & (kind == variant)
-            if self.faces is None:
+        state = None
+        if self.faces is None:
+            for variant, curves in enumerate(self.kinds):
+                these = present & (kind == variant)
                 stiffness[these] = curves.stiffness(position[these])
                 deviation[these] = curves.deviation(position[these])
-            else:
-                state = face_state(self.faces, curves, position[these])
-                at = position[these][:, None] + self.faces.shift
-                on_path = (at >= 0.0) & (at < self.contact_ratio)
-                shares = curves.stiffness(at) / self.faces.z.size
-                stiffness[these] = np.where(on_path, shares, 0.0).sum(axis=1)
-                deviation[these] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
+        else:
+            state = face_state(self.faces, self.kinds, position[present], kind[present])
+            at = position[present][:, None] + self.faces.shift
+            on_path = (at >= 0.0) & (at < self.contact_ratio)
+            stiffness[present] = np.where(on_path, state.whole / self.faces.z.size, 0.0).sum(axis=1)
+            deviation[present] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
-        return PairStates(position, present, stiffness, deviation + gap, kind, gap)
+        return PairStates(position, present, stiffness, deviation + gap, kind, gap, state)
 
     def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
         """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
