@@ -14,28 +14,30 @@ What the room offers:
 numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
 """
 
+from coupling.boundaries import SAMPLES_PER_BLOCK
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
+from coupling.decimation import Decimation, decimation
 from coupling.errors import CouplingError, TransientError
-from coupling.histories import Histories, histories, transient_outputs
+from coupling.histories import Histories, Recorded, empty_histories, histories, transient_outputs
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
-from coupling.marching import Block, Checkpoint, march_blocks
+from coupling.marching import Block, Checkpoint, march_blocks, march_key, sample_times
 from coupling.modes import CoupledModes, coupled_modes
 from coupling.settings import TransientOutputs, TransientSettings
-from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, spectrum_peaks
+from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, averaged_spectrum, spectrum_peaks
 from coupling.statics import static_equilibrium
 from coupling.system import CoupledSystem, HarmonicLoad, TimedLoad
 from coupling.transient import (
     EnergyBalance,
     TransientFigures,
     TransientResult,
-    sample_times,
     simulate,
     transient_figures,
 )
 from coupling.turning import Turning
 
 __all__ = [
+    "SAMPLES_PER_BLOCK",
     "Block",
     "Checkpoint",
     "Component",
@@ -43,6 +45,7 @@ __all__ = [
     "CoupledModes",
     "CoupledSystem",
     "CouplingError",
+    "Decimation",
     "EnergyBalance",
     "GearMesh",
     "HarmonicLoad",
@@ -53,6 +56,7 @@ __all__ = [
     "MountedBearing",
     "MountedGear",
     "Peak",
+    "Recorded",
     "RotorComponent",
     "Spectrum",
     "SpeedTable",
@@ -67,11 +71,15 @@ __all__ = [
     "Unbalance",
     "Window",
     "amplitude_spectrum",
+    "averaged_spectrum",
     "couple",
     "coupled_modes",
+    "decimation",
+    "empty_histories",
     "histories",
     "housing_component",
     "march_blocks",
+    "march_key",
     "rotor_component",
     "sample_times",
     "simulate",

@@ -1,6 +1,8 @@
-"""What the transient tells, under the names of sensors, gears, bearings and gear pairs."""
+"""What a transient or a periodic response tells, under the names of sensors, gears, bearings and gear pairs."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -8,9 +10,25 @@ import numpy.typing as npt
 from coupling.machine import Machine, MountedGear
 from coupling.settings import TransientOutputs
 from coupling.system import embed
-from coupling.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
+
+
+class Recorded(Protocol):
+    """What a transient or a periodic response recorded at even spacing."""
+
+    @property
+    def times(self) -> FloatArray: ...
+    @property
+    def displacement(self) -> FloatArray: ...
+    @property
+    def velocity(self) -> FloatArray: ...
+    @property
+    def acceleration(self) -> FloatArray: ...
+    @property
+    def compression(self) -> FloatArray: ...
+    @property
+    def force(self) -> FloatArray: ...
 
 
 @dataclass(frozen=True)
@@ -40,6 +58,29 @@ class Histories:
     mesh_force: dict[str, FloatArray]
     mesh_compression: dict[str, FloatArray]
 
+    @property
+    def columns(self) -> FloatArray:
+        """Every signal beside the others, shape (s, k)."""
+        count = len(self.times)
+        signals = [signal for name in _GROUPS for signal in getattr(self, name).values()]
+        parts = [signal.reshape(count, math.prod(signal.shape[1:])) for signal in signals]
+        return np.concatenate([np.empty((count, 0)), *parts], axis=1)
+
+    def with_columns(self, times: FloatArray, columns: FloatArray) -> "Histories":
+        """Other samples of the same signals, from what :attr:`columns` gives."""
+        groups: list[dict[str, FloatArray]] = []
+        column = 0
+        for name in _GROUPS:
+            groups.append({})
+            for signal, old in getattr(self, name).items():
+                width = math.prod(old.shape[1:])
+                groups[-1][signal] = columns[:, column : column + width].reshape(len(times), *old.shape[1:])
+                column += width
+        return Histories(times, *groups)
+
+
+_GROUPS = tuple(field.name for field in fields(Histories) if field.name != "times")
+
 
 def transient_outputs(machine: Machine) -> TransientOutputs:
     """The rows to record so that :func:`histories` can name them."""
@@ -63,8 +104,24 @@ def transient_outputs(machine: Machine) -> TransientOutputs:
     )
 
 
-def histories(machine: Machine, result: TransientResult) -> Histories:
-    """Name what a transient with :func:`transient_outputs` recorded."""
+class _Nothing(NamedTuple):
+    times: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    compression: FloatArray
+    force: FloatArray
+
+
+def empty_histories(machine: Machine) -> Histories:
+    """The signals that :func:`histories` names, without samples."""
+    outputs, contacts = transient_outputs(machine), len(machine.system.contacts)
+    widths = *(len(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)), contacts, contacts
+    return histories(machine, _Nothing(np.zeros(0), *(np.zeros((0, width)) for width in widths)))
+
+
+def histories(machine: Machine, result: Recorded) -> Histories:
+    """Name what a transient or a periodic response with :func:`transient_outputs` recorded."""
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
     forces = {}

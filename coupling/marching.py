@@ -20,9 +20,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling.boundaries import block_ends, boundaries, coarsest_step, same_time
+from coupling.boundaries import SAMPLES_PER_BLOCK, block_ends, boundaries, coarsest_step, same_time
 from coupling.condensation import condensed
-from coupling.errors import TransientError
+from coupling.errors import CouplingError, TransientError
+from coupling.fingerprint import fingerprint
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.statics import static_equilibrium
 from coupling.step import KernelArrays, StepCache, cut, empty_samples, kernel_arrays
@@ -110,6 +111,8 @@ class Block:
     ----------
     first : int
         Number of its first sample.
+    times : ndarray, shape (s,)
+        [s].
     displacement, velocity, acceleration : ndarray, shapes (s, k)
         The rows asked for.
     compression, force : ndarray, shape (s, c)
@@ -120,6 +123,7 @@ class Block:
     """
 
     first: int
+    times: FloatArray
     displacement: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
@@ -137,6 +141,7 @@ def march_blocks(
     turning: Turning | None = None,
     initial: tuple[FloatArray, FloatArray] | None = None,
     after: Checkpoint | None = None,
+    samples_per_block: int = SAMPLES_PER_BLOCK,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> Iterator[Block]:
     """March the coupled system through time and hand its record over block by block.
@@ -144,17 +149,13 @@ def march_blocks(
     Parameters
     ----------
     after : Checkpoint, optional
-        Go on from here: the same system, settings, outputs and turning as those that led to it.
+        Go on from here: the march must be the one that led to it, see :func:`march_key`.
+    samples_per_block : int
+        About how many a block holds. Time is cut where blocks end, so the last digits of a result depend on it.
 
     Other parameters and errors are those of :func:`coupling.simulate`.
     """
-    turning = turning or Turning.steady()
-    followed = condensed(system)
-    if followed.system is not system:
-        system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
-        outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
-        initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
-    run = _Run(system, settings, outputs, turning)
+    run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
     state = after or run.start(initial)
     total = settings.samples
     for number in range(state.block, len(run.ends) - 1):
@@ -166,6 +167,7 @@ def march_blocks(
         written = slice(state.sample - first)
         yield Block(
             first=first,
+            times=sample_times(settings, first, state.sample - first),
             displacement=samples.displacement[written],
             velocity=samples.velocity[written],
             acceleration=samples.acceleration[written],
@@ -174,6 +176,50 @@ def march_blocks(
             after=state,
             count=len(run.ends) - 1,
         )
+
+
+def march_key(
+    system: CoupledSystem,
+    settings: TransientSettings,
+    outputs: TransientOutputs,
+    *,
+    turning: Turning | None = None,
+    initial: tuple[FloatArray, FloatArray] | None = None,
+    samples_per_block: int = SAMPLES_PER_BLOCK,
+) -> str:
+    """A digest of all that decides how a march goes, so that two with the same key go alike, bit for bit.
+
+    It knows nothing of the code and of the processor: whoever keeps checkpoints must note these as well.
+    """
+    run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
+    start = run.start(initial).as_arrays()
+    return fingerprint(settings, run.turning, run.arrays, run.base, run.ends, run.reach, run.bounds(0), start)
+
+
+def sample_times(settings: TransientSettings, first: int, count: int) -> FloatArray:
+    """Times of some samples [s]."""
+    return np.asarray(
+        settings.record_from + settings.sample_interval * np.arange(first, first + count, dtype=np.float64)
+    )
+
+
+def _prepared(
+    system: CoupledSystem,
+    settings: TransientSettings,
+    outputs: TransientOutputs,
+    turning: Turning | None,
+    initial: tuple[FloatArray, FloatArray] | None,
+    samples_per_block: int,
+) -> tuple["_Run", tuple[FloatArray, FloatArray] | None]:
+    """The march of the coordinates that are followed, and their initial state."""
+    if samples_per_block < 1:
+        raise CouplingError(f"blocks of {samples_per_block} samples; expected at least one")
+    followed = condensed(system)
+    if followed.system is not system:
+        system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
+        outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
+        initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
+    return _Run(system, settings, outputs, turning or Turning.steady(), samples_per_block), initial
 
 
 def _samples_until(settings: TransientSettings, end: float, first: int, total: int) -> int:
@@ -186,13 +232,18 @@ class _Run:
     """What stays the same through a march."""
 
     def __init__(
-        self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
+        self,
+        system: CoupledSystem,
+        settings: TransientSettings,
+        outputs: TransientOutputs,
+        turning: Turning,
+        samples_per_block: int,
     ) -> None:
         self.system, self.settings, self.turning = system, settings, turning
         self.arrays: KernelArrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)
         self.cache = StepCache(self.arrays, turning)
         self.base = coarsest_step(system, turning, settings.largest_step)
-        self.ends = block_ends(settings.duration, settings.sample_interval, self.base)
+        self.ends = block_ends(settings.duration, settings.sample_interval, self.base, samples_per_block)
         pushing = sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
         self.pushing = np.linalg.norm(system.load) + np.linalg.norm(pushing)
         # Nothing that stays together moves so much further than its loads press it.
@@ -204,7 +255,7 @@ class _Run:
         load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.swing)
         q, v = initial or (static_equilibrium(replace(system, load=load)), np.zeros(system.size))
         q, v = q.astype(np.float64), v.astype(np.float64)
-        first = float(self._bounds(0)[1])
+        first = float(self.bounds(0)[1])
         turned, rates, _ = self.turning.at(1e-7 * first)
         stored = self._stored(q, v, float(turned[0]), float(rates[0]))
         energy = self._held(q, v) + stored
@@ -219,7 +270,7 @@ class _Run:
         from coupling.newmark import march
 
         settings, cache = self.settings, self.cache
-        bounds = self._bounds(number)
+        bounds = self.bounds(number)
         # An event may stand for the start of the record, when rounding alone holds the two apart.
         first_record = int(np.searchsorted(bounds, settings.record_from - same_time(self.base)))
         if bounds[0] > settings.record_from:
@@ -273,7 +324,8 @@ class _Run:
             progress(float(bounds[position] / settings.duration))
         return replace(state, block=number + 1, seconds=time.perf_counter() - clock)
 
-    def _bounds(self, number: int) -> FloatArray:
+    def bounds(self, number: int) -> FloatArray:
+        """Where a block is cut into stretches [s]."""
         ends = float(self.ends[number]), float(self.ends[number + 1])
         return boundaries(self.system, self.turning, *ends, self.base, (self.settings.record_from,))
 

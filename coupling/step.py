@@ -69,15 +69,24 @@ class StepCache:
     """The matrices of every step size met so far; see :mod:`coupling.step_kernels` for what they are.
 
     At steady speed few sizes occur: the stretches between events repeat with the mesh period. Sizes that agree to nine
-    digits are one. Where the speed varies no size occurs twice, and the kernel builds each in slot 0.
+    digits are one. Where the speed varies no size occurs twice, and the kernel builds each in slot 0. Mesh periods that
+    have no common multiple make ever new sizes: beyond a limit all are forgotten, which changes no result, as a size
+    met again is built anew just as it was.
     """
 
     _ROOM = 8
+    _MOST_BYTES = 32 << 20
 
     def __init__(self, arrays: KernelArrays, turning: Turning) -> None:
         self._arrays, self._steady, self._rate = arrays, turning.is_steady, float(turning.rates[0])
         self._kinds: dict[float, int] = {}
         self.matrices = _room_for_steps(arrays, self._ROOM)
+
+    def make_room(self, count: int) -> None:
+        """Forget all sizes where so many new ones might not find room; their numbers hold until then."""
+        most = self._MOST_BYTES // sum(array[:1].nbytes for array in self.matrices)
+        if len(self._kinds) + count > max(most, 2 * count):
+            self._kinds.clear()
 
     def kind(self, size: float) -> int:
         """The number of a step size [s]."""
@@ -102,6 +111,7 @@ def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> 
     """Stretches between bounds, each cut into at least two equal steps no longer than ``step`` [s]."""
     start, end = bounds[:-1], bounds[1:]
     counts = np.maximum(np.ceil((end - start) / step - 1e-9), 2).astype(np.int64)
+    cache.make_room(len(counts))
     kinds = np.array([cache.kind(float(size)) for size in (end - start) / counts], dtype=np.int64)
     turned = np.column_stack(turning.at(start)).reshape(-1, 3)
     return Segments(np.ascontiguousarray(start), np.ascontiguousarray(end), counts, kinds, turned)

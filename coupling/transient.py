@@ -142,19 +142,12 @@ def simulate(
     figures = transient_figures(settings, blocks[-1].after)
     return TransientResult(
         **vars(figures),
-        times=sample_times(settings, 0, sum(len(block.force) for block in blocks)),
+        times=_joined(blocks, "times"),
         displacement=_joined(blocks, "displacement"),
         velocity=_joined(blocks, "velocity"),
         acceleration=_joined(blocks, "acceleration"),
         compression=_joined(blocks, "compression"),
         force=_joined(blocks, "force"),
-    )
-
-
-def sample_times(settings: TransientSettings, first: int, count: int) -> FloatArray:
-    """Times of some samples [s]."""
-    return np.asarray(
-        settings.record_from + settings.sample_interval * np.arange(first, first + count, dtype=np.float64)
     )
 
 

@@ -54,12 +54,23 @@ _DEFAULTS = Common()
 Fresh = Annotated[
     bool, Parameter(name="--fresh", negative=(), help="Solve the housing's modes also where OUT keeps them unchanged.")
 ]
+FreshRun = Annotated[
+    bool,
+    Parameter(
+        name="--fresh",
+        negative=(),
+        help="Begin anew also where OUT keeps the housing's modes, or a transient that was interrupted.",
+    ),
+]
 CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a bundled case.")]
 
 
 @app.command
-def run(case: CaseName, *, fresh: Fresh = False, common: Common = _DEFAULTS) -> None:
-    """Everything the case asks for, start to end; results go to OUT (default: ./<case>-results)."""
+def run(case: CaseName, *, fresh: FreshRun = False, common: Common = _DEFAULTS) -> None:
+    """Everything the case asks for, start to end; results go to OUT (default: ./<case>-results).
+
+    A run that was interrupted or killed goes on from its last checkpoint when the same case is run into OUT again.
+    """
     from gearwhine.screen import show_run
     from gearwhine.work import run_case
 
@@ -258,8 +269,10 @@ def _run_command(arguments: list[str]) -> int:
     except CycloptsError as error:
         sys.stderr.write(f"gearwhine: {error}\nTry 'gearwhine --help'.\n")
         return 2
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         sys.stderr.write("gearwhine: interrupted; the output folder holds no half-written file\n")
+        for note in getattr(stop, "__notes__", ()):
+            sys.stderr.write(f"gearwhine: {note}\n")
         return 130
     except BrokenPipeError:
         return 1

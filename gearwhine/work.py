@@ -2,11 +2,14 @@
 
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases, dump_case, mesh_frequencies, require
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
+from gearwhine.march_files import kept_march
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
 from gearwhine.stages import (
@@ -30,7 +33,18 @@ if TYPE_CHECKING:
 
 
 def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
-    """Everything that the case asks for, and the results folder."""
+    """Everything that the case asks for, and the results folder.
+
+    What is marched of the transient is kept in the folder until the results are written: a run that dies goes on from
+    there when it is started again. ``fresh`` starts anew.
+    """
+    with ExitStack() as until_written:
+        return _run_case(case, folder, progress, until_written, fresh=fresh)
+
+
+def _run_case(
+    case: Case, folder: Path, progress: Progress, until_written: ExitStack, *, fresh: bool
+) -> dict[str, Any]:
     from gearwhine import figures, results
     from housing import pictures
 
@@ -76,9 +90,19 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         document["system"] = machine_stage.system_document(case, machine, system_modes, housing)
         timed("system", begin)
         if case.transient is not None:
+            if housing is not None and not housing.source_holds:
+                # Now, not with the results: who goes on with a long march need not solve them again.
+                with staging(folder) as place:
+                    keep_modes(place, housing)
+                housing = replace(housing, source=folder / MODES_FILE, source_holds=True)
             begin = time.perf_counter()
             transient = transient_stage.solve_transient(
-                case, machine, mesh_frequencies(case), progress, housing=housing
+                case,
+                machine,
+                mesh_frequencies(case),
+                progress,
+                housing=housing,
+                keep=lambda key: until_written.enter_context(kept_march(folder, key, fresh=fresh)),
             )
             document |= transient_stage.transient_document(case, transient)
             timed("transient", begin)

@@ -1,23 +1,24 @@
 """The transient of a case: the machine turning under load, and what its sensors, gears and bearings show."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 import coupling as room
-from gearwhine.case import Case, require, rotor_speeds
+import gearwhine
+from gearwhine.case import Case, require
+from gearwhine.march_files import Arrays, Blocks
 from gearwhine.progress import Progress, silent
+from gearwhine.stages.contents import installed, source_digest
 from gearwhine.stages.housing import SolvedHousing
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.stages.march_record import MarchRecord, block_arrays, record_spectra
+from gearwhine.stages.sampling import RECORD_BYTES, Sampling, sampling
+from housing.labelled import content_key
 
 _HERTZ = 2.0 * np.pi
-
-# Samples per second over the highest frequency of interest. Stepwise changes of the mesh force have harmonics without
-# end; sampled so finely, little of them folds back, and the spectra of whole periods need no filter.
-_OVERSAMPLING = 100.0
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
 
 
 @dataclass(frozen=True)
@@ -27,19 +28,22 @@ class SolvedTransient:
     Attributes
     ----------
     machine : coupling.Machine
-    result : coupling.TransientResult
+    result : coupling.TransientFigures
+    record : MarchRecord
+        Histories of the recorded revolutions, piece by piece.
     histories : coupling.Histories
-        Of the recorded revolutions.
+        The same at once; of a long record its last stretch.
     sensor_spectra : dict of str to coupling.Spectrum
-        Acceleration [m/s²].
+        Acceleration [m/s²]; of a long record averaged over stretches, up to the trusted limit.
     force_spectra : dict of str to coupling.Spectrum
-        Gear-mesh force [N].
+        Gear-mesh force [N]; likewise.
     trusted_limit : float
         Highest frequency that the housing's modes carry [Hz].
     """
 
     machine: room.Machine
-    result: room.TransientResult
+    result: room.TransientFigures
+    record: MarchRecord
     histories: room.Histories
     sensor_spectra: dict[str, room.Spectrum]
     force_spectra: dict[str, room.Spectrum]
@@ -53,11 +57,23 @@ def solve_transient(
     progress: Progress = silent,
     *,
     housing: SolvedHousing | None = None,
+    keep: Callable[[str], Blocks] = lambda key: _InMemory(),
+    record_bytes: int = RECORD_BYTES,
+    samples_per_block: int | None = None,
 ) -> SolvedTransient:
     """March the machine through the case's revolutions and take the spectra of those not discarded.
 
     The record holds whole revolutions of the first driver. Where every shaft then turns a whole number of times
-    the spectra are taken as they are, each line exact; otherwise under Hann's window.
+    the spectra are taken as they are, each line exact; otherwise under Hann's window. A record that is too long for
+    memory is filtered and kept at fewer samples, see :mod:`gearwhine.stages.sampling`.
+
+    Parameters
+    ----------
+    keep : callable
+        Gives the blocks kept under a key of all that the march depends on; the march goes on behind them. By default
+        none are kept, and all are held in memory.
+    record_bytes, samples_per_block : int
+        The longest record kept as sampled, and about how many samples are marched from checkpoint to checkpoint.
 
     Raises
     ------
@@ -65,42 +81,51 @@ def solve_transient(
         Where the motion cannot be followed or its energies do not balance.
     """
     require(case, "operation", "transient", command="run")
-    assert case.operation is not None
-    assert case.transient is not None
-    given = case.transient
-    period = _HERTZ / abs(case.operation.speed)
     limit = _trusted_limit(housing, mesh_frequencies)
-    per_revolution = _samples_per_revolution(period, limit, given.points_per_revolution)
-    settings = room.TransientSettings(
-        duration=given.revolutions * period,
-        record_from=given.discard * period,
-        sample_interval=period / per_revolution,
-        largest_step=period / given.points_per_revolution,
-        tolerance=given.tolerance,
-    )
+    outputs, nothing = room.transient_outputs(machine), room.empty_histories(machine)
+    rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))
+    rows += 2 * len(machine.system.contacts)
+    signals = nothing.columns.shape[1]
+    chosen = sampling(case, limit, signals, rows, largest=record_bytes, block=samples_per_block)
     progress("compiling the time stepper (the first time takes longer)")
-    result = room.simulate(
-        machine.system,
-        settings,
-        room.transient_outputs(machine),
+    march = (machine.system, chosen.settings, outputs)
+    key = room.march_key(*march, samples_per_block=chosen.samples_per_block)
+    blocks = keep(_with_code(key, chosen))
+    last = blocks[len(blocks) - 1] if len(blocks) else None
+    held = nothing.columns if last is None else last["held"]
+    marched = room.march_blocks(
+        *march,
+        after=None if last is None else room.Checkpoint.from_arrays(last),
+        samples_per_block=chosen.samples_per_block,
         progress=lambda fraction: progress("marching through the transient", fraction),
     )
-    named = room.histories(machine, result)
-    window = _window(case)
-    interval = settings.sample_interval
-    return SolvedTransient(
-        machine=machine,
-        result=result,
-        histories=named,
-        sensor_spectra={
-            name: room.amplitude_spectrum(signal, interval, window)
-            for name, signal in named.sensor_acceleration.items()
-        },
-        force_spectra={
-            name: room.amplitude_spectrum(signal, interval, window) for name, signal in named.mesh_force.items()
-        },
-        trusted_limit=limit,
+    for block in marched:
+        columns, held = chosen.decimation.through(held, room.histories(machine, block).columns)
+        blocks.append(block_arrays(columns, held, block.after))
+    record = MarchRecord(chosen, blocks, nothing)
+    figures = room.transient_figures(chosen.settings, record.end)
+    named = record.last_stretch()
+    of_sensors, of_meshes = record_spectra(record, named, limit)
+    return SolvedTransient(machine, figures, record, named, of_sensors, of_meshes, limit)
+
+
+def _with_code(key: str, chosen: Sampling) -> str:
+    """The key of a march with what is kept of it, by which code, and on which processor: no other rounds alike."""
+    from llvmlite import binding
+
+    return content_key(
+        {
+            "march": key,
+            "kept": [chosen.decimation.factor, len(chosen.decimation.taps)],
+            "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
+            "source": source_digest(room, gearwhine),
+            "processor": [binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()],
+        }
     )
+
+
+class _InMemory(list[Arrays]):
+    """Blocks that nobody keeps."""
 
 
 def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
@@ -139,6 +164,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
             "teeth": result.energy.teeth,
         },
         "coordinates": solved.machine.system.size,
+        "record": record_document(solved),
         "trusted_below_hz": solved.trusted_limit,
         "sensors": [
             {
@@ -156,6 +182,25 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     }
 
 
+def record_document(solved: SolvedTransient) -> dict[str, Any]:
+    """How much was recorded, how finely, and what the spectra were taken over."""
+    record = solved.record
+    return {
+        "samples": record.samples,
+        "interval_s": record.sampling.interval,
+        "decimation": record.sampling.decimation.factor,
+        "spectra": {
+            "window": record.sampling.window,
+            "samples": min(record.sampling.stretch, record.samples),
+            "averages": next((one.averages for one in _spectra(solved)), 1),
+        },
+    }
+
+
+def _spectra(solved: SolvedTransient) -> list[room.Spectrum]:
+    return [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
+
+
 def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float | None:
     """Largest force on the back flanks of a mesh [N]; None where they cannot meet."""
     meshes = solved.machine.meshes
@@ -170,15 +215,3 @@ def _trusted_limit(housing: SolvedHousing | None, mesh_frequencies: tuple[float,
     if housing is not None:
         return housing.modes.certificate.limit / _HERTZ
     return 4.0 * max(mesh_frequencies, default=1000.0)
-
-
-def _samples_per_revolution(period: float, limit: float, floor: int) -> int:
-    """The power of two that samples the frequencies of interest well and meets the case's floor."""
-    return int(2 ** np.ceil(np.log2(max(floor, _OVERSAMPLING * limit * period))))
-
-
-def _window(case: Case) -> room.Window:
-    assert case.transient is not None
-    recorded = case.transient.revolutions - case.transient.discard
-    turns = [recorded * abs(ratio) for ratio in rotor_speeds(case, 1.0).values()]
-    return "uniform" if all(abs(turn - round(turn)) < 1e-9 for turn in turns) else "hann"
