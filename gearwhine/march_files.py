@@ -62,17 +62,18 @@ class BlockFiles:
         self._count += 1
 
     def __getitem__(self, number: int) -> Arrays:
-        place = range(self._count)[number]
-        with np.load(self._file(place), allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
+        return self._read(range(self._count)[number])
 
     def _file(self, number: int) -> Path:
         return self._folder / f"block-{number:08d}.npz"
 
+    def _read(self, number: int) -> Arrays:
+        with self._file(number).open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+            return {name: arrays[name] for name in arrays.files}
+
     def _is_whole(self, number: int) -> bool:
         try:
-            with np.load(self._file(number), allow_pickle=False) as file:
-                return all(file[name] is not None for name in file.files)
+            return bool(self._read(number))
         except (OSError, ValueError, EOFError, zipfile.BadZipFile):
             return False
 

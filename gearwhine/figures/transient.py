@@ -73,7 +73,7 @@ def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) 
         left.plot(1e3 * (times[shown] - times[0]), solved.histories.mesh_force[name][shown], color=BLUE, lw=1.0)
         left.set(xlabel="time [ms]", ylabel="mesh force [N]")
         left.set_title(f"{name}: six mesh periods", fontsize=10, loc="left")
-        limit = 4.2 * frequency
+        limit = min(4.2 * frequency, float(solved.force_spectra[name].frequencies[-1]))
         _draw_lines(right, solved.force_spectra[name], limit)
         _mark(right, meshes, limit)
         right.set(xlabel="frequency [Hz]", ylabel="mesh force [N, peak]")

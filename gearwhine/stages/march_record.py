@@ -111,7 +111,8 @@ def record_spectra(
         for stretch in record.stretches()
     )
     together = room.averaged_spectrum(rows, interval, window)
-    below = together.frequencies <= limit
+    # A line at the limit stands out only beside its neighbours.
+    below = together.frequencies <= limit + 2.0 * together.frequencies[1]
     each = [
         replace(together, frequencies=together.frequencies[below], amplitude=amplitude[below], phase=phase[below])
         for amplitude, phase in zip(together.amplitude, together.phase, strict=True)
