@@ -93,7 +93,9 @@ def decimation(factor: int, band: float) -> Decimation:
     Systems*, 1974.
     """
     if factor < 1 or not 0.0 < band < 0.5:
-        raise CouplingError(f"decimation by {factor} with a band up to {band} of the rate; expected 1 or more, below 1/2")
+        raise CouplingError(
+            f"decimation by {factor} with a band up to {band} of the rate; expected 1 or more, below 1/2"
+        )
     if factor == 1:
         return Decimation(1, np.ones(1))
     transition = 2.0 * math.pi * (1.0 - 2.0 * band) / factor

@@ -2,8 +2,8 @@
 
 A run keeps its blocks in a hidden folder of the output folder, which bears the key of everything the march depends on
 and goes when the results are written. A block and its checkpoint are one file that appears whole: it is written beside,
-forced to the disk, and renamed. Who is killed, interrupted or fails leaves the blocks it has; the next run with the same
-key goes on behind the last whole one. A run of anything else clears them away.
+forced to the disk, and renamed. Who is killed, interrupted or fails leaves the blocks it has; the next run with the
+same key goes on behind the last whole one. A run of anything else clears them away.
 """
 
 import os

@@ -42,9 +42,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         return _run_case(case, folder, progress, until_written, fresh=fresh)
 
 
-def _run_case(
-    case: Case, folder: Path, progress: Progress, until_written: ExitStack, *, fresh: bool
-) -> dict[str, Any]:
+def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitStack, *, fresh: bool) -> dict[str, Any]:
     from gearwhine import figures, results
     from housing import pictures
 

@@ -1,9 +1,9 @@
 """How finely a transient is sampled, how much of it is kept, and what its spectra are taken over.
 
-Stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times the highest
-frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record that fits in
-memory is kept like that, and its spectra are those of the whole. A longer one is filtered as it comes and kept at
-four times that frequency: its histories and spectra are right up to there, which is also as far as the model's
+Stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times the
+highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record that
+fits in memory is kept like that, and its spectra are those of the whole. A longer one is filtered as it comes and kept
+at four times that frequency: its histories and spectra are right up to there, which is also as far as the model's
 modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the record.
 """
 

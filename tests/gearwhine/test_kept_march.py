@@ -100,11 +100,15 @@ def some(number: int) -> dict[str, np.ndarray]:
 
 def stop(folder: Path, key: str, count: int, error: type[BaseException] = KeyboardInterrupt) -> BaseException:
     """A run that writes some blocks more and then ends badly."""
-    with pytest.raises(error) as caught, kept_march(folder, key) as blocks:
-        for number in range(len(blocks), len(blocks) + count):
-            blocks.append(some(number))
-        raise error
-    return caught.value
+    raised = error()
+    try:
+        with kept_march(folder, key) as blocks:
+            for number in range(len(blocks), len(blocks) + count):
+                blocks.append(some(number))
+            raise raised
+    except error as caught:
+        assert caught is raised
+    return raised
 
 
 def test_blocks_come_back_until_the_work_is_done(tmp_path: Path) -> None:
