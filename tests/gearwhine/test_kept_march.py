@@ -6,6 +6,7 @@ import random
 import signal
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -101,13 +102,10 @@ def some(number: int) -> dict[str, np.ndarray]:
 def stop(folder: Path, key: str, count: int, error: type[BaseException] = KeyboardInterrupt) -> BaseException:
     """A run that writes some blocks more and then ends badly."""
     raised = error()
-    try:
-        with kept_march(folder, key) as blocks:
-            for number in range(len(blocks), len(blocks) + count):
-                blocks.append(some(number))
-            raise raised
-    except error as caught:
-        assert caught is raised
+    with suppress(error), kept_march(folder, key) as blocks:
+        for number in range(len(blocks), len(blocks) + count):
+            blocks.append(some(number))
+        raise raised
     return raised
 
 
