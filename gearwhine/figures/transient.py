@@ -16,6 +16,7 @@ from housing import Comparison
 
 FloatArray = npt.NDArray[np.float64]
 
+_ORBIT_SAMPLES = 1 << 14  # of a long record: a path of hundreds of thousands takes long to draw, and memory
 _DECADES = 5.0  # of a logarithmic amplitude axis, below its highest line
 
 
@@ -85,6 +86,8 @@ def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) 
 
 def _orbits(solved: SolvedTransient) -> Figure:
     motions = solved.histories.gear_motion
+    if solved.record.sampling.is_long:
+        motions = {name: motion[-_ORBIT_SAMPLES:] for name, motion in motions.items()}
     figure = Figure(figsize=(4.2 * len(motions), 4.4), layout="constrained")
     row = figure.subplots(1, len(motions), squeeze=False)[0]
     reach = 0.0
