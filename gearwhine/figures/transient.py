@@ -17,6 +17,7 @@ from housing import Comparison
 FloatArray = npt.NDArray[np.float64]
 
 _ORBIT_SAMPLES = 1 << 14  # of a long record: a path of hundreds of thousands takes long to draw, and memory
+_MOST_LINES = 1 << 12
 _DECADES = 5.0  # of a logarithmic amplitude axis, below its highest line
 
 
@@ -107,6 +108,11 @@ def _orbits(solved: SolvedTransient) -> Figure:
 def _draw_lines(axes: Any, spectrum: Spectrum, limit: float) -> None:
     shown = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
     frequencies, amplitude = spectrum.frequencies[shown], spectrum.amplitude[shown]
+    if (together := len(amplitude) // _MOST_LINES) > 1:
+        # Of lines closer than the eye can part the highest is drawn: a path of all takes hundreds of megabytes.
+        groups = amplitude[: len(amplitude) // together * together].reshape(-1, together)
+        highest = np.arange(len(groups)) * together + groups.argmax(axis=1)
+        frequencies, amplitude = frequencies[highest], amplitude[highest]
     top = float(amplitude.max(initial=0.0))
     if top > 0.0:
         axes.set_yscale("log")
