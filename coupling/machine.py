@@ -9,6 +9,7 @@ import numpy.typing as npt
 from coupling.component import Component, HousingComponent, RotorComponent, pedestal_component
 from coupling.connector import ContactConnector, LinearConnector
 from coupling.errors import CouplingError
+from coupling.gear_phases import mesh_phases
 from coupling.gears import GearPairGeometry, ToothContact
 from coupling.system import CoupledSystem, HarmonicLoad, embed
 from rotors import Bearing
@@ -169,16 +170,23 @@ def couple(
             LinearConnector(law.name, relative[held].T, law.spatial_stiffness[among], law.spatial_damping[among])
         )
 
+    senses = [1 if speeds[mesh.driver.rotor] >= 0.0 else -1 for mesh in meshes]
+    phases = mesh_phases(
+        [mesh.driver.name for mesh in meshes],
+        [mesh.driven.name for mesh in meshes],
+        [mesh.geometry for mesh in meshes],
+        [_centre_line_angle(mesh) for mesh in meshes],
+        senses,
+    )
     drive, back = [], []
-    for mesh in meshes:
-        sense = 1 if speeds[mesh.driver.rotor] >= 0.0 else -1
+    for mesh, sense, phase in zip(meshes, senses, phases, strict=True):
         rate = abs(speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
         direction, errors = _flank(components, mesh, rotor_named, speeds, sense)
         name = f"{mesh.driver.name} -> {mesh.driven.name}"
-        drive.append(ContactConnector(name, direction, mesh.contact, 0.0, rate, errors))
+        drive.append(ContactConnector(name, direction, mesh.contact, phase, rate, errors))
         if mesh.backlash is not None:
             direction, errors = _flank(components, mesh, rotor_named, speeds, -sense)
-            law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset
+            law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset - phase
             back.append(
                 ContactConnector(
                     f"{name}, back", direction, law_of_back, offset, -rate, errors, mesh.backlash, drives=False
@@ -212,6 +220,12 @@ def couple(
     return Machine(tuple(rotors), housing, tuple(bearings), tuple(meshes), system)
 
 
+def _centre_line_angle(mesh: GearMesh) -> float:
+    """Angle from x of the line from the driver's centre to the driven gear's [rad]."""
+    x, y = np.subtract(mesh.driven.axis, mesh.driver.axis)
+    return float(np.arctan2(y, x))
+
+
 def _flank(
     components: Sequence[Component], mesh: GearMesh, parts: _Parts, speeds: dict[str, float], sense: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -228,7 +242,7 @@ def _flank(
     """
     driver, driven = mesh.driver, mesh.driven
     line = np.subtract(driven.axis, driver.axis)
-    angle = mesh.geometry.line_of_action_angle(float(np.arctan2(line[1], line[0])), sense)
+    angle = mesh.geometry.line_of_action_angle(_centre_line_angle(mesh), sense)
     push = (np.cos(angle), np.sin(angle))
     helix = mesh.geometry.driver.base_helix_angle
     thrust = -sense * np.tan(helix)
