@@ -126,6 +126,8 @@ def _listed(text: str, key: str, entries: list[str]) -> SweptKey:
     numbers = _in_one_unit(entries)
     if numbers is None:
         return SweptKey(key, tuple(entries), tuple(entries))
+    if len(set(numbers[0])) < len(entries):
+        raise _wrong(text, "values that differ")
     return SweptKey(key, tuple(entries), tuple(map(float, numbers[0])), numbers[1])
 
 

@@ -66,7 +66,9 @@ def test_what_is_no_range_and_no_list_is_named(kind: str) -> None:
 
 
 def test_speeds_of_the_case_come_first_and_exact() -> None:
-    case = load_case("small-gearbox", ["sweep={ speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' } }"]).case
+    case = load_case(
+        "small-gearbox", ["sweep={ speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' } }"]
+    ).case
     speed, torque = swept_keys(case, ["operation.torque=10,20"])
     assert (speed.key, torque.key) == ("operation.speed", "operation.torque")
     assert speed.values == tuple(range(1500, 6001, 250))
