@@ -10,6 +10,7 @@ from coupling import CoupledModes
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
 from gearwhine.gear_results import write_gears
+from gearwhine.output import write_netcdf
 from gearwhine.rotor_results import Variables, write_rotors
 from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.housing import SolvedHousing
@@ -52,7 +53,7 @@ def write(
         "amplitude_convention": "peak: the amplitude of a sine a sin(2 pi f t) is a",
     }
     dataset = xr.Dataset(variables, coordinates, attributes)
-    dataset.to_netcdf(path, engine="h5netcdf")
+    write_netcdf(dataset, path)
 
 
 def write_shapes(path: Path, housing: SolvedHousing) -> None:

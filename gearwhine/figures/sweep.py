@@ -58,11 +58,11 @@ def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[
         _draw_lines(left, dataset["mesh_force_peak"].sel(contact=contact), along, places)
         _draw_lines(left, dataset["mesh_force_mean"].sel(contact=contact), along, places, dashed=True)
         left.set_ylabel("mesh force [N]")
-        left.set_ylim(bottom=0.0)
+        left.set_ylim(0.0, 1.08 * float(dataset["mesh_force_peak"].sel(contact=contact).max()) or 1.0)
         left.set_title(f"{contact}: largest, and mean (dashed)", fontsize=10, loc="left", parse_math=False)
         _draw_lines(right, 100.0 * dataset["contact_loss"].sel(contact=contact), along, places)
         right.set_ylabel("time apart [%]")
-        right.set_ylim(bottom=0.0)
+        right.set_ylim(0.0, max(1.08 * 100.0 * float(dataset["contact_loss"].sel(contact=contact).max()), 1.0))
     _finish(figure, dataset, along, places)
     figure.suptitle(f"{title}: gear-mesh force over {_axis_label(dataset, along)}", fontsize=11, parse_math=False)
     return figure

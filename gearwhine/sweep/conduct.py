@@ -16,7 +16,7 @@ from gearwhine.stages.kept_modes import keep_modes
 from gearwhine.stages.machine import HousingInMachine, housing_in_machine
 from gearwhine.sweep.point_files import read_point, stale_points, write_point
 from gearwhine.sweep.points import Point, code_digest
-from gearwhine.sweep.solution import PointFailure, PointResult, solve_point, solve_point_housing
+from gearwhine.sweep.solution import PointFailure, PointResult, solve_point, solve_point_housing, warm_up
 from gearwhine.sweep.workers import connected
 
 if TYPE_CHECKING:
@@ -71,17 +71,21 @@ def conduct_sweep(
     resumed = frozenset(outcomes)
     todo = [number for number in range(len(points)) if number not in resumed]
     if todo:
-        shared = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
+        workers = min(workers, len(todo))
         with staging(folder) as place:
-            told = _teller(len(points), len(resumed), progress)
-            progress(f"starting {min(workers, len(todo))} workers" if scheduler is None else f"calling {scheduler}")
-            with connected(min(workers, len(todo)), scheduler, place) as client:
+            progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
+            with connected(workers, scheduler, place) as client:
+                # Workers read our code while the housing is solved here.
+                warm = [client.submit(warm_up, key=f"warm-{number}", pure=False) for number in range(workers)]
+                shared = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
+                told = _teller(len(points), len(resumed), progress)
                 told(0)
                 futures = _submitted(client, {number: points[number] for number in todo}, shared)
                 for count, (number, outcome) in enumerate(_as_they_end(client, futures), start=1):
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
                     told(count)
+                del warm
     for path in stale_points(folder, tuple(points)):
         path.unlink(missing_ok=True)
     return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))

@@ -54,6 +54,7 @@ def connected(workers: int, scheduler: str | None, place: Path) -> Iterator[Clie
         Where the processes do not start.
     """
     import dask
+    import distributed  # noqa: F401 - its own settings must be there before ours, or they go with them
 
     settings = {
         "distributed.nanny.pre-spawn-environ": _ONE_THREAD,
