@@ -8,12 +8,9 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from gearwhine.locks import alone_in, held, in_use
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 SUMMARY = "summary.json"
 _STAGING = ".partial-"
@@ -79,15 +76,6 @@ def _move_out(place: Path, folder: Path, *, replacing: bool) -> None:
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         os.replace(place / name, target)
-
-
-def write_netcdf(dataset: "xr.Dataset", path: Path) -> None:
-    """Write a labelled dataset as NetCDF4."""
-    import dask
-
-    # xarray asks Dask who is to compute, and Dask imports all of its cluster to answer, unless it is told: a second.
-    with dask.config.set(scheduler="synchronous"):
-        dataset.to_netcdf(path, engine="h5netcdf")
 
 
 def json_text(document: Mapping[str, Any]) -> str:

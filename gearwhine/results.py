@@ -10,7 +10,6 @@ from coupling import CoupledModes
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
 from gearwhine.gear_results import write_gears
-from gearwhine.output import write_netcdf
 from gearwhine.rotor_results import Variables, write_rotors
 from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.housing import SolvedHousing
@@ -53,7 +52,7 @@ def write(
         "amplitude_convention": "peak: the amplitude of a sine a sin(2 pi f t) is a",
     }
     dataset = xr.Dataset(variables, coordinates, attributes)
-    write_netcdf(dataset, path)
+    dataset.to_netcdf(path, engine="h5netcdf")
 
 
 def write_shapes(path: Path, housing: SolvedHousing) -> None:

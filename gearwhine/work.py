@@ -17,7 +17,7 @@ from gearwhine.case import (
     swept_keys,
 )
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
-from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging, write_netcdf
+from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
 from gearwhine.stages import (
     gear_analysis,
@@ -227,7 +227,7 @@ def sweep_case(
 
     def write(place: Path) -> None:
         progress("writing results")
-        write_netcdf(dataset, place / "sweep.nc")
+        dataset.to_netcdf(place / "sweep.nc", engine="h5netcdf")
         draw_sweep(place, case.title, dataset)
         document["seconds"] = {"total": time.perf_counter() - start}
 

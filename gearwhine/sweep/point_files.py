@@ -11,7 +11,7 @@ import xarray as xr
 
 from gearwhine import __version__
 from gearwhine.case import dump_case
-from gearwhine.output import finite, json_text, write_netcdf
+from gearwhine.output import finite, json_text
 from gearwhine.sweep.points import Point
 from gearwhine.sweep.solution import PointFailure, PointResult
 
@@ -54,7 +54,7 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
         attributes |= {"document": json_text(finite(result.document)), "window": result.window}
         dataset = _arrays(result).assign_attrs(attributes)
     staged = place / point.file
-    write_netcdf(dataset, staged)
+    dataset.to_netcdf(staged, engine="h5netcdf")
     (folder / POINTS).mkdir(exist_ok=True)
     os.replace(staged, folder / POINTS / point.file)
 
