@@ -27,6 +27,8 @@ app = App(
     help="Gearbox vibration: from the geometry of housing, rotors and gears to the spectrum at an accelerometer.",
     help_epilogue="Try: gearwhine examples, then gearwhine run small-gearbox",
     help_format="plaintext",
+    # An interruption unwinds to run_command, which has a sentence for it.
+    suppress_keyboard_interrupt=False,
 )
 
 

@@ -213,11 +213,10 @@ def sweep_case(
 
     ``source`` is what the case was read from: the name, and the changes by ``--set``.
     """
-    from gearwhine import sweep
-    from gearwhine.figures import draw_sweep
-
     start = time.perf_counter()
     keys = swept_keys(case, over)
+    from gearwhine import sweep
+
     points = sweep.sweep_points(*source, keys)
     count = workers or sweep.default_workers()
     swept = sweep.conduct_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
@@ -226,6 +225,8 @@ def sweep_case(
     document["workers"] = count if scheduler is None else None
 
     def write(place: Path) -> None:
+        from gearwhine.figures import draw_sweep
+
         progress("writing results")
         dataset.to_netcdf(place / "sweep.nc", engine="h5netcdf")
         draw_sweep(place, case.title, dataset)
