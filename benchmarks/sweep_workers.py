@@ -36,7 +36,7 @@ def main() -> None:
         __doc__.splitlines()[0],
         speeds=(int, 24, "points of each sweep"),
         workers=(int, 2, "against one"),
-        revolutions=(int, 6, "of each point: more make each of them longer"),
+        revolutions=(int, 10, "of each point: more make each of them longer"),
         repeats=(int, 1, "of each sweep, in turn; medians are shown"),
     )
     print(f"{machine()}\n{options.speeds} speeds, {options.revolutions} revolutions each\n", flush=True)

@@ -75,8 +75,7 @@ def conduct_sweep(
         with staging(folder) as place:
             progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
             with connected(workers, scheduler, place) as client:
-                # Workers read our code while the housing is solved here.
-                warm = [client.submit(warm_up, key=f"warm-{number}", pure=False) for number in range(workers)]
+                _warm_up(client, workers)
                 shared = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
                 told = _teller(len(points), len(resumed), progress)
                 told(0)
@@ -85,10 +84,17 @@ def conduct_sweep(
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
                     told(count)
-                del warm
     for path in stale_points(folder, tuple(points)):
         path.unlink(missing_ok=True)
     return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))
+
+
+def _warm_up(client: Client, workers: int) -> None:
+    """Let the workers read our code while the housing is solved here."""
+    from distributed import fire_and_forget
+
+    for number in range(workers):
+        fire_and_forget(client.submit(warm_up, key=f"warm-up-{number}", pure=False))
 
 
 def _shared_housings(
