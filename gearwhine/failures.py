@@ -4,6 +4,14 @@ import sys
 from collections.abc import Callable, Sequence
 
 
+class PartlyFailedError(RuntimeError):
+    """Some of the work failed; what was done is on file, and the message says how much is missing."""
+
+
+class WorkersError(RuntimeError):
+    """The workers of a sweep did not start, or are gone for good."""
+
+
 def explain(error: Exception) -> tuple[int, str | None]:
     """Exit code and message of a failure; no message where nobody foresaw it and a traceback is due.
 
@@ -31,8 +39,10 @@ def explain(error: Exception) -> tuple[int, str | None]:
         IncompleteModesError,
         IncompleteRotorModesError,
         MesherUnavailableError,
+        PartlyFailedError,
         ReductionError,
         TransientError,
+        WorkersError,
     )
     # The renderer's error lives beside VTK, which must not be imported for its sake.
     if isinstance(error, proofs) or type(error).__name__ == "RendererUnavailableError":

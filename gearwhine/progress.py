@@ -8,7 +8,10 @@ from typing import Protocol
 
 
 class Progress(Protocol):
-    """Told in words what happens now, and how much of it is done (0 to 1) where that is known."""
+    """Told in words what happens now, and how much of it is done (0 to 1) where that is known.
+
+    Words after a colon are news of the same work: its clock goes on.
+    """
 
     def __call__(self, message: str, fraction: float | None = None) -> None: ...
 
@@ -47,9 +50,11 @@ def _live() -> Iterator[Progress]:
         current = [""]
 
         def progress(message: str, fraction: float | None = None) -> None:
+            if _work(message) != _work(current[0]):
+                bar.reset(task, total=None if fraction is None else 1.0)
             if message != current[0]:
                 current[0] = message
-                bar.reset(task, description=message, total=None if fraction is None else 1.0)
+                bar.update(task, description=message)
             if fraction is not None:
                 bar.update(task, total=1.0, completed=fraction)
 
@@ -63,13 +68,19 @@ def _lines() -> Progress:
     def progress(message: str, fraction: float | None = None) -> None:
         nonlocal last, told
         tenths = 0 if fraction is None else int(10 * fraction)
+        news = message != last and _work(message) == _work(last)
         if message != last:
             last, told = message, 0
         elif tenths <= told or tenths % 5:
             return
         told = tenths
-        part = "" if not tenths else f" {10 * tenths} %"
+        part = "" if not tenths or news else f" {10 * tenths} %"
         sys.stderr.write(f"[{time.perf_counter() - start:6.1f} s] {message}{part}\n")
         sys.stderr.flush()
 
     return progress
+
+
+def _work(message: str) -> str:
+    """What a message is about, without its news."""
+    return message.partition(":")[0]

@@ -1,11 +1,21 @@
 """What each command does: stages, then files, then the document that it prints."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases, dump_case, mesh_frequencies, require
+from gearwhine.case import (
+    Case,
+    CaseError,
+    Problem,
+    bundled_case,
+    bundled_cases,
+    dump_case,
+    mesh_frequencies,
+    require,
+    swept_keys,
+)
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
@@ -186,6 +196,43 @@ def system_case(case: Case, folder: Path | None, progress: Progress, *, fresh: b
     modes = machine_stage.coupled_modes(machine)
     document = machine_stage.system_document(case, machine, modes, housing)
     return _kept(document | housing_documents.origin_document(housing), case, folder, housing=housing)
+
+
+def sweep_case(
+    case: Case,
+    source: tuple[str, Sequence[str]],
+    over: Sequence[str],
+    folder: Path,
+    progress: Progress,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+) -> dict[str, Any]:
+    """The transient at every point of a sweep, gathered in one file and drawn.
+
+    ``source`` is what the case was read from: the name, and the changes by ``--set``.
+    """
+    start = time.perf_counter()
+    keys = swept_keys(case, over)
+    from gearwhine import sweep
+
+    points = sweep.sweep_points(*source, keys)
+    count = workers or sweep.default_workers()
+    swept = sweep.conduct_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
+    dataset = sweep.gathered(case, keys, swept)
+    document = {"title": case.title} | sweep.sweep_document(keys, swept)
+    document["workers"] = count if scheduler is None else None
+
+    def write(place: Path) -> None:
+        from gearwhine.figures import draw_sweep
+
+        progress("writing results")
+        dataset.to_netcdf(place / "sweep.nc", engine="h5netcdf")
+        draw_sweep(place, case.title, dataset)
+        document["seconds"] = {"total": time.perf_counter() - start}
+
+    return _kept(document, case, folder, write)
 
 
 def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:

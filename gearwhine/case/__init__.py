@@ -13,6 +13,7 @@ What the room offers:
 - :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques` -- what follows
   without solving anything.
 - :func:`whirl_speeds`, :func:`campbell_speeds`, :func:`response_speeds` -- at which speeds a rotor is looked at.
+- :func:`swept_keys` -- the keys that a sweep goes through, each a :class:`SweptKey` with its values.
 - :func:`require` -- the error for what a command needs and a case lacks.
 - :func:`bundled_cases` -- the examples that ship with the package.
 
@@ -85,9 +86,11 @@ from gearwhine.case.shafts import (
     RadialStiffness,
     RollingStiffness,
 )
+from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
 from gearwhine.case.train import shaft_of
 
 __all__ = [
+    "SPEED_KEY",
     "AppliedTorque",
     "AxialDashpots",
     "AxialSprings",
@@ -148,6 +151,7 @@ __all__ = [
     "StiffnessMap",
     "Support",
     "Sweep",
+    "SweptKey",
     "ToothStiffness",
     "Transient",
     "Unbalance",
@@ -171,6 +175,7 @@ __all__ = [
     "rotor_speeds",
     "shaft_of",
     "speed_ratios",
+    "swept_keys",
     "table_range",
     "whirl_speeds",
 ]

@@ -225,6 +225,23 @@ def _unit_advice(unit_text: str) -> str:
     return " (write 'N*m' for newton metres)" if unit_text == "Nm" else ""
 
 
+def split_quantity(text: str) -> tuple[Decimal, str] | None:
+    """Split a number from its unit, which may be none; None where the text is neither a number nor a quantity."""
+    match = _NUMBER.fullmatch(text.strip()) if len(text) <= LONGEST_QUANTITY else None
+    if match is None:
+        return None
+    unit = match[2].strip()
+    return (Decimal(match[1]), unit) if not unit or _parse_unit(unit) is not None else None
+
+
+def unit_ratio(unit: str, other: str) -> Decimal | None:
+    """How many of another unit one of this is; None where they measure different things."""
+    if unit == other:
+        return Decimal(1)
+    one, two = (_parse_unit(text) if text else None for text in (unit, other))
+    return one.factor / two.factor if one is not None and two is not None and one.powers == two.powers else None
+
+
 def format_quantity(number: float, dimension: Dimension) -> str | float:
     """Write a quantity so that `parse_quantity` gives back the very same float.
 

@@ -22,6 +22,7 @@ from .rotors import draw_rotors
 from .shaft import draw_shaft
 from .static_deflection import draw_static_deflection
 from .style import save
+from .sweep import draw_sweep
 from .tooth_pair import draw_tooth_pair
 from .transient import draw_transient
 from .transmission_error import draw_transmission_error
@@ -46,6 +47,7 @@ __all__ = [
     "draw_rotors",
     "draw_shaft",
     "draw_static_deflection",
+    "draw_sweep",
     "draw_tooth_pair",
     "draw_torsional_modes",
     "draw_transient",

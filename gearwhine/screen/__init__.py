@@ -5,6 +5,7 @@ from gearwhine.screen.gears import show_gears
 from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail
 from gearwhine.screen.machine import show_run, show_system
 from gearwhine.screen.rotors import show_rotors
+from gearwhine.screen.sweep import show_sweep
 
 __all__ = [
     "show_check",
@@ -17,5 +18,6 @@ __all__ = [
     "show_modes_in_detail",
     "show_rotors",
     "show_run",
+    "show_sweep",
     "show_system",
 ]

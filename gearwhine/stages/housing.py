@@ -88,6 +88,11 @@ class SolvedHousing:
     warnings: list[dict[str, Any]] = field(default_factory=list)
 
     @property
+    def trusted_limit_hz(self) -> float:
+        """Up to where the modes are complete [Hz]."""
+        return self.modes.certificate.limit / _HERTZ
+
+    @property
     def total_damping_ratios(self) -> FloatArray:
         """Each mode's ratio with its own share of what is attached; the coupling of modes by it left aside."""
         if self.damping_matrix is None:

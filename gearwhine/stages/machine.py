@@ -1,9 +1,11 @@
 """The whole machine of a case: rotors, housing, bearings, gears and loads in one system; its complex modes."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import coupling as room
 import rotors as rotor_room
@@ -15,6 +17,8 @@ from gearwhine.stages.gears import SolvedPair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, solve_housing
 from gearwhine.stages.housing_checks import static_error_document
 
+FloatArray = npt.NDArray[np.float64]
+
 _HERTZ = 2.0 * np.pi
 
 # Shafts keep every bending mode up to this frequency, or several times the housing's limit where that is higher;
@@ -23,8 +27,39 @@ _LATERAL_LIMIT_HZ = 8000.0
 _LIMIT_FACTOR = 2.5
 
 
+@dataclass(frozen=True)
+class HousingInMachine:
+    """What a machine takes of a solved housing: kilobytes, in place of its mesh and shapes.
+
+    Attributes
+    ----------
+    component : coupling.HousingComponent
+    frequencies_hz : ndarray, shape (n_modes,)
+        Natural frequencies of its modes [Hz].
+    trusted_limit_hz : float
+        Up to where they are complete [Hz].
+    warnings : tuple of dict
+        What the user should know of it, as the documents have it.
+    """
+
+    component: room.HousingComponent
+    frequencies_hz: FloatArray
+    trusted_limit_hz: float
+    warnings: tuple[dict[str, Any], ...] = ()
+
+
+def housing_in_machine(case: Case, solved: SolvedHousing) -> HousingInMachine:
+    """What a machine takes of a solved housing."""
+    return HousingInMachine(
+        _housing_component(case, solved), solved.modes.frequencies_hz, solved.trusted_limit_hz, tuple(solved.warnings)
+    )
+
+
 def build_machine(
-    case: Case, housing: SolvedHousing | None, pairs: tuple[SolvedPair, ...], progress: Progress = silent
+    case: Case,
+    housing: SolvedHousing | HousingInMachine | None,
+    pairs: tuple[SolvedPair, ...],
+    progress: Progress = silent,
 ) -> room.Machine:
     """Couple the parts of a case at its speed of operation.
 
@@ -61,9 +96,11 @@ def build_machine(
         # Those of the rotor's own file stand on the ground.
         seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
         bearings += [room.MountedBearing(bearing, given.name, seats.get(bearing.name)) for bearing in held]
+    if isinstance(housing, SolvedHousing):
+        housing = housing_in_machine(case, housing)
     return room.couple(
         components,
-        None if housing is None else _housing_component(case, housing),
+        None if housing is None else housing.component,
         speeds=speeds,
         bearings=bearings,
         meshes=[_mesh(case, pair) for pair in pairs],

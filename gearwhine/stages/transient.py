@@ -10,6 +10,7 @@ import coupling as room
 from gearwhine.case import Case, require, rotor_speeds
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.housing import SolvedHousing
+from gearwhine.stages.machine import HousingInMachine
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -52,7 +53,7 @@ def solve_transient(
     mesh_frequencies: tuple[float, ...],
     progress: Progress = silent,
     *,
-    housing: SolvedHousing | None = None,
+    housing: SolvedHousing | HousingInMachine | None = None,
 ) -> SolvedTransient:
     """March the machine through the case's revolutions and take the spectra of those not discarded.
 
@@ -165,10 +166,10 @@ def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float
     return float(solved.result.peak_force[drives + before])
 
 
-def _trusted_limit(housing: SolvedHousing | None, mesh_frequencies: tuple[float, ...]) -> float:
+def _trusted_limit(housing: SolvedHousing | HousingInMachine | None, mesh_frequencies: tuple[float, ...]) -> float:
     """Up to where the housing's modes are complete [Hz]; without a housing, what the gears excite."""
     if housing is not None:
-        return housing.modes.certificate.limit / _HERTZ
+        return housing.trusted_limit_hz
     return 4.0 * max(mesh_frequencies, default=1000.0)
 
 
