@@ -1,4 +1,4 @@
-"""Pairs that share a gear mesh where its teeth put them: the outlines of the shared gear, drawn for either pair, agree."""
+"""Pairs that share a gear mesh where its teeth put them: its outlines, drawn for either pair, agree."""
 
 import math
 
