@@ -5,7 +5,8 @@ What the room offers:
 - :func:`housing_component`, :func:`rotor_component` -- components in mass-normalised coordinates.
 - :func:`couple` with :class:`MountedBearing`, :class:`GearMesh`, :class:`Unbalance`, :class:`Torque` -- the
   :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
-- :func:`coupled_modes` -- complex natural modes about the mean contact.
+- :func:`coupled_modes` -- complex natural modes about the mean contact, or that of an instant (:func:`contact_at`),
+  with energies by component, bearing and gear mesh; :func:`stability` -- which grow, and what feeds them.
 - :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
 - :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
   show.
@@ -14,13 +15,18 @@ What the room offers:
 numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
 """
 
+from coupling.campbell import SystemCampbell, SystemCrossing, system_campbell
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector
-from coupling.errors import CouplingError, TransientError
+from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
+from coupling.errors import CouplingError, ModesError, TransientError
+from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.histories import Histories, histories, transient_outputs
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
-from coupling.modes import CoupledModes, coupled_modes
+from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
+from coupling.shares import ModeShares, Part
 from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, spectrum_peaks
+from coupling.stability import GrowingMode, Stability, stability
 from coupling.statics import static_equilibrium
 from coupling.system import CoupledSystem, HarmonicLoad
 from coupling.transient import EnergyBalance, TransientOutputs, TransientResult, TransientSettings, simulate
@@ -28,21 +34,31 @@ from coupling.transient import EnergyBalance, TransientOutputs, TransientResult,
 __all__ = [
     "Component",
     "ContactConnector",
+    "ContactState",
     "CoupledModes",
     "CoupledSystem",
     "CouplingError",
     "EnergyBalance",
+    "ExcitationLine",
     "GearMesh",
+    "GrowingMode",
     "HarmonicLoad",
     "Histories",
     "HousingComponent",
     "LinearConnector",
     "Machine",
+    "ModeShares",
+    "ModesCertificate",
+    "ModesError",
     "MountedBearing",
     "MountedGear",
+    "Part",
     "Peak",
     "RotorComponent",
     "Spectrum",
+    "Stability",
+    "SystemCampbell",
+    "SystemCrossing",
     "Torque",
     "TransientError",
     "TransientOutputs",
@@ -51,13 +67,20 @@ __all__ = [
     "Unbalance",
     "Window",
     "amplitude_spectrum",
+    "contact_at",
     "couple",
     "coupled_modes",
+    "excitation_lines",
     "histories",
     "housing_component",
+    "linear_matrices",
+    "mean_contact",
     "rotor_component",
     "simulate",
     "spectrum_peaks",
+    "stability",
     "static_equilibrium",
+    "system_campbell",
+    "time_of_phase",
     "transient_outputs",
 ]

@@ -5,7 +5,8 @@ drift at constant speed. An eigensolver splits such a double root into ± the sq
 nothing of the root and hides slow motions beside it. Here ranks decide, of matrices whose rows are brought to one size:
 
 - R, the null space of K, and L, that of Kᵀ. Offsets along R are left out of the state: with U the orthogonal
-  complement of R and b = Uᵀ q, the state (q', b) of order 2n - r obeys v' = -C v - K U b, b' = Uᵀ v, and r zeros are gone.
+  complement of R and b = Uᵀ q, the state (v = q', b) of order 2n - r obeys v' = -C v - K U b, b' = Uᵀ v, and r zeros
+  are gone.
 - W and Y, the null spaces of LᵀCR and of its transpose: drifts that no dashpot resists. They are the zeros that the
   reduced state still has, each with a conserved momentum; the state is restricted to those without momentum, and s more
   zeros are gone.
