@@ -7,6 +7,9 @@ What the room offers:
   :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
 - :func:`coupled_modes` -- complex natural modes about the mean contact, or that of an instant (:func:`contact_at`),
   with energies by component, bearing and gear mesh; :func:`stability` -- which grow, and what feeds them.
+- :func:`system_campbell` -- these over speed, with the crossings of shaft and mesh orders.
+- :func:`mesh_error_response`, :func:`unbalance_response`, :func:`sensor_force_response`, :func:`receptance` -- over
+  frequency, from what excites to mesh forces, bearing forces and sensors.
 - :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
 - :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
   show.
@@ -24,12 +27,19 @@ from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.histories import Histories, histories, transient_outputs
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
+from coupling.receptance import receptance, resonance_grid
 from coupling.shares import ModeShares, Part
 from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, spectrum_peaks
 from coupling.stability import GrowingMode, Stability, stability
 from coupling.statics import static_equilibrium
 from coupling.system import CoupledSystem, HarmonicLoad
 from coupling.transient import EnergyBalance, TransientOutputs, TransientResult, TransientSettings, simulate
+from coupling.transmissibility import (
+    FrequencyResponse,
+    mesh_error_response,
+    sensor_force_response,
+    unbalance_response,
+)
 
 __all__ = [
     "Component",
@@ -40,6 +50,7 @@ __all__ = [
     "CouplingError",
     "EnergyBalance",
     "ExcitationLine",
+    "FrequencyResponse",
     "GearMesh",
     "GrowingMode",
     "HarmonicLoad",
@@ -75,7 +86,11 @@ __all__ = [
     "housing_component",
     "linear_matrices",
     "mean_contact",
+    "mesh_error_response",
+    "receptance",
+    "resonance_grid",
     "rotor_component",
+    "sensor_force_response",
     "simulate",
     "spectrum_peaks",
     "stability",
@@ -83,4 +98,5 @@ __all__ = [
     "system_campbell",
     "time_of_phase",
     "transient_outputs",
+    "unbalance_response",
 ]

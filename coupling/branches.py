@@ -22,6 +22,7 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
 _ALIKE = 0.8  # likeness from which two modes are one beyond doubt
+_ONE = 1e-6  # eigenvalues nearer to each other than this part of them are not told apart
 _JUMP = 0.05  # a step of an eigenvalue by this part of it weighs as much as no likeness at all
 _FARTHEST = 0.3  # a branch that would have to jump by this part of its frequency has ended
 _HALVINGS = 6  # of a step of speed
@@ -51,10 +52,15 @@ class ModesAtSpeed:
 
 def likeness(one: ModesAtSpeed, other: ModesAtSpeed) -> FloatArray:
     """How far each mode of one is each of the other, shape (m, m'), 0 to 1."""
+    return np.asarray(np.minimum(np.abs(_products(one, other)), 1.0))
+
+
+def _products(one: ModesAtSpeed, other: ModesAtSpeed) -> ComplexArray:
+    """The likeness with its phase: over modes of one eigenvalue it may be added up, whatever vectors they have."""
     sums = one.values[:, None] + other.values[None, :]
     there = sums * (one.left.conj() @ other.right.T) + one.left.conj() @ one.damping @ other.right.T
     back = sums * (one.right @ other.left.conj().T) + one.right @ other.damping.T @ other.left.conj().T
-    return np.asarray(np.minimum(np.abs(there * back), 1.0))
+    return np.asarray(there * back)
 
 
 def matched(
@@ -76,14 +82,18 @@ def matched(
     halvings : int
         How often the step may be halved.
     """
-    alike = likeness(one, other)
+    products = _products(one, other)
+    alike = np.minimum(np.abs(products), 1.0)
     jump = np.abs(other.values[None, :] - one.values[:, None]) / np.abs(one.values)[:, None]
     rows, columns = linear_sum_assignment((1.0 - alike) + np.minimum(jump / _JUMP, 4.0))
     found = np.full(one.values.size, -1)
     followed = (jump[rows, columns] < _FARTHEST) | (alike[rows, columns] > _ALIKE)
     found[rows[followed]] = columns[followed]
     wanted = np.abs(one.values) < limit
-    surest = np.where(found >= 0, alike[np.arange(found.size), found], 0.0)
+    # Of modes that have one frequency at every speed, as of equal shafts, no step tells which is which: nor need it.
+    gaps = np.abs(other.values[:, None] - other.values[None, :])
+    together = np.abs(products @ (gaps <= _ONE * np.abs(other.values)))
+    surest = np.where(found >= 0, together[np.arange(found.size), found], 0.0)
     if halvings == 0 or not np.any(wanted & (surest < _ALIKE)):
         return found
     middle = solve(0.5 * (one.speed + other.speed))
