@@ -10,7 +10,7 @@ import numpy.typing as npt
 from coupling.branches import ModesAtSpeed, matched
 from coupling.contact_state import linear_matrices, mean_contact
 from coupling.eigenpairs import refine_pair
-from coupling.errors import CouplingError, ModesError
+from coupling.errors import CouplingError
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.machine import Machine
 from coupling.modes import coupled_modes
@@ -76,6 +76,8 @@ class SystemCampbell:
     lines : tuple of ExcitationLine
     crossings : tuple of SystemCrossing
         By speed.
+    unsettled : tuple of str
+        Crossings seen between two speeds that no refinement could prove, in words.
     limit : float
         Highest frequency that was followed [rad/s].
     """
@@ -88,6 +90,7 @@ class SystemCampbell:
     teeth: FloatArray
     lines: tuple[ExcitationLine, ...]
     crossings: tuple[SystemCrossing, ...]
+    unsettled: tuple[str, ...]
     limit: float
 
     @property
@@ -129,7 +132,7 @@ def system_campbell(
     CouplingError
         For speeds that do not ascend or a limit that is not positive.
     ModesError
-        Where a mode or a crossing fails its proof.
+        Where a mode fails its proof.
     """
     turning = np.asarray(speeds, dtype=np.float64)
     one_sense = turning.ndim == 1 and turning.size >= 2 and bool(np.all(np.diff(np.abs(turning)) > 0.0))
@@ -165,14 +168,22 @@ def system_campbell(
     eigenvalues = _along(table, [one.modes.values for one in known], np.nan + 0.0j)
     kinds, where = (_along(table, [np.array(getattr(one, key)) for one in known], "") for key in ("kinds", "where"))
     whirl, teeth = (_along(table, [getattr(one, key) for one in known], np.nan) for key in ("whirl", "teeth"))
-    crossings = []
+    crossings, unsettled = [], []
     for line in chosen:
         gap = eigenvalues.imag - line.order * np.abs(stand_in)[:, None]
         for left, branch in np.argwhere((gap[:-1] > 0.0) != (gap[1:] > 0.0)):
             if not np.all(np.isfinite(gap[left : left + 2, branch])):
                 continue
             ends = [(known[i].modes, int(table[i, branch])) for i in (left, left + 1)]
-            speed, value = _crossing(machine, line.order, ends)
+            found = _crossing(machine, line.order, ends)
+            if found is None:
+                unsettled.append(
+                    f"{line.name} meets the mode at {eigenvalues[left, branch].imag / (2.0 * np.pi):.5g} Hz between "
+                    f"{turning[left]:.6g} and {turning[left + 1]:.6g} rad/s, but where does not settle; more speeds "
+                    "about there would tell"
+                )
+                continue
+            speed, value = found
             if abs(value) < frequency_limit:
                 at = int(left if abs(speed - stand_in[left]) < abs(speed - stand_in[left + 1]) else left + 1)
                 named = (str(kinds[at, branch]), str(where[at, branch]), float(teeth[at, branch]))
@@ -186,6 +197,7 @@ def system_campbell(
         teeth=teeth,
         lines=chosen,
         crossings=tuple(sorted(crossings, key=lambda one: (abs(one.speed), one.line.order))),
+        unsettled=tuple(unsettled),
         limit=frequency_limit,
     )
 
@@ -229,10 +241,11 @@ def _along(table: npt.NDArray[np.int64], values: Sequence[npt.NDArray[Any]], mis
     return np.array(columns).reshape(table.shape)
 
 
-def _crossing(machine: Machine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]]) -> tuple[float, complex]:
+def _crossing(machine: Machine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]]) -> tuple[float, complex] | None:
     """Speed and eigenvalue where a branch has the frequency of an order, between two neighbours on it.
 
     Regula falsi with Illinois' halving; at each speed Newton's method on the eigenpair, begun between its neighbours.
+    None where that leads away from the branch.
     """
     (low, one), (high, other) = ends
     speeds = [low.speed, high.speed]
@@ -250,7 +263,7 @@ def _crossing(machine: Machine, order: float, ends: Sequence[tuple[ModesAtSpeed,
         start = values[0] + part * (values[1] - values[0])
         value, shape, residual = refine_pair(stiffness, damping, start, (1.0 - part) * shapes[0] + part * shapes[1])
         if residual > _RESIDUAL or not _between(value, values):
-            break
+            return None
         gap = value.imag - order * abs(speed)
         if abs(gap) <= _CROSSING * abs(value):
             return speed, value
@@ -258,10 +271,7 @@ def _crossing(machine: Machine, order: float, ends: Sequence[tuple[ModesAtSpeed,
         near = 0 if (gap > 0.0) == (gaps[0] > 0.0) else 1
         speeds[near], values[near], shapes[near], gaps[near], weights[near] = speed, value, shape, gap, gap
         weights[1 - near] *= 0.5
-    raise ModesError(
-        f"where order {order:g} meets the mode at {abs(ends[0][0].values[one]) / (2.0 * np.pi):.5g} Hz between "
-        f"{ends[0][0].speed:g} and {ends[1][0].speed:g} rad/s does not settle; ask for more speeds about there"
-    )
+    return None
 
 
 def _between(value: complex, ends: Sequence[complex]) -> bool:

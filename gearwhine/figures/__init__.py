@@ -1,7 +1,7 @@
 """Figures by matplotlib, made without a screen: plain arrays and the rooms' own results in, a `Figure` or a file out.
 
-``draw_transient``, ``draw_gear_pairs``, ``draw_tooth_pair`` and ``draw_rotors`` write what a command shows into a
-folder; the others return a figure for print, 160 mm wide, that :func:`save` writes::
+``draw_transient``, ``draw_gear_pairs``, ``draw_tooth_pair``, ``draw_system`` and ``draw_rotors`` write what a command
+shows into a folder; the others return a figure for print, 160 mm wide, that :func:`save` writes::
 
     assembly = RotorAssembly(rotor, bearings)
     save(draw_shaft(assembly), Path("shaft.png"))
@@ -22,8 +22,11 @@ from .rotors import draw_rotors
 from .shaft import draw_shaft
 from .static_deflection import draw_static_deflection
 from .style import save
+from .system import draw_system
+from .system_campbell import draw_system_campbell
 from .tooth_pair import draw_tooth_pair
 from .transient import draw_transient
+from .transmissibility import draw_transmissibility
 from .transmission_error import draw_transmission_error
 from .unbalance import ProbeResponse, draw_unbalance_response
 from .whirl_shapes import draw_whirl_modes
@@ -46,9 +49,12 @@ __all__ = [
     "draw_rotors",
     "draw_shaft",
     "draw_static_deflection",
+    "draw_system",
+    "draw_system_campbell",
     "draw_tooth_pair",
     "draw_torsional_modes",
     "draw_transient",
+    "draw_transmissibility",
     "draw_transmission_error",
     "draw_unbalance_response",
     "draw_whirl_modes",
