@@ -165,7 +165,7 @@ def system_campbell(
         if any(at >= 0 and abs(one.modes.values[at]) < frequency_limit for at, one in zip(branch, known, strict=True))
     ]
     table = np.array(below, dtype=np.int64).reshape(-1, turning.size).T
-    eigenvalues = _along(table, [one.modes.values for one in known], np.nan + 0.0j)
+    eigenvalues = _along(table, [one.modes.values for one in known], complex(np.nan, np.nan))
     kinds, where = (_along(table, [np.array(getattr(one, key)) for one in known], "") for key in ("kinds", "where"))
     whirl, teeth = (_along(table, [getattr(one, key) for one in known], np.nan) for key in ("whirl", "teeth"))
     crossings, unsettled = [], []
