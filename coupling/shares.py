@@ -66,13 +66,13 @@ def mode_shares(
     parts: list[Part] = []
     kinetic, works = [], []
     start = 0
-    for component, speed in zip(system.components, system.speeds, strict=True):
+    for component in system.components:
         rows = slice(start, start + component.size)
         start += component.size
         parts.append(Part("component", component.name))
         kinetic.append(motion[:, rows].sum(axis=1))
-        damping = component.damping + speed * component.gyroscopic
-        works.append(_work(shapes[:, rows], component.stiffness, damping))
+        # The gyroscopic terms, which are skew, take no part in any of the three.
+        works.append(_work(shapes[:, rows], component.stiffness, component.damping))
     for connector in system.linear:
         parts.append(Part("connector", connector.name))
         works.append(_work(shapes @ connector.directions, connector.stiffness, connector.damping))
@@ -101,6 +101,9 @@ def _work(
     deflections: ComplexArray, stiffness: FloatArray, damping: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Re qᴴ K q, Im qᴴ K q and Re qᴴ C q of deflections along the rows, shape (m,) each."""
-    strained = np.einsum("mi,ij,mj->m", deflections.conj(), stiffness, deflections, optimize=True)
-    lost = np.einsum("mi,ij,mj->m", deflections.conj(), damping, deflections, optimize=True)
-    return strained.real, strained.imag, lost.real
+    symmetric, skew = 0.5 * (stiffness + stiffness.T), 0.5 * (stiffness - stiffness.T)
+
+    def form(matrix: FloatArray) -> ComplexArray:
+        return np.asarray(np.sum(deflections.conj() * (deflections @ matrix.T), axis=1))
+
+    return form(symmetric).real, form(skew).imag, form(0.5 * (damping + damping.T)).real

@@ -88,5 +88,6 @@ def _growing(modes: CoupledModes, i: int) -> GrowingMode:
     swings = modes.eigenvalues[i].imag != 0.0
     # What runs off over springs that push does so however it is damped: the dashpots only slow it.
     given = shares.damping[i] if swings or shares.stiffness[i] >= 0.0 else -shares.strain[i]
-    feeders = [(shares.parts[j], float(given[j])) for j in np.argsort(given, kind="stable") if given[j] < 0.0]
+    least = -_NEUTRAL * float(np.abs(given).max(initial=0.0))
+    feeders = [(shares.parts[j], float(given[j])) for j in np.argsort(given, kind="stable") if given[j] < least]
     return GrowingMode(i, complex(modes.eigenvalues[i]), modes.kinds[i], modes.where[i], tuple(feeders))
