@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.branches import ModesAtSpeed, matched
-from coupling.contact_state import linear_matrices, mean_contact
-from coupling.eigenpairs import refine_pair
+from coupling.crossings import refined_crossing
 from coupling.errors import CouplingError
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.machine import Machine
@@ -20,9 +19,6 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _AT_REST = 1e-6  # of the highest speed, in place of zero: forward and backward whirl of a round shaft are then apart
 _ABOVE = 1.15  # modes up to this over the limit are followed, so that none is lost that dips below it
-_CROSSING = 1e-10  # of a frequency, to which a crossing is found
-_STEPS = 40
-_RESIDUAL = 1e-9
 
 
 @dataclass(frozen=True)
@@ -175,7 +171,7 @@ def system_campbell(
             if not np.all(np.isfinite(gap[left : left + 2, branch])):
                 continue
             ends = [(known[i].modes, int(table[i, branch])) for i in (left, left + 1)]
-            found = _crossing(machine, line.order, ends)
+            found = refined_crossing(machine, line.order, ends)
             if found is None:
                 unsettled.append(
                     f"{line.name} meets the mode at {eigenvalues[left, branch].imag / (2.0 * np.pi):.5g} Hz between "
@@ -239,42 +235,3 @@ def _along(table: npt.NDArray[np.int64], values: Sequence[npt.NDArray[Any]], mis
         for row, of in zip(table, values, strict=True)
     ]
     return np.array(columns).reshape(table.shape)
-
-
-def _crossing(machine: Machine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]]) -> tuple[float, complex] | None:
-    """Speed and eigenvalue where a branch has the frequency of an order, between two neighbours on it.
-
-    Regula falsi with Illinois' halving; at each speed Newton's method on the eigenpair, begun between its neighbours.
-    None where that leads away from the branch.
-    """
-    (low, one), (high, other) = ends
-    speeds = [low.speed, high.speed]
-    values = [complex(low.values[one]), complex(high.values[other])]
-    shapes = [low.right[one], high.right[other]]
-    # Shapes are known up to a factor; the second is turned into line with the first, to be averaged with it.
-    shapes[1] = shapes[1] * np.exp(-1j * np.angle(np.vdot(shapes[0], shapes[1])))
-    gaps = [value.imag - order * abs(speed) for value, speed in zip(values, speeds, strict=True)]
-    weights = list(gaps)
-    for _ in range(_STEPS):
-        part = weights[0] / (weights[0] - weights[1])
-        speed = speeds[0] + part * (speeds[1] - speeds[0])
-        system = machine.at_speed(speed).system
-        stiffness, damping = linear_matrices(system, mean_contact(system))
-        start = values[0] + part * (values[1] - values[0])
-        value, shape, residual = refine_pair(stiffness, damping, start, (1.0 - part) * shapes[0] + part * shapes[1])
-        if residual > _RESIDUAL or not _between(value, values):
-            return None
-        gap = value.imag - order * abs(speed)
-        if abs(gap) <= _CROSSING * abs(value):
-            return speed, value
-        shape = shape * np.exp(-1j * np.angle(np.vdot(shapes[0], shape)))
-        near = 0 if (gap > 0.0) == (gaps[0] > 0.0) else 1
-        speeds[near], values[near], shapes[near], gaps[near], weights[near] = speed, value, shape, gap, gap
-        weights[1 - near] *= 0.5
-    return None
-
-
-def _between(value: complex, ends: Sequence[complex]) -> bool:
-    """Whether an eigenvalue is near two on its branch, and not one of another branch."""
-    reach = 2.0 * abs(ends[1] - ends[0]) + 1e-3 * abs(ends[0])
-    return min(abs(value - end) for end in ends) <= reach
