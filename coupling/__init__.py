@@ -5,7 +5,11 @@ What the room offers:
 - :func:`housing_component`, :func:`rotor_component` -- components in mass-normalised coordinates.
 - :func:`couple` with :class:`MountedBearing`, :class:`GearMesh`, :class:`Unbalance`, :class:`Torque` -- the
   :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
-- :func:`coupled_modes` -- complex natural modes about the mean contact.
+- :func:`coupled_modes` -- complex natural modes about the mean contact, or that of an instant (:func:`contact_at`),
+  with energies by component, bearing and gear mesh; :func:`stability` -- which grow, and what feeds them.
+- :func:`system_campbell` -- these over speed, with the crossings of shaft and mesh orders.
+- :func:`mesh_error_response`, :func:`unbalance_response`, :func:`sensor_force_response`, :func:`receptance` -- over
+  frequency, from what excites to mesh forces, bearing forces and sensors.
 - :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
 - :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
   show.
@@ -14,15 +18,21 @@ What the room offers:
 numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
 """
 
+from coupling.campbell import SystemCampbell, SystemCrossing, system_campbell
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
-from coupling.errors import CouplingError, TransientError
+from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
+from coupling.errors import CouplingError, ModesError, TransientError
+from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.histories import Histories, histories, transient_outputs
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
 from coupling.marching import Block, Checkpoint, march_blocks
-from coupling.modes import CoupledModes, coupled_modes
+from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
+from coupling.receptance import receptance, resonance_grid
 from coupling.settings import TransientOutputs, TransientSettings
+from coupling.shares import ModeShares, Part
 from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, spectrum_peaks
+from coupling.stability import GrowingMode, Stability, stability
 from coupling.statics import static_equilibrium
 from coupling.system import CoupledSystem, HarmonicLoad, TimedLoad
 from coupling.transient import (
@@ -33,6 +43,12 @@ from coupling.transient import (
     simulate,
     transient_figures,
 )
+from coupling.transmissibility import (
+    FrequencyResponse,
+    mesh_error_response,
+    sensor_force_response,
+    unbalance_response,
+)
 from coupling.turning import Turning
 
 __all__ = [
@@ -40,22 +56,33 @@ __all__ = [
     "Checkpoint",
     "Component",
     "ContactConnector",
+    "ContactState",
     "CoupledModes",
     "CoupledSystem",
     "CouplingError",
     "EnergyBalance",
+    "ExcitationLine",
+    "FrequencyResponse",
     "GearMesh",
+    "GrowingMode",
     "HarmonicLoad",
     "Histories",
     "HousingComponent",
     "LinearConnector",
     "Machine",
+    "ModeShares",
+    "ModesCertificate",
+    "ModesError",
     "MountedBearing",
     "MountedGear",
+    "Part",
     "Peak",
     "RotorComponent",
     "Spectrum",
     "SpeedTable",
+    "Stability",
+    "SystemCampbell",
+    "SystemCrossing",
     "TimedLoad",
     "Torque",
     "TransientError",
@@ -67,16 +94,28 @@ __all__ = [
     "Unbalance",
     "Window",
     "amplitude_spectrum",
+    "contact_at",
     "couple",
     "coupled_modes",
+    "excitation_lines",
     "histories",
     "housing_component",
+    "linear_matrices",
     "march_blocks",
+    "mean_contact",
+    "mesh_error_response",
+    "receptance",
+    "resonance_grid",
     "rotor_component",
     "sample_times",
+    "sensor_force_response",
     "simulate",
     "spectrum_peaks",
+    "stability",
     "static_equilibrium",
+    "system_campbell",
+    "time_of_phase",
     "transient_figures",
     "transient_outputs",
+    "unbalance_response",
 ]

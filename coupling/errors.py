@@ -7,3 +7,7 @@ class CouplingError(ValueError):
 
 class TransientError(RuntimeError):
     """A time integration that cannot be trusted: it diverged, stalled, or its energies do not balance."""
+
+
+class ModesError(RuntimeError):
+    """Coupled modes, or a response made of them, that fail their own proof."""

@@ -90,6 +90,9 @@ class Machine:
     system : CoupledSystem
         Components in the order rotors, housing, pedestals; linear connectors as ``bearings``; the drive flanks of
         ``meshes`` first among its contacts, then the back flanks.
+    unbalances : tuple of Unbalance
+    torques : tuple of Torque
+        The loads in the system.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -97,6 +100,44 @@ class Machine:
     bearings: tuple[MountedBearing, ...]
     meshes: tuple[GearMesh, ...]
     system: CoupledSystem
+    unbalances: tuple[Unbalance, ...] = ()
+    torques: tuple[Torque, ...] = ()
+
+    @property
+    def speeds(self) -> dict[str, float]:
+        """Signed speed of each rotor [rad/s]."""
+        return {rotor.name: speed for rotor, speed in zip(self.rotors, self.system.speeds, strict=False)}
+
+    @property
+    def leading_rotor(self) -> str:
+        """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
+        return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
+
+    def at_speed(self, speed: float) -> "Machine":
+        """The machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
+
+        Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; the components
+        keep their modes, which are a basis at any speed.
+
+        Raises
+        ------
+        CouplingError
+            Where the machine stands still, so that nothing tells how its rotors turn together.
+        rotors.RotorError
+            Where the speed is beyond the table of a bearing.
+        """
+        present = self.speeds[self.leading_rotor]
+        if present == 0.0:
+            raise CouplingError(f"rotor {self.leading_rotor!r} stands still; expected a machine that turns")
+        return couple(
+            self.rotors,
+            self.housing,
+            speeds={name: value * (speed / present) for name, value in self.speeds.items()},
+            bearings=self.bearings,
+            meshes=self.meshes,
+            unbalances=self.unbalances,
+            torques=self.torques,
+        )
 
 
 def couple(
@@ -217,7 +258,7 @@ def couple(
         load=load,
         harmonic_loads=tuple(harmonic),
     )
-    return Machine(tuple(rotors), housing, tuple(bearings), tuple(meshes), system)
+    return Machine(tuple(rotors), housing, tuple(bearings), tuple(meshes), system, tuple(unbalances), tuple(torques))
 
 
 def _centre_line_angle(mesh: GearMesh) -> float:

@@ -157,13 +157,30 @@ def gears(case: CaseName, *, common: Common = _DEFAULTS) -> None:
 
 
 @app.command
-def system(case: CaseName, *, fresh: Fresh = False, common: Common = _DEFAULTS) -> None:
-    """Complex natural modes of the whole coupled system at its speed."""
+def system(
+    case: CaseName,
+    *,
+    campbell: Annotated[
+        bool,
+        Parameter(
+            name=["--campbell"],
+            negative=(),
+            help="Also the modes over speed: over the case's [sweep], else up to half again the speed of operation.",
+        ),
+    ] = False,
+    mesh_phase: Annotated[
+        float | None,
+        Parameter(help="About the contact with the first pair's teeth at this part of their period, not its mean."),
+    ] = None,
+    fresh: Fresh = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """Complex natural modes of the whole coupled system, who moves and damps; what reaches bearings and sensors."""
     from gearwhine.screen import show_system
     from gearwhine.work import system_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return system_case(given, common.output, progress, fresh=fresh)
+        return system_case(given, common.output, progress, mesh_phase=mesh_phase, over_speed=campbell, fresh=fresh)
 
     _on_case(case, common, work, show_system)
 

@@ -32,8 +32,10 @@ from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
+from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
+from gearwhine.stages.system_documents import system_document
 
 if TYPE_CHECKING:
     from gearwhine.stages.housing import SolvedHousing
@@ -78,12 +80,12 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
             comparison = housing_stage.compare_housing(case, housing)
             document["compare"] = housing_documents.comparison_document(comparison, housing)
 
-    transient, system_modes = None, None
+    transient, system = None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
         machine = machine_stage.build_machine(case, housing, pairs, progress)
-        system_modes = machine_stage.coupled_modes(machine)
-        document["system"] = machine_stage.system_document(case, machine, system_modes, housing)
+        system = system_stage.solve_system(case, machine, housing, progress)
+        document["system"] = system_document(case, system, housing)
         timed("system", begin)
         if case.transient is not None:
             begin = time.perf_counter()
@@ -98,9 +100,11 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
     with staging(folder, replacing=True) as place:
         progress("writing results")
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
-        results.write(place / "results.nc", case, housing, rotors, analysed, system_modes, transient)
+        results.write(place / "results.nc", case, housing, rotors, analysed, system, transient)
         if analysed:
             figures.draw_gear_pairs(place, analysed, progress)
+        if system is not None:
+            figures.draw_system(place, case, system)
         if transient is not None:
             figures.draw_transient(place, case, transient, housing, comparison)
         if housing is not None:
@@ -190,12 +194,31 @@ def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str,
     return _kept(gear_documents.gears_document(pairs), case, folder, write)
 
 
-def system_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
-    """The coupled modes."""
+def system_case(
+    case: Case,
+    folder: Path | None,
+    progress: Progress,
+    *,
+    mesh_phase: float | None = None,
+    over_speed: bool = False,
+    fresh: bool = False,
+) -> dict[str, Any]:
+    """The coupled modes, over speed too where the case sweeps or it is asked for; with a folder, also as pictures."""
     housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
-    modes = machine_stage.coupled_modes(machine)
-    document = machine_stage.system_document(case, machine, modes, housing)
-    return _kept(document | housing_documents.origin_document(housing), case, folder, housing=housing)
+    swept = case.sweep is not None and len(case.sweep.speeds) > 1
+    solved = system_stage.solve_system(
+        case, machine, housing, progress, mesh_phase=mesh_phase, over_speed=over_speed or swept
+    )
+    document = system_document(case, solved, housing)
+
+    def write(place: Path) -> None:
+        from gearwhine import figures, results
+
+        progress("writing results")
+        results.write(place / "results.nc", case, housing, (), (), solved, None)
+        figures.draw_system(place, case, solved)
+
+    return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
 
 
 def sweep_case(

@@ -1,8 +1,7 @@
-"""The whole machine of a case: rotors, housing, bearings, gears and loads in one system; its complex modes."""
+"""The whole machine of a case: rotors, housing, bearings, gears and loads in one system."""
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +14,6 @@ from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gears import SolvedPair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, solve_housing
-from gearwhine.stages.housing_checks import static_error_document
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -129,35 +127,6 @@ def solve_machine(
     pairs = solve_gears(case, progress) if case.gear_pair else ()
     housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     return housing, pairs, build_machine(case, housing, pairs, progress)
-
-
-def coupled_modes(machine: room.Machine) -> room.CoupledModes:
-    """Complex modes of the machine about its mean contact."""
-    return room.coupled_modes(machine.system)
-
-
-def system_document(
-    case: Case, machine: room.Machine, modes: room.CoupledModes, housing: SolvedHousing | None = None
-) -> dict[str, Any]:
-    """The coupled modes as the command's JSON."""
-    assert case.operation is not None
-    return {
-        "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
-        "modes": [
-            {
-                "frequency_hz": float(frequency),
-                "damping_ratio": float(damping),
-                "kind": kind,
-                "energy": energy,
-            }
-            for frequency, damping, kind, energy in zip(
-                modes.frequencies_hz, modes.damping_ratios, modes.kinds, modes.energy, strict=True
-            )
-        ],
-        "coordinates": machine.system.size,
-        "trusted_below_hz": None if housing is None else housing.modes.certificate.limit / _HERTZ,
-        "static_error": None if housing is None else static_error_document(housing.modes, housing.loaded),
-    }
 
 
 def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
