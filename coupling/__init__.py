@@ -8,7 +8,7 @@ What the room offers:
 - :func:`coupled_modes` -- complex natural modes about the mean contact.
 - :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
 - :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
-  show.
+  show; :func:`modal_rows` -- the same motion by each rotor's modes.
 - :mod:`coupling.gears` -- tooth geometry, mesh stiffness and the contact law.
 
 numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
@@ -19,6 +19,7 @@ from coupling.connector import ContactConnector, LinearConnector
 from coupling.errors import CouplingError, TransientError
 from coupling.histories import Histories, histories, transient_outputs
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
+from coupling.modal_motion import ModalRows, modal_rows
 from coupling.modes import CoupledModes, coupled_modes
 from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, spectrum_peaks
 from coupling.statics import static_equilibrium
@@ -38,6 +39,7 @@ __all__ = [
     "HousingComponent",
     "LinearConnector",
     "Machine",
+    "ModalRows",
     "MountedBearing",
     "MountedGear",
     "Peak",
@@ -55,6 +57,7 @@ __all__ = [
     "coupled_modes",
     "histories",
     "housing_component",
+    "modal_rows",
     "rotor_component",
     "simulate",
     "spectrum_peaks",

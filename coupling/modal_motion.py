@@ -60,6 +60,8 @@ def modal_rows(machine: Machine, rotor: str) -> ModalRows:
     x, y = (part.mixture[:planar] @ own[plane * lateral.count : (plane + 1) * lateral.count] for plane in (0, 1))
     torsion = own[2 * lateral.count : 2 * lateral.count + twisting]
     return ModalRows(
-        *(np.array([embed(components, found, row) for row in rows]).reshape(-1, machine.system.size)
-          for rows in (x, y, torsion))
+        *(
+            np.array([embed(components, found, row) for row in rows]).reshape(-1, machine.system.size)
+            for rows in (x, y, torsion)
+        )
     )

@@ -170,7 +170,9 @@ def main() -> None:
         changes = drawn(stage, find(stage))
         found = own_frequencies(load_case("three-stage", changes).case, f"stage-{stage.number}")
         errors = 100.0 * (found / stage.table_hz - 1.0)
-        print(f"stage {stage.number}:", ", ".join(f"{f:.2f} Hz ({e:+.2f} %)" for f, e in zip(found, errors, strict=True)))
+        print(
+            f"stage {stage.number}:", ", ".join(f"{f:.2f} Hz ({e:+.2f} %)" for f, e in zip(found, errors, strict=True))
+        )
         print("\n".join(f"    {change}" for change in changes))
 
 
