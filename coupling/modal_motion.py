@@ -1,8 +1,8 @@
 """Modal coordinates of a rotor in the coupled motion, by the modes that the sources plot.
 
 A component's own coordinates are those of the shaft freed of its bearings. The modes of TM-101442, Eqs. 7 to 10, are
-those on averaged supports: x = Σ A_i φ_i, y = Σ B_i φ_i, and for torsion θ = Σ D_i φ_t,i (Eq. 11) of the free shaft. Both
-span the same motions. With the component's lateral coordinates q, whose shapes are the columns of Φᵀ V,
+those on averaged supports: x = Σ A_i φ_i, y = Σ B_i φ_i, and for torsion θ = Σ D_i φ_t,i (Eq. 11) of the free shaft.
+Both span the same motions. With the component's lateral coordinates q, whose shapes are the columns of Φᵀ V,
 
     A = V q,    V = `RotorComponent.mixture`, orthogonal,
 
