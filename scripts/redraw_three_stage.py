@@ -1,7 +1,7 @@
 """Redraw Figs. 4 to 12 of TM-101442 from the case `three-stage`: redraw_three_stage.py OUT [key.path=value ...]
 
 Writes OUT/figure-04.png, orbits at the gears over the last revolutions; 05 and 06, mesh forces in time and frequency;
-07 and 08, the first three torsional modal coordinates of stage 1 in time and frequency; 09, their shapes; 10, 11 and 12,
+07 and 08, the first three torsional modal coordinates of stage 1 in time and frequency; 09, their shapes; 10, 11, 12,
 the first lateral mode of each stage likewise. Frequency axes end at 1024 Hz, as the source's do.
 """
 
