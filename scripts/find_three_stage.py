@@ -162,7 +162,7 @@ def _fitted(
         return np.concatenate([np.log(found / stage.table_hz) / _CLOSE, (logarithms - middle) / spread])
 
     start = np.log([sizes[size] for size in free])
-    return trial(least_squares(misfit, start, diff_step=1e-6, x_scale=spread).x)
+    return trial(least_squares(misfit, start, diff_step=np.full(len(free), 1e-6), x_scale=spread).x)
 
 
 def main() -> None:
