@@ -110,6 +110,8 @@ def drawn(stage: Stage, sizes: Mapping[str, float]) -> list[str]:
     gear, end, half = joints[2], joints[4], 0.5 * stage.disc_width
     rotor = f"rotor.stage-{stage.number}"
     changes = {f"{rotor}.start": -gear, f"{rotor}.unbalance.0.at": gear, f"gear.gear-{stage.number}.at": gear}
+    if stage.number == 1:
+        changes["operation.at"] = end  # the torque comes in at the right end
     shafts = [sizes[size] for size in ("left stub", "left shaft", "right shaft", "right stub")]
     for number, (length, diameter) in enumerate(zip(lengths, shafts, strict=True)):
         segment = f"{rotor}.segments.{number}"

@@ -127,17 +127,18 @@ def test_natural_frequencies_of_the_stages(
         published(TABLE_I, f"stage {stage}, torsional mode {number}", value, ours, "Hz", rel=0.01)
 
 
-def test_the_search_for_rotors_leads_to_those_of_the_case(case: Case) -> None:
-    """Stage 3 found anew, from the script's own nominal design; each size as the case has it."""
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_the_search_for_rotors_leads_to_those_of_the_case(case: Case, number: int) -> None:
+    """Each stage found anew, from the script's own nominal design; every size as the case has it."""
     path = Path(__file__).parents[2] / "scripts" / "find_three_stage.py"
     specification = importlib.util.spec_from_file_location("find_three_stage", path)
     assert specification is not None
     assert specification.loader is not None
     script = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(script)
-    stage = script.STAGES[2]
-    found = load_case("three-stage", script.drawn(stage, script.find(stage))).case.rotor_named("stage-3")
-    ours = case.rotor_named("stage-3")
+    stage = script.STAGES[number - 1]
+    found = load_case("three-stage", script.drawn(stage, script.find(stage))).case.rotor_named(f"stage-{number}")
+    ours = case.rotor_named(f"stage-{number}")
     for part, expected in zip((*found.segments, *found.discs), (*ours.segments, *ours.discs), strict=True):
         assert part.diameter == pytest.approx(expected.diameter, rel=2e-3)
     assert found.length == pytest.approx(ours.length, abs=2e-3)
