@@ -12,7 +12,7 @@ What the room offers:
   frequency, from what excites to mesh forces, bearing forces and sensors.
 - :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
 - :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
-  show.
+  show; :func:`modal_rows` -- the same motion by each rotor's modes.
 - :mod:`coupling.gears` -- tooth geometry, mesh stiffness and the contact law.
 
 numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
@@ -27,6 +27,7 @@ from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.histories import Histories, histories, transient_outputs
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
 from coupling.marching import Block, Checkpoint, march_blocks
+from coupling.modal_motion import ModalRows, modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
 from coupling.receptance import receptance, resonance_grid
 from coupling.settings import TransientOutputs, TransientSettings
@@ -70,6 +71,7 @@ __all__ = [
     "HousingComponent",
     "LinearConnector",
     "Machine",
+    "ModalRows",
     "ModeShares",
     "ModesCertificate",
     "ModesError",
@@ -104,6 +106,7 @@ __all__ = [
     "march_blocks",
     "mean_contact",
     "mesh_error_response",
+    "modal_rows",
     "receptance",
     "resonance_grid",
     "rotor_component",

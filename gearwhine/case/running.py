@@ -6,7 +6,7 @@ Attributes are named as the keys and are in SI; speeds in rad/s, frequencies in 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
@@ -52,12 +52,16 @@ def _half_the_run(data: dict[str, Any]) -> float:
 
 
 class Transient(Table):
-    """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps."""
+    """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps.
+
+    `start`: from static equilibrium under the load, or from turning unloaded, so that the load comes on at once.
+    """
 
     revolutions: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e6)]
     discard: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = Field(default_factory=_half_the_run)
     points_per_revolution: Annotated[int, Whole(200, 1_000_000)] = 200
     tolerance: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=0.1)] = 1e-4
+    start: Literal["equilibrium", "unloaded"] = "equilibrium"
 
     @model_validator(mode="after")
     def _something_left(self) -> Transient:
