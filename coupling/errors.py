@@ -7,3 +7,7 @@ class CouplingError(ValueError):
 
 class TransientError(RuntimeError):
     """A time integration that cannot be trusted: it diverged, stalled, or its energies do not balance."""
+
+
+class PeriodicError(RuntimeError):
+    """A periodic motion that was not found, or cannot be trusted; the message says what to try."""
