@@ -6,6 +6,7 @@ from math import lcm
 import numpy as np
 
 from coupling.errors import CouplingError
+from coupling.gears import ToothContact
 from coupling.system import CoupledSystem
 
 _SAME = 1e-9  # relative, by which a frequency may miss a fraction of another
@@ -20,8 +21,7 @@ def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
     """
     found = {}
     for contact in system.contacts:
-        # A mesh that is one unchanging spring repeats after any time.
-        if contact.rate != 0.0 and _varies(contact.contact.kernel_arguments, contact.contact.hunting_numbers):
+        if contact.rate != 0.0 and _varies(contact.contact):
             found[f"contact {contact.name!r}"] = abs(contact.rate) / contact.contact.hunting_period
         for number, (amplitude, frequency, _) in enumerate(contact.errors):
             if amplitude != 0.0 and frequency != 0.0:
@@ -85,10 +85,11 @@ def _common_factor(ratios: list[Fraction]) -> int:
     return int(np.gcd.reduce([int(ratio * cycles) for ratio in ratios]))
 
 
-def _varies(arguments: tuple[object, ...], hunting: int) -> bool:
-    """Whether the law depends on the phase at all."""
-    knots, curves, faces = np.asarray(arguments[0]), np.asarray(arguments[1]), np.asarray(arguments[6])
-    whole = abs(knots[-1] - knots[0] - round(knots[-1] - knots[0])) < 1e-12
-    alike = len(curves) == 1 and not np.any(curves[..., 1:4]) and not np.any(curves[..., 5:])
-    same = bool(np.ptp(curves[..., 0]) == 0.0 and np.ptp(curves[..., 4]) == 0.0)
-    return not (whole and alike and same and faces.size == 0 and hunting == 0)
+def _varies(contact: ToothContact) -> bool:
+    """Whether a law depends on the phase at all: a mesh that is one unchanging spring repeats after any time."""
+    if contact.faces is not None or contact.hunting_numbers or contact.variants:
+        return True
+    start, end = contact.touching_range
+    curves = (contact.stiffness.coefficients, contact.deviation.coefficients)
+    uneven = any(bool(np.any(curve[:, 1:])) or np.ptp(curve[:, 0]) > 0.0 for curve in curves)
+    return uneven or abs(end - start - round(end - start)) > 1e-12

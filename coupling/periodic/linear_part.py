@@ -10,7 +10,7 @@ mean acts through its eigenvalues. Motions that nothing resists, such as gears t
 either: they swing freely under the harmonic loads, about a mean position of zero.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -37,8 +37,8 @@ class LinearPart:
     system : CoupledSystem
     rate_unit : float
         Rates are counted in it, so that they compare with displacements [1/s].
-    basis : ndarray, shape (n, N)
-        Orthonormal: all motions that something resists.
+    basis, rigid : ndarray, shapes (n, N) and (n, n - N)
+        Orthonormal: all motions that something resists, and those that nothing does.
     eigenvalues : ndarray of complex, shape (m,)
         [1/s]; one of each conjugate pair.
     right : ndarray of complex, shape (2 N, m)
@@ -50,17 +50,21 @@ class LinearPart:
     frequencies : ndarray, shape (h,)
         Its circular frequencies [rad/s].
     amplitudes : ndarray of complex, shape (h, n)
+    matrices : tuple of ndarray
+        K̄ and C̄ on the whole coordinates, shape (n, n) each, that basis and eigenvalues are of.
     """
 
     system: CoupledSystem
     rate_unit: float
     basis: FloatArray
+    rigid: FloatArray
     eigenvalues: ComplexArray
     right: ComplexArray
     left: ComplexArray
     mean: FloatArray
     frequencies: FloatArray
     amplitudes: ComplexArray
+    matrices: tuple[FloatArray, FloatArray] = field(repr=False)
 
     @property
     def states(self) -> int:
@@ -115,8 +119,16 @@ class LinearPart:
         )
 
 
-def linear_part(system: CoupledSystem, rate_unit: float) -> LinearPart:
+def linear_part(system: CoupledSystem, rate_unit: float, like: LinearPart | None = None) -> LinearPart:
     """Split a system into its linear reference and what its teeth add.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+    rate_unit : float
+        See :class:`LinearPart`.
+    like : LinearPart, optional
+        Of the same machine at another speed: its eigenvectors serve again where its matrices are the same.
 
     Raises
     ------
@@ -130,7 +142,8 @@ def linear_part(system: CoupledSystem, rate_unit: float) -> LinearPart:
     c_mean = _reference_values(system, [contact.contact.damping for contact in system.contacts])
     stiffness = system.stiffness + (directions * k_mean) @ directions.T
     damping = system.damping + (directions * c_mean) @ directions.T
-    basis, rigid = _split(stiffness, damping, directions)
+    same = like is not None and all(map(np.array_equal, like.matrices, (stiffness, damping)))
+    basis, rigid = (like.basis, like.rigid) if like is not None and same else _split(stiffness, damping, directions)
 
     constant = system.load + directions @ (k_mean * [contact.clearance for contact in system.contacts])
     harmonics: dict[float, ComplexArray] = {}
@@ -147,6 +160,11 @@ def linear_part(system: CoupledSystem, rate_unit: float) -> LinearPart:
             "rotation, and no motion would repeat; check the torques in and out against the gear ratios"
         )
     within, resisting = basis.T @ stiffness @ basis, basis.T @ damping @ basis
+    if len(within) and np.linalg.cond(within) > 1.0 / _RIGID:
+        raise PeriodicError(
+            "a motion has no stiffness but meets damping or a contact that is apart in the mean: nothing says where its "
+            "mean is; tie it with a soft spring"
+        )
     frequencies = np.array(sorted(harmonics), dtype=np.float64)
     amplitudes = np.zeros((len(frequencies), system.size), dtype=np.complex128)
     identity = np.eye(basis.shape[1])
@@ -157,11 +175,18 @@ def linear_part(system: CoupledSystem, rate_unit: float) -> LinearPart:
             row -= rigid @ (rigid.T @ harmonics[w]) / w**2
     except np.linalg.LinAlgError as error:
         raise PeriodicError(
-            "a load stands at an undamped natural frequency of the machine with its mean contact, or a motion has "
-            "neither stiffness nor freedom: no bounded reference to start from; give the machine some damping"
+            "a load stands at an undamped natural frequency of the machine with its mean contact: no bounded reference "
+            "to start from; give the machine some damping"
         ) from error
-    eigenvalues, right, left = _eigenvectors(within, resisting, rate_unit)
-    return LinearPart(system, rate_unit, basis, eigenvalues, right, left, mean, frequencies, amplitudes)
+    if like is not None and same:
+        ratio = np.repeat([1.0, like.rate_unit / rate_unit], basis.shape[1])
+        eigenvalues, right, left = like.eigenvalues, like.right * ratio[:, None], like.left / ratio
+    else:
+        eigenvalues, right, left = _eigenvectors(within, resisting, rate_unit)
+    matrices = (stiffness, damping)
+    return LinearPart(
+        system, rate_unit, basis, rigid, eigenvalues, right, left, mean, frequencies, amplitudes, matrices
+    )
 
 
 def _reference_values(system: CoupledSystem, values: list[float]) -> FloatArray:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling.condensation import condensed
+from coupling.condensation import Condensed, condensed
 from coupling.errors import CouplingError, PeriodicError
 from coupling.periodic.base_period import common_period
 from coupling.periodic.floquet import multipliers
@@ -71,12 +71,29 @@ class Problem:
         return float(np.linalg.norm(state) + response) or 1e-300
 
 
-def problem(system: CoupledSystem, period: float | None = None) -> Problem:
-    """Make a system ready: its period, its linear part, the teeth's laws."""
+def problem(system: CoupledSystem, period: float | None = None, like: Problem | None = None) -> Problem:
+    """Make a system ready: its period, its linear part, the teeth's laws; ``like`` the same machine at another speed."""
     length = common_period(system, period)
-    followed = condensed(system)
-    part = linear_part(followed.system, 2.0 * np.pi / length)
-    return Problem(system, followed.recovery, followed.kept, length, part, laws_of(followed.system))
+    followed = _followed(system)
+    part = linear_part(followed.system, 2.0 * np.pi / length, None if like is None else like.part)
+    if like is not None and _same_teeth(system, like.system):
+        laws = like.laws
+    else:
+        laws = laws_of(followed.system)
+    return Problem(system, followed.recovery, followed.kept, length, part, laws)
+
+
+def _followed(system: CoupledSystem) -> Condensed:
+    """Without the coordinates that the transient holds too; see :mod:`coupling.condensation`."""
+    if system.resolved.all():
+        return Condensed(system, np.arange(system.size), np.eye(system.size))
+    return condensed(system)
+
+
+def _same_teeth(one: CoupledSystem, other: CoupledSystem) -> bool:
+    if len(one.contacts) != len(other.contacts):
+        return False
+    return all(a.contact is b.contact for a, b in zip(one.contacts, other.contacts, strict=True))
 
 
 def periodic_response(
