@@ -165,6 +165,37 @@ def interpolated(values: FloatArray, a: int, u: float) -> float:
 
 
 @njit(cache=True, nogil=True)
+def eliminate(matrix: FloatArray, right: FloatArray) -> None:
+    """Gaussian elimination with row exchanges; the columns of ``right`` (n, p) become the solutions.
+
+    Systems are as small as the places times the contacts, for which LAPACK's call would not pay.
+    """
+    n, p = right.shape[0], right.shape[1]
+    for column in range(n):
+        pivot = column
+        for row in range(column + 1, n):
+            if abs(matrix[row, column]) > abs(matrix[pivot, column]):
+                pivot = row
+        if pivot != column:
+            for j in range(n):
+                matrix[column, j], matrix[pivot, j] = matrix[pivot, j], matrix[column, j]
+            for j in range(p):
+                right[column, j], right[pivot, j] = right[pivot, j], right[column, j]
+        for row in range(column + 1, n):
+            factor = matrix[row, column] / matrix[column, column]
+            for j in range(column, n):
+                matrix[row, j] -= factor * matrix[column, j]
+            for j in range(p):
+                right[row, j] -= factor * right[column, j]
+    for row in range(n - 1, -1, -1):
+        for i in range(row + 1, n):
+            for j in range(p):
+                right[row, j] -= matrix[row, i] * right[i, j]
+        for j in range(p):
+            right[row, j] /= matrix[row, row]
+
+
+@njit(cache=True, nogil=True)
 def solve_element(
     reference: Reference,
     laws: Laws,
@@ -203,7 +234,7 @@ def solve_element(
     for _ in range(_NEWTON_STEPS):
         if n == 0:
             break
-        right = np.empty(n)
+        right = np.empty((n, 1))
         matrix = np.zeros((n, n))
         largest, scale = 0.0, 1e-300
         for row in range(n):
@@ -219,8 +250,8 @@ def solve_element(
             rate_slope[row] = law[2] - reference.damping[a]
             if law[0] == 0.0 and law[1] == 0.0:
                 rate_slope[row] = -reference.damping[a]  # held at zero: what the law returns is a loss, no slope
-            right[row] = law[0] - reference.stiffness[a] * x - reference.damping[a] * v - excess[row]
-            largest = max(largest, abs(right[row]))
+            right[row, 0] = law[0] - reference.stiffness[a] * x - reference.damping[a] * v - excess[row]
+            largest = max(largest, abs(right[row, 0]))
             scale = max(scale, abs(law[0]) + abs(reference.stiffness[a] * x) + abs(reference.damping[a] * v))
             for column in range(n):
                 matrix[row, column] = (
@@ -237,8 +268,9 @@ def solve_element(
                 excess[row] -= part * move[row]
             continue
         best, part = largest, 1.0
-        move = np.linalg.solve(matrix, right)
+        eliminate(matrix, right)
         for row in range(n):
+            move[row] = right[row, 0]
             excess[row] += move[row]
     if not solved and best <= 1e-9 * scale:
         solved = True
@@ -331,8 +363,8 @@ def jump_at(
     if (before[5] == 0) == (after[5] == 0):
         return 0.0
     touching, sign = (after, 1.0) if after[5] > 0 else (before, -1.0)
-    if touching[0] == 0.0:  # held at zero by the law: no step
-        return 0.0
+    if touching[0] == 0.0 or touching[2] < reference.full_damping[a] * (1.0 - 1e-14):
+        return 0.0  # held at zero by the law, or its damping only fades in: no step
     later = gap_of_first_touch(reference, laws, a, time + inside, delta)
     sooner = gap_of_first_touch(reference, laws, a, time - inside, delta)
     crossing = rate - (later - sooner) / (2.0 * inside)
@@ -367,8 +399,7 @@ def vary(
             x, y = felt.real, felt.imag
             for k in range(p):
                 right[row, k] += x * real[m, k] - y * imag[m, k]
-    if n > 0:
-        right = np.linalg.solve(matrix, right)
+    eliminate(matrix, right)
     for m in range(count):
         x, y = steps.decay[slot, m].real, steps.decay[slot, m].imag
         for k in range(p):
