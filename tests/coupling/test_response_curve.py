@@ -16,7 +16,7 @@ from coupling import (
     simulate,
 )
 from coupling.gears import ToothContact, piecewise
-from coupling.periodic import response_curve
+from coupling.periodic import periodic_response, response_curve
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -107,14 +107,19 @@ def test_period_doubling_of_mathieu() -> None:
 
 def test_double_period_after_period_doubling() -> None:
     """Within the tongue the teeth part, in a motion of twice the period that the transient settles to."""
-    from coupling.periodic import periodic_response
-
     system = one_mass(2.0, SHALLOW, 0.02)
     once = periodic_response(system)
     assert not once.stable
-    twice = periodic_response(system, period=2.0 * once.period, start=(once.displacement * 1.4, once.velocity))
+    assert once.floquet.leaving == "period doubling"
+    period = once.period
+    settings = TransientSettings(400.5 * period, 398.0 * period, period / 40.0, period / 400.0, tolerance=1.0)
+    start = (1.1 * once.displacement, once.velocity)
+    result = simulate(system, settings, TransientOutputs(ROW, ROW, ROW), initial=start)
+    twice = periodic_response(system, period=2.0 * period, start=(result.displacement[0], result.velocity[0]))
     assert twice.stable
     assert twice.contact_loss[0] > 0.0
+    record = twice.record(TransientOutputs(ROW, ROW, ROW), 80)
+    np.testing.assert_allclose(record.displacement, result.displacement[:80], atol=1e-3)
     assert twice.rms_compression[0] > 2.0 * once.rms_compression[0]
 
 
