@@ -7,19 +7,22 @@ What the room offers:
   :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
 - :func:`coupled_modes` -- complex natural modes about the mean contact.
 - :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
+- :mod:`coupling.periodic` -- the steady state directly: :func:`periodic_response`, its Floquet multipliers, and
+  :func:`response_curve` over speed.
 - :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
   show.
 - :mod:`coupling.gears` -- tooth geometry, mesh stiffness and the contact law.
 
-numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
+numba is imported only when one of :func:`simulate`, :func:`static_equilibrium` and :mod:`coupling.periodic` runs.
 """
 
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector
-from coupling.errors import CouplingError, TransientError
+from coupling.errors import CouplingError, PeriodicError, TransientError
 from coupling.histories import Histories, histories, transient_outputs
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
 from coupling.modes import CoupledModes, coupled_modes
+from coupling.periodic import PeriodicResponse, ResponseCurve, periodic_response, response_curve
 from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, spectrum_peaks
 from coupling.statics import static_equilibrium
 from coupling.system import CoupledSystem, HarmonicLoad
@@ -41,6 +44,9 @@ __all__ = [
     "MountedBearing",
     "MountedGear",
     "Peak",
+    "PeriodicError",
+    "PeriodicResponse",
+    "ResponseCurve",
     "RotorComponent",
     "Spectrum",
     "Torque",
@@ -55,6 +61,8 @@ __all__ = [
     "coupled_modes",
     "histories",
     "housing_component",
+    "periodic_response",
+    "response_curve",
     "rotor_component",
     "simulate",
     "spectrum_peaks",

@@ -58,14 +58,31 @@ class Trace(NamedTuple):
 
 def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
     """Room for some elements."""
-    at_places = [np.zeros((room, s, c)) for _ in range(4)]
-    state = np.zeros((room, m), dtype=np.complex128)
-    return Trace(np.zeros(room), np.zeros(room), state, *at_places, np.zeros((room, c)))
+    return Trace(
+        start=np.zeros(room),
+        size=np.zeros(room),
+        state=np.zeros((room, m), dtype=np.complex128),
+        excess=np.zeros((room, s, c)),
+        compression=np.zeros((room, s, c)),
+        rate=np.zeros((room, s, c)),
+        force=np.zeros((room, s, c)),
+        apart=np.zeros((room, c)),
+    )
+
+
+def first_elements(trace: Trace, count: int) -> Trace:
+    """The elements that a trace holds."""
+    return Trace._make(rows[:count].copy() for rows in trace)
 
 
 def empty_steps(k: int, m: int, s: int, c: int) -> Steps:
     """Room for some sizes of elements."""
-    rows = [np.zeros((k, s, c, m), dtype=np.complex128) for _ in range(2)]
-    squares = [np.zeros((k, s * c, s * c)) for _ in range(2)]
-    decay, source = np.zeros((k, m), dtype=np.complex128), np.zeros((k, m, s * c), dtype=np.complex128)
-    return Steps(np.zeros(k), decay, *rows, *squares, source)
+    return Steps(
+        size=np.zeros(k),
+        decay=np.zeros((k, m), dtype=np.complex128),
+        displacement=np.zeros((k, s, c, m), dtype=np.complex128),
+        rate=np.zeros((k, s, c, m), dtype=np.complex128),
+        flexibility=np.zeros((k, s * c, s * c)),
+        rate_flexibility=np.zeros((k, s * c, s * c)),
+        source=np.zeros((k, m, s * c), dtype=np.complex128),
+    )

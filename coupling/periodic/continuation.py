@@ -81,7 +81,9 @@ class _Branch:
         zero = np.zeros(len(state))
         point = self._correct(ready, state, speed, zero, ahead, state, speed, 0.0)
         if point is None:
-            raise PeriodicError(f"the motion at {speed:g} does not hold with the elements that the branch is followed by")
+            raise PeriodicError(
+                f"the motion at {speed:g} does not hold with the elements that the branch is followed by"
+            )
         return point
 
     def step(self, origin: _Point, ds: float) -> _Point | None:
@@ -287,11 +289,12 @@ def _cosine(one: _Point, other: _Point) -> float:
 
 def _longest(branch: _Branch, here: _Point, largest: float) -> float:
     """A step that moves neither the speed nor the motion too far."""
-    motion = np.linalg.norm(here.state[: len(here.state) // 2] - here.ready.part.mean)
-    motion = max(motion, np.linalg.norm(here.state[len(here.state) // 2 :]), _STILL * branch.unit)
+    half = len(here.state) // 2
+    moved = float(np.linalg.norm(here.state[:half] - here.ready.part.mean))
+    motion = max(moved, float(np.linalg.norm(here.state[half:])), _STILL * branch.unit)
     by_speed = largest / max(abs(here.speed_tangent), 1e-9)
     by_motion = _FARTHEST * motion / branch.unit / max(float(np.linalg.norm(here.state_tangent)), 1e-9)
-    return float(min(by_speed, by_motion))
+    return min(by_speed, by_motion)
 
 
 def _arrive(branch: _Branch, here: _Point, ds: float, speed: float) -> _Point | None:

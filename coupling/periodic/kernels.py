@@ -157,7 +157,7 @@ def interpolated(values: FloatArray, a: int, u: float) -> float:
     for i in range(ORDER + 2):
         apart = u - POINTS[i]
         if apart == 0.0:
-            return values[i, a]
+            return float(values[i, a])
         weight = BARYCENTRIC[i] / apart
         above += weight * values[i, a]
         below += weight
@@ -302,7 +302,9 @@ def first_switch(
     first, which = 2.0, -1
     for a in range(reference.stiffness.size):
         before = _INSIDE
-        old = branch(reference, laws, a, time + before * h, interpolated(delta, a, before), interpolated(rate, a, before))
+        old = branch(
+            reference, laws, a, time + before * h, interpolated(delta, a, before), interpolated(rate, a, before)
+        )
         for i in range(1, ORDER + 3):
             # The places, the end, and how far past it the compression is carried on.
             u = furthest if i == ORDER + 2 else min(POINTS[i], furthest)
@@ -354,9 +356,7 @@ def gap_of_first_touch(reference: Reference, laws: Laws, a: int, time: float, ne
 
 
 @njit(cache=True, nogil=True)
-def jump_at(
-    reference: Reference, laws: Laws, a: int, time: float, delta: float, rate: float, inside: float
-) -> float:
+def jump_at(reference: Reference, laws: Laws, a: int, time: float, delta: float, rate: float, inside: float) -> float:
     """Step in the force of a contact over the speed of crossing, where its flanks meet or part."""
     before = law_at(reference, laws, a, time - inside, delta - rate * inside, rate)
     after = law_at(reference, laws, a, time + inside, delta + rate * inside, rate)

@@ -162,8 +162,8 @@ def linear_part(system: CoupledSystem, rate_unit: float, like: LinearPart | None
     within, resisting = basis.T @ stiffness @ basis, basis.T @ damping @ basis
     if len(within) and np.linalg.cond(within) > 1.0 / _RIGID:
         raise PeriodicError(
-            "a motion has no stiffness but meets damping or a contact that is apart in the mean: nothing says where its "
-            "mean is; tie it with a soft spring"
+            "a motion has no stiffness but meets damping, or a contact that is apart in the mean: nothing says where "
+            "its mean is; tie it with a soft spring"
         )
     frequencies = np.array(sorted(harmonics), dtype=np.float64)
     amplitudes = np.zeros((len(frequencies), system.size), dtype=np.complex128)
@@ -211,9 +211,7 @@ def _eigenvectors(
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """Eigenvalues, one of each pair, with right vectors that count for both, and left ones."""
     half = len(stiffness)
-    state = np.block(
-        [[np.zeros((half, half)), rate_unit * np.eye(half)], [-stiffness / rate_unit, -damping]]
-    )
+    state = np.block([[np.zeros((half, half)), rate_unit * np.eye(half)], [-stiffness / rate_unit, -damping]])
     values, vectors = np.linalg.eig(state)
     vectors = np.asarray(vectors, dtype=np.complex128)
     inverse = np.linalg.inv(vectors)

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import PeriodicError
-from coupling.periodic.arrays import Steps, Trace, empty_steps, empty_trace
+from coupling.periodic.arrays import Steps, Trace, empty_steps, empty_trace, first_elements
 from coupling.periodic.collocation import ORDER
 from coupling.periodic.linear_part import LinearPart
 from coupling.system import CoupledSystem
@@ -138,7 +138,9 @@ def one_pass(
     columns = part.left if varied else part.left[:, :0]
     real, imag = np.ascontiguousarray(columns.real), np.ascontiguousarray(columns.imag)
     trace = empty_trace(len(elements.starts) + _ROOM_FOR_CUTS, z.size, ORDER, len(part.system.contacts))
-    count, cuts, wrong = march(part.reference, laws, elements.steps, elements.starts, elements.slots, z, real, imag, trace)
+    count, cuts, wrong = march(
+        part.reference, laws, elements.steps, elements.starts, elements.slots, z, real, imag, trace
+    )
     if wrong == NO_BALANCE:
         raise PeriodicError("the teeth's forces do not balance within an element of time; expected a law that grows")
     if wrong == NO_ROOM:
@@ -149,7 +151,7 @@ def one_pass(
     if not np.all(np.isfinite(end)):
         raise PeriodicError("the motion grew beyond all bounds within a period; look for unstable coupled modes")
     monodromy = part.right.real @ real - part.right.imag @ imag
-    return Pass(start, end, monodromy, Trace(*(row[:count] for row in trace)), int(cuts))
+    return Pass(start, end, monodromy, first_elements(trace, int(count)), int(cuts))
 
 
 def _plain(arguments: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -142,10 +142,14 @@ class PeriodicResponse:
         a = system.load - q @ system.stiffness.T - v @ system.damping.T - force @ system.contact_directions.T
         for load in system.harmonic_loads:
             a = a + (np.exp(1j * load.frequency * times)[:, None] * load.amplitude).real
-        motions = (motion @ self.recovery.T for motion in (q, v, a))
-        rows = (outputs.displacement, outputs.velocity, outputs.acceleration)
-        taken = [motion @ row.T for motion, row in zip(motions, rows, strict=True)]
-        return PeriodicRecord(times, *taken, compression, force)
+        return PeriodicRecord(
+            times=times,
+            displacement=q @ (outputs.displacement @ self.recovery).T,
+            velocity=v @ (outputs.velocity @ self.recovery).T,
+            acceleration=a @ (outputs.acceleration @ self.recovery).T,
+            compression=compression,
+            force=force,
+        )
 
     def _mean(self, values: FloatArray) -> FloatArray:
         return np.asarray(np.einsum("e,s,esc->c", self.trace.size, WEIGHTS, values) / self.period)
@@ -161,7 +165,9 @@ class PeriodicResponse:
         reference = self.part.reference
         turned = np.exp(1j * np.outer(times, reference.frequency))
         delta = reference.mean + (turned @ reference.phasor.T).real + (amplitudes @ reference.displacement.T).real
-        rate = (amplitudes @ reference.rate.T).real - (turned @ (reference.frequency[:, None] * reference.phasor.T)).imag
+        rate = (amplitudes @ reference.rate.T).real - (
+            turned @ (reference.frequency[:, None] * reference.phasor.T)
+        ).imag
         force = np.zeros((len(times), len(reference.stiffness)))
         forces_at(reference, self.laws, times, np.ascontiguousarray(delta), np.ascontiguousarray(rate), force)
         return delta, force

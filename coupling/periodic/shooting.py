@@ -72,14 +72,14 @@ class Problem:
 
 
 def problem(system: CoupledSystem, period: float | None = None, like: Problem | None = None) -> Problem:
-    """Make a system ready: its period, its linear part, the teeth's laws; ``like`` the same machine at another speed."""
+    """Make a system ready: its period, its linear part, the teeth's laws.
+
+    Of ``like``, the same machine at another speed, is taken what has not changed.
+    """
     length = common_period(system, period)
     followed = _followed(system)
     part = linear_part(followed.system, 2.0 * np.pi / length, None if like is None else like.part)
-    if like is not None and _same_teeth(system, like.system):
-        laws = like.laws
-    else:
-        laws = laws_of(followed.system)
+    laws = like.laws if like is not None and _same_teeth(system, like.system) else laws_of(followed.system)
     return Problem(system, followed.recovery, followed.kept, length, part, laws)
 
 
@@ -227,7 +227,7 @@ def _search(ready: Problem, level: int, state: FloatArray) -> tuple[Pass, int]:
     if found is not None:
         return found
     raise PeriodicError(
-        f"no motion of period {ready.period:.6g} s found, not even after {_PERIODS * (2**_ROUNDS - 1)} periods in time: "
-        "it may be chaotic or repeat after several periods (give a multiple as period), or the start is far from one; "
-        "start from a neighbouring speed or from the end of a transient"
+        f"no motion of period {ready.period:.6g} s found, not even after {_PERIODS * (2**_ROUNDS - 1)} periods in "
+        "time: it may be chaotic or repeat after several periods (give a multiple as period), or the start is far from "
+        "one; start from a neighbouring speed or from the end of a transient"
     )

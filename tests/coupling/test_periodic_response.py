@@ -1,6 +1,7 @@
 """The periodic response: against closed forms, matrix exponentials, and the transient after it has settled."""
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -116,7 +117,10 @@ def test_linear_machine_answers_by_its_receptance(seed: int, spin: float) -> Non
     response = periodic_response(system)
     assert response.period == pytest.approx(2.0 * np.pi / 0.4, rel=1e-12)
     record = response.record(TransientOutputs(np.eye(SIZE), np.eye(SIZE), np.eye(SIZE)), 64)
-    receptances = [np.linalg.inv(stiffness + 1j * one.frequency * system.damping - one.frequency**2 * np.eye(SIZE)) for one in loads]
+    receptances = [
+        np.linalg.inv(stiffness + 1j * one.frequency * system.damping - one.frequency**2 * np.eye(SIZE))
+        for one in loads
+    ]
     for derivative, found in enumerate((record.displacement, record.velocity, record.acceleration)):
         expected = np.zeros((64, SIZE))
         if derivative == 0:
@@ -144,7 +148,7 @@ def test_rectangular_stiffness_against_matrix_exponentials(seed: int, ratio: flo
     # From the phase at the start to the events, one by one, and back to the phase at the start.
     marks = np.unique([phase, 1.0, 1.0 + phase, leaving if leaving > phase else leaving + 1.0])
     product = np.eye(2 * SIZE + 1)
-    for begin, end in zip(marks[:-1], marks[1:], strict=True):
+    for begin, end in pairwise(marks):
         touching = whole + ((0.5 * (begin + end)) % 1.0 < leaving)
         generator = np.zeros_like(product)
         generator[:SIZE, SIZE:-1] = np.eye(SIZE)
@@ -192,9 +196,7 @@ def test_mean_power_in_is_mean_loss(seed: int, ratio: float, speed: float, phase
 def settled(system: CoupledSystem, response: PeriodicResponse, periods: int, steps: int) -> FloatArray:
     """Displacement of a one-mass system over its last period by the transient, 64 samples."""
     period = response.period
-    march = TransientSettings(
-        (periods + 1) * period, periods * period, period / 64.0, period / steps, tolerance=1.0
-    )
+    march = TransientSettings((periods + 1) * period, periods * period, period / 64.0, period / steps, tolerance=1.0)
     start = (response.displacement * 1.01, response.velocity * 0.99)
     outputs = TransientOutputs(ROW, ROW, ROW)
     return simulate(system, march, outputs, initial=start).displacement[:, 0]
@@ -283,7 +285,9 @@ def test_runout_and_a_longer_period() -> None:
     assert once.mean_force[0] == pytest.approx(1.0, rel=1e-9)
     twice = periodic_response(system, period=2.0 * once.period)
     np.testing.assert_allclose(twice.displacement, once.displacement, rtol=1e-8)
-    np.testing.assert_allclose(np.sort_complex(twice.floquet.values), np.sort_complex(once.floquet.values**2), atol=1e-9)
+    np.testing.assert_allclose(
+        np.sort_complex(twice.floquet.values), np.sort_complex(once.floquet.values**2), atol=1e-9
+    )
     assert twice.rms_compression[0] == pytest.approx(once.rms_compression[0], rel=1e-8)
 
 
@@ -331,9 +335,7 @@ def test_two_geared_shafts_move_as_the_transient_does(backlash: float | None) ->
     outputs = transient_outputs(machine)
     # Samples off the events.
     settle, samples = 30, 50
-    march = TransientSettings(
-        (settle + 1) * period, settle * period, period / samples, period / 9000.0, tolerance=1.0
-    )
+    march = TransientSettings((settle + 1) * period, settle * period, period / samples, period / 9000.0, tolerance=1.0)
     start = (response.displacement, response.velocity)
     marched = simulate(machine.system, march, outputs, initial=start)
     record = response.record(outputs, samples)
