@@ -11,24 +11,27 @@ What the room offers:
 - :func:`mesh_error_response`, :func:`unbalance_response`, :func:`sensor_force_response`, :func:`receptance` -- over
   frequency, from what excites to mesh forces, bearing forces and sensors.
 - :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
+- :mod:`coupling.periodic` -- the steady state directly: :func:`periodic_response`, its Floquet multipliers, and
+  :func:`response_curve` over speed.
 - :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
   show; :func:`modal_rows` -- the same motion by each rotor's modes.
 - :mod:`coupling.gears` -- tooth geometry, mesh stiffness and the contact law.
 
-numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
+numba is imported only when one of :func:`simulate`, :func:`static_equilibrium` and :mod:`coupling.periodic` runs.
 """
 
 from coupling.campbell import SystemCampbell, SystemCrossing, system_campbell
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
-from coupling.errors import CouplingError, ModesError, TransientError
+from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.histories import Histories, histories, transient_outputs
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
 from coupling.marching import Block, Checkpoint, march_blocks
 from coupling.modal_motion import ModalRows, modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
+from coupling.periodic import PeriodicResponse, ResponseCurve, periodic_response, response_curve
 from coupling.receptance import receptance, resonance_grid
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.shares import ModeShares, Part
@@ -79,6 +82,9 @@ __all__ = [
     "MountedGear",
     "Part",
     "Peak",
+    "PeriodicError",
+    "PeriodicResponse",
+    "ResponseCurve",
     "RotorComponent",
     "Spectrum",
     "SpeedTable",
@@ -107,8 +113,10 @@ __all__ = [
     "mean_contact",
     "mesh_error_response",
     "modal_rows",
+    "periodic_response",
     "receptance",
     "resonance_grid",
+    "response_curve",
     "rotor_component",
     "sample_times",
     "sensor_force_response",

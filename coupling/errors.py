@@ -11,3 +11,7 @@ class TransientError(RuntimeError):
 
 class ModesError(RuntimeError):
     """Coupled modes, or a response made of them, that fail their own proof."""
+
+
+class PeriodicError(RuntimeError):
+    """A periodic motion that was not found, or cannot be trusted; the message says what to try."""

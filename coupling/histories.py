@@ -1,6 +1,7 @@
-"""What the transient tells, under the names of sensors, gears, bearings and gear pairs."""
+"""What a transient or a periodic response tells, under the names of sensors, gears, bearings and gear pairs."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -8,9 +9,26 @@ import numpy.typing as npt
 from coupling.machine import Machine, MountedGear
 from coupling.settings import TransientOutputs
 from coupling.system import embed
-from coupling.transient import TransientResult
+from coupling.transient import TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
+
+
+class Recorded(Protocol):
+    """What a transient or a periodic response recorded at even spacing."""
+
+    @property
+    def times(self) -> FloatArray: ...
+    @property
+    def displacement(self) -> FloatArray: ...
+    @property
+    def velocity(self) -> FloatArray: ...
+    @property
+    def acceleration(self) -> FloatArray: ...
+    @property
+    def compression(self) -> FloatArray: ...
+    @property
+    def force(self) -> FloatArray: ...
 
 
 @dataclass(frozen=True)
@@ -63,8 +81,8 @@ def transient_outputs(machine: Machine) -> TransientOutputs:
     )
 
 
-def histories(machine: Machine, result: TransientResult) -> Histories:
-    """Name what a transient with :func:`transient_outputs` recorded."""
+def histories(machine: Machine, result: Recorded) -> Histories:
+    """Name what a transient or a periodic response with :func:`transient_outputs` recorded."""
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
     forces = {}
