@@ -9,7 +9,6 @@ import numpy.typing as npt
 from coupling.machine import Machine, MountedGear
 from coupling.settings import TransientOutputs
 from coupling.system import embed
-from coupling.transient import TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
 

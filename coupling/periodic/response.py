@@ -12,8 +12,8 @@ from coupling.periodic.arrays import Trace
 from coupling.periodic.collocation import WEIGHTS
 from coupling.periodic.floquet import FloquetMultipliers
 from coupling.periodic.linear_part import LinearPart
+from coupling.settings import TransientOutputs
 from coupling.system import CoupledSystem
-from coupling.transient import TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
 
