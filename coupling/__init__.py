@@ -3,7 +3,7 @@
 What the room offers:
 
 - :func:`housing_component`, :func:`rotor_component` -- components in mass-normalised coordinates.
-- :func:`couple` with :class:`MountedBearing`, :class:`GearMesh`, :class:`Unbalance`, :class:`Torque` -- the
+- :func:`couple` with :class:`MountedBearing`, :class:`GearMesh` and the loads of :mod:`coupling.loads` -- the
   :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
 - :func:`coupled_modes` -- complex natural modes about the mean contact.
 - :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
@@ -18,7 +18,8 @@ from coupling.component import Component, HousingComponent, RotorComponent, hous
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.errors import CouplingError, TransientError
 from coupling.histories import Histories, histories, transient_outputs
-from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
+from coupling.loads import Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
+from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, couple
 from coupling.marching import Block, Checkpoint, march_blocks
 from coupling.modes import CoupledModes, coupled_modes
 from coupling.settings import TransientOutputs, TransientSettings
@@ -43,6 +44,7 @@ __all__ = [
     "CoupledModes",
     "CoupledSystem",
     "CouplingError",
+    "Drive",
     "EnergyBalance",
     "GearMesh",
     "HarmonicLoad",
@@ -58,6 +60,9 @@ __all__ = [
     "SpeedTable",
     "TimedLoad",
     "Torque",
+    "TorqueHistory",
+    "TorqueRipple",
+    "TorqueSlope",
     "TransientError",
     "TransientFigures",
     "TransientOutputs",

@@ -120,6 +120,17 @@ class RotorComponent(Component):
         row[first : first + self.modal.torsional.count] = self.modal.torsional.evaluate([at])[:, 0]
         return row
 
+    @property
+    def turning(self) -> FloatArray:
+        """Coordinates of a rotation of the whole rotor about z by one radian, shape (n,).
+
+        Its first torsional mode, to which the others are orthogonal: as a row, the same is ∫ dI_p of their rotations,
+        and its square the rotor's polar inertia [kg m²].
+        """
+        row = np.zeros(self.size)
+        row[2 * self.modal.lateral.count] = 1.0 / self.modal.torsional.evaluate([0.0])[0, 0]
+        return row
+
 
 def housing_component(
     modes: ModeSet,
