@@ -17,8 +17,9 @@ numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.errors import CouplingError, TransientError
+from coupling.free_speed import free_speed
 from coupling.histories import Histories, histories, transient_outputs
-from coupling.loads import Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
+from coupling.loads import AnyTorque, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, couple
 from coupling.marching import Block, Checkpoint, march_blocks
 from coupling.modes import CoupledModes, coupled_modes
@@ -37,6 +38,7 @@ from coupling.transient import (
 from coupling.turning import Turning
 
 __all__ = [
+    "AnyTorque",
     "Block",
     "Checkpoint",
     "Component",
@@ -74,6 +76,7 @@ __all__ = [
     "amplitude_spectrum",
     "couple",
     "coupled_modes",
+    "free_speed",
     "histories",
     "housing_component",
     "march_blocks",

@@ -208,7 +208,8 @@ def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> S
     """
     if bearing.speeds is None or rates[0] == rates[1] or speed == 0.0:
         return None
-    knots = [rates[0], *(knot for knot in bearing.speeds / abs(speed) if rates[0] < knot < rates[1]), rates[1]]
+    table = bearing.speeds / abs(speed)
+    knots = np.unique([*rates, *(knot for knot in [1.0, *table] if rates[0] < knot < rates[1])])
     cuts = [np.linspace(low, high, _PER_GAP, endpoint=False) for low, high in pairwise(knots)]
     at = np.append(np.concatenate(cuts), knots[-1])
     laws = [bearing.at_speed(float(rate) * speed) for rate in at]

@@ -85,6 +85,7 @@ from gearwhine.case.shafts import (
     RadialStiffness,
     RollingStiffness,
 )
+from gearwhine.case.torques import Run, TorqueHistory, TorqueLine, TorqueRipple
 from gearwhine.case.train import shaft_of
 
 __all__ = [
@@ -138,6 +139,7 @@ __all__ = [
     "Rotor",
     "RotorAnalysis",
     "RoundDisc",
+    "Run",
     "Seat",
     "Segment",
     "Sensor",
@@ -149,6 +151,9 @@ __all__ = [
     "Support",
     "Sweep",
     "ToothStiffness",
+    "TorqueHistory",
+    "TorqueLine",
+    "TorqueRipple",
     "Transient",
     "Unbalance",
     "UnbalanceResponse",

@@ -7,10 +7,11 @@ import numpy as np
 
 import coupling as room
 import rotors as rotor_room
-from gearwhine.case import Case, CaseError, Problem, applied_torques, require, rotor_speeds
+from gearwhine.case import Case, CaseError, Problem, require, rotor_speeds
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
+from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import SolvedPair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, solve_housing
 from gearwhine.stages.housing_checks import static_error_document
@@ -32,6 +33,8 @@ def build_machine(
     ------
     CaseError, rotors.RotorError, coupling.CouplingError
         Where the parts do not make a machine.
+    coupling.TransientError
+        Where a free speed cannot start or stalls.
     """
     require(case, "rotor", "operation", command="system")
     assert case.operation is not None
@@ -61,6 +64,7 @@ def build_machine(
         # Those of the rotor's own file stand on the ground.
         seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
         bearings += [room.MountedBearing(bearing, given.name, seats.get(bearing.name)) for bearing in held]
+    driven = driving(case, components)
     return room.couple(
         components,
         None if housing is None else _housing_component(case, housing),
@@ -72,11 +76,9 @@ def build_machine(
             for rotor in case.rotor
             for entry in rotor.unbalance
         ],
-        torques=[
-            room.Torque(torque.shaft, torque.at, torque.torque)
-            for torque in applied_torques(case)
-            if torque.at is not None
-        ],
+        torques=driven.torques,
+        drives=driven.drives,
+        rates=driven.rates,
     )
 
 
