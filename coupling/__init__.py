@@ -19,7 +19,7 @@ from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.errors import CouplingError, TransientError
 from coupling.free_speed import free_speed
 from coupling.histories import Histories, histories, transient_outputs
-from coupling.loads import AnyTorque, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
+from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, couple
 from coupling.marching import Block, Checkpoint, march_blocks
 from coupling.modes import CoupledModes, coupled_modes
@@ -40,6 +40,7 @@ from coupling.turning import Turning
 __all__ = [
     "AnyTorque",
     "Block",
+    "BowReactions",
     "Checkpoint",
     "Component",
     "ContactConnector",

@@ -25,6 +25,23 @@ class Unbalance:
 
 
 @dataclass(frozen=True)
+class BowReactions:
+    """What a bow loads the straight shaft with: forces that turn with it, see :func:`rotors.bow_shape`.
+
+    Attributes
+    ----------
+    at : ndarray, shape (k,)
+        From the rotor's left end [m].
+    forces : ndarray of complex, shape (k,)
+        Along x and, as the imaginary part, y of the shaft as it stands at t = 0 [N].
+    """
+
+    rotor: str
+    at: FloatArray
+    forces: npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
 class Torque:
     """A constant torque about z [N m] on a rotor at a distance from its left end [m]."""
 
@@ -157,6 +174,13 @@ class LoadedParts:
             return
         force = unbalance.moment * speed**2 * np.exp(1j * unbalance.phase)
         loads.harmonic.append(HarmonicLoad(speed, force * circling, follows="unbalance"))
+
+    def add_bow(self, loads: Loads, bow: BowReactions) -> None:
+        """K b e^{iΩs} of a bow b: the shaft resists what its motion u differs from it, by K (u - b e^{iΩs})."""
+        force = np.zeros_like(loads.constant, dtype=np.complex128)
+        for at, value in zip(bow.at.tolist(), bow.forces, strict=True):
+            force = force + value * self.circling(bow.rotor, at)
+        loads.harmonic.append(HarmonicLoad(self._speeds[bow.rotor], force, follows="turning"))
 
     def add_torque(self, loads: Loads, torque: AnyTorque) -> None:
         """Constant, over time, swinging, or by the speed beside the nominal one."""

@@ -11,7 +11,7 @@ from coupling.component import Component, HousingComponent, RotorComponent, pede
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry, ToothContact
-from coupling.loads import AnyTorque, Drive, LoadedParts, Loads, Unbalance
+from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance
 from coupling.system import CoupledSystem, embed
 from rotors import Bearing
 
@@ -89,6 +89,7 @@ def couple(
     bearings: Sequence[MountedBearing] = (),
     meshes: Sequence[GearMesh] = (),
     unbalances: Sequence[Unbalance] = (),
+    bows: Sequence[BowReactions] = (),
     torques: Sequence[AnyTorque] = (),
     drives: Sequence[Drive] = (),
     rates: tuple[float, float] = (1.0, 1.0),
@@ -101,7 +102,7 @@ def couple(
         The components.
     speeds : dict of str to float
         Signed speed of each rotor [rad/s].
-    bearings, meshes, unbalances, torques
+    bearings, meshes, unbalances, bows, torques
         What ties and drives them.
     drives
         Where the torque comes in that speeds a train up, see :meth:`coupling.loads.LoadedParts.swing`.
@@ -187,6 +188,8 @@ def couple(
         parts.add_torque(loads, torque)
     for unbalance in unbalances:
         parts.add_unbalance(loads, unbalance)
+    for bow in bows:
+        parts.add_bow(loads, bow)
 
     system = CoupledSystem(
         components=tuple(components),

@@ -49,7 +49,7 @@ class ModalRotor:
     bearings : tuple of Bearing
         Those whose averaged stiffness the bending modes hold.
     ports : tuple of float
-        Places of bearings and gears, m from the left end.
+        Places of bearings, gears and other forces, m from the left end.
     """
 
     lateral: LateralModes
@@ -116,6 +116,7 @@ def modal_rotor(
     frequency_limit: float | None = None,
     count: int | None = None,
     gears_at: Sequence[float] = (),
+    forces_at: Sequence[float] = (),
 ) -> ModalRotor:
     """Reduce a rotor to the modes that a coupled model keeps, and the vectors that make its ports' compliance exact.
 
@@ -129,6 +130,8 @@ def modal_rotor(
         How many bending modes in each plane and how many torsional modes, the rigid rotation included, instead.
     gears_at : sequence of float
         Where forces and torques of gears act, m from the left end.
+    forces_at : sequence of float
+        Where other lateral forces act, such as those of a bow.
 
     Raises
     ------
@@ -142,7 +145,7 @@ def modal_rotor(
     supports = tuple(bearing.mean_support for bearing in bearings)
     lateral = solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)
     torsional = solve_torsional_modes(rotor, frequency_limit=frequency_limit, count=count)
-    ports = (*(bearing.at for bearing in bearings), *gears_at)
+    ports = (*(bearing.at for bearing in bearings), *gears_at, *forces_at)
     if frequency_limit is not None and lateral.count < _FEWEST:
         lateral = solve_lateral_modes(rotor, supports)
     if frequency_limit is not None and torsional.count < _FEWEST:

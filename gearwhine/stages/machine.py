@@ -7,7 +7,7 @@ import numpy as np
 
 import coupling as room
 import rotors as rotor_room
-from gearwhine.case import Case, CaseError, Problem, require, rotor_speeds
+from gearwhine.case import Case, require, rotor_speeds
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
@@ -15,6 +15,7 @@ from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import SolvedPair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, solve_housing
 from gearwhine.stages.housing_checks import static_error_document
+from gearwhine.stages.rotor_loads import given_bow
 
 _HERTZ = 2.0 * np.pi
 
@@ -39,13 +40,13 @@ def build_machine(
     require(case, "rotor", "operation", command="system")
     assert case.operation is not None
     speeds = rotor_speeds(case)
-    require_no_bow(case)
-    components = []
+    components, bows = [], []
     bearings: list[room.MountedBearing] = []
     for given in case.rotor:
         progress(f"modes of rotor {given.name}")
         rotor, held = build_rotor(case, given), build_bearings(case, given.name)
         limit, count = _kept(case, given.name)
+        bow = given_bow(given)
         gears_at = [gear.at for gear in case.gear if gear.rotor == given.name and gear.at is not None]
         components.append(
             room.rotor_component(
@@ -56,11 +57,14 @@ def build_machine(
                     frequency_limit=limit,
                     count=count,
                     gears_at=gears_at,
+                    forces_at=() if bow is None else bow.at.tolist(),
                 ),
                 start=given.start,
                 damping_ratio=given.damping_ratio,
             )
         )
+        if bow is not None:
+            bows.append(room.BowReactions(given.name, bow.at, rotor_room.bow_shape(rotor, bow).reactions))
         # Those of the rotor's own file stand on the ground.
         seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
         bearings += [room.MountedBearing(bearing, given.name, seats.get(bearing.name)) for bearing in held]
@@ -76,6 +80,7 @@ def build_machine(
             for rotor in case.rotor
             for entry in rotor.unbalance
         ],
+        bows=bows,
         torques=driven.torques,
         drives=driven.drives,
         rates=driven.rates,
@@ -90,7 +95,6 @@ def solve_machine(
     ``folder`` and ``fresh`` are those of :func:`gearwhine.stages.housing.solve_housing`.
     """
     require(case, "rotor", "operation", command="system")
-    require_no_bow(case)
     pairs = solve_gears(case, progress) if case.gear_pair else ()
     housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     return housing, pairs, build_machine(case, housing, pairs, progress)
@@ -156,16 +160,3 @@ def _mesh(case: Case, pair: SolvedPair) -> room.GearMesh:
         assert gear.at is not None
         mounted.append(room.MountedGear(name, gear.rotor, gear.at, case.rotor_named(gear.rotor).axis))
     return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, pair.given.backlash)
-
-
-def require_no_bow(case: Case) -> None:
-    """Raise for residual bows, which so far only the analysis of a rotor by itself knows.
-
-    Raises
-    ------
-    CaseError
-    """
-    for index, rotor in enumerate(case.rotor):
-        if rotor.bow:
-            expected = "no bow for the coupled system, which takes it in a later version; 'gearwhine rotors' does now"
-            raise CaseError([Problem(f"rotor[{index}].bow", "a bow", expected, label=f'rotor "{rotor.name}"')])
