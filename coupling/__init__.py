@@ -14,6 +14,7 @@ What the room offers:
 numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
 """
 
+from coupling.base_motion import BaseHarmonic, BaseHistory, BaseMotion
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.errors import CouplingError, TransientError
@@ -39,6 +40,9 @@ from coupling.turning import Turning
 
 __all__ = [
     "AnyTorque",
+    "BaseHarmonic",
+    "BaseHistory",
+    "BaseMotion",
     "Block",
     "BowReactions",
     "Checkpoint",

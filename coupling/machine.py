@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from coupling.base_motion import BaseMotion, base_loads, gravity_load
 from coupling.component import Component, HousingComponent, RotorComponent, pedestal_component
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.errors import CouplingError
@@ -92,6 +93,8 @@ def couple(
     bows: Sequence[BowReactions] = (),
     torques: Sequence[AnyTorque] = (),
     drives: Sequence[Drive] = (),
+    base: BaseMotion | None = None,
+    gravity: Sequence[float] | None = None,
     rates: tuple[float, float] = (1.0, 1.0),
 ) -> Machine:
     """Tie rotors and housing together and put the loads on.
@@ -106,6 +109,10 @@ def couple(
         What ties and drives them.
     drives
         Where the torque comes in that speeds a train up, see :meth:`coupling.loads.LoadedParts.swing`.
+    base
+        How the ground moves: under bearings, pedestals and the housing's supports alike.
+    gravity
+        Acceleration of free fall along x, y, z [m/s²]; none by default.
     rates
         The least and the highest speed that the machine will run at, as parts of ``speeds``: bearings' tables over
         speed are followed between them.
@@ -190,6 +197,18 @@ def couple(
         parts.add_unbalance(loads, unbalance)
     for bow in bows:
         parts.add_bow(loads, bow)
+
+    under = {
+        mounted.bearing.name: (*rotor.axis, rotor.start + mounted.bearing.at)
+        for mounted in bearings
+        for rotor in [parts.rotor(mounted.rotor)[1]]
+    }
+    if base is not None:
+        harmonic, timed = base_loads(components, [speeds.get(part.name, 0.0) for part in components], base, under)
+        loads.harmonic += harmonic
+        loads.timed += timed
+    if gravity is not None:
+        loads.constant += gravity_load(components, gravity, under)
 
     system = CoupledSystem(
         components=tuple(components),

@@ -37,8 +37,9 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     rigid = vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)]
     if rigid.size:
         driven = rigid.T @ system.load
-        scale = np.abs(rigid.T) @ np.abs(system.load)
-        if np.any(np.abs(driven) > 1e-6 * scale):
+        # Beside a load that balances in itself, and beside the rounding of what a motion is.
+        scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _RIGID * np.linalg.norm(system.load)
+        if np.any(np.abs(driven) > scale):
             raise CouplingError(
                 "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
                 "rotation or a housing without supports; check the torques in and out against the gear ratios, and the "

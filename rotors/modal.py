@@ -26,6 +26,7 @@ from .axial import AxialModes, solve_axial_modes
 from .bearing import Bearing
 from .errors import require
 from .lateral import LateralModes, solve_lateral_modes
+from .participation import Participation, participation
 from .shaft import Rotor
 from .torsion import TorsionalModes, solve_torsional_modes
 
@@ -50,6 +51,8 @@ class ModalRotor:
         Those whose averaged stiffness the bending modes hold.
     ports : tuple of float
         Places of bearings, gears and other forces, m from the left end.
+    participation : Participation or None
+        Of the modes and vectors in the rigid motions of the ground.
     """
 
     lateral: LateralModes
@@ -57,6 +60,7 @@ class ModalRotor:
     axial: AxialModes | None = None
     bearings: tuple[Bearing, ...] = ()
     ports: tuple[float, ...] = ()
+    participation: Participation | None = None
 
     @property
     def gyroscopic(self) -> FloatArray:
@@ -155,7 +159,8 @@ def modal_rotor(
         tilted = [support.at for support in supports if support.tilt_stiffness > 0.0]
         lateral = attach_loads(lateral, forces_at=ports, moments_at=tilted)
         torsional = attach_motions(torsional, gears_at)
-    return ModalRotor(lateral, torsional, _axial(rotor, bearings, frequency_limit, count), tuple(bearings), ports)
+    axial = _axial(rotor, bearings, frequency_limit, count)
+    return ModalRotor(lateral, torsional, axial, tuple(bearings), ports, participation(rotor, lateral, axial))
 
 
 def _axial(

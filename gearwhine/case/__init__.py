@@ -33,6 +33,7 @@ from gearwhine.case.attachments import (
     SixSprings,
     amounts,
 )
+from gearwhine.case.base_motion import Base, BaseHarmonic, BaseHistory
 from gearwhine.case.box import Box, Feet, Walls
 from gearwhine.case.bundled import bundled_case, bundled_cases
 from gearwhine.case.dump import case_document, dump_case
@@ -92,6 +93,9 @@ __all__ = [
     "AppliedTorque",
     "AxialDashpots",
     "AxialSprings",
+    "Base",
+    "BaseHarmonic",
+    "BaseHistory",
     "Bearing",
     "BearingLoad",
     "Boss",

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
 from gearwhine.case import units
+from gearwhine.case.base_motion import Acceleration, Base
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     LengthFromZero,
@@ -48,6 +49,7 @@ class Operation(Table):
     `over_time` is added to the torque, and the outputs take it in their proportions unless one has its own; `ripple`
     swings about it. `motor` and `load` are torque over speed of a run whose speed is free: what drives, and what
     the outputs together take, both at the first driver's rotor (without `load`: `torque`, whatever the speed).
+    `base` moves the ground; `gravity` is an acceleration along x, y, z [m/s²], None for none.
     """
 
     speed: Speed
@@ -57,6 +59,8 @@ class Operation(Table):
     ripple: tuple[TorqueRipple, ...] = Field(default=(), max_length=MOST_ENTRIES)
     motor: TorqueLine | None = None
     load: TorqueLine | None = None
+    base: Base | None = None
+    gravity: tuple[Acceleration, Acceleration, Acceleration] | None = None
     output: tuple[Output, ...] = Field(default=(), max_length=1000)
 
 

@@ -40,6 +40,12 @@ def _parts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
             if key in operation:
                 points = zip(operation[key]["speed_rpm"], operation[key]["torque_n_m"], strict=True)
                 lines.append(f"{key}: " + ", ".join(f"{torque:.6g} N·m at {speed:.6g} rpm" for speed, torque in points))
+        if "gravity_m_per_s2" in operation:
+            lines.append("gravity: " + ", ".join(f"{part:g}" for part in operation["gravity_m_per_s2"]) + " m/s²")
+        if "base" in operation:
+            base = operation["base"]
+            moves = [f"{frequency:.6g} Hz" for frequency in base["harmonics_hz"]]
+            lines.append("base moves: " + ", ".join(moves + ["a table over time"] * base["over_time"]))
         yield from _named("operation", lines)
     if "transient" in document:
         yield "transient", _transient_line(document["transient"])

@@ -13,7 +13,7 @@ from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import SolvedPair, solve_gears
-from gearwhine.stages.housing import SolvedHousing, solve_housing
+from gearwhine.stages.housing import SolvedHousing, base_participation, solve_housing
 from gearwhine.stages.housing_checks import static_error_document
 from gearwhine.stages.rotor_loads import given_bow
 
@@ -61,6 +61,7 @@ def build_machine(
                 ),
                 start=given.start,
                 damping_ratio=given.damping_ratio,
+                axis=given.axis,
             )
         )
         if bow is not None:
@@ -71,7 +72,7 @@ def build_machine(
     driven = driving(case, components)
     return room.couple(
         components,
-        None if housing is None else _housing_component(case, housing),
+        None if housing is None else _housing_component(case, housing, progress),
         speeds=speeds,
         bearings=bearings,
         meshes=[_mesh(case, pair) for pair in pairs],
@@ -84,6 +85,8 @@ def build_machine(
         torques=driven.torques,
         drives=driven.drives,
         rates=driven.rates,
+        base=base_motion(case),
+        gravity=case.operation.gravity,
     )
 
 
@@ -140,8 +143,27 @@ def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
     return _HERTZ * max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit), None
 
 
-def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingComponent:
+def base_motion(case: Case) -> room.BaseMotion | None:
+    """How the ground of a case moves, if it does."""
+    given = None if case.operation is None else case.operation.base
+    if given is None:
+        return None
+    parts: list[room.BaseHarmonic | room.BaseHistory] = [
+        room.BaseHarmonic(_HERTZ * one.frequency, np.array(one.amplitudes) * np.exp(1j * one.phase))
+        for one in given.harmonic
+    ]
+    if given.over_time is not None:
+        parts.append(room.BaseHistory(np.array(given.over_time.time), np.array(given.over_time.rows).T))
+    return room.BaseMotion(tuple(parts), given.point)
+
+
+def _housing_component(case: Case, solved: SolvedHousing, progress: Progress) -> room.HousingComponent:
     assert case.housing is not None
+    assert case.operation is not None
+    participation = None
+    if case.operation.base is not None or case.operation.gravity is not None:
+        progress("taking the housing's mass for the motion of its base and its weight")
+        participation = base_participation(case, solved.mesh, solved.modes)
     return room.housing_component(
         solved.modes,
         solved.damping_ratios,
@@ -149,6 +171,7 @@ def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingCompone
         seat_z={seat.name: seat.center[2] for seat in case.housing.seat},
         damping_matrix=solved.damping_matrix,
         sensors={name: solved.modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
+        participation=participation,
     )
 
 

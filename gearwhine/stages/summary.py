@@ -63,8 +63,17 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
 
 
 def _lines(operation: Operation) -> dict[str, Any]:
-    """Torque over speed, as the free speed of a run follows it."""
-    return {
+    """Torque over speed, as the free speed of a run follows it; gravity, and what of the base moves."""
+    document: dict[str, Any] = {}
+    if operation.gravity is not None:
+        document["gravity_m_per_s2"] = list(operation.gravity)
+    if operation.base is not None:
+        document["base"] = {
+            "point_m": list(operation.base.point),
+            "harmonics_hz": [one.frequency for one in operation.base.harmonic],
+            "over_time": operation.base.over_time is not None,
+        }
+    return document | {
         key: {"speed_rpm": [speed * _RPM for speed in line.speed], "torque_n_m": list(line.torque)}
         for key, line in (("motor", operation.motor), ("load", operation.load))
         if line is not None

@@ -1,6 +1,6 @@
 """The transient of a case: the machine turning under load, and what its sensors, gears and bearings show."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from gearwhine.case import Case, CaseError, Problem, Transient, require, rotor_s
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.driving import driving
 from gearwhine.stages.housing import SolvedHousing
+from gearwhine.stages.machine import base_motion
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -95,6 +96,14 @@ def solve_transient(
         progress=lambda fraction: progress("marching through the transient", fraction),
     )
     named = room.histories(machine, result, driven.turning)
+    base = base_motion(case)
+    if base is not None and housing is not None:
+        # What an accelerometer shows is the motion in space.
+        absolute = {
+            name: named.sensor_acceleration[name] + base.acceleration_at(port.position, port.direction, named.times)
+            for name, port in housing.sensors.items()
+        }
+        named = replace(named, sensor_acceleration=absolute)
     window = _window(case)
     interval = settings.sample_interval
     return SolvedTransient(
