@@ -197,3 +197,18 @@ def test_a_slope_of_torque_resists() -> None:
     result = simulate(parts.system, settings, TransientOutputs(row, row, row), initial=start)
     expected = 3.0 * np.exp(-0.2 * result.times / shaft.polar_inertia)
     np.testing.assert_allclose(result.velocity[:, 0], expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize("phase", [0.0, -1.2])
+def test_a_ripple_swings_the_train_and_does_not_move_it_off(phase: float) -> None:
+    """As one body the train swings by A/(J w²) about where it is, whatever the phase at which it starts."""
+    amplitude, frequency = 3.0, 300.0
+    ripple = TorqueRipple("input", 0.0, amplitude, phase, frequency=frequency)
+    parts = machine(200.0, torques=[*balanced(30.0), ripple])
+    result = marched(parts, None, 40.0 * np.pi / frequency)
+    angle = histories(parts, result).gear_motion["pinion"][:, 2]
+    inertia = SHAFTS["input"].polar_inertia + SHAFTS["output"].polar_inertia * RATIO**2
+    drift = np.polyfit(result.times, angle, 1)[0]
+    assert abs(drift) < 0.02 * amplitude / (inertia * frequency)
+    # Well below the train's own torsional modes it moves as one body.
+    assert 0.5 * np.ptp(angle) == pytest.approx(amplitude / (inertia * frequency**2), rel=0.05)
