@@ -3,7 +3,7 @@
 What the room offers:
 
 - :func:`housing_component`, :func:`rotor_component` -- components in mass-normalised coordinates.
-- :func:`couple` with :class:`MountedBearing`, :class:`GearMesh`, :class:`Unbalance`, :class:`Torque` -- the
+- :func:`couple` with :class:`MountedBearing`, :class:`GearMesh` and the loads of :mod:`coupling.loads` -- the
   :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
 - :func:`coupled_modes` -- complex natural modes about the mean contact, or that of an instant (:func:`contact_at`),
   with energies by component, bearing and gear mesh; :func:`stability` -- which grow, and what feeds them.
@@ -20,14 +20,17 @@ What the room offers:
 numba is imported only when one of :func:`simulate`, :func:`static_equilibrium` and :mod:`coupling.periodic` runs.
 """
 
+from coupling.base_motion import BaseHarmonic, BaseHistory, BaseMotion
 from coupling.campbell import SystemCampbell, SystemCrossing, system_campbell
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
 from coupling.excitation import ExcitationLine, excitation_lines
+from coupling.free_speed import free_speed
 from coupling.histories import Histories, histories, transient_outputs
-from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
+from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
+from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, couple
 from coupling.marching import Block, Checkpoint, march_blocks
 from coupling.modal_motion import ModalRows, modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
@@ -56,7 +59,12 @@ from coupling.transmissibility import (
 from coupling.turning import Turning
 
 __all__ = [
+    "AnyTorque",
+    "BaseHarmonic",
+    "BaseHistory",
+    "BaseMotion",
     "Block",
+    "BowReactions",
     "Checkpoint",
     "Component",
     "ContactConnector",
@@ -64,6 +72,7 @@ __all__ = [
     "CoupledModes",
     "CoupledSystem",
     "CouplingError",
+    "Drive",
     "EnergyBalance",
     "ExcitationLine",
     "FrequencyResponse",
@@ -93,6 +102,9 @@ __all__ = [
     "SystemCrossing",
     "TimedLoad",
     "Torque",
+    "TorqueHistory",
+    "TorqueRipple",
+    "TorqueSlope",
     "TransientError",
     "TransientFigures",
     "TransientOutputs",
@@ -106,6 +118,7 @@ __all__ = [
     "couple",
     "coupled_modes",
     "excitation_lines",
+    "free_speed",
     "histories",
     "housing_component",
     "linear_matrices",

@@ -6,9 +6,11 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from coupling.connector import LinearConnector
 from coupling.machine import Machine, MountedGear
 from coupling.settings import TransientOutputs
 from coupling.system import embed
+from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -67,7 +69,7 @@ def transient_outputs(machine: Machine) -> TransientOutputs:
         rotor = next(rotor for rotor in machine.rotors if rotor.name == gear.rotor)
         for row in (rotor.direction(gear.at, 0), rotor.direction(gear.at, 1), rotor.rotation(gear.at)):
             displacement.append(embed(system.components, numbers[rotor.name], row))
-    deflections = [row for connector in system.linear for row in connector.directions.T]
+    deflections = [row for connector in _bearings(machine) for row in connector.directions.T]
     sensors = []
     if machine.housing is not None:
         which = numbers[machine.housing.name]
@@ -80,17 +82,20 @@ def transient_outputs(machine: Machine) -> TransientOutputs:
     )
 
 
-def histories(machine: Machine, result: Recorded) -> Histories:
-    """Name what a transient or a periodic response with :func:`transient_outputs` recorded."""
+def histories(machine: Machine, result: Recorded, turning: Turning | None = None) -> Histories:
+    """Name what a transient or a periodic response with :func:`transient_outputs` recorded.
+
+    At its speeds over time, or the nominal ones.
+    """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
+    rates = (turning or Turning.steady()).at(result.times)[1]
     forces = {}
     column = 0
-    for connector in machine.system.linear:
+    for connector in _bearings(machine):
         columns = slice(column, column + connector.directions.shape[1])
         column = columns.stop
-        force = deflections[:, columns] @ connector.stiffness.T + result.velocity[:, columns] @ connector.damping.T
-        forces[connector.name] = force[:, :2]
+        forces[connector.name] = _force(connector, deflections[:, columns], result.velocity[:, columns], rates)
     names = [] if machine.housing is None else list(machine.housing.sensors)
     contacts = [contact.name for contact in machine.system.contacts]
     return Histories(
@@ -107,3 +112,22 @@ def _gears(machine: Machine) -> list[MountedGear]:
     """Every gear of the meshes, once, in order."""
     gears = [gear for mesh in machine.meshes for gear in (mesh.driver, mesh.driven)]
     return list({gear.name: gear for gear in gears}.values())
+
+
+def _bearings(machine: Machine) -> tuple[LinearConnector, ...]:
+    return machine.system.linear[: len(machine.bearings)]
+
+
+def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatArray, rates: FloatArray) -> FloatArray:
+    """x and y of a bearing's force [N], shape (s, 2), at the speed of each sample as a part of the nominal one."""
+    table = connector.over_speed
+    if table is None:
+        return np.asarray((deflection @ connector.stiffness.T + velocity @ connector.damping.T)[:, :2])
+    force = np.zeros((len(rates), 2))
+    for row in range(len(table.rates)):
+        # The share that each speed of the table has in what is linear between them.
+        share = np.interp(rates, table.rates, np.eye(len(table.rates))[row])
+        held = np.flatnonzero(share)
+        push = deflection[held] @ table.stiffness[row].T + velocity[held] @ table.damping[row].T
+        force[held] += share[held, None] * push[:, :2]
+    return force

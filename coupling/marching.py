@@ -24,7 +24,7 @@ from coupling.boundaries import block_ends, boundaries, coarsest_step, same_time
 from coupling.condensation import condensed
 from coupling.errors import TransientError
 from coupling.settings import TransientOutputs, TransientSettings
-from coupling.statics import static_equilibrium
+from coupling.statics import coasting_velocity, static_equilibrium
 from coupling.step import KernelArrays, StepCache, cut, empty_samples, kernel_arrays
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
@@ -199,10 +199,11 @@ class _Run:
         self.reach = float(_resting(system, turning, pushing).max(initial=0.0))
 
     def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
-        """Static equilibrium under the loads of the start, unless another state is given."""
+        """Static equilibrium under the loads of the start, swinging where nothing resists; or a state that is given."""
         system, (_, rates, swings) = self.system, self.turning.at(0.0)
         load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.swing)
-        q, v = initial or (static_equilibrium(replace(system, load=load)), np.zeros(system.size))
+        resting = replace(system, load=load)
+        q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)
         first = float(self._bounds(0)[1])
         turned, rates, _ = self.turning.at(1e-7 * first)

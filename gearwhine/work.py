@@ -48,8 +48,6 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
 
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
-    if case.operation is not None:
-        machine_stage.require_no_bow(case)
     if case.housing is not None:
         # Found out before the work, not after it.
         pictures.load_pyvista()

@@ -34,6 +34,7 @@ from gearwhine.case.attachments import (
     SixSprings,
     amounts,
 )
+from gearwhine.case.base_motion import Base, BaseHarmonic, BaseHistory
 from gearwhine.case.box import Box, Feet, Walls
 from gearwhine.case.bundled import bundled_case, bundled_cases
 from gearwhine.case.dump import case_document, dump_case
@@ -87,6 +88,7 @@ from gearwhine.case.shafts import (
     RollingStiffness,
 )
 from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
+from gearwhine.case.torques import Run, TorqueHistory, TorqueLine, TorqueRipple
 from gearwhine.case.train import shaft_of
 
 __all__ = [
@@ -94,6 +96,9 @@ __all__ = [
     "AppliedTorque",
     "AxialDashpots",
     "AxialSprings",
+    "Base",
+    "BaseHarmonic",
+    "BaseHistory",
     "Bearing",
     "BearingLoad",
     "Boss",
@@ -141,6 +146,7 @@ __all__ = [
     "Rotor",
     "RotorAnalysis",
     "RoundDisc",
+    "Run",
     "Seat",
     "Segment",
     "Sensor",
@@ -153,6 +159,9 @@ __all__ = [
     "Sweep",
     "SweptKey",
     "ToothStiffness",
+    "TorqueHistory",
+    "TorqueLine",
+    "TorqueRipple",
     "Transient",
     "Unbalance",
     "UnbalanceResponse",

@@ -74,6 +74,8 @@ TILT_DAMPING = Dimension("a tilting damping", "N*m*s/rad", "0.1 N*m*s/rad")
 FORCE = Dimension("a force", "N", "1 kN")
 TORQUE = Dimension("a torque", "N*m", "71.77 N*m")
 ACCELERATION = Dimension("an acceleration", "m/s^2", "9.81 m/s^2")
+ANGULAR_ACCELERATION = Dimension("an angular acceleration", "rad/s^2", "10 rad/s^2")
+TIME = Dimension("a time", "s", "10 s")
 ANGLE = Dimension("an angle", "rad", "24 deg", display="deg")
 FREQUENCY = Dimension("a frequency", "Hz", "3.2 kHz")
 SPEED = Dimension("an angular speed", "rad/s", "5500 rpm", display="rpm")
@@ -82,7 +84,7 @@ RATIO = Dimension("a plain number", "", "0.01")
 
 _DIMENSIONS = (
     *(LENGTH, MASS, DENSITY, STRESS, INERTIA, IMBALANCE, STIFFNESS, COUPLED_STIFFNESS, DAMPING, TILT_DAMPING),
-    *(TORQUE, ACCELERATION, ANGLE, FREQUENCY, SPEED, DIAMETRAL_PITCH),
+    *(TORQUE, ACCELERATION, TIME, ANGLE, FREQUENCY, SPEED, DIAMETRAL_PITCH),
 )
 
 

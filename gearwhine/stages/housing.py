@@ -241,6 +241,17 @@ def _solve_modes(
     return modes, matrices.total_mass, damping, checks, seconds
 
 
+def base_participation(case: Case, mesh: Mesh, modes: room.ModeSet) -> FloatArray:
+    """Participation of modes and attachments in the motions of the ground, about the origin, shape (n, 6) [√kg, √kg m].
+
+    φᵀ M R over every degree of freedom: what is fixed moves with the ground, and pulls by the consistent mass.
+    """
+    parted, material, materials = materials_of(case, mesh)
+    mass = attach_all(case, mesh, room.assemble(parted, material, materials)).mass
+    moved = mass @ room.rigid_motions(mesh.points, np.zeros(3)).reshape(-1, 6)
+    return modes.project_all(sparse.csr_array(moved.T))
+
+
 def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:
     """Pair the model's dominant modes with the measured ones.
 

@@ -1,16 +1,17 @@
 """The transient of a case: the machine turning under load, and what its sensors, gears and bearings show."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 import coupling as room
-from gearwhine.case import Case, require, rotor_speeds
+from gearwhine.case import Case, CaseError, Problem, Transient, require, rotor_speeds
 from gearwhine.progress import Progress, silent
+from gearwhine.stages.driving import driving
 from gearwhine.stages.housing import SolvedHousing
-from gearwhine.stages.machine import HousingInMachine
+from gearwhine.stages.machine import HousingInMachine, base_motion
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -28,6 +29,8 @@ class SolvedTransient:
     Attributes
     ----------
     machine : coupling.Machine
+    turning : coupling.Turning or None
+        Speed over time; None where it is the nominal one all along.
     result : coupling.TransientResult
     histories : coupling.Histories
         Of the recorded revolutions.
@@ -40,6 +43,7 @@ class SolvedTransient:
     """
 
     machine: room.Machine
+    turning: room.Turning | None
     result: room.TransientResult
     histories: room.Histories
     sensor_spectra: dict[str, room.Spectrum]
@@ -55,10 +59,11 @@ def solve_transient(
     *,
     housing: SolvedHousing | HousingInMachine | None = None,
 ) -> SolvedTransient:
-    """March the machine through the case's revolutions and take the spectra of those not discarded.
+    """March the machine through the case's revolutions, or its run, and take the spectra of what is not discarded.
 
     The record holds whole revolutions of the first driver. Where every shaft then turns a whole number of times
-    the spectra are taken as they are, each line exact; otherwise under Hann's window.
+    the spectra are taken as they are, each line exact; otherwise, and over a run, under Hann's window. A run is sampled
+    for its highest speed, and ``discard`` counts revolutions as they are turned.
 
     Raises
     ------
@@ -69,14 +74,17 @@ def solve_transient(
     assert case.operation is not None
     assert case.transient is not None
     given = case.transient
-    period = _HERTZ / abs(case.operation.speed)
-    limit = _trusted_limit(housing, mesh_frequencies)
+    driven = driving(case, machine.rotors)
+    fastest = driven.rates[1] if driven.turning is None else float(driven.turning.rates.max())
+    nominal = _HERTZ / abs(case.operation.speed)
+    period = nominal / fastest
+    limit = _trusted_limit(housing, tuple(fastest * frequency for frequency in mesh_frequencies))
     per_revolution = _samples_per_revolution(period, limit, given.points_per_revolution)
     settings = room.TransientSettings(
-        duration=given.revolutions * period,
-        record_from=given.discard * period,
+        duration=_duration(given, nominal),
+        record_from=_record_from(given, nominal, driven.turning),
         sample_interval=period / per_revolution,
-        largest_step=period / given.points_per_revolution,
+        largest_step=nominal / given.points_per_revolution,
         tolerance=given.tolerance,
     )
     progress("compiling the time stepper (the first time takes longer)")
@@ -85,13 +93,23 @@ def solve_transient(
         settings,
         room.transient_outputs(machine),
         initial=starting_state(case, machine),
+        turning=driven.turning,
         progress=lambda fraction: progress("marching through the transient", fraction),
     )
-    named = room.histories(machine, result)
+    named = room.histories(machine, result, driven.turning)
+    base = base_motion(case)
+    if base is not None and housing is not None:
+        # What an accelerometer shows is the motion in space.
+        absolute = {
+            name: named.sensor_acceleration[name] + base.acceleration_at(port.position, port.direction, named.times)
+            for name, port in housing.sensors.items()
+        }
+        named = replace(named, sensor_acceleration=absolute)
     window = _window(case)
     interval = settings.sample_interval
     return SolvedTransient(
         machine=machine,
+        turning=driven.turning,
         result=result,
         histories=named,
         sensor_spectra={
@@ -140,6 +158,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
         )
     return {
         "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
+        "run": _run_document(case, solved.turning),
         "steps": result.steps,
         "rejected_steps": result.rejected,
         "smallest_step_s": result.smallest_step,
@@ -169,6 +188,46 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     }
 
 
+def _run_document(case: Case, turning: room.Turning | None) -> dict[str, Any] | None:
+    """Speeds of the first driver's rotor over a run; None at steady speed."""
+    if turning is None:
+        return None
+    assert case.operation is not None
+    speeds = case.operation.speed * turning.rates * 60.0 / _HERTZ
+    return {
+        "from_rpm": float(speeds[0]),
+        "to_rpm": float(speeds[-1]),
+        "seconds": float(turning.times[-1]),
+        "revolutions": float(turning.at(turning.times[-1])[0][0]) * abs(case.operation.speed) / _HERTZ,
+    }
+
+
+def _duration(given: Transient, period: float) -> float:
+    """[s]."""
+    if given.run is not None:
+        return given.run.duration
+    assert given.revolutions is not None
+    return given.revolutions * period
+
+
+def _record_from(given: Transient, period: float, turning: room.Turning | None) -> float:
+    """When the discarded revolutions are done [s].
+
+    Raises
+    ------
+    CaseError
+        Where a run does not turn so far.
+    """
+    if turning is None or given.discard == 0.0:
+        return given.discard * period
+    time = float(turning.times_of(np.array([given.discard * period]))[0])
+    if not time < _duration(given, period):
+        turned = float(turning.at(_duration(given, period))[0][0]) / period
+        expected = f"fewer revolutions than the {turned:g} that the run turns"
+        raise CaseError([Problem("transient.discard", given.discard, expected)])
+    return time
+
+
 def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float | None:
     """Largest force on the back flanks of a mesh [N]; None where they cannot meet."""
     meshes = solved.machine.meshes
@@ -192,6 +251,8 @@ def _samples_per_revolution(period: float, limit: float, floor: int) -> int:
 
 def _window(case: Case) -> room.Window:
     assert case.transient is not None
+    if case.transient.revolutions is None:
+        return "hann"
     recorded = case.transient.revolutions - case.transient.discard
     turns = [recorded * abs(ratio) for ratio in rotor_speeds(case, 1.0).values()]
     return "uniform" if all(abs(turn - round(turn)) < 1e-9 for turn in turns) else "hann"

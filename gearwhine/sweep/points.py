@@ -16,7 +16,6 @@ from gearwhine.case import SPEED_KEY, Case, CaseError, Problem, SweptKey, case_d
 from gearwhine.output import file_stems
 from gearwhine.stages.contents import file_contents, installed, source_digest, with_contents
 from gearwhine.stages.kept_modes import solution_inputs
-from gearwhine.stages.machine import require_no_bow
 
 # Tables that no transient depends on.
 _WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "provenance"})
@@ -79,7 +78,6 @@ def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey])
         try:
             case = load_case(source, [*settings, *overrides]).case
             require(case, "rotor", "operation", "transient", command="sweep")
-            require_no_bow(case)
         except CaseError as error:
             for problem in error.problems:
                 problems[_of_the_sweep(problem, overrides)] = None
