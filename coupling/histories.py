@@ -42,8 +42,8 @@ class Histories:
         Along each sensor [m/s²].
     gear_motion : dict of str to ndarray, shape (s, 3)
         x, y [m] of each gear's centre, and its rotation beside the steady one [rad].
-    bearing_force : dict of str to ndarray, shape (s, 2)
-        Force of each shaft on its bearing along x and y [N].
+    tie_force : dict of str to ndarray, shape (s, d)
+        Force of each shaft on its bearing in all the directions that it holds, x and y first [N, N m].
     mesh_force : dict of str to ndarray, shape (s,)
         Force along the line of action [N], drive flanks and back flanks apart.
     mesh_compression : dict of str to ndarray, shape (s,)
@@ -53,9 +53,14 @@ class Histories:
     times: FloatArray
     sensor_acceleration: dict[str, FloatArray]
     gear_motion: dict[str, FloatArray]
-    bearing_force: dict[str, FloatArray]
+    tie_force: dict[str, FloatArray]
     mesh_force: dict[str, FloatArray]
     mesh_compression: dict[str, FloatArray]
+
+    @property
+    def bearing_force(self) -> dict[str, FloatArray]:
+        """Force of each shaft on its bearing along x and y [N], shape (s, 2) each."""
+        return {name: force[:, :2] for name, force in self.tie_force.items()}
 
 
 def transient_outputs(machine: Machine) -> TransientOutputs:
@@ -90,14 +95,14 @@ def histories(machine: Machine, result: Recorded) -> Histories:
         columns = slice(column, column + connector.directions.shape[1])
         column = columns.stop
         force = deflections[:, columns] @ connector.stiffness.T + result.velocity[:, columns] @ connector.damping.T
-        forces[connector.name] = force[:, :2]
+        forces[connector.name] = force
     names = [] if machine.housing is None else list(machine.housing.sensors)
     contacts = [contact.name for contact in machine.system.contacts]
     return Histories(
         times=result.times,
         sensor_acceleration={name: result.acceleration[:, i] for i, name in enumerate(names)},
         gear_motion={gear.name: result.displacement[:, 3 * i : 3 * i + 3] for i, gear in enumerate(gears)},
-        bearing_force=forces,
+        tie_force=forces,
         mesh_force={name: result.force[:, i] for i, name in enumerate(contacts)},
         mesh_compression={name: result.compression[:, i] for i, name in enumerate(contacts)},
     )

@@ -13,7 +13,7 @@ from coupling.signature.levels import ACCELERATION_REFERENCE, decibels, from_dec
 from coupling.signature.line_names import LineName, line_names
 from coupling.signature.order_tracking import OrderMap, TurnedSignal, order_map, order_resampled, order_spectrum
 from coupling.signature.sidebands import Sideband, sidebands
-from coupling.signature.transfer_paths import HousingPaths, SensorPaths, housing_paths
+from coupling.signature.transfer_paths import HousingPaths, SensorPaths, housing_paths, mode_parts
 
 __all__ = [
     "ACCELERATION_REFERENCE",
@@ -29,6 +29,7 @@ __all__ = [
     "from_decibels",
     "housing_paths",
     "line_names",
+    "mode_parts",
     "order_map",
     "order_resampled",
     "order_spectrum",

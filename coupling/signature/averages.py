@@ -72,12 +72,9 @@ def power_density(
         For a length or an overlap that the record does not allow.
     """
     starts = _starts(signal.shape[-1], length, round(length * (1.0 - overlap)))
-    total = 0.0
-    for start in starts:
-        spectrum = amplitude_spectrum(signal[..., start : start + length], interval, window)
-        total = total + spectrum.amplitude[..., 1:] ** 2
-    frequencies = spectrum.frequencies[1:]
-    squares = 0.5 * np.asarray(total) / len(starts)
+    spectra = (amplitude_spectrum(signal[..., start : start + length], interval, window) for start in starts)
+    squares = 0.5 / len(starts) * np.asarray(sum(spectrum.amplitude[..., 1:] ** 2 for spectrum in spectra))
+    frequencies = np.asarray(np.fft.rfftfreq(length, interval)[1:], dtype=np.float64)
     if length % 2 == 0:
         squares[..., -1] *= 2.0  # the line at half the sampling rate alternates: its mean square is its own square
     density = squares / (_NOISE_BANDWIDTH[window] * frequencies[0])

@@ -17,12 +17,12 @@ ACCELERATION_REFERENCE = 1e-6
 
 def rms_of_peak(amplitude: npt.ArrayLike) -> FloatArray:
     """Root mean square of sines by their peak amplitudes."""
-    return np.asarray(amplitude, dtype=np.float64) / np.sqrt(2.0)
+    return np.asarray(np.asarray(amplitude, dtype=np.float64) / np.sqrt(2.0))
 
 
 def peak_of_rms(rms: npt.ArrayLike) -> FloatArray:
     """Peak amplitudes of sines by their root mean square."""
-    return np.asarray(rms, dtype=np.float64) * np.sqrt(2.0)
+    return np.asarray(np.asarray(rms, dtype=np.float64) * np.sqrt(2.0))
 
 
 def decibels(amplitude: npt.ArrayLike, reference: float = ACCELERATION_REFERENCE) -> FloatArray:

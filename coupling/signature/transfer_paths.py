@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from coupling.component import HousingComponent
 from coupling.errors import CouplingError
 from coupling.machine import Machine
 
@@ -93,6 +94,24 @@ class HousingPaths:
         parts = self.acceleration * self.sensors[sensor]
         local = parts[..., self.modes :].sum(axis=2, keepdims=True)
         return SensorPaths(sensor, self.bearings, np.concatenate([parts[..., : self.modes], local], axis=2))
+
+
+def mode_parts(housing: HousingComponent, sensor: str, modal: ComplexArray, lines: ComplexArray) -> ComplexArray:
+    """Parts of a sensor's lines by recorded motion of the housing's modes, free vibration included, shape (l, m + 1).
+
+    The last is what the lines have beyond the modes: local compliance. The sum is the line.
+
+    Parameters
+    ----------
+    housing : HousingComponent
+    sensor : str
+    modal : ndarray of complex, shape (l, m)
+        Complex amplitudes of the modes' accelerations [m √kg / s²].
+    lines : ndarray of complex, shape (l,)
+        Complex amplitudes of the sensor's acceleration [m/s²].
+    """
+    parts = modal * housing.sensors[sensor][: modal.shape[1]]
+    return np.concatenate([parts, (lines - parts.sum(axis=1))[:, None]], axis=1)
 
 
 def housing_paths(machine: Machine, frequencies: FloatArray, forces: Mapping[str, ComplexArray]) -> HousingPaths:
