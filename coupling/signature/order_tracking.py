@@ -103,7 +103,8 @@ def order_resampled(
             "all: say how many a turn, or take a part of the record in which the machine turns faster"
         )
     turns = first + np.arange(int(last - first) * needed) / needed
-    at = np.clip(turning.times_of(turns / turns_per_second), times[0], times[-1])
+    # The last ones may lie within the last sample's interval, where the spline goes on.
+    at = turning.times_of(turns / turns_per_second)
     values = make_interp_spline(times, np.moveaxis(signal, -1, 0), k=_DEGREE)(at)
     speeds = turns_per_second * turning.at(at)[1]
     return TurnedSignal(turns, at, speeds, np.moveaxis(np.asarray(values), 0, -1), needed)

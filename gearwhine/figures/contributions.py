@@ -12,6 +12,7 @@ _LINES = 3  # of each sensor
 _PARTS = 6  # of each kind
 _BAR, _NAMES, _BETWEEN = 3.4, 31.0, 15.0  # height of a bar, room for its name, and above a panel [mm]
 _MARGIN = 4.0
+_VISIBLE = 0.05  # percent, below which a part is next to nothing
 
 
 def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> Figure:
@@ -24,9 +25,8 @@ def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> 
     groups = [(name, line, _gathered(line.modes), _gathered((*line.bearings, line.free))) for name, line in shown]
     heights = [_BAR * max(len(modes), len(bearings)) for _, _, modes, bearings in groups]
     height = HEAD + FOOT + sum(heights) + _BETWEEN * len(groups)
-    figure = sheet(
-        height, title, "parts in phase with the line, in percent of it; left: housing modes, right: bearings"
-    )
+    note = f"{title}; parts in phase with the line, in percent of it; left: housing modes, right: bearings"
+    figure = sheet(height, "Where the lines come from", note)
     up = height - HEAD
     for (name, line, modes, bearings), tall in zip(groups, heights, strict=True):
         up -= _BETWEEN - 5.0 + tall
@@ -62,11 +62,16 @@ def _draw(axes: Axes, parts: list[tuple[str, float]], color: str) -> None:
     axes.invert_yaxis()
     axes.axvline(0.0, color=GREY, lw=0.7)
     low, high = min(0.0, *shares), max(0.0, *shares)
-    room = 0.16 * (high - low) or 1.0
-    axes.set_xlim(low - (room if low < 0.0 else 0.0), high + room)
+    room = 0.2 * (high - low) or 1.0
+    # A value stands beyond its bar, on the left of negative ones.
+    axes.set_xlim(low - (room if min(shares) <= -_VISIBLE else 0.0), high + room)
     for place, share in enumerate(shares):
         axes.annotate(
-            f"{share:.3g}", (share, place), (2.0 if share >= 0.0 else -2.0, 0.0), textcoords="offset points",
-            fontsize=NOTE - 0.5, color=INK, va="center", ha="left" if share >= 0.0 else "right",
+            _percent(share), (share, place), (2.0 if share > -_VISIBLE else -2.0, 0.0), textcoords="offset points",
+            fontsize=NOTE - 0.5, color=INK, va="center", ha="left" if share > -_VISIBLE else "right",
         )  # fmt: skip
     axes.grid(visible=False, axis="y")
+
+
+def _percent(share: float) -> str:
+    return "0" if abs(share) < _VISIBLE else f"{share:.{0 if abs(share) >= 10.0 else 1}f}"

@@ -11,7 +11,6 @@ from coupling.signature import decibels
 from gearwhine.figures.labels import Label, arrange, draw_row
 from gearwhine.figures.spectrum_lines import draw_lines
 from gearwhine.figures.style import (
-    BLUE,
     FOOT,
     GREY,
     HEAD,
@@ -33,8 +32,8 @@ from gearwhine.stages.transient import SolvedTransient
 FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _BETWEEN, _RIGHT = 40.0, 7.0, 14.0  # of a panel, above it, and beside it for levels [mm]
-_NAMED = 7  # lines in a panel
-_LEAST = 1e-3  # of the highest line, below which none is named
+_NAMED = 6  # lines in a panel
+_LEAST = 1e-4  # of the highest line, below which none is named
 
 
 def draw_sensor_spectra(
@@ -70,7 +69,8 @@ def draw_sensor_spectra(
         labels = [Label(shortened(_text(line)), line.frequency, abs(line.value), _color(line)) for line in told]
         rows[name] = (spectrum, arrange(labels, [label.x / limit * width for label in labels], width))
     height = HEAD + FOOT + sum(_HEIGHT + _BETWEEN + row.height for _, row in rows.values())
-    figure = sheet(height, title, "peak amplitudes; levels of their rms values re 1 µm/s²")
+    note = f"{title}; peak amplitudes, levels of their rms values re 1 µm/s²"
+    figure = sheet(height, "Housing acceleration", note)
     bottom = FOOT
     for number, (name, (spectrum, row)) in enumerate(reversed(rows.items())):
         axes = panel(figure, bottom, _HEIGHT, width=width)
@@ -97,7 +97,7 @@ def draw_sensor_spectra(
         else:
             axes.set_xlabel("frequency [Hz]")
         bottom += _HEIGHT + _BETWEEN + row.height
-    handles = [Line2D([], [], color=BLUE, lw=0.9, label="line")]
+    handles = []
     if len(mesh_frequencies):
         handles.append(Line2D([], [], color=RED, lw=0.7, ls=(0, (4, 3)), label="mesh harmonic"))
     if marked.size:
@@ -108,7 +108,7 @@ def draw_sensor_spectra(
 
 def _text(line: TracedLine) -> str:
     name = line.named.name
-    return f"{line.frequency:.0f} Hz {'free, ' if line.named.kind == 'mode' else ''}{name}"
+    return f"{line.frequency:.0f} Hz {'free ' if line.named.kind == 'mode' else ''}{name}"
 
 
 def _color(line: TracedLine) -> str:

@@ -36,13 +36,13 @@ def draw_transient(
     if solved.sensor_spectra:
         marked = _marked_modes(housing, comparison)
         legend = "housing modes" if comparison is None else "dominant housing modes"
-        heading = f"{case.title}: housing acceleration at {_speed(case)}"
+        heading = f"{case.title}, {_speed(case)}"
         spectra = draw_sensor_spectra(
             heading, solved, signature.lines, mesh_frequencies=meshes, marked=marked, marked_as=legend
         )
         files.append(save(spectra, folder / "spectrum.png"))
     if any(signature.lines.values()):
-        parts = draw_contributions(f"{case.title}: where the lines come from", signature.lines)
+        parts = draw_contributions(f"{case.title}, {_speed(case)}", signature.lines)
         files.append(save(parts, folder / "contributions.png"))
     if solved.force_spectra:
         files.append(save(_mesh_force(case, solved, meshes), folder / "mesh-force.png"))

@@ -63,7 +63,7 @@ def _signature(console: Console, document: dict[str, Any]) -> None:
                 sensor["name"] if number == 0 else "",
                 f"{peak['frequency_hz']:.0f}",
                 f"{peak['level_db']:.0f}",
-                peak["name"] if peak["kind"] != "mode" else f"free: {peak['name']}",
+                peak["name"] if peak["kind"] != "mode" else f"free {peak['name']}",
                 "" if near is None else f"{near['frequency_hz']:.0f} Hz {near['kind']}",
                 ", ".join(f"{part.get('number', 'local')}: {_share(part)}" for part in parts["housing_modes"][:3]),
                 ", ".join(f"{part['name']}: {_share(part)}" for part in _with_free(parts)[:3]),
