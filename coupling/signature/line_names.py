@@ -99,7 +99,7 @@ def line_names(
         elif whole := _whole_order(machine, frequency, tolerance):
             found.append(LineName("shaft", whole, order, mode))
         elif modes is not None and mode is not None:
-            found.append(LineName("mode", f"{_label(modes, mode)} mode", order, mode))
+            found.append(LineName("mode", _label(modes, mode), order, mode))
         else:
             found.append(LineName("other", f"{order:.4g}× {machine.leading_rotor}", order, None))
     return found
@@ -107,7 +107,8 @@ def line_names(
 
 def _label(modes: CoupledModes, mode: int) -> str:
     """Kind and place of a mode, once where they are one word."""
-    return modes.kinds[mode] if modes.kinds[mode] == modes.where[mode] else modes.labels[mode]
+    kind, place = modes.kinds[mode], modes.where[mode]
+    return f"{kind} mode" if place in ("", kind) else f"{kind} mode of {place}"
 
 
 def _near(modes: CoupledModes | None, frequency: float, tolerance: float) -> int | None:

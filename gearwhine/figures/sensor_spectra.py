@@ -107,7 +107,7 @@ def draw_sensor_spectra(
 
 
 def _text(line: TracedLine) -> str:
-    name = line.named.name
+    name = line.named.name.replace(" mode of ", " ")
     return f"{line.frequency:.0f} Hz {'free ' if line.named.kind == 'mode' else ''}{name}"
 
 

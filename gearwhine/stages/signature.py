@@ -154,6 +154,7 @@ def add_signature(document: dict[str, Any], solved: SolvedTransient, found: Solv
     for sensor in document["sensors"]:
         for row, line in zip(sensor["peaks"], found.lines[sensor["name"]], strict=True):
             row |= _name_document(line.named, found.modes)
+            row["phase_rad"] = float(np.angle(line.value))
             row["level_db"] = float(signature.decibels(abs(line.value)))
             row["contributions"] = {
                 "housing_modes": [_contribution(part) for part in line.modes[:_TOLD]],
@@ -253,7 +254,8 @@ def _sidebands(
         together: dict[float, list[str]] = {}
         for rotor in (mesh.driver.rotor, mesh.driven.rotor):
             together.setdefault(round(abs(machine.speeds[rotor]) / _HERTZ, 9), []).append(rotor)
-        for turning, shafts in together.items():
+        for shafts in together.values():
+            turning = abs(machine.speeds[shafts[0]]) / _HERTZ
             if turning * length >= (1.0 if window == "uniform" else 2.0):
                 pairs = signature.sidebands(signal, interval, carriers, turning, window=window)
                 found.append(ShaftSidebands(contact.name, tuple(shafts), tuple(pairs)))
