@@ -15,6 +15,7 @@ What the room offers:
   :func:`response_curve` over speed.
 - :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
   show; :func:`modal_rows` -- the same motion by each rotor's modes.
+- :mod:`coupling.signature` -- what the lines of a spectrum are and where they come from; orders, sidebands, levels.
 - :mod:`coupling.gears` -- tooth geometry, mesh stiffness and the contact law.
 
 numba is imported only when one of :func:`simulate`, :func:`static_equilibrium` and :mod:`coupling.periodic` runs.
@@ -32,13 +33,22 @@ from coupling.histories import Histories, histories, transient_outputs
 from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, couple
 from coupling.marching import Block, Checkpoint, march_blocks
-from coupling.modal_motion import ModalRows, modal_rows
+from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_rows, with_modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
 from coupling.periodic import PeriodicResponse, ResponseCurve, periodic_response, response_curve
 from coupling.receptance import receptance, resonance_grid
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.shares import ModeShares, Part
-from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, spectrum_peaks
+from coupling.spectrum import (
+    Peak,
+    SignalParts,
+    Spectrum,
+    Window,
+    amplitude_spectrum,
+    lines_at,
+    signal_parts,
+    spectrum_peaks,
+)
 from coupling.stability import GrowingMode, Stability, stability
 from coupling.statics import static_equilibrium
 from coupling.system import CoupledSystem, HarmonicLoad, TimedLoad
@@ -83,6 +93,7 @@ __all__ = [
     "HousingComponent",
     "LinearConnector",
     "Machine",
+    "ModalRecord",
     "ModalRows",
     "ModeShares",
     "ModesCertificate",
@@ -95,6 +106,7 @@ __all__ = [
     "PeriodicResponse",
     "ResponseCurve",
     "RotorComponent",
+    "SignalParts",
     "Spectrum",
     "SpeedTable",
     "Stability",
@@ -122,9 +134,11 @@ __all__ = [
     "histories",
     "housing_component",
     "linear_matrices",
+    "lines_at",
     "march_blocks",
     "mean_contact",
     "mesh_error_response",
+    "modal_record",
     "modal_rows",
     "periodic_response",
     "receptance",
@@ -133,6 +147,7 @@ __all__ = [
     "rotor_component",
     "sample_times",
     "sensor_force_response",
+    "signal_parts",
     "simulate",
     "spectrum_peaks",
     "stability",
@@ -142,4 +157,5 @@ __all__ = [
     "transient_figures",
     "transient_outputs",
     "unbalance_response",
+    "with_modal_rows",
 ]

@@ -44,8 +44,8 @@ class Histories:
         Along each sensor [m/s²].
     gear_motion : dict of str to ndarray, shape (s, 3)
         x, y [m] of each gear's centre, and its rotation beside the steady one [rad].
-    bearing_force : dict of str to ndarray, shape (s, 2)
-        Force of each shaft on its bearing along x and y [N].
+    tie_force : dict of str to ndarray, shape (s, d)
+        Force of each shaft on its bearing in all the directions that it holds, x and y first [N, N m].
     mesh_force : dict of str to ndarray, shape (s,)
         Force along the line of action [N], drive flanks and back flanks apart.
     mesh_compression : dict of str to ndarray, shape (s,)
@@ -55,9 +55,14 @@ class Histories:
     times: FloatArray
     sensor_acceleration: dict[str, FloatArray]
     gear_motion: dict[str, FloatArray]
-    bearing_force: dict[str, FloatArray]
+    tie_force: dict[str, FloatArray]
     mesh_force: dict[str, FloatArray]
     mesh_compression: dict[str, FloatArray]
+
+    @property
+    def bearing_force(self) -> dict[str, FloatArray]:
+        """Force of each shaft on its bearing along x and y [N], shape (s, 2) each."""
+        return {name: force[:, :2] for name, force in self.tie_force.items()}
 
 
 def transient_outputs(machine: Machine) -> TransientOutputs:
@@ -102,7 +107,7 @@ def histories(machine: Machine, result: Recorded, turning: Turning | None = None
         times=result.times,
         sensor_acceleration={name: result.acceleration[:, i] for i, name in enumerate(names)},
         gear_motion={gear.name: result.displacement[:, 3 * i : 3 * i + 3] for i, gear in enumerate(gears)},
-        bearing_force=forces,
+        tie_force=forces,
         mesh_force={name: result.force[:, i] for i, name in enumerate(contacts)},
         mesh_compression={name: result.compression[:, i] for i, name in enumerate(contacts)},
     )
@@ -119,15 +124,15 @@ def _bearings(machine: Machine) -> tuple[LinearConnector, ...]:
 
 
 def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatArray, rates: FloatArray) -> FloatArray:
-    """x and y of a bearing's force [N], shape (s, 2), at the speed of each sample as a part of the nominal one."""
+    """A bearing's force in every direction that it holds, shape (s, d), at each sample's speed in nominal terms."""
     table = connector.over_speed
     if table is None:
-        return np.asarray((deflection @ connector.stiffness.T + velocity @ connector.damping.T)[:, :2])
-    force = np.zeros((len(rates), 2))
+        return np.asarray(deflection @ connector.stiffness.T + velocity @ connector.damping.T)
+    force = np.zeros_like(deflection)
     for row in range(len(table.rates)):
         # The share that each speed of the table has in what is linear between them.
         share = np.interp(rates, table.rates, np.eye(len(table.rates))[row])
         held = np.flatnonzero(share)
         push = deflection[held] @ table.stiffness[row].T + velocity[held] @ table.damping[row].T
-        force[held] += share[held, None] * push[:, :2]
+        force[held] += share[held, None] * push
     return force

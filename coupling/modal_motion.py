@@ -6,16 +6,19 @@ Both span the same motions. With the component's lateral coordinates q, whose sh
 
     A = V q,    V = `RotorComponent.mixture`, orthogonal,
 
-so that a row of V, at the place of the rotor's coordinates, is all that :class:`coupling.TransientOutputs` needs.
+so that a row of V, at the place of the rotor's coordinates, is all that :class:`coupling.TransientOutputs` needs. The
+housing's coordinates are its modes' as they are.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError
+from coupling.histories import Recorded
 from coupling.machine import Machine
+from coupling.settings import TransientOutputs
 from coupling.system import embed
 
 FloatArray = npt.NDArray[np.float64]
@@ -65,3 +68,75 @@ def modal_rows(machine: Machine, rotor: str) -> ModalRows:
             for rows in (x, y, torsion)
         )
     )
+
+
+@dataclass(frozen=True)
+class ModalRecord:
+    """Modal motion that was recorded at even spacing, s samples.
+
+    Attributes
+    ----------
+    coordinates : dict of str to ndarray, shape (s,)
+        Such as ``input: torsion 1`` [rad √(kg m²)], ``input: bending 1, x`` or ``housing: mode 1`` [m √kg].
+    housing_acceleration : ndarray, shape (s, m)
+        Of all modes of the housing [m √kg / s²].
+    """
+
+    coordinates: dict[str, FloatArray]
+    housing_acceleration: FloatArray
+
+
+def with_modal_rows(machine: Machine, outputs: TransientOutputs, count: int = 0) -> TransientOutputs:
+    """Outputs and, after them, the accelerations of the housing's modes, and the first modal coordinates of each part.
+
+    Parameters
+    ----------
+    machine : Machine
+    outputs : TransientOutputs
+    count : int
+        How many of each kind of a rotor's modes, and of the housing's, are to have their displacement recorded.
+    """
+    housing = _housing_rows(machine)
+    rows = np.array(list(_coordinate_rows(machine, count).values())).reshape(-1, machine.system.size)
+    return replace(
+        outputs,
+        displacement=np.concatenate([outputs.displacement, rows]),
+        acceleration=np.concatenate([outputs.acceleration, housing]),
+    )
+
+
+def modal_record(machine: Machine, result: Recorded, count: int = 0) -> ModalRecord:
+    """Name what a transient with :func:`with_modal_rows` recorded after its other outputs."""
+    names = list(_coordinate_rows(machine, count))
+    moved = result.displacement[:, result.displacement.shape[1] - len(names) :]
+    first = result.acceleration.shape[1] - len(_housing_rows(machine))
+    return ModalRecord({name: moved[:, i] for i, name in enumerate(names)}, result.acceleration[:, first:])
+
+
+def _coordinate_rows(machine: Machine, count: int) -> dict[str, FloatArray]:
+    """The first rows of each kind of each part, by name."""
+    if count == 0:
+        return {}
+    named = {}
+    for rotor in machine.rotors:
+        rows = modal_rows(machine, rotor.name)
+        for number, row in enumerate(rows.torsion[:count], start=1):
+            named[f"{rotor.name}: torsion {number}"] = row
+        for axis, plane in (("x", rows.x), ("y", rows.y)):
+            for number, row in enumerate(plane[:count], start=1):
+                named[f"{rotor.name}: bending {number}, {axis}"] = row
+    if machine.housing is not None:
+        for number, row in enumerate(_housing_rows(machine)[:count], start=1):
+            named[f"{machine.housing.name}: mode {number}"] = row
+    return named
+
+
+def _housing_rows(machine: Machine) -> FloatArray:
+    """Rows of the housing's modes, without its residual attachments, shape (m, n)."""
+    if machine.housing is None:
+        return np.zeros((0, machine.system.size))
+    components = machine.system.components
+    number = [part.name for part in components].index(machine.housing.name)
+    modes = sum(kind == "housing" for kind in machine.housing.kinds)
+    rows = [embed(components, number, row) for row in np.eye(machine.housing.size)[:modes]]
+    return np.array(rows).reshape(modes, machine.system.size)

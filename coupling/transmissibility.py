@@ -204,7 +204,7 @@ def _named(
     """What coordinates (f, n) mean at sensors, bearings and meshes; one mesh may have a unit error."""
     system, rate = machine.system, 1j * frequencies
     forces = {}
-    for connector in system.linear:
+    for connector in system.linear[: len(machine.bearings)]:
         deflection = moved @ connector.directions
         forces[connector.name] = (
             deflection @ connector.stiffness.T + (rate[:, None] * deflection) @ connector.damping.T

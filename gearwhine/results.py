@@ -10,9 +10,11 @@ from gearwhine import __version__
 from gearwhine.case import Case, dump_case
 from gearwhine.gear_results import write_gears
 from gearwhine.rotor_results import Variables, write_rotors
+from gearwhine.signature_results import write_signature
 from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.rotors import SolvedRotor
+from gearwhine.stages.signature import SolvedSignature
 from gearwhine.stages.system import SolvedSystem
 from gearwhine.stages.transient import SolvedTransient
 from gearwhine.system_results import write_system
@@ -30,6 +32,7 @@ def write(
     pairs: tuple[PairAnalysis, ...],
     system: SolvedSystem | None,
     transient: SolvedTransient | None,
+    signature: SolvedSignature | None = None,
 ) -> None:
     """Write what was solved; the rest is left out."""
     variables: Variables = {}
@@ -44,6 +47,8 @@ def write(
         write_system(system, variables, coordinates)
     if transient is not None:
         _transient(transient, variables, coordinates)
+    if transient is not None and signature is not None:
+        write_signature(transient, signature, variables, coordinates)
     if case.operation is not None:
         coordinates["speed"] = ((), case.operation.speed * 60.0 / _HERTZ, _unit("rpm", "speed of the first driver"))
     attributes = {

@@ -32,6 +32,7 @@ from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
+from gearwhine.stages import signature as signature_stage
 from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
@@ -78,7 +79,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
             comparison = housing_stage.compare_housing(case, housing)
             document["compare"] = housing_documents.comparison_document(comparison, housing)
 
-    transient, system = None, None
+    transient, system, signature = None, None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
         machine = machine_stage.build_machine(case, housing, pairs, progress)
@@ -91,6 +92,11 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
                 case, machine, mesh_frequencies(case), progress, housing=housing
             )
             document |= transient_stage.transient_document(case, transient)
+            # Lines have names, and parts that add up, where speeds are steady and the ground is at rest.
+            if transient.turning is None and case.operation.base is None:
+                frequencies = None if housing is None else housing.modes.frequencies_hz
+                signature = signature_stage.solve_signature(transient, system.modes, frequencies)
+                signature_stage.add_signature(document, transient, signature)
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
@@ -98,13 +104,13 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
     with staging(folder, replacing=True) as place:
         progress("writing results")
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
-        results.write(place / "results.nc", case, housing, rotors, analysed, system, transient)
+        results.write(place / "results.nc", case, housing, rotors, analysed, system, transient, signature)
         if analysed:
             figures.draw_gear_pairs(place, analysed, progress)
         if system is not None:
             figures.draw_system(place, case, system)
         if transient is not None:
-            figures.draw_transient(place, case, transient, housing, comparison)
+            figures.draw_transient(place, case, transient, signature, housing, comparison)
         if housing is not None:
             results.write_shapes(place / "modes.vtu", housing)
             keep_modes(place, housing)

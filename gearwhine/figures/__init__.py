@@ -19,6 +19,7 @@ from .harris_map import draw_harris_map
 from .mesh_stiffness import draw_mesh_stiffness
 from .mode_shapes import draw_lateral_modes, draw_torsional_modes
 from .rotors import draw_rotors
+from .run_up import draw_order_slices, draw_run_up_waterfall
 from .shaft import draw_shaft
 from .static_deflection import draw_static_deflection
 from .style import save
@@ -47,7 +48,9 @@ __all__ = [
     "draw_harris_map",
     "draw_lateral_modes",
     "draw_mesh_stiffness",
+    "draw_order_slices",
     "draw_rotors",
+    "draw_run_up_waterfall",
     "draw_shaft",
     "draw_static_deflection",
     "draw_sweep",

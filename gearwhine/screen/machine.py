@@ -45,3 +45,39 @@ def _sensors(console: Console, document: dict[str, Any]) -> None:
         )
         table.add_row(sensor["name"], f"{sensor['rms_m_per_s2']:.3g}", lines)
     console.print(table)
+    _signature(console, document)
+
+
+def _signature(console: Console, document: dict[str, Any]) -> None:
+    """What the leading lines are, and which housing modes and bearings they come from."""
+    table = Table("sensor", "Hz", "dB", "what it is", "near", "by housing modes", "by bearings", box=SIMPLE_HEAD)
+    for column in (1, 2):
+        table.columns[column].justify = "right"
+    for sensor in document["sensors"]:
+        for number, peak in enumerate(sensor["peaks"][:3]):
+            if "contributions" not in peak:
+                continue
+            near = peak["near_mode"]
+            parts = peak["contributions"]
+            table.add_row(
+                sensor["name"] if number == 0 else "",
+                f"{peak['frequency_hz']:.0f}",
+                f"{peak['level_db']:.0f}",
+                peak["name"] if peak["kind"] != "mode" else f"free {peak['name']}",
+                "" if near is None else f"{near['frequency_hz']:.0f} Hz {near['kind']}",
+                ", ".join(f"{part.get('number', 'local')}: {_share(part)}" for part in parts["housing_modes"][:3]),
+                ", ".join(f"{part['name']}: {_share(part)}" for part in _with_free(parts)[:3]),
+            )
+    if table.rows:
+        console.print(table)
+        console.print("Levels of rms values re 1 µm/s²; shares in phase with the line, all of which add up to it.")
+
+
+def _with_free(parts: dict[str, Any]) -> list[dict[str, Any]]:
+    """Bearings, and free vibration where it counts."""
+    both = [*parts["bearings"], parts["free_vibration"]]
+    return sorted(both, key=lambda part: -part["amplitude_m_per_s2"])
+
+
+def _share(part: dict[str, Any]) -> str:
+    return f"{100.0 * part['share']:.0f} %"

@@ -40,6 +40,8 @@ class SolvedTransient:
         Gear-mesh force [N].
     trusted_limit : float
         Highest frequency that the housing's modes carry [Hz].
+    modal : coupling.ModalRecord
+        Of the recorded revolutions.
     """
 
     machine: room.Machine
@@ -49,6 +51,7 @@ class SolvedTransient:
     sensor_spectra: dict[str, room.Spectrum]
     force_spectra: dict[str, room.Spectrum]
     trusted_limit: float
+    modal: room.ModalRecord
 
 
 def solve_transient(
@@ -91,7 +94,7 @@ def solve_transient(
     result = room.simulate(
         machine.system,
         settings,
-        room.transient_outputs(machine),
+        room.with_modal_rows(machine, room.transient_outputs(machine), given.modal_coordinates),
         initial=starting_state(case, machine),
         turning=driven.turning,
         progress=lambda fraction: progress("marching through the transient", fraction),
@@ -120,6 +123,7 @@ def solve_transient(
             name: room.amplitude_spectrum(signal, interval, window) for name, signal in named.mesh_force.items()
         },
         trusted_limit=limit,
+        modal=room.modal_record(machine, result, given.modal_coordinates),
     )
 
 
@@ -151,8 +155,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
                 "contact_loss_fraction": float(result.contact_loss[number]),
                 "back_flank_peak_force_n": _back_flank_peak(solved, number, drives),
                 "force_peaks": [
-                    {"frequency_hz": peak.frequency, "amplitude_n": peak.amplitude}
-                    for peak in room.spectrum_peaks(spectrum, count=8)
+                    {"frequency_hz": peak.frequency, "amplitude_n": peak.amplitude} for peak in force_peaks(spectrum)
                 ],
             }
         )
@@ -179,7 +182,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
                 "rms_m_per_s2": float(spectrum.rms(solved.trusted_limit)),
                 "peaks": [
                     {"frequency_hz": peak.frequency, "amplitude_m_per_s2": peak.amplitude}
-                    for peak in room.spectrum_peaks(spectrum, count=20, limit=solved.trusted_limit, floor=1e-5)
+                    for peak in sensor_peaks(solved, name)
                 ],
             }
             for name, spectrum in solved.sensor_spectra.items()
@@ -226,6 +229,16 @@ def _record_from(given: Transient, period: float, turning: room.Turning | None) 
         expected = f"fewer revolutions than the {turned:g} that the run turns"
         raise CaseError([Problem("transient.discard", given.discard, expected)])
     return time
+
+
+def sensor_peaks(solved: SolvedTransient, sensor: str) -> list[room.Peak]:
+    """The lines of a sensor that are told of, highest first."""
+    return room.spectrum_peaks(solved.sensor_spectra[sensor], count=20, limit=solved.trusted_limit, floor=1e-5)
+
+
+def force_peaks(spectrum: room.Spectrum) -> list[room.Peak]:
+    """The lines of a gear-mesh force that are told of, highest first."""
+    return room.spectrum_peaks(spectrum, count=8)
 
 
 def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float | None:
