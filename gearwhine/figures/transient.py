@@ -15,7 +15,7 @@ from gearwhine.figures.sensor_spectra import draw_sensor_spectra
 from gearwhine.figures.spectrum_lines import draw_lines
 from gearwhine.figures.style import BLUE, RED, save, tidy
 from gearwhine.stages.housing import SolvedHousing
-from gearwhine.stages.signature import SolvedSignature
+from gearwhine.stages.signature import SolvedSignature, TracedLine
 from gearwhine.stages.transient import SolvedTransient
 from housing import Comparison
 
@@ -32,7 +32,9 @@ def draw_transient(
 ) -> list[str]:
     """Draw what a transient shows; returns the files' names."""
     files = []
-    lines = {name: () for name in solved.sensor_spectra} if signature is None else signature.lines
+    lines: dict[str, tuple[TracedLine, ...]] = dict.fromkeys(solved.sensor_spectra, ())
+    if signature is not None:
+        lines = signature.lines
     meshes = mesh_frequencies(case) if case.gear_pair else ()
     if solved.sensor_spectra:
         marked = _marked_modes(housing, comparison)
