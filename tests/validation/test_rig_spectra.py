@@ -1,8 +1,9 @@
 """Spectra of the gear noise rig's housing against the text of NASA TM-104434 on its Figs. 4, 5, 10 and 11.
 
-The source prints waterfalls without numbers; its text on them is the checklist, statement by statement. What the bundled
-case does not show is marked as expected to fail, strictly: should it ever come out, the suite says so. Nothing was
-fitted to the text. Runs are the case's own but for their length, several decay times of the housing's slowest mode.
+The source prints waterfalls without numbers; its text on them is the checklist, statement by statement. What the case
+does not show is marked as expected to fail, strictly: should it ever come out, the suite says so. Nothing of the case
+was fitted to the text; how much a peak must stand out is ours. Runs differ from the case's in their length alone:
+several decay times of the housing's slowest mode.
 """
 
 from collections.abc import Callable
