@@ -196,7 +196,7 @@ class _Run:
         pushing = sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
         self.pushing = np.linalg.norm(system.load) + np.linalg.norm(pushing)
         # Nothing that stays together moves so much further than its loads press it.
-        self.reach = float(_resting(system, turning, pushing).max(initial=0.0))
+        self.reach = float(_resting(system, turning, pushing + np.abs(system.load)).max(initial=0.0))
 
     def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
         """Static equilibrium under the loads of the start, swinging where nothing resists; or a state that is given."""
