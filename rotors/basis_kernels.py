@@ -13,6 +13,14 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @njit(cache=True, nogil=True)
+def _product(motion: FloatArray, one: int, other: int, mass: FloatArray) -> float:
+    total = 0.0
+    for i in range(mass.size):
+        total += mass[i] * motion[one, i] * motion[other, i]
+    return total
+
+
+@njit(cache=True, nogil=True)
 def mass_orthonormal(motion: FloatArray, strain: FloatArray, shapes: FloatArray, mass: FloatArray, least: float) -> int:
     """Make rows of ``motion`` (k, g) orthonormal under the weights ``mass`` (g,) in place, and the others with them.
 
@@ -20,45 +28,23 @@ def mass_orthonormal(motion: FloatArray, strain: FloatArray, shapes: FloatArray,
     """
     kept = 0
     for row in range(motion.shape[0]):
-        total = 0.0
-        for i in range(mass.size):
-            total += mass[i] * motion[row, i] ** 2
-        if total == 0.0:
-            continue
-        _put(motion, row, kept, math.sqrt(total))
-        _put(strain, row, kept, math.sqrt(total))
-        _put(shapes, row, kept, math.sqrt(total))
-        left = 1.0
-        # Again, for the rounding that the first time leaves.
-        for _ in range(2):
-            for other in range(kept):
-                overlap = 0.0
-                for i in range(mass.size):
-                    overlap += mass[i] * motion[other, i] * motion[kept, i]
-                _take(motion, other, kept, overlap)
-                _take(strain, other, kept, overlap)
-                _take(shapes, other, kept, overlap)
-            total = 0.0
-            for i in range(mass.size):
-                total += mass[i] * motion[kept, i] ** 2
-            left *= math.sqrt(total)
-            if left <= least:
+        source, left = row, 1.0
+        # At first only brought to unit norm; then twice, for the rounding that the first time leaves.
+        for turn in range(3):
+            for other in range(kept if turn else 0):
+                overlap = _product(motion, other, kept, mass)
+                for rows in (motion, strain, shapes):
+                    for i in range(rows.shape[1]):
+                        rows[kept, i] -= overlap * rows[other, i]
+            norm = math.sqrt(_product(motion, source, source, mass))
+            left = left * norm if turn else norm
+            if left <= (least if turn else 0.0):
+                left = 0.0
                 break
-            _put(motion, kept, kept, math.sqrt(total))
-            _put(strain, kept, kept, math.sqrt(total))
-            _put(shapes, kept, kept, math.sqrt(total))
-        if left > least:
+            for rows in (motion, strain, shapes):
+                for i in range(rows.shape[1]):
+                    rows[kept, i] = rows[source, i] / norm
+            source, left = kept, left if turn else 1.0
+        if left > 0.0:
             kept += 1
     return kept
-
-
-@njit(cache=True, nogil=True)
-def _put(rows: FloatArray, source: int, target: int, size: float) -> None:
-    for i in range(rows.shape[1]):
-        rows[target, i] = rows[source, i] / size
-
-
-@njit(cache=True, nogil=True)
-def _take(rows: FloatArray, source: int, target: int, part: float) -> None:
-    for i in range(rows.shape[1]):
-        rows[target, i] -= part * rows[source, i]

@@ -170,7 +170,7 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
 
     edges = [np.linspace(a, b, SIDE_SAMPLES)[:-1] for a, b in zip(corners, np.roll(corners, -1), strict=True)]
     rule = np.array([STEEPEST, MISFIT, SHORTEST, SLOPE_PART])
-    settled, samples, path = walk(
+    count, samples, path = walk(
         np.concatenate([*edges, corners[:1]]),
         np.array([speed.base, speed.rate], dtype=np.complex128),
         scale,
@@ -180,7 +180,8 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
         chain.entries.arrays,
         chain.entries.pattern.arrays,
     )
-    if settled:
+    if count:
+        path = path[:, :count]
         turns = round(float(path[1, -1].imag - path[1, 0].imag) / (2.0 * np.pi))
         return Winding(inside + turns, samples, path[0], path[1], path[2], left)
     raise RootOnContourError(

@@ -36,7 +36,7 @@ def _logarithm_of_product(at: complex, divided: ComplexArray) -> complex:
 @njit(cache=True, nogil=True)
 def _principal(difference: complex) -> complex:
     """A difference of logarithms with the imaginary part brought into (−π, π]."""
-    turns = np.round(difference.imag / (2.0 * math.pi))
+    turns = math.floor(difference.imag / (2.0 * math.pi) + 0.5)
     return complex(difference.real, difference.imag - 2.0 * math.pi * turns)
 
 
@@ -50,8 +50,10 @@ def walk(
     most_samples: int,
     table: Table,
     pattern: Pattern,
-) -> tuple[bool, int, ComplexArray]:
-    """Whether a closed polygon of ln λ has been followed, by how many determinants, and points, ln q, d ln q/dw (3, s).
+) -> tuple[int, int, ComplexArray]:
+    """Follow ln q along a closed polygon of ln λ; how many points that took, how many determinants, and what they are.
+
+    The last is (3, s), of which as many columns hold points, ln q and d ln q/dw; none where the path does not settle.
 
     ``edge`` ends with its first point; Ω = ``speed[0]`` + ``speed[1]`` λ. ``limits`` are the steepest and the largest
     misfit of a safe interval, the shortest one, and the part of an interval that is the second step of a sample. An
@@ -69,7 +71,7 @@ def walk(
     found = np.empty((3, 64), dtype=np.complex128)
     # Behind the last point of ``found`` that is safe to go on from, points to come wait, the nearest at the end.
     waiting = np.empty((3, corners + 1 + 2 * int(-math.log2(shortest)) + 16), dtype=np.complex128)
-    at_zero, samples, count, pending = 0.0, 0, 1, 0
+    at_zero, samples, count, pending = 0, 0, 1, 0
     while True:
         # The points given come first, last to first; then those halfway between two that are too far apart.
         given = pending < corners and samples < 2 * corners
@@ -79,34 +81,36 @@ def walk(
         else:
             if samples == 2 * corners:
                 # Motions at zero, of a free shaft, are outside: divided out like the others.
-                at_zero = np.round(waiting[2, corners].real)
+                at_zero = math.floor(waiting[2, corners].real + 0.5)
                 for k in range(1, corners + 1):
                     waiting[1, k] -= at_zero * waiting[0, k]
                     waiting[2, k] -= at_zero
                 # The contour's end is its beginning.
                 waiting[0, 0], waiting[1, 0], waiting[2, 0] = edge[corners], waiting[1, corners], waiting[2, corners]
-                found[:, 0] = waiting[:, corners]
+                for k in range(3):
+                    found[k, 0] = waiting[k, corners]
             h = 0.0j
             while pending > 0:
-                here, there = found[:, count - 1], waiting[:, pending - 1]
-                h = there[0] - here[0]
-                change = _principal(there[1] - here[1])
-                steep = max(abs(h * there[2]), abs(h * here[2])) > steepest
-                if steep or abs(change - 0.5 * h * (there[2] + here[2])) > misfit:
+                h = waiting[0, pending - 1] - found[0, count - 1]
+                change = _principal(waiting[1, pending - 1] - found[1, count - 1])
+                here, there = h * found[2, count - 1], h * waiting[2, pending - 1]
+                if max(abs(here), abs(there)) > steepest or abs(change - 0.5 * (here + there)) > misfit:
                     break
                 if count == found.shape[1]:
                     more = np.empty((3, 2 * count), dtype=np.complex128)
-                    more[:, :count] = found
+                    for row in range(3):
+                        for k in range(count):
+                            more[row, k] = found[row, k]
                     found = more
-                found[0, count], found[2, count] = there[0], there[2]
+                found[0, count], found[2, count] = waiting[0, pending - 1], waiting[2, pending - 1]
                 # Continued along the contour.
                 found[1, count] = found[1, count - 1] + change
                 count += 1
                 pending -= 1
             if pending == 0:
-                return True, samples, found[:, :count].copy()
+                return count, samples, found
             if abs(h) < shortest or samples > most_samples or pending == waiting.shape[1]:
-                return False, samples, found[:, :count].copy()
+                return 0, samples, found
             point, step = found[0, count - 1] + 0.5 * h, 0.5 * slope_part * h
         for k in range(2):
             at = cmath.exp(point + k * step)
