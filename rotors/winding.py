@@ -168,10 +168,11 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
         real = speed(mirrored) == speed(divided).conj()
         divided = np.concatenate([divided, mirrored[real & (sector.distance(mirrored) > TOO_NEAR)]])
 
-    edges = [np.linspace(a, b, SIDE_SAMPLES)[:-1] for a, b in zip(corners, np.roll(corners, -1), strict=True)]
+    sides = corners[[1, 2, 3, 0]] - corners
+    edge = corners[:, None] + sides[:, None] * (np.arange(SIDE_SAMPLES - 1) / (SIDE_SAMPLES - 1))
     rule = np.array([STEEPEST, MISFIT, SHORTEST, SLOPE_PART])
     count, samples, path = walk(
-        np.concatenate([*edges, corners[:1]]),
+        np.append(edge, corners[0]),
         np.array([speed.base, speed.rate], dtype=np.complex128),
         scale,
         divided,
