@@ -196,7 +196,8 @@ class _Run:
         pushing = sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
         self.pushing = np.linalg.norm(system.load) + np.linalg.norm(pushing)
         # Nothing that stays together moves so much further than its loads press it.
-        self.reach = float(_resting(system, turning, pushing + np.abs(system.load)).max(initial=0.0))
+        pushed = pushing + np.abs(system.load)
+        self.reach = float(_resting(system, turning, pushed, settings.duration).max(initial=0.0))
 
     def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
         """Static equilibrium under the loads of the start, swinging where nothing resists; or a state that is given."""
@@ -316,9 +317,10 @@ class _Run:
         )
 
 
-def _resting(system: CoupledSystem, turning: Turning, pushing: FloatArray | float) -> FloatArray:
-    """Coordinates that the loads' amplitudes would hold if they stood still, shape (n,)."""
+def _resting(system: CoupledSystem, turning: Turning, pushing: FloatArray | float, duration: float) -> FloatArray:
+    """Coordinates that the loads' amplitudes would hold if they stood still, shape (n,); what is free, F t²/2."""
     fastest = max(1.0, float(turning.rates.max())) ** 2
     loads = sum((fastest * np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size)) + pushing
     stiffness = np.abs(np.diag(system.mean_stiffness()))
-    return np.asarray(loads / np.where(stiffness > 0.0, stiffness, np.inf))
+    compliance = np.full(system.size, 0.5 * duration**2)
+    return np.asarray(loads * np.divide(1.0, stiffness, out=compliance, where=stiffness > 0.0))

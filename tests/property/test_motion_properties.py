@@ -182,3 +182,16 @@ def test_momentum_of_two_free_bodies(seed: int) -> None:
     momenta = result.velocity @ rows.T
     expected = rows @ start[1] + result.times[:, None] * (rows @ outside)
     np.testing.assert_allclose(momenta, expected, atol=1e-8 * (1.0 + np.abs(result.velocity).max()))
+
+
+@patient
+@given(st.floats(1e-8, 1.0), st.floats(0.1, 100.0))
+def test_a_free_body_falls(shaking: float, load: float) -> None:
+    """x = F t²/2, however little shakes what stands beside it: a drift is no divergence."""
+    stiffness = np.diag([0.0, 50.0])
+    parts = (Component("both", ("rotor",) * 2, stiffness, 0.0 * stiffness, 0.0 * stiffness),)
+    shaken = HarmonicLoad(3.0, np.array([0.0, shaking + 0.0j]))
+    of = CoupledSystem(parts, (0.0,), (), (), np.array([load, 0.0]), (shaken,))
+    result = everything(of, 20.0, 0.5, (np.zeros(2), np.zeros(2)), tolerance=1e-3)
+    # Newmark's rule is exact under a constant force.
+    np.testing.assert_allclose(result.displacement[:, 0], 0.5 * load * result.times**2, rtol=1e-9)
