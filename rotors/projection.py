@@ -140,9 +140,7 @@ class Projection:
     total_mass: float
 
     @classmethod
-    def of(
-        cls, rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], basis: PlanarBasis
-    ) -> "Projection":
+    def of(cls, rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], basis: PlanarBasis) -> "Projection":
         """The projection for some tied motions of a rotor."""
         frequencies, shapes = np.zeros(0), np.zeros((0, len(bearings)))
         if 0 in blocks:
