@@ -7,8 +7,9 @@ G the polar inertia matrix and Φ_b the modes' displacements at bearing b,
     q̈_y − Ω G q̇_x + Σ_b Φ_b Φ_bᵀ (c_yx q̇_x + c_yy q̇_y) + Λ q_y + Σ_b Φ_b Φ_bᵀ [k_yx q_x + (k_yy − k̄) q_y] = 0
 
 (TM-104434 Eqs. 11–15 with constant speed and grounded bearings). The sums over bearings are its compensation
-matrices. Here the same is written in the circular coordinates of `rotors.spatial_ties`, with slopes, axial modes
-and pedestals where bearings have them, and only for the motions that the bearings tie to each other.
+matrices. Here the same is written with slopes, axial modes and pedestals where bearings have them, and only for the
+motions that the bearings tie to each other: where forward and backward motion are not tied, for one of them, in the
+circular coordinates of `rotors.spatial_ties`.
 """
 
 from collections.abc import Sequence
@@ -26,7 +27,6 @@ from .errors import require, require_count, require_finite
 from .lateral import LateralModes, solve_lateral_modes
 from .planar_basis import (
     BASIS_REACH,
-    DEFAULT_COUNT,
     LEAST_MODES,
     PlanarBasis,
     loaded_places,
@@ -220,11 +220,12 @@ class Projection:
         if alone:
             turn = CIRCULAR[list(MEMBERS[self.blocks[0]])]
             held = turn @ spatial @ turn.conj().T
-        feet, order = [], shaft
+        feet: list[tuple[int, IntArray, list[int]]] = []
+        order = shaft
         for k, bearing in enumerate(bearings):
             if bearing.pedestal is None:
                 continue
-            acts = held[:, k].any(axis=0)
+            acts = (held[0, k] != 0.0) | (held[1, k] != 0.0)
             busy = acts.any(axis=0) | acts.any(axis=1)
             directions = [direction for direction in ((0,) if alone else (0, 1)) if busy[direction]]
             feet.append((k, order + np.arange(len(directions)), directions))
@@ -243,7 +244,12 @@ class Projection:
                 relative[:, 4, :b] = slope
         for k, coordinates, directions in feet:
             relative[k, directions, coordinates] -= 1.0
-        return relative, held[0], held[1], [(bearings[k], *rest) for k, *rest in feet]
+        return (
+            relative,
+            held[0],
+            held[1],
+            [(bearings[k], coordinates, directions) for k, coordinates, directions in feet],
+        )
 
     def _turned(self, radial: FloatArray) -> NumberArray:
         """A matrix over x and y in the projection's coordinates."""
