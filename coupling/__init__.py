@@ -3,28 +3,56 @@
 What the room offers:
 
 - :func:`housing_component`, :func:`rotor_component` -- components in mass-normalised coordinates.
-- :func:`couple` with :class:`MountedBearing`, :class:`GearMesh`, :class:`Unbalance`, :class:`Torque` -- the
+- :func:`couple` with :class:`MountedBearing`, :class:`GearMesh` and the loads of :mod:`coupling.loads` -- the
   :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
-- :func:`coupled_modes` -- complex natural modes about the mean contact.
+- :func:`coupled_modes` -- complex natural modes about the mean contact, or that of an instant (:func:`contact_at`),
+  with energies by component, bearing and gear mesh; :func:`stability` -- which grow, and what feeds them.
+- :func:`system_campbell` -- these over speed, with the crossings of shaft and mesh orders.
+- :func:`mesh_error_response`, :func:`unbalance_response`, :func:`sensor_force_response`, :func:`receptance` -- over
+  frequency, from what excites to mesh forces, bearing forces and sensors.
 - :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
+- :mod:`coupling.periodic` -- the steady state directly: :func:`periodic_response`, its Floquet multipliers, and
+  :func:`response_curve` over speed.
 - :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
-  show.
+  show; :func:`modal_rows` -- the same motion by each rotor's modes.
+- :mod:`coupling.signature` -- what the lines of a spectrum are and where they come from; orders, sidebands, levels.
 - :mod:`coupling.gears` -- tooth geometry, mesh stiffness and the contact law.
 
-numba is imported only when :func:`simulate` or :func:`static_equilibrium` runs.
+numba is imported only when one of :func:`simulate`, :func:`static_equilibrium` and :mod:`coupling.periodic` runs.
 """
 
+from coupling.base_motion import BaseHarmonic, BaseHistory, BaseMotion
 from coupling.boundaries import SAMPLES_PER_BLOCK
+from coupling.campbell import SystemCampbell, SystemCrossing, system_campbell
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
+from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
 from coupling.decimation import Decimation, decimation
-from coupling.errors import CouplingError, TransientError
-from coupling.histories import Histories, Recorded, empty_histories, histories, transient_outputs
-from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, Torque, Unbalance, couple
+from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
+from coupling.excitation import ExcitationLine, excitation_lines
+from coupling.free_speed import free_speed
+from coupling.histories import Histories, Recorded, histories, nothing_recorded, transient_outputs
+from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
+from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, couple
 from coupling.marching import Block, Checkpoint, march_blocks, march_key, sample_times
-from coupling.modes import CoupledModes, coupled_modes
+from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_rows, with_modal_rows
+from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
+from coupling.periodic import PeriodicResponse, ResponseCurve, periodic_response, response_curve
+from coupling.receptance import receptance, resonance_grid
 from coupling.settings import TransientOutputs, TransientSettings
-from coupling.spectrum import Peak, Spectrum, Window, amplitude_spectrum, averaged_spectrum, spectrum_peaks
+from coupling.shares import ModeShares, Part
+from coupling.spectrum import (
+    Peak,
+    SignalParts,
+    Spectrum,
+    Window,
+    amplitude_spectrum,
+    averaged_spectrum,
+    lines_at,
+    signal_parts,
+    spectrum_peaks,
+)
+from coupling.stability import GrowingMode, Stability, stability
 from coupling.statics import static_equilibrium
 from coupling.system import CoupledSystem, HarmonicLoad, TimedLoad
 from coupling.transient import (
@@ -34,34 +62,66 @@ from coupling.transient import (
     simulate,
     transient_figures,
 )
+from coupling.transmissibility import (
+    FrequencyResponse,
+    mesh_error_response,
+    sensor_force_response,
+    unbalance_response,
+)
 from coupling.turning import Turning
 
 __all__ = [
     "SAMPLES_PER_BLOCK",
+    "AnyTorque",
+    "BaseHarmonic",
+    "BaseHistory",
+    "BaseMotion",
     "Block",
+    "BowReactions",
     "Checkpoint",
     "Component",
     "ContactConnector",
+    "ContactState",
     "CoupledModes",
     "CoupledSystem",
     "CouplingError",
     "Decimation",
+    "Drive",
     "EnergyBalance",
+    "ExcitationLine",
+    "FrequencyResponse",
     "GearMesh",
+    "GrowingMode",
     "HarmonicLoad",
     "Histories",
     "HousingComponent",
     "LinearConnector",
     "Machine",
+    "ModalRecord",
+    "ModalRows",
+    "ModeShares",
+    "ModesCertificate",
+    "ModesError",
     "MountedBearing",
     "MountedGear",
+    "Part",
     "Peak",
+    "PeriodicError",
+    "PeriodicResponse",
     "Recorded",
+    "ResponseCurve",
     "RotorComponent",
+    "SignalParts",
     "Spectrum",
     "SpeedTable",
+    "Stability",
+    "SystemCampbell",
+    "SystemCrossing",
     "TimedLoad",
     "Torque",
+    "TorqueHistory",
+    "TorqueRipple",
+    "TorqueSlope",
     "TransientError",
     "TransientFigures",
     "TransientOutputs",
@@ -72,19 +132,39 @@ __all__ = [
     "Window",
     "amplitude_spectrum",
     "averaged_spectrum",
+    "contact_at",
     "couple",
     "coupled_modes",
     "decimation",
-    "empty_histories",
+    "excitation_lines",
+    "free_speed",
     "histories",
     "housing_component",
+    "linear_matrices",
+    "lines_at",
     "march_blocks",
     "march_key",
+    "mean_contact",
+    "mesh_error_response",
+    "modal_record",
+    "modal_rows",
+    "nothing_recorded",
+    "periodic_response",
+    "receptance",
+    "resonance_grid",
+    "response_curve",
     "rotor_component",
     "sample_times",
+    "sensor_force_response",
+    "signal_parts",
     "simulate",
     "spectrum_peaks",
+    "stability",
     "static_equilibrium",
+    "system_campbell",
+    "time_of_phase",
     "transient_figures",
     "transient_outputs",
+    "unbalance_response",
+    "with_modal_rows",
 ]

@@ -14,7 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _POINTS_PER_PERIOD = 6  # of the highest coordinate; what moves much gets more, by the tolerance
 _STEPS_PER_SEGMENT = 64  # where no event cuts the time
-_SPEED_GAIN = 5e-4  # change of speed, as a part of the nominal one, within which a stretch's matrices stay the same
+_SPEED_GAIN = 2e-4  # change of speed, as a part of the nominal one, within which a stretch's matrices stay the same
 _SAME_TIME = 1e-6  # part of the coarsest step within which two events are one
 SAMPLES_PER_BLOCK = 32768
 _STEPS_PER_BLOCK = 1 << 20

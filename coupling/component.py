@@ -66,11 +66,15 @@ class HousingComponent(Component):
         z of each seat's centre [m].
     sensors : mapping of str to ndarray, shape (n,)
         Coordinates' motions along each sensor.
+    participation : ndarray, shape (n, 6), or None
+        φᵀ M R of the rigid motions along and about x, y, z through the origin [√kg, √kg m]; needed where the base moves
+        or there is weight.
     """
 
     seats: Mapping[str, FloatArray]
     seat_z: Mapping[str, float]
     sensors: Mapping[str, FloatArray]
+    participation: FloatArray | None = None
 
     def seat_motions(self, seat: str, z: float) -> FloatArray:
         """A seat's rigid motion, taken at height z of the shaft [m]: x, y, z, rotations about x and y, shape (5, n)."""
@@ -92,11 +96,14 @@ class RotorComponent(Component):
         z of the rotor's left end [m].
     mixture : ndarray, shape (m, m)
         The plane's coordinates in terms of the planar modes, orthogonal: columns diagonalise the free shaft.
+    axis : tuple of float
+        x and y of the shaft's line [m].
     """
 
     modal: ModalRotor
     start: float
     mixture: FloatArray
+    axis: tuple[float, float] = (0.0, 0.0)
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
@@ -120,6 +127,17 @@ class RotorComponent(Component):
         row[first : first + self.modal.torsional.count] = self.modal.torsional.evaluate([at])[:, 0]
         return row
 
+    @property
+    def turning(self) -> FloatArray:
+        """Coordinates of a rotation of the whole rotor about z by one radian, shape (n,).
+
+        Its first torsional mode, to which the others are orthogonal: as a row, the same is ∫ dI_p of their rotations,
+        and its square the rotor's polar inertia [kg m²].
+        """
+        row = np.zeros(self.size)
+        row[2 * self.modal.lateral.count] = 1.0 / self.modal.torsional.evaluate([0.0])[0, 0]
+        return row
+
 
 def housing_component(
     modes: ModeSet,
@@ -129,6 +147,7 @@ def housing_component(
     seat_z: Mapping[str, float],
     sensors: Mapping[str, FloatArray],
     damping_matrix: FloatArray | None = None,
+    participation: FloatArray | None = None,
     name: str = "housing",
 ) -> HousingComponent:
     """The housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
@@ -139,7 +158,7 @@ def housing_component(
         With m modes and, where it has attachments, k of them: n = m + k coordinates.
     damping_ratios : ndarray, shape (m,)
         Parts of critical. Attachments take the highest of them.
-    seats, seat_z, sensors
+    seats, seat_z, sensors, participation
         See :class:`HousingComponent`; by :meth:`housing.ModeSet.project_all`.
     damping_matrix : ndarray, shape (n, n), optional
         Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
@@ -174,6 +193,7 @@ def housing_component(
         seats=seats,
         seat_z=seat_z,
         sensors=sensors,
+        participation=participation,
     )
 
 
@@ -223,7 +243,14 @@ def _check_damping(matrix: FloatArray, n: int) -> None:
         raise CouplingError("the damping matrix of the housing modes has a negative eigenvalue: it feeds energy in")
 
 
-def rotor_component(name: str, modal: ModalRotor, *, start: float, damping_ratio: float = 0.0) -> RotorComponent:
+def rotor_component(
+    name: str,
+    modal: ModalRotor,
+    *,
+    start: float,
+    damping_ratio: float = 0.0,
+    axis: tuple[float, float] = (0.0, 0.0),
+) -> RotorComponent:
     """A rotor from its modes, freed of the springs that its planar basis was found on.
 
     The planar modes are those at averaged support stiffness k̄ (TM-101442 Eq. 7). The springs come back with the
@@ -242,6 +269,8 @@ def rotor_component(name: str, modal: ModalRotor, *, start: float, damping_ratio
         z of the rotor's left end [m].
     damping_ratio : float
         Of the shaft's own material and fits, on every mode of the free shaft.
+    axis : tuple of float
+        x and y of the shaft's line [m], which matter where the base turns.
     """
     lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
     m, t = lateral.count, modal.torsional.count
@@ -263,4 +292,5 @@ def rotor_component(name: str, modal: ModalRotor, *, start: float, damping_ratio
         modal=modal,
         start=start,
         mixture=mixture,
+        axis=axis,
     )

@@ -7,3 +7,11 @@ class CouplingError(ValueError):
 
 class TransientError(RuntimeError):
     """A time integration that cannot be trusted: it diverged, stalled, or its energies do not balance."""
+
+
+class ModesError(RuntimeError):
+    """Coupled modes, or a response made of them, that fail their own proof."""
+
+
+class PeriodicError(RuntimeError):
+    """A periodic motion that was not found, or cannot be trusted; the message says what to try."""

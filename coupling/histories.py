@@ -7,9 +7,11 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from coupling.connector import LinearConnector
 from coupling.machine import Machine, MountedGear
 from coupling.settings import TransientOutputs
 from coupling.system import embed
+from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,8 +45,8 @@ class Histories:
         Along each sensor [m/s²].
     gear_motion : dict of str to ndarray, shape (s, 3)
         x, y [m] of each gear's centre, and its rotation beside the steady one [rad].
-    bearing_force : dict of str to ndarray, shape (s, 2)
-        Force of each shaft on its bearing along x and y [N].
+    tie_force : dict of str to ndarray, shape (s, d)
+        Force of each shaft on its bearing in all the directions that it holds, x and y first [N, N m].
     mesh_force : dict of str to ndarray, shape (s,)
         Force along the line of action [N], drive flanks and back flanks apart.
     mesh_compression : dict of str to ndarray, shape (s,)
@@ -54,9 +56,14 @@ class Histories:
     times: FloatArray
     sensor_acceleration: dict[str, FloatArray]
     gear_motion: dict[str, FloatArray]
-    bearing_force: dict[str, FloatArray]
+    tie_force: dict[str, FloatArray]
     mesh_force: dict[str, FloatArray]
     mesh_compression: dict[str, FloatArray]
+
+    @property
+    def bearing_force(self) -> dict[str, FloatArray]:
+        """Force of each shaft on its bearing along x and y [N], shape (s, 2) each."""
+        return {name: force[:, :2] for name, force in self.tie_force.items()}
 
     @property
     def columns(self) -> FloatArray:
@@ -91,7 +98,7 @@ def transient_outputs(machine: Machine) -> TransientOutputs:
         rotor = next(rotor for rotor in machine.rotors if rotor.name == gear.rotor)
         for row in (rotor.direction(gear.at, 0), rotor.direction(gear.at, 1), rotor.rotation(gear.at)):
             displacement.append(embed(system.components, numbers[rotor.name], row))
-    deflections = [row for connector in system.linear for row in connector.directions.T]
+    deflections = [row for connector in _bearings(machine) for row in connector.directions.T]
     sensors = []
     if machine.housing is not None:
         which = numbers[machine.housing.name]
@@ -113,31 +120,34 @@ class _Nothing(NamedTuple):
     force: FloatArray
 
 
-def empty_histories(machine: Machine) -> Histories:
-    """The signals that :func:`histories` names, without samples."""
-    outputs, contacts = transient_outputs(machine), len(machine.system.contacts)
+def nothing_recorded(machine: Machine, outputs: TransientOutputs) -> Recorded:
+    """What a transient with these outputs records before its first sample: names what comes, and how wide it is."""
+    contacts = len(machine.system.contacts)
     widths = *(len(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)), contacts, contacts
-    return histories(machine, _Nothing(np.zeros(0), *(np.zeros((0, width)) for width in widths)))
+    return _Nothing(np.zeros(0), *(np.zeros((0, width)) for width in widths))
 
 
-def histories(machine: Machine, result: Recorded) -> Histories:
-    """Name what a transient or a periodic response with :func:`transient_outputs` recorded."""
+def histories(machine: Machine, result: Recorded, turning: Turning | None = None) -> Histories:
+    """Name what a transient or a periodic response with :func:`transient_outputs` recorded.
+
+    At its speeds over time, or the nominal ones.
+    """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
+    rates = (turning or Turning.steady()).at(result.times)[1]
     forces = {}
     column = 0
-    for connector in machine.system.linear:
+    for connector in _bearings(machine):
         columns = slice(column, column + connector.directions.shape[1])
         column = columns.stop
-        force = deflections[:, columns] @ connector.stiffness.T + result.velocity[:, columns] @ connector.damping.T
-        forces[connector.name] = force[:, :2]
+        forces[connector.name] = _force(connector, deflections[:, columns], result.velocity[:, columns], rates)
     names = [] if machine.housing is None else list(machine.housing.sensors)
     contacts = [contact.name for contact in machine.system.contacts]
     return Histories(
         times=result.times,
         sensor_acceleration={name: result.acceleration[:, i] for i, name in enumerate(names)},
         gear_motion={gear.name: result.displacement[:, 3 * i : 3 * i + 3] for i, gear in enumerate(gears)},
-        bearing_force=forces,
+        tie_force=forces,
         mesh_force={name: result.force[:, i] for i, name in enumerate(contacts)},
         mesh_compression={name: result.compression[:, i] for i, name in enumerate(contacts)},
     )
@@ -147,3 +157,22 @@ def _gears(machine: Machine) -> list[MountedGear]:
     """Every gear of the meshes, once, in order."""
     gears = [gear for mesh in machine.meshes for gear in (mesh.driver, mesh.driven)]
     return list({gear.name: gear for gear in gears}.values())
+
+
+def _bearings(machine: Machine) -> tuple[LinearConnector, ...]:
+    return machine.system.linear[: len(machine.bearings)]
+
+
+def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatArray, rates: FloatArray) -> FloatArray:
+    """A bearing's force in every direction that it holds, shape (s, d), at each sample's speed in nominal terms."""
+    table = connector.over_speed
+    if table is None:
+        return np.asarray(deflection @ connector.stiffness.T + velocity @ connector.damping.T)
+    force = np.zeros_like(deflection)
+    for row in range(len(table.rates)):
+        # The share that each speed of the table has in what is linear between them.
+        share = np.interp(rates, table.rates, np.eye(len(table.rates))[row])
+        held = np.flatnonzero(share)
+        push = deflection[held] @ table.stiffness[row].T + velocity[held] @ table.damping[row].T
+        force[held] += share[held, None] * push
+    return force

@@ -1,21 +1,25 @@
 """From rotors, a housing, bearings and gear pairs to the coupled system."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
+from coupling.base_motion import BaseMotion, base_loads, gravity_load
 from coupling.component import Component, HousingComponent, RotorComponent, pedestal_component
-from coupling.connector import ContactConnector, LinearConnector
+from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.errors import CouplingError
+from coupling.gear_phases import mesh_phases
 from coupling.gears import GearPairGeometry, ToothContact
-from coupling.system import CoupledSystem, HarmonicLoad, embed
+from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance
+from coupling.system import CoupledSystem, embed
 from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 
-_Parts = Callable[[str], tuple[int, RotorComponent]]
+_PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two speeds of its table
 
 
 @dataclass(frozen=True)
@@ -58,25 +62,6 @@ class GearMesh:
 
 
 @dataclass(frozen=True)
-class Unbalance:
-    """Mass times eccentricity [kg m] at a distance from the rotor's left end [m], ahead of x by a phase [rad]."""
-
-    rotor: str
-    at: float
-    moment: float
-    phase: float
-
-
-@dataclass(frozen=True)
-class Torque:
-    """A constant torque about z [N m] on a rotor at a distance from its left end [m]."""
-
-    rotor: str
-    at: float
-    value: float
-
-
-@dataclass(frozen=True)
 class Machine:
     """The parts, and the coupled system that they make.
 
@@ -87,8 +72,10 @@ class Machine:
     bearings : tuple of MountedBearing
     meshes : tuple of GearMesh
     system : CoupledSystem
-        Components in the order rotors, housing, pedestals; linear connectors as ``bearings``; the drive flanks of
-        ``meshes`` first among its contacts, then the back flanks.
+        Components in the order rotors, housing, pedestals; linear connectors as ``bearings``, then the slopes of
+        torques; the drive flanks of ``meshes`` first among its contacts, then the back flanks.
+    unbalances, bows, torques, drives, base, gravity
+        The loads in the system.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -96,6 +83,52 @@ class Machine:
     bearings: tuple[MountedBearing, ...]
     meshes: tuple[GearMesh, ...]
     system: CoupledSystem
+    unbalances: tuple[Unbalance, ...] = ()
+    bows: tuple[BowReactions, ...] = ()
+    torques: tuple[AnyTorque, ...] = ()
+    drives: tuple[Drive, ...] = ()
+    base: BaseMotion | None = None
+    gravity: tuple[float, ...] | None = None
+
+    @property
+    def speeds(self) -> dict[str, float]:
+        """Signed speed of each rotor [rad/s]."""
+        return {rotor.name: speed for rotor, speed in zip(self.rotors, self.system.speeds, strict=False)}
+
+    @property
+    def leading_rotor(self) -> str:
+        """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
+        return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
+
+    def at_speed(self, speed: float) -> "Machine":
+        """The machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
+
+        Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; the components
+        keep their modes, which are a basis at any speed.
+
+        Raises
+        ------
+        CouplingError
+            Where the machine stands still, so that nothing tells how its rotors turn together.
+        rotors.RotorError
+            Where the speed is beyond the table of a bearing.
+        """
+        present = self.speeds[self.leading_rotor]
+        if present == 0.0:
+            raise CouplingError(f"rotor {self.leading_rotor!r} stands still; expected a machine that turns")
+        return couple(
+            self.rotors,
+            self.housing,
+            speeds={name: value * (speed / present) for name, value in self.speeds.items()},
+            bearings=self.bearings,
+            meshes=self.meshes,
+            unbalances=self.unbalances,
+            bows=self.bows,
+            torques=self.torques,
+            drives=self.drives,
+            base=self.base,
+            gravity=self.gravity,
+        )
 
 
 def couple(
@@ -106,7 +139,12 @@ def couple(
     bearings: Sequence[MountedBearing] = (),
     meshes: Sequence[GearMesh] = (),
     unbalances: Sequence[Unbalance] = (),
-    torques: Sequence[Torque] = (),
+    bows: Sequence[BowReactions] = (),
+    torques: Sequence[AnyTorque] = (),
+    drives: Sequence[Drive] = (),
+    base: BaseMotion | None = None,
+    gravity: Sequence[float] | None = None,
+    rates: tuple[float, float] = (1.0, 1.0),
 ) -> Machine:
     """Tie rotors and housing together and put the loads on.
 
@@ -116,13 +154,25 @@ def couple(
         The components.
     speeds : dict of str to float
         Signed speed of each rotor [rad/s].
-    bearings, meshes, unbalances, torques
+    bearings, meshes, unbalances, bows, torques
         What ties and drives them.
+    drives
+        Where the torque comes in that speeds a train up, see :meth:`coupling.loads.LoadedParts.swing`.
+    base
+        How the ground moves: under bearings, pedestals and the housing's supports alike.
+    gravity
+        Acceleration of free fall along x, y, z [m/s²]; none by default.
+    rates
+        The least and the highest speed that the machine will run at, as parts of ``speeds``: bearings' tables over
+        speed are followed between them.
 
     Raises
     ------
     CouplingError
-        Where a name has no component, two components share one, a rotor has no speed, or a seat no housing.
+        Where a name has no component, two components share one, a rotor has no speed, a seat no housing, or a train
+        more than one drive.
+    rotors.RotorError
+        Where a bearing's table does not reach as far as the speeds.
     """
     components: list[Component] = [*rotors]
     if housing is not None:
@@ -139,22 +189,20 @@ def couple(
     without = [rotor.name for rotor in rotors if rotor.name not in speeds]
     if without:
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
-    size = sum(component.size for component in components)
-
-    def rotor_named(name: str) -> tuple[int, RotorComponent]:
-        for i, rotor in enumerate(rotors):
-            if rotor.name == name:
-                return i, rotor
-        raise CouplingError(f"no rotor is named {name!r}; there are: {', '.join(sorted(r.name for r in rotors))}")
+    parts = LoadedParts(components, speeds)
 
     linear = []
     for mounted in bearings:
-        which, rotor = rotor_named(mounted.rotor)
+        which, rotor = parts.rotor(mounted.rotor)
         at = mounted.bearing.at
         law = mounted.bearing.at_speed(speeds[mounted.rotor])
+        table = _over_speed(mounted.bearing, speeds[mounted.rotor], rates)
         # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
         held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
         held = np.union1d(held, [0, 1])
+        if table is not None:
+            ever = np.any(table.stiffness != 0.0, axis=(0, 2)) | np.any(table.damping != 0.0, axis=(0, 2))
+            held = np.union1d(held, np.flatnonzero(ever))
         relative = np.array([embed(components, which, row) for row in rotor.motions(at)])
         if mounted.seat is not None:
             if housing is None or mounted.seat not in housing.seats:
@@ -165,55 +213,109 @@ def couple(
             foot = next(part for part in pedestals if part.name == law.name)
             relative[:2] -= [embed(components, number[foot.name], row) for row in foot.motion]
         among = np.ix_(held, held)
+        if table is not None:
+            table = SpeedTable(
+                table.rates, *(part[:, held[:, None], held] for part in (table.stiffness, table.damping))
+            )
         linear.append(
-            LinearConnector(law.name, relative[held].T, law.spatial_stiffness[among], law.spatial_damping[among])
+            LinearConnector(
+                law.name, relative[held].T, law.spatial_stiffness[among], law.spatial_damping[among], over_speed=table
+            )
         )
 
+    senses = [1 if speeds[mesh.driver.rotor] >= 0.0 else -1 for mesh in meshes]
+    phases = mesh_phases(
+        [mesh.driver.name for mesh in meshes],
+        [mesh.driven.name for mesh in meshes],
+        [mesh.geometry for mesh in meshes],
+        [_centre_line_angle(mesh) for mesh in meshes],
+        senses,
+    )
     drive, back = [], []
-    for mesh in meshes:
-        sense = 1 if speeds[mesh.driver.rotor] >= 0.0 else -1
+    for mesh, sense, phase in zip(meshes, senses, phases, strict=True):
         rate = abs(speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
-        direction, errors = _flank(components, mesh, rotor_named, speeds, sense)
+        direction, errors = _flank(components, mesh, parts, speeds, sense)
         name = f"{mesh.driver.name} -> {mesh.driven.name}"
-        drive.append(ContactConnector(name, direction, mesh.contact, 0.0, rate, errors))
+        drive.append(ContactConnector(name, direction, mesh.contact, phase, rate, errors))
         if mesh.backlash is not None:
-            direction, errors = _flank(components, mesh, rotor_named, speeds, -sense)
-            law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset
+            direction, errors = _flank(components, mesh, parts, speeds, -sense)
+            law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset - phase
             back.append(
                 ContactConnector(
                     f"{name}, back", direction, law_of_back, offset, -rate, errors, mesh.backlash, drives=False
                 )
             )
 
-    load = np.zeros(size)
+    loads = Loads(np.zeros(sum(component.size for component in components)))
     for torque in torques:
-        which, rotor = rotor_named(torque.rotor)
-        load += torque.value * embed(components, which, rotor.rotation(torque.at))
-    harmonic = []
+        parts.add_torque(loads, torque)
     for unbalance in unbalances:
-        which, rotor = rotor_named(unbalance.rotor)
-        speed = speeds[unbalance.rotor]
-        if speed == 0.0 or unbalance.moment == 0.0:
-            continue
-        # (cos, sin)(Ω t + phase) on x and y: y lags x by a quarter turn, in the sense of rotation.
-        force = unbalance.moment * speed**2 * np.exp(1j * unbalance.phase)
-        x = embed(components, which, rotor.direction(unbalance.at, 0))
-        y = embed(components, which, rotor.direction(unbalance.at, 1))
-        harmonic.append(HarmonicLoad(speed, force * (x - 1j * y)))
+        parts.add_unbalance(loads, unbalance)
+    for bow in bows:
+        parts.add_bow(loads, bow)
+
+    under = {
+        mounted.bearing.name: (*rotor.axis, rotor.start + mounted.bearing.at)
+        for mounted in bearings
+        for rotor in [parts.rotor(mounted.rotor)[1]]
+    }
+    if base is not None:
+        harmonic, timed = base_loads(components, [speeds.get(part.name, 0.0) for part in components], base, under)
+        loads.harmonic += harmonic
+        loads.timed += timed
+    if gravity is not None:
+        loads.constant += gravity_load(components, gravity, under)
 
     system = CoupledSystem(
         components=tuple(components),
         speeds=tuple(speeds.get(component.name, 0.0) for component in components),
-        linear=tuple(linear),
+        linear=tuple(linear + loads.dashpots),
         contacts=tuple(drive + back),
-        load=load,
-        harmonic_loads=tuple(harmonic),
+        load=loads.constant,
+        harmonic_loads=tuple(loads.harmonic),
+        timed_loads=tuple(loads.timed),
+        swing=parts.swing([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives),
     )
-    return Machine(tuple(rotors), housing, tuple(bearings), tuple(meshes), system)
+    return Machine(
+        tuple(rotors),
+        housing,
+        tuple(bearings),
+        tuple(meshes),
+        system,
+        tuple(unbalances),
+        tuple(bows),
+        tuple(torques),
+        tuple(drives),
+        base,
+        None if gravity is None else tuple(gravity),
+    )
+
+
+def _centre_line_angle(mesh: GearMesh) -> float:
+    """Angle from x of the line from the driver's centre to the driven gear's [rad]."""
+    x, y = np.subtract(mesh.driven.axis, mesh.driver.axis)
+    return float(np.arctan2(y, x))
+
+
+def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> SpeedTable | None:
+    """A bearing's law between two speeds, as parts of a nominal one [rad/s]; None where it does not change.
+
+    Its monotone cubic is cut into straight pieces.
+    """
+    if bearing.speeds is None or rates[0] == rates[1] or speed == 0.0:
+        return None
+    table = bearing.speeds / abs(speed)
+    knots = np.unique([*rates, *(knot for knot in [1.0, *table] if rates[0] < knot < rates[1])])
+    cuts = [np.linspace(low, high, _PER_GAP, endpoint=False) for low, high in pairwise(knots)]
+    at = np.append(np.concatenate(cuts), knots[-1])
+    laws = [bearing.at_speed(float(rate) * speed) for rate in at]
+    return SpeedTable(
+        at, np.array([law.spatial_stiffness for law in laws]), np.array([law.spatial_damping for law in laws])
+    )
 
 
 def _flank(
-    components: Sequence[Component], mesh: GearMesh, parts: _Parts, speeds: dict[str, float], sense: int
+    components: Sequence[Component], mesh: GearMesh, parts: LoadedParts, speeds: dict[str, float], sense: int
 ) -> tuple[FloatArray, FloatArray]:
     """Direction of compression and the harmonics of the runout error on one side of the teeth.
 
@@ -228,7 +330,7 @@ def _flank(
     """
     driver, driven = mesh.driver, mesh.driven
     line = np.subtract(driven.axis, driver.axis)
-    angle = mesh.geometry.line_of_action_angle(float(np.arctan2(line[1], line[0])), sense)
+    angle = mesh.geometry.line_of_action_angle(_centre_line_angle(mesh), sense)
     push = (np.cos(angle), np.sin(angle))
     helix = mesh.geometry.driver.base_helix_angle
     thrust = -sense * np.tan(helix)
@@ -237,7 +339,7 @@ def _flank(
     errors = []
     sides = ((driver, mesh.geometry.driver, 1.0), (driven, mesh.geometry.driven, -1.0))
     for (mounted, gear, side), radius in zip(sides, mesh.geometry.working_pitch_radii, strict=True):
-        which, rotor = parts(mounted.rotor)
+        which, rotor = parts.rotor(mounted.rotor)
         motion = sense * gear.base_radius * rotor.rotation(mounted.at)
         for axis in (0, 1):
             motion = motion + side * push[axis] * rotor.direction(mounted.at, axis)

@@ -25,7 +25,7 @@ from coupling.condensation import condensed
 from coupling.errors import CouplingError, TransientError
 from coupling.fingerprint import fingerprint
 from coupling.settings import TransientOutputs, TransientSettings
-from coupling.statics import static_equilibrium
+from coupling.statics import coasting_velocity, static_equilibrium
 from coupling.step import KernelArrays, StepCache, cut, empty_samples, kernel_arrays
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
@@ -247,13 +247,15 @@ class _Run:
         pushing = sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
         self.pushing = np.linalg.norm(system.load) + np.linalg.norm(pushing)
         # Nothing that stays together moves so much further than its loads press it.
-        self.reach = float(_resting(system, turning, pushing).max(initial=0.0))
+        pushed = pushing + np.abs(system.load)
+        self.reach = float(_resting(system, turning, pushed, settings.duration).max(initial=0.0))
 
     def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
-        """Static equilibrium under the loads of the start, unless another state is given."""
+        """Static equilibrium under the loads of the start, swinging where nothing resists; or a state that is given."""
         system, (_, rates, swings) = self.system, self.turning.at(0.0)
         load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.swing)
-        q, v = initial or (static_equilibrium(replace(system, load=load)), np.zeros(system.size))
+        resting = replace(system, load=load)
+        q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)
         first = float(self.bounds(0)[1])
         turned, rates, _ = self.turning.at(1e-7 * first)
@@ -367,9 +369,10 @@ class _Run:
         )
 
 
-def _resting(system: CoupledSystem, turning: Turning, pushing: FloatArray | float) -> FloatArray:
-    """Coordinates that the loads' amplitudes would hold if they stood still, shape (n,)."""
+def _resting(system: CoupledSystem, turning: Turning, pushing: FloatArray | float, duration: float) -> FloatArray:
+    """Coordinates that the loads' amplitudes would hold if they stood still, shape (n,); what is free, F t²/2."""
     fastest = max(1.0, float(turning.rates.max())) ** 2
     loads = sum((fastest * np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size)) + pushing
     stiffness = np.abs(np.diag(system.mean_stiffness()))
-    return np.asarray(loads / np.where(stiffness > 0.0, stiffness, np.inf))
+    compliance = np.full(system.size, 0.5 * duration**2)
+    return np.asarray(loads * np.divide(1.0, stiffness, out=compliance, where=stiffness > 0.0))

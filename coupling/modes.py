@@ -1,10 +1,15 @@
-"""Complex natural modes of the coupled system about its mean contact."""
+"""Complex natural modes of the coupled system, about its mean contact or one that is given."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from coupling.component import RotorComponent
+from coupling.contact_state import ContactState, linear_matrices, mean_contact
+from coupling.eigenpairs import Eigenpairs, quadratic_eigenpairs
+from coupling.shares import ModeShares, mode_shares
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -13,6 +18,30 @@ ComplexArray = npt.NDArray[np.complex128]
 COORDINATE_KINDS = ("housing", "rotor", "torsion", "axial", "pedestal", "residual")
 
 _MESH_SHARE = 0.3  # a mode with more of its strain energy than this in the teeth is called a mesh mode
+_WHIRLS = 0.01  # a rotor with less of the kinetic energy in its bending than this has no whirl to speak of
+
+
+@dataclass(frozen=True)
+class ModesCertificate:
+    """What proves the modes.
+
+    Attributes
+    ----------
+    expected, found : int
+        Eigenvalues, 2 n and all that were found: conjugates, and each zero by its multiplicity.
+    zeros : int
+        How many of them are zero, found as ranks.
+    max_residual : float
+        Largest |λ² q + λ C q + K q|, as a part of the norm of its terms.
+    sum_rule : float
+        Largest entry of Σ λ q pᴴ + X - I, 0 where every pair is there once.
+    """
+
+    expected: int
+    found: int
+    zeros: int
+    max_residual: float
+    sum_rule: float
 
 
 @dataclass(frozen=True)
@@ -22,22 +51,40 @@ class CoupledModes:
     Attributes
     ----------
     eigenvalues : ndarray of complex, shape (m,)
-        λ [1/s], with a frequency of |λ| and a damping ratio of -Re λ / |λ|.
+        λ [1/s], with a frequency of |λ| and a damping ratio of -Re λ / |λ|; exactly 0 for rigid motions.
     shapes : ndarray of complex, shape (m, n)
         Coordinates, of unit norm.
+    left : ndarray of complex, shape (m, n)
+        Left vectors p with pᴴ (2 λ I + C) q = 1; NaN for rigid motions, whose double zeros have none such.
     kinds : tuple of str
         What moves: ``housing``, ``rotor``, ``torsion``, ``axial``, ``pedestal``, ``mesh``, or ``rigid`` where nothing
         resists; ``residual`` where it is the local compliance that the housing's modes leave out, and the frequency
         means nothing.
+    where : tuple of str
+        The component that moves most in coordinates of that kind; of a mesh mode the contact strained most.
     energy : tuple of dict
         Share of each kind of coordinate in the mode's kinetic energy, and under ``mesh`` the teeth's share in its
         strain energy.
+    shares : ModeShares
+        By component, bearing and gear mesh.
+    whirl : ndarray, shape (m, c)
+        Of each component: 1 where it whirls counter-clockwise about z in circles, -1 clockwise, 0 in a plane; NaN
+        where it has no bending or hardly any in the mode.
+    certificate : ModesCertificate
+    pairs : Eigenpairs
+        All 2n, for superposition.
     """
 
     eigenvalues: ComplexArray
     shapes: ComplexArray
+    left: ComplexArray
     kinds: tuple[str, ...]
+    where: tuple[str, ...]
     energy: tuple[dict[str, float], ...]
+    shares: ModeShares
+    whirl: FloatArray
+    certificate: ModesCertificate
+    pairs: Eigenpairs
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -50,46 +97,111 @@ class CoupledModes:
         size = np.abs(self.eigenvalues)
         return np.asarray(-self.eigenvalues.real / np.where(size > 0.0, size, 1.0))
 
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """Kind and place of each mode in words, such as ``rotor: input``."""
+        return tuple(f"{kind}: {place}" if place else kind for kind, place in zip(self.kinds, self.where, strict=True))
 
-def coupled_modes(system: CoupledSystem) -> CoupledModes:
-    """Eigenvalues of λ² q + λ C q + K q = 0, the teeth at their mean stiffness.
 
-    Overdamped motions come as two real eigenvalues and are both listed, with a damping ratio of 1 (or -1).
+def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) -> CoupledModes:
+    """Eigenvalues of λ² q + λ C q + K q = 0.
+
+    Overdamped motions come as two real eigenvalues and are both listed, with a damping ratio of 1 (or -1); a motion
+    that dashpots resist but no spring does is listed at its zero, as rigid, and at its decay.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+    contact : ContactState, optional
+        :func:`coupling.mean_contact`, where it is not given, or :func:`coupling.contact_at` an instant.
+
+    Raises
+    ------
+    ModesError
+        Where an eigenpair fails its proof.
     """
-    stiffness, damping, n = system.mean_stiffness(), system.mean_damping(), system.size
-    companion = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]])
-    values, vectors = np.linalg.eig(companion)
-    scale = float(np.abs(values).max())
-    # A rigid motion is a double zero, which rounding splits by about the square root of the precision.
-    rigid = np.abs(values) < 1e-6 * scale
-    upper = (values.imag > 1e-9 * scale) | ((np.abs(values.imag) <= 1e-9 * scale) & ~rigid)
-    zeros = np.flatnonzero(rigid)[: (np.count_nonzero(rigid) + 1) // 2]
-    chosen = np.concatenate([zeros, np.flatnonzero(upper & ~rigid)])
-    chosen = chosen[np.argsort(np.abs(values[chosen]), kind="stable")]
-    shapes = vectors[:n, chosen].T
-    shapes = shapes / np.linalg.norm(shapes, axis=1)[:, None]
-    kinds, energy = [], []
-    contact_stiffness = stiffness - system.stiffness
-    for value, shape in zip(values[chosen], shapes, strict=True):
-        share = _shares(system, stiffness, contact_stiffness, shape)
-        energy.append(share)
-        if abs(value) < 1e-6 * scale:
-            kinds.append("rigid")
-        elif share["mesh"] > _MESH_SHARE:
-            kinds.append("mesh")
-        else:
-            kinds.append(max(COORDINATE_KINDS, key=lambda kind: share[kind]))
-    values = np.where(np.abs(values) < 1e-6 * scale, 0.0, values)
-    return CoupledModes(np.asarray(values[chosen]), np.asarray(shapes), tuple(kinds), tuple(energy))
+    state = mean_contact(system) if contact is None else contact
+    stiffness, damping = linear_matrices(system, state)
+    pairs = quadratic_eigenpairs(stiffness, damping)
+    upper = np.flatnonzero(pairs.values.imag >= 0.0)
+    upper = upper[np.argsort(np.abs(pairs.values[upper]), kind="stable")]
+    rigid = len(pairs.rigid)
+    values = np.concatenate([np.zeros(rigid, dtype=np.complex128), pairs.values[upper]])
+    shapes = np.concatenate([pairs.rigid.astype(np.complex128), pairs.right[upper]])
+    left = np.concatenate([np.full((rigid, system.size), np.nan, dtype=np.complex128), pairs.left[upper]])
+    shares = mode_shares(system, state, values, shapes)
+    energy = _energy_by_kind(system, shares, shapes)
+    kinds = ["rigid" if value == 0.0 else _kind(share) for value, share in zip(values, energy, strict=True)]
+    zeros = rigid + pairs.drifts
+    return CoupledModes(
+        eigenvalues=values,
+        shapes=shapes,
+        left=left,
+        kinds=tuple(kinds),
+        where=tuple(_places(system, shares, kinds, shapes)),
+        energy=tuple(energy),
+        shares=shares,
+        whirl=whirl_directions(system, shapes),
+        certificate=ModesCertificate(
+            expected=2 * system.size,
+            found=zeros + pairs.values.size,
+            zeros=zeros,
+            max_residual=float(pairs.residuals.max(initial=0.0)),
+            sum_rule=pairs.sum_rule,
+        ),
+        pairs=pairs,
+    )
 
 
-def _shares(
-    system: CoupledSystem, stiffness: FloatArray, contact_stiffness: FloatArray, shape: ComplexArray
-) -> dict[str, float]:
-    kinetic = np.abs(shape) ** 2
+def whirl_directions(system: CoupledSystem, shapes: ComplexArray) -> FloatArray:
+    """Sense of each component's bending about +z in modes, shape (m, c): see :class:`CoupledModes`.
+
+    Counter-clockwise circles have y a quarter turn behind x. With x and y in the same mass-normalised shapes of the
+    shaft, the sense is the part of the kinetic energy in such circles less that in the opposite ones.
+    """
+    found = np.full((len(shapes), len(system.components)), np.nan)
+    start = 0
+    for number, component in enumerate(system.components):
+        end = start + component.size
+        if isinstance(component, RotorComponent):
+            m = component.modal.lateral.count
+            x, y = shapes[:, start : start + m], shapes[:, start + m : start + 2 * m]
+            forward = (np.abs(x + 1j * y) ** 2).sum(axis=1)
+            backward = (np.abs(x - 1j * y) ** 2).sum(axis=1)
+            both = forward + backward
+            whirls = 0.5 * both > _WHIRLS * (np.abs(shapes) ** 2).sum(axis=1)
+            found[whirls, number] = ((forward - backward) / np.where(both > 0.0, both, 1.0))[whirls]
+        start = end
+    return found
+
+
+def _energy_by_kind(system: CoupledSystem, shares: ModeShares, shapes: ComplexArray) -> list[dict[str, float]]:
     labels = np.array(system.kinds)
-    share = {kind: float(kinetic[labels == kind].sum() / kinetic.sum()) for kind in COORDINATE_KINDS}
-    strain = float((shape.conj() @ (stiffness @ shape)).real)
-    mesh = float((shape.conj() @ (contact_stiffness @ shape)).real)
-    share["mesh"] = mesh / strain if strain > 0.0 else 0.0
-    return share
+    kinetic = np.abs(shapes) ** 2
+    kinetic = kinetic / kinetic.sum(axis=1, keepdims=True)
+    of_kind = {kind: kinetic[:, labels == kind].sum(axis=1) for kind in COORDINATE_KINDS}
+    teeth = np.array([part.kind == "contact" for part in shares.parts])
+    of_kind["mesh"] = shares.strain[:, teeth].sum(axis=1)
+    return [{kind: float(values[i]) for kind, values in of_kind.items()} for i in range(len(shapes))]
+
+
+def _kind(share: dict[str, float]) -> str:
+    if share["mesh"] > _MESH_SHARE:
+        return "mesh"
+    return max(COORDINATE_KINDS, key=lambda kind: share[kind])
+
+
+def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str], shapes: ComplexArray) -> list[str]:
+    """Where each mode is: see :attr:`CoupledModes.where`."""
+    owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
+    labels = np.array(system.kinds)
+    places = []
+    for i, kind in enumerate(kinds):
+        if kind == "mesh":
+            teeth = [(shares.strain[i, j], part.name) for j, part in enumerate(shares.parts) if part.kind == "contact"]
+            places.append(max(teeth)[1])
+            continue
+        moving = np.abs(shapes[i]) ** 2 * ((labels == kind) | (kind == "rigid"))
+        owned = np.bincount(owners, moving, len(system.components))
+        places.append(system.components[int(np.argmax(owned))].name)
+    return places

@@ -185,10 +185,18 @@ def march(
             for k in range(c):
                 dq0[k] = dq[k] + h * dv[k] + old * da[k]
                 dv0[k] = dv[k] + new * da[k]
-            add_gyroscopic(gyroscopic, first, size, -middle_speed, v0, pushed, work)
             if swing != 0.0:
                 add_gyroscopic(gyroscopic, first, size, -swing, q0, pushed, work)
+                add_gyroscopic(gyroscopic, first, size, beta / gamma * h * swing, v0, pushed, work)
+            # With D the diagonal of S₀ = D + (γ h s' + β h² s'') G, S₀ (a + v*/γh) = r + D v*/γh + β/γ h s'' G v* has
+            # no term s' G v*: most of the gyroscopic part comes without a product of its own.
+            for g in range(first.size):
+                for i in range(first[g], first[g] + size[g]):
+                    pushed[i] += v0[i] / (gamma * h * matrices.base[slot, i])
             apply_base(matrices.base, matrices.blocks, first, size, slot, pushed, free, work)
+            for g in range(first.size):
+                for i in range(first[g], first[g] + size[g]):
+                    free[i] -= v0[i] / (gamma * h)
 
             # a = B (r - U y) - B U link (Uᵀ B (r - U y)), y what the ties push.
             project(dynamics.ties, free, seen_by_ties)

@@ -1,4 +1,9 @@
-"""Spectra of evenly sampled signals."""
+"""Spectra of evenly sampled signals.
+
+Amplitudes are peak values throughout: a sine a sin(2πft) has the line a, an rms value of a/√2 and, in decibels, the
+level of that rms value, see :mod:`coupling.signature.levels`. The mean, the d.c. part, is no vibration: it stands alone
+at 0 Hz.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -8,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 Window = Literal["uniform", "hann"]
 
 
@@ -34,6 +40,16 @@ class Spectrum:
     phase: FloatArray
     window: Window
     averages: int = 1
+
+    @property
+    def lines(self) -> ComplexArray:
+        """Complex amplitudes a e^{iφ}, shape (..., m): the signal is the sum of Re a e^{i(2πft + φ)}."""
+        return np.asarray(self.amplitude * np.exp(1j * self.phase))
+
+    @property
+    def spacing(self) -> float:
+        """Between lines [Hz]: the inverse of the record's length."""
+        return float(self.frequencies[1]) if self.frequencies.size > 1 else 0.0
 
     def rms(self, limit: float) -> FloatArray:
         """Root mean square of the lines above 0 Hz and up to a limit [Hz], shape (...), in the signal's unit.
@@ -95,12 +111,73 @@ def _lines(signal: FloatArray, window: Window) -> npt.NDArray[np.complex128]:
     """Complex one-sided lines; their magnitude is the peak amplitude, and the line at 0 Hz the mean."""
     count = signal.shape[-1]
     mean = signal.mean(axis=-1, keepdims=True)
-    weights = np.ones(count) if window == "uniform" else 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count)
+    weights = window_weights(count, window)
     lines = np.fft.rfft((signal - mean) * weights, axis=-1) * (2.0 / weights.sum())
     if count % 2 == 0:
         lines[..., -1] *= 0.5  # the line at half the sampling rate stands alone
     lines[..., 0] = mean[..., 0]
     return np.asarray(lines)
+
+
+def window_weights(count: int, window: Window) -> FloatArray:
+    """Weights of a window's samples, periodic: the one after the last would be the first again, shape (count,)."""
+    if window == "uniform":
+        return np.ones(count)
+    return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count))
+
+
+def lines_at(signal: FloatArray, interval: float, frequencies: FloatArray, window: Window = "uniform") -> ComplexArray:
+    """Complex amplitudes at any frequencies, not only those that fit the record: shape (..., f).
+
+    2 Σ w (x - mean) e^{-2πift} / Σ w: the height of a sine that stands there, under either window, as far as its
+    neighbours do not leak into it.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (..., s)
+    interval : float
+        Between samples [s].
+    frequencies : ndarray, shape (f,)
+        [Hz], above 0 and below half the sampling rate.
+    window : {"uniform", "hann"}
+    """
+    weights = window_weights(signal.shape[-1], window)
+    weighted = (signal - signal.mean(axis=-1, keepdims=True)) * (2.0 * weights / weights.sum())
+    times = interval * np.arange(signal.shape[-1])
+    found = [weighted @ np.exp(-2j * np.pi * frequency * times) for frequency in frequencies]
+    return np.stack(found, axis=-1) if found else np.zeros((*signal.shape[:-1], 0), dtype=np.complex128)
+
+
+@dataclass(frozen=True)
+class SignalParts:
+    """The fixed (d.c.) and the varying (a.c.) part of a signal, each in its unit, shape (...).
+
+    Attributes
+    ----------
+    mean : ndarray
+        The d.c. part.
+    rms : ndarray
+        Of the a.c. part.
+    peak : ndarray
+        Largest departure from the mean.
+    """
+
+    mean: FloatArray
+    rms: FloatArray
+    peak: FloatArray
+
+    @property
+    def fixed_to_varying(self) -> FloatArray:
+        """|d.c.| over the rms of the a.c. part; infinite for a signal that stands still."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(np.abs(self.mean) / self.rms)
+
+
+def signal_parts(signal: FloatArray) -> SignalParts:
+    """The d.c. and the a.c. part of a signal of shape (..., s)."""
+    mean = signal.mean(axis=-1)
+    varying = signal - mean[..., None]
+    return SignalParts(mean, np.asarray(np.sqrt((varying**2).mean(axis=-1))), np.abs(varying).max(axis=-1))
 
 
 @dataclass(frozen=True)

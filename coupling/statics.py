@@ -10,6 +10,7 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 
 _RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
+_PUSHED = 1e-9  # part of a load below which its share in a motion is rounding
 _STEPS = 60
 
 
@@ -32,19 +33,18 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     """
     from coupling.gears.kernels import tooth_force
 
-    symmetric = 0.5 * (system.mean_stiffness() + system.mean_stiffness().T)
-    values, vectors = np.linalg.eigh(symmetric)
-    rigid = vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)]
+    rigid, stiffest = _unresisted(system)
     if rigid.size:
         driven = rigid.T @ system.load
-        scale = np.abs(rigid.T) @ np.abs(system.load)
-        if np.any(np.abs(driven) > 1e-6 * scale):
+        # Beside a load that balances in itself, and beside the rounding of what a motion is.
+        scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _RIGID * np.linalg.norm(system.load)
+        if np.any(np.abs(driven) > scale):
             raise CouplingError(
                 "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
                 "rotation or a housing without supports; check the torques in and out against the gear ratios, and the "
                 "supports' stiffness"
             )
-    penalty = float(values[-1]) * rigid @ rigid.T
+    penalty = stiffest * rigid @ rigid.T
     # Newton's method starts from teeth that touch: deviations and runout may hold them further apart than the load
     # presses, and from open teeth it would stop at a motion that nothing holds.
     closing = np.zeros(system.size)
@@ -52,7 +52,9 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
         if contact.drives:
             first_touch = float(contact.contact.pairs(_phase(contact, time)).deviation.min())
             closing += contact.contact.mean_stiffness * (first_touch + _error(contact, time)) * contact.direction
-    q: FloatArray = np.linalg.solve(system.mean_stiffness() + penalty, system.load + closing)
+    q: FloatArray = np.asarray(
+        np.linalg.solve(system.mean_stiffness() + penalty, system.load + closing), dtype=np.float64
+    )
     pressing = float(np.linalg.norm(system.load) + np.linalg.norm(closing)) or 1e-300
     for _ in range(_STEPS):
         residual = system.load - system.stiffness @ q - penalty @ q
@@ -69,6 +71,31 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     raise TransientError(
         f"no static equilibrium of the teeth after {_STEPS} Newton steps; the torque may be too small to close the mesh"
     )
+
+
+def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
+    """Rates at t = 0 with which motions that nothing resists swing under harmonic loads and stay where they are, (n,).
+
+    Such a motion answers Re(F e^{iwt}) by the velocity Re(F e^{iwt} / (iw)). From rest it would drift away beside it,
+    as a train does that a ripple of its torque has pushed once. ``rate`` is the speed as a part of the nominal one.
+    """
+    velocity = np.zeros(system.size)
+    rigid = None
+    for load in system.harmonic_loads:
+        frequency = load.frequency if load.follows == "time" else load.frequency * rate
+        if frequency == 0.0:
+            continue
+        rigid = _unresisted(system)[0] if rigid is None else rigid
+        pushed = rigid.T @ load.amplitude
+        if np.abs(pushed).max(initial=0.0) > _PUSHED * np.linalg.norm(load.amplitude):
+            velocity += rigid @ (pushed / (1j * frequency)).real
+    return velocity
+
+
+def _unresisted(system: CoupledSystem) -> tuple[FloatArray, float]:
+    """Orthonormal motions that no spring resists, in columns, and the largest stiffness [1/s²]."""
+    values, vectors = np.linalg.eigh(0.5 * (system.mean_stiffness() + system.mean_stiffness().T))
+    return vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)], float(values[-1])
 
 
 def _phase(contact: ContactConnector, time: float) -> float:

@@ -84,13 +84,21 @@ def apply_base(
     for i in range(x.size):
         out[i] = base[slot, i] * x[i]
     for g in range(first.size):
+        begin, n = first[g], size[g]
         work[:] = 0.0
-        for j in range(size[g]):
-            value = x[first[g] + j]
+        # Four columns at a time, so that what is added up is fetched and stored four times less.
+        for j in range(0, n - n % 4, 4):
+            x0, x1, x2, x3 = x[begin + j], x[begin + j + 1], x[begin + j + 2], x[begin + j + 3]
+            for i in range(work.size):
+                work[i] += (blocks[slot, g, j, i] * x0 + blocks[slot, g, j + 1, i] * x1) + (
+                    blocks[slot, g, j + 2, i] * x2 + blocks[slot, g, j + 3, i] * x3
+                )
+        for j in range(n - n % 4, n):
+            value = x[begin + j]
             for i in range(work.size):
                 work[i] += blocks[slot, g, j, i] * value
-        for i in range(size[g]):
-            out[first[g] + i] = work[i]
+        for i in range(n):
+            out[begin + i] = work[i]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, CycloptsError, Parameter
+from cyclopts.validators import Number
 
 from gearwhine import __version__
 from gearwhine.interruption import interruptible
@@ -167,15 +168,73 @@ def gears(case: CaseName, *, common: Common = _DEFAULTS) -> None:
 
 
 @app.command
-def system(case: CaseName, *, fresh: Fresh = False, common: Common = _DEFAULTS) -> None:
-    """Complex natural modes of the whole coupled system at its speed."""
+def system(
+    case: CaseName,
+    *,
+    campbell: Annotated[
+        bool,
+        Parameter(
+            name=["--campbell"],
+            negative=(),
+            help="Also the modes over speed: over the case's [sweep], else up to half again the speed of operation.",
+        ),
+    ] = False,
+    mesh_phase: Annotated[
+        float | None,
+        Parameter(help="About the contact with the first pair's teeth at this part of their period, not its mean."),
+    ] = None,
+    fresh: Fresh = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """Complex natural modes of the whole coupled system, who moves and damps; what reaches bearings and sensors."""
     from gearwhine.screen import show_system
     from gearwhine.work import system_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return system_case(given, common.output, progress, fresh=fresh)
+        return system_case(given, common.output, progress, mesh_phase=mesh_phase, over_speed=campbell, fresh=fresh)
 
     _on_case(case, common, work, show_system)
+
+
+@app.command
+def sweep(
+    case: CaseName,
+    *,
+    over: Annotated[
+        list[str],
+        Parameter(
+            name=["--over"],
+            negative=(),
+            consume_multiple=False,
+            help="Go through values of a key: key.path=from:to:n or =a,b,c, such as "
+            "operation.torque='10 N*m:100 N*m:10'. Several make a grid, with the speeds of [sweep] too.",
+        ),
+    ] = [],  # noqa: B006 - read only
+    workers: Annotated[
+        int | None, Parameter(help="How many processes (default: as many as cores).", validator=Number(gte=1))
+    ] = None,
+    scheduler: Annotated[
+        str | None, Parameter(help="Address of a running Dask scheduler, whose workers are used instead.")
+    ] = None,
+    fresh: Annotated[
+        bool, Parameter(name="--fresh", negative=(), help="Do also the points and modes that OUT holds.")
+    ] = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """The transient over the speeds of [sweep] or any keys, in parallel; resumes in OUT (default: ./<case>-results)."""
+    from gearwhine.failures import PartlyFailedError
+    from gearwhine.screen import show_sweep
+    from gearwhine.work import sweep_case
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        folder = _folder(case, common)
+        source = (case, tuple(common.settings))
+        return sweep_case(given, source, over, folder, progress, workers=workers, scheduler=scheduler, fresh=fresh)
+
+    document = _on_case(case, common, work, show_sweep)
+    if document["failed"]:
+        total = len(document["points"])
+        raise PartlyFailedError(f"{document['failed']} of {total} points failed; they are tried again on the next run")
 
 
 @app.command
@@ -247,7 +306,6 @@ def _later(command: str, what: str) -> Callable[..., None]:
 
 
 for _name, _what in (
-    ("sweep", "runs over many speeds, in parallel"),
     ("update", "fits named parameters to measured modes"),
     ("report", "the results folder as one HTML page"),
 ):
@@ -294,8 +352,8 @@ def _on_case(
     common: Common,
     work: Callable[["Case", "Progress"], dict[str, Any]],
     show: Callable[[dict[str, Any]], None],
-) -> None:
-    """Read the case, do the work under a progress display, and hand the result over."""
+) -> dict[str, Any]:
+    """Read the case, do the work under a progress display, hand the result over and return it."""
     from gearwhine.case import load_case
     from gearwhine.progress import shown
 
@@ -309,6 +367,7 @@ def _on_case(
     for warning in document.get("warnings", ()):
         sys.stderr.write(f"warning: {warning['message']}\n")
     _hand_over(document, common, show)
+    return document
 
 
 def _check_folder(folder: Path) -> None:

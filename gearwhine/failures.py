@@ -4,12 +4,20 @@ import sys
 from collections.abc import Callable, Sequence
 
 
+class PartlyFailedError(RuntimeError):
+    """Some of the work failed; what was done is on file, and the message says how much is missing."""
+
+
+class WorkersError(RuntimeError):
+    """The workers of a sweep did not start, or are gone for good."""
+
+
 def explain(error: Exception) -> tuple[int, str | None]:
     """Exit code and message of a failure; no message where nobody foresaw it and a traceback is due.
 
     Wrong input is 2. A missing system library, or a result that failed its own proof, is 1 with its advice.
     """
-    from coupling.errors import CouplingError, TransientError
+    from coupling.errors import CouplingError, ModesError, TransientError
     from coupling.gears.errors import ContactAccuracyError, GearError
     from gearwhine.case import CaseError
     from housing.errors import FactorizationError, HealthError, HousingError, IncompleteModesError, ReductionError
@@ -31,8 +39,11 @@ def explain(error: Exception) -> tuple[int, str | None]:
         IncompleteModesError,
         IncompleteRotorModesError,
         MesherUnavailableError,
+        PartlyFailedError,
+        ModesError,
         ReductionError,
         TransientError,
+        WorkersError,
     )
     # The renderer's error lives beside VTK, which must not be imported for its sake.
     if isinstance(error, proofs) or type(error).__name__ == "RendererUnavailableError":

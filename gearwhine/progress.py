@@ -11,7 +11,10 @@ _WORTH_SAYING = 5.0  # seconds
 
 
 class Progress(Protocol):
-    """Told in words what happens now, and how much of it is done (0 to 1) where that is known."""
+    """Told in words what happens now, and how much of it is done (0 to 1) where that is known.
+
+    Words after a colon are news of the same work: its clock goes on.
+    """
 
     def __call__(self, message: str, fraction: float | None = None) -> None: ...
 
@@ -50,9 +53,11 @@ def _live() -> Iterator[Progress]:
         current = [""]
 
         def progress(message: str, fraction: float | None = None) -> None:
+            if _work(message) != _work(current[0]):
+                bar.reset(task, total=None if fraction is None else 1.0)
             if message != current[0]:
                 current[0] = message
-                bar.reset(task, description=message, total=None if fraction is None else 1.0)
+                bar.update(task, description=message)
             if fraction is not None:
                 bar.update(task, total=1.0, completed=fraction)
 
@@ -68,15 +73,18 @@ def _lines() -> Progress:
         nonlocal last, told, said, begun
         tenths = 0 if fraction is None else int(10 * fraction)
         now = time.perf_counter()
+        news = message != last and _work(message) == _work(last)
         if message != last:
-            # Work that goes on from where it was left does not begin at 0.
-            last, told, begun = message, 0, (now, fraction or 0.0)
+            if not news:
+                # Work that goes on from where it was left does not begin at 0.
+                begun = (now, fraction or 0.0)
+            last, told = message, 0
         elif (tenths <= told or tenths % 5) and (fraction is None or now - said < _OFTEN):
             return
         told, said = tenths, now
-        part = (
-            "" if fraction is None or fraction < 0.005 else f" {100 * fraction:.0f} %{_time_left(begun, now, fraction)}"
-        )
+        part = ""
+        if fraction is not None and fraction >= 0.005 and not news:
+            part = f" {100 * fraction:.0f} %{_time_left(begun, now, fraction)}"
         sys.stderr.write(f"[{time.perf_counter() - start:6.1f} s] {message}{part}\n")
         sys.stderr.flush()
 
@@ -90,3 +98,8 @@ def _time_left(begun: tuple[float, float], now: float, fraction: float) -> str:
         return ""
     minutes, seconds = divmod(round(left), 60)
     return f", {minutes // 60}:{minutes % 60:02d}:{seconds:02d} left"
+
+
+def _work(message: str) -> str:
+    """What a message is about, without its news."""
+    return message.partition(":")[0]

@@ -6,15 +6,18 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from coupling import CoupledModes
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
 from gearwhine.gear_results import write_gears
 from gearwhine.rotor_results import Variables, write_rotors
+from gearwhine.signature_results import write_signature
 from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.rotors import SolvedRotor
+from gearwhine.stages.signature import SolvedSignature
+from gearwhine.stages.system import SolvedSystem
 from gearwhine.stages.transient import SolvedTransient
+from gearwhine.system_results import write_system
 from gearwhine.transient_results import append_histories, write_transient
 
 FloatArray = npt.NDArray[np.float64]
@@ -28,8 +31,9 @@ def write(
     housing: SolvedHousing | None,
     rotors: tuple[SolvedRotor, ...],
     pairs: tuple[PairAnalysis, ...],
-    system: CoupledModes | None,
+    system: SolvedSystem | None,
     transient: SolvedTransient | None,
+    signature: SolvedSignature | None = None,
 ) -> None:
     """Write what was solved; the rest is left out."""
     variables: Variables = {}
@@ -41,9 +45,11 @@ def write(
     if pairs:
         write_gears(pairs, variables, coordinates)
     if system is not None:
-        _system(system, variables, coordinates)
+        write_system(system, variables, coordinates)
     if transient is not None:
         write_transient(transient, variables, coordinates)
+    if transient is not None and signature is not None:
+        write_signature(transient, signature, variables, coordinates)
     if case.operation is not None:
         coordinates["speed"] = ((), case.operation.speed * 60.0 / _HERTZ, _unit("rpm", "speed of the first driver"))
     attributes = {
@@ -100,9 +106,3 @@ def _housing(solved: SolvedHousing, variables: Variables, coordinates: Variables
         survey.reshape(len(numbers), -1, 3),
         _unit("kg-0.5", "mass-normalised mode shapes at the survey points"),
     )
-
-
-def _system(modes: CoupledModes, variables: Variables, coordinates: Variables) -> None:
-    variables["system_frequency"] = ("system_mode", modes.frequencies_hz, _unit("Hz", "coupled natural frequency"))
-    variables["system_damping_ratio"] = ("system_mode", modes.damping_ratios, _unit("1", "coupled damping ratio"))
-    variables["system_kind"] = ("system_mode", list(modes.kinds), {"long_name": "what moves most"})

@@ -9,11 +9,13 @@ import h5netcdf
 import numpy as np
 import numpy.typing as npt
 
-import coupling as room
 from gearwhine.rotor_results import Variables
+from gearwhine.stages.march_record import Signals
 from gearwhine.stages.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
+
+MODAL_COORDINATE = "modal coordinate by unit modal mass; of torsion by unit modal inertia [rad kg0.5 m]"
 
 
 @dataclass(frozen=True)
@@ -22,57 +24,64 @@ class _Quantity:
 
     name: str
     dimensions: tuple[str, ...]
-    of: Callable[[room.Histories], Mapping[str, FloatArray]]
+    of: Callable[[Signals], Mapping[str, FloatArray]]
     unit: str
     what: str
 
 
-def _displacement(histories: room.Histories) -> dict[str, FloatArray]:
-    return {name: motion[:, :2] for name, motion in histories.gear_motion.items()}
+def _displacement(signals: Signals) -> dict[str, FloatArray]:
+    return {name: motion[:, :2] for name, motion in signals.histories.gear_motion.items()}
 
 
-def _rotation(histories: room.Histories) -> dict[str, FloatArray]:
-    return {name: motion[:, 2] for name, motion in histories.gear_motion.items()}
+def _rotation(signals: Signals) -> dict[str, FloatArray]:
+    return {name: motion[:, 2] for name, motion in signals.histories.gear_motion.items()}
 
 
 _QUANTITIES = (
     _Quantity(
         "sensor_acceleration",
         ("sensor", "time"),
-        lambda histories: histories.sensor_acceleration,
+        lambda signals: signals.histories.sensor_acceleration,
         "m/s2",
         "acceleration along the sensor",
     ),
     _Quantity(
         "bearing_force",
         ("bearing", "time", "axis"),
-        lambda histories: histories.bearing_force,
+        lambda signals: signals.histories.bearing_force,
         "N",
         "force of the shaft on its bearing",
     ),
     _Quantity(
         "mesh_force",
         ("contact", "time"),
-        lambda histories: histories.mesh_force,
+        lambda signals: signals.histories.mesh_force,
         "N",
         "gear-mesh force along the line of action",
     ),
     _Quantity(
         "mesh_compression",
         ("contact", "time"),
-        lambda histories: histories.mesh_compression,
+        lambda signals: signals.histories.mesh_compression,
         "m",
         "compression of the mesh along the line of action",
     ),
     _Quantity("gear_displacement", ("gear", "time", "axis"), _displacement, "m", "motion of the gear's centre"),
     _Quantity("gear_rotation", ("gear", "time"), _rotation, "rad", "rotation of the gear beside the steady one"),
+    _Quantity(
+        "modal_displacement",
+        ("modal_coordinate", "time"),
+        lambda signals: signals.modal.coordinates,
+        "m kg0.5",
+        MODAL_COORDINATE,
+    ),
 )
 
 
 def write_transient(solved: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
     """Add the names of the signals and the spectra; the histories follow by :func:`append_histories`."""
     for quantity in _QUANTITIES:
-        if names := list(quantity.of(solved.histories)):
+        if names := list(quantity.of(solved.signals)):
             coordinates[quantity.dimensions[0]] = (quantity.dimensions[0], names, {})
             if "axis" in quantity.dimensions:
                 coordinates["axis"] = ("axis", ["x", "y"], {})
@@ -109,7 +118,7 @@ def append_histories(path: Path, solved: SolvedTransient) -> None:
         file.dimensions["time"] = record.samples
         times = file.create_variable("time", ("time",), "f8", fillvalue=np.nan)
         times.attrs.update(_unit("s", "time from static equilibrium"))
-        written = [quantity for quantity in _QUANTITIES if quantity.of(solved.histories)]
+        written = [quantity for quantity in _QUANTITIES if quantity.of(solved.signals)]
         for quantity in written:
             variable = file.create_variable(quantity.name, quantity.dimensions, "f4", fillvalue=np.float32(np.nan))
             variable.attrs.update(_unit(quantity.unit, quantity.what) | beside | _sampled(solved))

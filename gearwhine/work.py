@@ -1,13 +1,23 @@
 """What each command does: stages, then files, then the document that it prints."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases, dump_case, mesh_frequencies, require
+from gearwhine.case import (
+    Case,
+    CaseError,
+    Problem,
+    bundled_case,
+    bundled_cases,
+    dump_case,
+    mesh_frequencies,
+    require,
+    swept_keys,
+)
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
 from gearwhine.march_files import kept_march
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
@@ -25,8 +35,11 @@ from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
+from gearwhine.stages import signature as signature_stage
+from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
+from gearwhine.stages.system_documents import system_document
 
 if TYPE_CHECKING:
     from gearwhine.stages.housing import SolvedHousing
@@ -48,8 +61,6 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
 
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
-    if case.operation is not None:
-        machine_stage.require_no_bow(case)
     if case.housing is not None:
         # Found out before the work, not after it.
         pictures.load_pyvista()
@@ -80,12 +91,12 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
             comparison = housing_stage.compare_housing(case, housing)
             document["compare"] = housing_documents.comparison_document(comparison, housing)
 
-    transient, system_modes = None, None
+    transient, system, signature = None, None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
         machine = machine_stage.build_machine(case, housing, pairs, progress)
-        system_modes = machine_stage.coupled_modes(machine)
-        document["system"] = machine_stage.system_document(case, machine, system_modes, housing)
+        system = system_stage.solve_system(case, machine, housing, progress)
+        document["system"] = system_document(case, system, housing)
         timed("system", begin)
         if case.transient is not None:
             if housing is not None and not housing.source_holds:
@@ -103,6 +114,10 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
                 keep=lambda key: until_written.enter_context(kept_march(folder, key, fresh=fresh)),
             )
             document |= transient_stage.transient_document(case, transient)
+            if transient_stage.is_traced(case):
+                frequencies = None if housing is None else housing.modes.frequencies_hz
+                signature = signature_stage.solve_signature(transient, system.modes, frequencies)
+                signature_stage.add_signature(document, transient, signature)
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
@@ -110,11 +125,13 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
     with staging(folder, replacing=True) as place:
         progress("writing results")
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
-        results.write(place / "results.nc", case, housing, rotors, analysed, system_modes, transient)
+        results.write(place / "results.nc", case, housing, rotors, analysed, system, transient, signature)
         if analysed:
             figures.draw_gear_pairs(place, analysed, progress)
+        if system is not None:
+            figures.draw_system(place, case, system)
         if transient is not None:
-            figures.draw_transient(place, case, transient, housing, comparison)
+            figures.draw_transient(place, case, transient, signature, housing, comparison)
         if housing is not None:
             results.write_shapes(place / "modes.vtu", housing)
             keep_modes(place, housing)
@@ -202,12 +219,68 @@ def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str,
     return _kept(gear_documents.gears_document(pairs), case, folder, write)
 
 
-def system_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
-    """The coupled modes."""
+def system_case(
+    case: Case,
+    folder: Path | None,
+    progress: Progress,
+    *,
+    mesh_phase: float | None = None,
+    over_speed: bool = False,
+    fresh: bool = False,
+) -> dict[str, Any]:
+    """The coupled modes, over speed too where the case sweeps or it is asked for; with a folder, also as pictures."""
     housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
-    modes = machine_stage.coupled_modes(machine)
-    document = machine_stage.system_document(case, machine, modes, housing)
-    return _kept(document | housing_documents.origin_document(housing), case, folder, housing=housing)
+    swept = case.sweep is not None and len(case.sweep.speeds) > 1
+    solved = system_stage.solve_system(
+        case, machine, housing, progress, mesh_phase=mesh_phase, over_speed=over_speed or swept
+    )
+    document = system_document(case, solved, housing)
+
+    def write(place: Path) -> None:
+        from gearwhine import figures, results
+
+        progress("writing results")
+        results.write(place / "results.nc", case, housing, (), (), solved, None)
+        figures.draw_system(place, case, solved)
+
+    return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
+
+
+def sweep_case(
+    case: Case,
+    source: tuple[str, Sequence[str]],
+    over: Sequence[str],
+    folder: Path,
+    progress: Progress,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+) -> dict[str, Any]:
+    """The transient at every point of a sweep, gathered in one file and drawn.
+
+    ``source`` is what the case was read from: the name, and the changes by ``--set``.
+    """
+    start = time.perf_counter()
+    keys = swept_keys(case, over)
+    from gearwhine import sweep
+
+    points = sweep.sweep_points(*source, keys)
+    count = workers or sweep.default_workers()
+    swept = sweep.conduct_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
+    dataset = sweep.gathered(case, keys, swept)
+    document = {"title": case.title} | sweep.sweep_document(keys, swept)
+    document["workers"] = count if scheduler is None else None
+
+    def write(place: Path) -> None:
+        from gearwhine.figures import draw_sweep
+
+        progress("writing results")
+        dataset.to_netcdf(place / "sweep.nc", engine="h5netcdf")
+        draw_sweep(place, case.title, dataset)
+        document["seconds"] = {"total": time.perf_counter() - start}
+
+    return _kept(document, case, folder, write)
 
 
 def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:

@@ -41,6 +41,7 @@ from .lateral import LateralModes, solve_lateral_modes
 from .loads import Bow, HarmonicForce, Unbalance
 from .material import ShaftMaterial, shear_coefficient
 from .modal import ModalRotor, modal_rotor
+from .participation import Participation, participation
 from .planes import RestFrequencies, rest_frequencies
 from .projection import whirl_basis
 from .ross_files import RossModel, read_ross, write_ross
@@ -76,6 +77,7 @@ __all__ = [
     "ModalRotor",
     "ModeCertificate",
     "Orbit",
+    "Participation",
     "Pedestal",
     "RadialSupport",
     "RestFrequencies",
@@ -107,6 +109,7 @@ __all__ = [
     "harmonic_response",
     "modal_rotor",
     "orbit_of",
+    "participation",
     "read_ross",
     "rest_frequencies",
     "shear_coefficient",

@@ -22,7 +22,8 @@ from .errors import IncompleteModesError, require, require_finite
 from .exact_roots import ACCEPTED, refine_each
 from .harmonic import finite_values
 from .lateral import LateralModes
-from .projection import DEFAULT_COUNT, Projection, basis_for
+from .planar_basis import DEFAULT_COUNT
+from .projection import Projection, basis_for
 from .shaft import Rotor
 from .spatial_chain import SpatialChain, retied, spatial_chain, whirl_reach
 from .spatial_ties import block_sets
@@ -213,7 +214,7 @@ def campbell(
         oscillates = (values.imag > NO_OSCILLATION * np.abs(values)) & (np.abs(values) > NO_OSCILLATION * one.floor)
         starts.append(np.where(oscillates, values, np.nan))
     limits = limits_behind(starts, frequency_limit, wanted)
-    least = NO_OSCILLATION * Projection.of(rotor, [], (1,), chosen).floor
+    least = NO_OSCILLATION * chosen.floor
     undriven = is_undriven(rotor, [bearing for row in at_speeds for bearing in row])
     highest = max(whirl_reach(START_REACH * r, float(s)) for r, s in zip(limits, turning, strict=True))
     branches: list[Branch] = []

@@ -24,7 +24,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 # Products of two fields, on pieces this short, are integrated to rounding.
-GAUSS_FRACTIONS, _WEIGHTS = gauss_rule(10)
+GAUSS_FRACTIONS, GAUSS_WEIGHTS = gauss_rule(10)
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class Chain:
 
         table, nodal = self.table, (self.node_stiffness, self.node_inertia, self.node_polar)
         return EnergyWeights(
-            *energy_weights(GAUSS_FRACTIONS, _WEIGHTS, table.lengths, table.coefficients, self.element, *nodal)
+            *energy_weights(GAUSS_FRACTIONS, GAUSS_WEIGHTS, table.lengths, table.coefficients, self.element, *nodal)
         )
 
     def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:

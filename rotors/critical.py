@@ -11,7 +11,8 @@ from .campbell import campbell
 from .errors import require
 from .exact_roots import ACCEPTED, SYNCHRONOUS
 from .lateral import LateralModes
-from .projection import DEFAULT_COUNT, Projection, basis_for
+from .planar_basis import DEFAULT_COUNT
+from .projection import Projection, basis_for
 from .shaft import Rotor
 from .spatial_field import SpatialMotion
 from .spatial_ties import block_sets
@@ -85,10 +86,10 @@ def critical_speeds(
     RotorError, IncompleteModesError
         As `rotors.solve_whirl`.
     """
-    chosen = basis_for(rotor, bearings, speed_limit, count, basis)
     free = [undamped(bearing) for bearing in bearings]
+    chosen = basis_for(rotor, free, speed_limit, count, basis)
     if any(bearing.speeds is not None for bearing in free):
-        return _tabled_critical_speeds(rotor, free, speed_limit, count, chosen)
+        return _tabled_critical_speeds(rotor, free, speed_limit, count, basis)
     sets = [Projection.of(rotor, free, blocks, chosen) for blocks in block_sets(free)]
     motion, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
     shares = motion.shares()
@@ -98,7 +99,7 @@ def critical_speeds(
 
 
 def _tabled_critical_speeds(
-    rotor: Rotor, bearings: Sequence[Bearing], limit: float | None, count: int | None, basis: LateralModes
+    rotor: Rotor, bearings: Sequence[Bearing], limit: float | None, count: int | None, basis: LateralModes | None
 ) -> CriticalSpeeds:
     """Crossings of a Campbell diagram whose stiffness follows the speed, within all tables."""
     tables = [bearing.speeds for bearing in bearings if bearing.speeds is not None]

@@ -14,7 +14,8 @@ import numpy.typing as npt
 from .bearing import Bearing
 from .critical import certified_criticals
 from .errors import RotorError, require, require_count
-from .projection import Projection, whirl_basis
+from .planar_basis import planar_basis
+from .projection import Projection
 from .shaft import Rotor
 
 FloatArray = npt.NDArray[np.float64]
@@ -79,7 +80,7 @@ def critical_speed_map(
             replace(b, stiffness=stiffness * np.eye(2), damping=np.zeros((2, 2)), speeds=None, pedestal=None)
             for b in bearings
         ]
-        basis = whirl_basis(rotor, held, count=2 * count)
+        basis = planar_basis(rotor, held, None, 2 * count)
         one = Projection.of(rotor, held, (direction,), basis)
         motion, _ = certified_criticals(rotor, held, [one], None, count)
         speeds = np.sort(motion.eigenvalues.imag)

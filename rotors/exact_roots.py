@@ -14,6 +14,7 @@ stay together, where what is left out, the square of their distance, is below ro
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -38,6 +39,7 @@ MOST_STEPS = 14
 # Relative step of the central difference that gives slopes of the entries: good to about 1e-10, which costs
 # the refined roots nothing, as their residual is exact.
 SLOPE_STEP = 1e-5
+NO_PLACES = np.zeros(0, dtype=np.complex128)
 
 
 @dataclass(frozen=True)
@@ -118,9 +120,12 @@ def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tu
     """
     order = chain.pattern.order
     first = random_vectors(starts.size, order)
+    groups = clusters(starts, NEAR)
+    if len(groups) == starts.size > 0:
+        return _accepted(refine_alone(chain, starts, first, speed))
     alone: list[tuple[complex, ComplexArray]] = []
     settled: list[ExactRoots] = []
-    for members in clusters(starts, NEAR):
+    for members in groups:
         if members.size == 1:
             alone.append((starts[members[0]], first[members[0]]))
             continue
@@ -139,7 +144,14 @@ def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tu
     roots = settled[0]
     for more in settled[1:]:
         roots = roots.joined(more)
+    return _accepted(roots)
+
+
+def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
+    """The roots that have settled, each once, and where the others stand."""
     good = roots.residuals <= ACCEPTED
+    if good.all():
+        return distinct(roots), NO_PLACES
     return distinct(roots.take(good)), roots.eigenvalues[~good]
 
 
@@ -209,10 +221,13 @@ def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArra
     return ExactRoots(values, found, residuals, scales)
 
 
+@lru_cache(maxsize=64)
 def random_vectors(count: int, order: int) -> ComplexArray:
-    """Complex vectors to start iterations from, the same every time, (count, order)."""
+    """Complex vectors to start iterations from, the same every time, (count, order); not to be written to."""
     random = np.random.default_rng(1991)
-    return np.asarray(random.standard_normal((count, order)) + 1j * random.standard_normal((count, order)))
+    vectors = random.standard_normal((count, order)) + 1j * random.standard_normal((count, order))
+    vectors.setflags(write=False)
+    return np.asarray(vectors)
 
 
 def _together(chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, speed: Speed, steps: int) -> ExactRoots:

@@ -26,6 +26,7 @@ from .axial import AxialModes, solve_axial_modes
 from .bearing import Bearing
 from .errors import require
 from .lateral import LateralModes, solve_lateral_modes
+from .participation import Participation, participation
 from .shaft import Rotor
 from .torsion import TorsionalModes, solve_torsional_modes
 
@@ -49,7 +50,9 @@ class ModalRotor:
     bearings : tuple of Bearing
         Those whose averaged stiffness the bending modes hold.
     ports : tuple of float
-        Places of bearings and gears, m from the left end.
+        Places of bearings, gears and other forces, m from the left end.
+    participation : Participation or None
+        Of the modes and vectors in the rigid motions of the ground.
     """
 
     lateral: LateralModes
@@ -57,6 +60,7 @@ class ModalRotor:
     axial: AxialModes | None = None
     bearings: tuple[Bearing, ...] = ()
     ports: tuple[float, ...] = ()
+    participation: Participation | None = None
 
     @property
     def gyroscopic(self) -> FloatArray:
@@ -116,6 +120,7 @@ def modal_rotor(
     frequency_limit: float | None = None,
     count: int | None = None,
     gears_at: Sequence[float] = (),
+    forces_at: Sequence[float] = (),
 ) -> ModalRotor:
     """Reduce a rotor to the modes that a coupled model keeps, and the vectors that make its ports' compliance exact.
 
@@ -129,6 +134,8 @@ def modal_rotor(
         How many bending modes in each plane and how many torsional modes, the rigid rotation included, instead.
     gears_at : sequence of float
         Where forces and torques of gears act, m from the left end.
+    forces_at : sequence of float
+        Where other lateral forces act, such as those of a bow.
 
     Raises
     ------
@@ -142,7 +149,7 @@ def modal_rotor(
     supports = tuple(bearing.mean_support for bearing in bearings)
     lateral = solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)
     torsional = solve_torsional_modes(rotor, frequency_limit=frequency_limit, count=count)
-    ports = (*(bearing.at for bearing in bearings), *gears_at)
+    ports = (*(bearing.at for bearing in bearings), *gears_at, *forces_at)
     if frequency_limit is not None and lateral.count < _FEWEST:
         lateral = solve_lateral_modes(rotor, supports)
     if frequency_limit is not None and torsional.count < _FEWEST:
@@ -152,7 +159,8 @@ def modal_rotor(
         tilted = [support.at for support in supports if support.tilt_stiffness > 0.0]
         lateral = attach_loads(lateral, forces_at=ports, moments_at=tilted)
         torsional = attach_motions(torsional, gears_at)
-    return ModalRotor(lateral, torsional, _axial(rotor, bearings, frequency_limit, count), tuple(bearings), ports)
+    axial = _axial(rotor, bearings, frequency_limit, count)
+    return ModalRotor(lateral, torsional, axial, tuple(bearings), ports, participation(rotor, lateral, axial))
 
 
 def _axial(

@@ -12,7 +12,8 @@ from .certificate import ModeCertificate
 from .chain import Chain
 from .errors import require, require_count, require_finite
 from .lines import Line
-from .projection import DEFAULT_COUNT, slowest
+from .planar_basis import DEFAULT_COUNT
+from .projection import slowest
 from .root_count import count_below
 from .rotor_lines import bending_line
 from .search import certified_modes, chain_that_holds

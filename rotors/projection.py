@@ -7,13 +7,14 @@ G the polar inertia matrix and Φ_b the modes' displacements at bearing b,
     q̈_y − Ω G q̇_x + Σ_b Φ_b Φ_bᵀ (c_yx q̇_x + c_yy q̇_y) + Λ q_y + Σ_b Φ_b Φ_bᵀ [k_yx q_x + (k_yy − k̄) q_y] = 0
 
 (TM-104434 Eqs. 11–15 with constant speed and grounded bearings). The sums over bearings are its compensation
-matrices. Here the same is written in the circular coordinates of `rotors.spatial_ties`, with slopes, axial modes
-and pedestals where bearings have them, and only for the motions that the bearings tie to each other.
+matrices. Here the same is written with slopes, axial modes and pedestals where bearings have them, and only for the
+motions that the bearings tie to each other: where forward and backward motion are not tied, for one of them, in the
+circular coordinates of `rotors.spatial_ties`.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,22 +22,28 @@ from scipy import linalg
 
 from .attachment import attach_loads
 from .axial import solve_axial_modes
-from .bearing import Bearing, RadialSupport
+from .bearing import Bearing
 from .errors import require, require_count, require_finite
 from .lateral import LateralModes, solve_lateral_modes
+from .planar_basis import (
+    BASIS_REACH,
+    LEAST_MODES,
+    PlanarBasis,
+    loaded_places,
+    mean_supports,
+    modes_needed,
+    planar_basis,
+)
 from .rotor_lines import bending_line, rod_line
 from .shaft import Rotor
-from .spatial_ties import make_tie
+from .spatial_ties import CIRCULAR, MEMBERS
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+NumberArray = npt.NDArray[Any]
 
-DEFAULT_COUNT = 12
-LEAST_MODES = 8
-SPARE_MODES = 4
 AXIAL_MODES = 8
-# The basis reaches this many times beyond the highest whirl frequency asked for: it gives starting values only.
-BASIS_REACH = 1.5
 # A massless pedestal weighs this part of the rotor in the basis, where every coordinate has a mass.
 PEDESTAL_MASS = 1e-6
 
@@ -74,16 +81,13 @@ def whirl_basis(
     supports = mean_supports(bearings)
     available = bending_line(rotor, supports).available_modes
     if frequency_limit is None:
-        wanted = (count or DEFAULT_COUNT) // 2 + SPARE_MODES
-        modes = solve_lateral_modes(rotor, supports, count=int(min(max(wanted, LEAST_MODES), available)))
+        modes = solve_lateral_modes(rotor, supports, count=modes_needed(count, available))
     else:
         require_finite("frequency_limit", frequency_limit, positive=True)
         modes = solve_lateral_modes(rotor, supports, frequency_limit=BASIS_REACH * frequency_limit)
         if modes.count < min(LEAST_MODES, available):
             modes = solve_lateral_modes(rotor, supports, count=int(min(LEAST_MODES, available)))
-    forces = [bearing.at for bearing in bearings]
-    moments = [disc.at for disc in rotor.discs if disc.polar_inertia > 0.0]
-    moments += [bearing.at for bearing in bearings if bearing.stiffness.shape[-1] == 5]
+    forces, moments = loaded_places(rotor, bearings)
     return attach_loads(modes, forces_at=forces, moments_at=moments)
 
 
@@ -93,26 +97,16 @@ def basis_for(
     frequency_limit: float | None,
     count: int | None,
     basis: LateralModes | None,
-) -> LateralModes:
-    """The given basis if it fits the bearings, or a new one; checks the limit and the count."""
+) -> PlanarBasis:
+    """From the given basis if it fits the bearings, or a new one; checks the limit and the count."""
     for bearing in bearings:
         rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
     require_count("count of modes", count)
     if basis is None:
-        return whirl_basis(rotor, bearings, frequency_limit=frequency_limit, count=count)
+        return planar_basis(rotor, bearings, frequency_limit, count)
     expected = mean_supports(bearings)
     require(basis.supports == expected, "supports of the basis", basis.supports, f"{expected}, the bearings'")
-    return basis
-
-
-def mean_supports(bearings: Sequence[Bearing]) -> tuple[RadialSupport, ...]:
-    """The planar springs that a basis holds, of tables those at the middle of their speeds."""
-    return tuple(
-        bearing.at_speed(float(bearing.speeds[bearing.speeds.size // 2])).mean_support
-        if bearing.speeds is not None
-        else bearing.mean_support
-        for bearing in bearings
-    )
+    return PlanarBasis.of_modes(basis, bearings)
 
 
 def slowest(bearing: Bearing) -> float:
@@ -124,10 +118,13 @@ def slowest(bearing: Bearing) -> float:
 class Projection:
     """One set of tied motions of a rotor on its modal basis.
 
+    Coordinates are the circular ones of `rotors.spatial_ties` where forward or backward motion stands alone; tied
+    together they are those of x and y, in which everything is real, and the eigenproblem costs a third.
+
     Attributes
     ----------
     basis
-        Planar modes and attachment vectors.
+        Motions of one plane.
     blocks
         As of `rotors.spatial_chain.SpatialChain`.
     axial_frequencies, axial_shapes
@@ -136,59 +133,52 @@ class Projection:
         Of the rotor, kg.
     """
 
-    basis: LateralModes
+    basis: PlanarBasis
     blocks: tuple[int, ...]
     axial_frequencies: FloatArray
     axial_shapes: FloatArray
     total_mass: float
 
     @classmethod
-    def of(
-        cls, rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], basis: LateralModes
-    ) -> "Projection":
+    def of(cls, rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], basis: PlanarBasis) -> "Projection":
         """The projection for some tied motions of a rotor."""
         frequencies, shapes = np.zeros(0), np.zeros((0, len(bearings)))
         if 0 in blocks:
             frequencies, shapes = _axial_modes(rotor, bearings)
         return cls(basis, blocks, frequencies, shapes, rotor.mass)
 
-    @cached_property
+    @property
     def floor(self) -> float:
         """The lowest frequency of the basis that is not a rigid motion's zero, rad/s."""
-        moving = self.basis.frequencies[self.basis.frequencies > 0.0]
-        return float(moving.min()) if moving.size else 1.0
+        return self.basis.floor
 
-    def matrices(self, bearings: Sequence[Bearing]) -> tuple[FloatArray, ComplexArray, ComplexArray, ComplexArray]:
+    def matrices(self, bearings: Sequence[Bearing]) -> tuple[FloatArray, NumberArray, NumberArray, NumberArray]:
         """Diagonal mass (N,), stiffness, damping and gyroscopic matrix per rad/s, (N, N) each."""
-        b, units = self.basis.count, self._units
-        ties = [make_tie(bearing, node, self.blocks, units) for node, bearing in enumerate(bearings)]
-        sizes = [b if block else self.axial_frequencies.size for block in self.blocks]
-        order = sum(sizes) + sum(len(tie.foot) for tie in ties)
+        b, a = self.basis.count, self.axial_frequencies.size
+        alone = len(self.blocks) == 1
+        shaft = b if alone else 2 * b + a
+        relative, held, damped, feet = self._bearing_terms(bearings, shaft)
+        order = relative.shape[-1]
+        rows = relative.reshape(-1, order)
         mass = np.ones(order)
-        stiffness, damping, gyroscopic = (np.zeros((order, order), dtype=np.complex128) for _ in range(3))
-        first, supported = 0, self.basis.support_matrix
-        for block, size in zip(self.blocks, sizes, strict=True):
-            own = slice(first, first + size)
-            squared = (self.basis.frequencies if block else self.axial_frequencies) ** 2
-            stiffness[own, own] = np.diag(squared)
-            if block:
-                stiffness[own, own] -= supported
-                gyroscopic[own, own] = -1j * block * self.basis.polar_inertia_matrix
-            first += size
-        for tie, bearing, moved in zip(ties, bearings, self._displacements(bearings, order), strict=True):
-            foot = list(tie.foot)
-            rows = first + np.arange(len(foot))
-            first += len(foot)
-            # The bearing feels the shaft less its pedestal.
-            relative = tie.frame @ moved
-            relative[foot, rows] -= 1.0
-            stiffness += relative.conj().T @ tie.stiffness @ relative
-            damping += relative.conj().T @ tie.damping @ relative
-            if foot:
-                stiffness[np.ix_(rows, rows)] += tie.foot_stiffness
-                damping[np.ix_(rows, rows)] += tie.foot_damping
-                own_mass = bearing.pedestal.mass if bearing.pedestal is not None else 0.0
-                mass[rows] = max(own_mass, PEDESTAL_MASS * self.total_mass)
+        stiffness, damping = rows.T @ _times(held, relative), rows.T @ _times(damped, relative)
+        gyroscopic = np.zeros_like(stiffness)
+        if alone:
+            stiffness[:b, :b] += self.basis.stiffness
+            gyroscopic[:b, :b] = -1j * self.blocks[0] * self.basis.polar_inertia
+        else:
+            stiffness[:b, :b] += self.basis.stiffness
+            stiffness[b : 2 * b, b : 2 * b] += self.basis.stiffness
+            gyroscopic[:b, b : 2 * b] = self.basis.polar_inertia
+            gyroscopic[b : 2 * b, :b] = -self.basis.polar_inertia
+            axial = np.arange(2 * b, 2 * b + a)
+            stiffness[axial, axial] += self.axial_frequencies**2
+        for bearing, coordinates, directions in feet:
+            assert bearing.pedestal is not None
+            own, ground = np.ix_(coordinates, coordinates), np.ix_(directions, directions)
+            stiffness[own] += self._turned(bearing.pedestal.stiffness)[ground]
+            damping[own] += self._turned(bearing.pedestal.damping)[ground]
+            mass[coordinates] = max(bearing.pedestal.mass, PEDESTAL_MASS * self.total_mass)
         return mass, stiffness, damping, gyroscopic
 
     def eigenvalues(self, bearings: Sequence[Bearing], speeds: FloatArray) -> ComplexArray:
@@ -197,56 +187,81 @@ class Projection:
         order = mass.size
         # States W q and q̇ make the undamped system matrix nearly skew, so that high members of the basis
         # do not cost the low eigenvalues their digits.
-        weight = np.sqrt(np.maximum(np.abs(np.diag(stiffness)) / mass, self.floor**2))
-        turn = self._real_turn(order)
-        system = np.zeros((speeds.size, 2 * order, 2 * order), dtype=np.complex128)
+        weight = np.sqrt(np.maximum(np.abs(stiffness.diagonal()) / mass, self.floor**2))
+        system = np.zeros((speeds.size, 2 * order, 2 * order), dtype=stiffness.dtype)
         system[:, :order, order:] = np.diag(weight)
-        system[:, order:, :order] = -turn.conj().T @ (stiffness / mass[:, None]) @ turn / weight
-        damped = turn.conj().T @ (damping / mass[:, None]) @ turn
-        turning = turn.conj().T @ (gyroscopic / mass[:, None]) @ turn
-        system[:, order:, order:] = -damped - speeds[:, None, None] * turning
-        return np.asarray(np.linalg.eigvals(system.real if len(self.blocks) > 1 else system))
+        system[:, order:, :order] = stiffness / (-mass[:, None] * weight)
+        system[:, order:, order:] = (damping + speeds[:, None, None] * gyroscopic) / -mass[:, None]
+        return np.asarray(np.linalg.eigvals(system), dtype=np.complex128)
 
     def critical(self, bearings: Sequence[Bearing]) -> ComplexArray:
         """λ at which λ = iΩ, from K q = ω² (M − iG) q with the gyroscopic term beside the mass, (N,)."""
         mass, stiffness, _, gyroscopic = self.matrices(bearings)
-        weight = np.sqrt(np.maximum(np.abs(np.diag(stiffness)) / mass, self.floor**2))
+        weight = np.sqrt(np.maximum(np.abs(stiffness.diagonal()) / mass, self.floor**2))
         inertia = (np.diag(mass) - 1j * gyroscopic) / np.outer(weight, weight)
         squared = linalg.eigvals(stiffness / np.outer(weight, weight), inertia)
         return np.asarray(1j * np.sqrt(squared[np.isfinite(squared)]))
 
-    @property
-    def _units(self) -> FloatArray:
-        return np.concatenate([np.ones(2) if block else np.ones(1) for block in self.blocks])
+    def _bearing_terms(
+        self, bearings: Sequence[Bearing], shaft: int
+    ) -> tuple[NumberArray, NumberArray, NumberArray, list[tuple[Bearing, IntArray, list[int]]]]:
+        """Motions of every bearing, its stiffness and damping, and the coordinates of its pedestal.
 
-    def _displacements(self, bearings: Sequence[Bearing], order: int) -> FloatArray:
-        """Rows that turn coordinates into the node displacements at every bearing, (bearings, n, order)."""
-        rows = np.zeros((len(bearings), self._units.size, order))
-        if not bearings:
-            return rows
-        displacement, slope = self.basis.evaluate([bearing.at for bearing in bearings])
-        row = column = 0
-        for block in self.blocks:
-            if block:
-                rows[:, row, column : column + self.basis.count] = displacement.T
-                rows[:, row + 1, column : column + self.basis.count] = slope.T
-                row, column = row + 2, column + self.basis.count
+        The motions are those of the shaft less the pedestal's, (bearings, n, N), along x, y, z and the rotations about
+        x and y, or along r and β; the matrices (bearings, n, n) belong to them. A pedestal has the coordinates and
+        the directions in which its bearing acts.
+        """
+        b = self.basis.count
+        alone = len(self.blocks) == 1
+        spatial = np.zeros((2, len(bearings), 5, 5))
+        for k, bearing in enumerate(bearings):
+            spatial[0, k], spatial[1, k] = bearing.spatial_stiffness, bearing.spatial_damping
+        held: NumberArray = spatial
+        if alone:
+            turn = CIRCULAR[list(MEMBERS[self.blocks[0]])]
+            held = turn @ spatial @ turn.conj().T
+        feet: list[tuple[int, IntArray, list[int]]] = []
+        order = shaft
+        for k, bearing in enumerate(bearings):
+            if bearing.pedestal is None:
+                continue
+            acts = (held[0, k] != 0.0) | (held[1, k] != 0.0)
+            busy = acts.any(axis=0) | acts.any(axis=1)
+            directions = [direction for direction in ((0,) if alone else (0, 1)) if busy[direction]]
+            feet.append((k, order + np.arange(len(directions)), directions))
+            order += len(directions)
+        relative = np.zeros((len(bearings), held.shape[-1], order))
+        displacement, slope = self.basis.displacement.T, self.basis.slope.T
+        if bearings:
+            relative[:, 0, :b] = displacement
+            if alone:
+                relative[:, 1, :b] = slope
             else:
-                rows[:, row, column : column + self.axial_frequencies.size] = self.axial_shapes.T
-                row, column = row + 1, column + self.axial_frequencies.size
-        return rows
+                relative[:, 1, b : 2 * b] = displacement
+                relative[:, 2, 2 * b : shaft] = self.axial_shapes.T
+                # The slope in y is minus the rotation about x.
+                relative[:, 3, b : 2 * b] = -slope
+                relative[:, 4, :b] = slope
+        for k, coordinates, directions in feet:
+            relative[k, directions, coordinates] -= 1.0
+        return (
+            relative,
+            held[0],
+            held[1],
+            [(bearings[k], coordinates, directions) for k, coordinates, directions in feet],
+        )
 
-    def _real_turn(self, order: int) -> ComplexArray:
-        """From real coordinates over x and y to circular ones, unitary: a real eigenproblem costs a third."""
-        turn = np.eye(order, dtype=np.complex128)
-        if len(self.blocks) == 1:
-            return turn
-        # Pedestals and axial motion are real as they are.
-        b, root = self.basis.count, np.sqrt(0.5)
-        plus, minus = np.arange(b), b + np.arange(b)
-        turn[plus, plus], turn[plus, minus] = root, 1j * root
-        turn[minus, plus], turn[minus, minus] = root, -1j * root
-        return turn
+    def _turned(self, radial: FloatArray) -> NumberArray:
+        """A matrix over x and y in the projection's coordinates."""
+        if len(self.blocks) > 1:
+            return radial
+        turn = CIRCULAR[MEMBERS[self.blocks[0]][0], :2]
+        return np.asarray([[turn @ radial @ turn.conj()]])
+
+
+def _times(matrices: NumberArray, motions: FloatArray) -> NumberArray:
+    """Forces of all bearings under the motions of every coordinate, (bearings n, N)."""
+    return np.asarray((matrices @ motions).reshape(-1, motions.shape[-1]))
 
 
 def _axial_modes(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[FloatArray, FloatArray]:

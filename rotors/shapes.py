@@ -72,6 +72,21 @@ def rigid_states(chain: Chain) -> FloatArray:
     return np.asarray(np.einsum("ij,jkl->ikl", linalg.inv(lower), states))
 
 
+def shared_roots(elastic: FloatArray) -> FloatArray:
+    """Ascending natural frequencies (m,), those that share one null space at their mean."""
+    if not _has_neighbours(elastic):
+        return elastic
+    shared = elastic.copy()
+    for group in groups(elastic, ONE_NULL_SPACE):
+        shared[group] = elastic[group].mean()
+    return shared
+
+
+def _has_neighbours(elastic: FloatArray) -> bool:
+    """Whether some roots are near each other, as most are not."""
+    return bool((elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]).any())
+
+
 def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArray]:
     """Fields of the modes at the given natural frequencies, and the mixture that makes them orthonormal.
 
@@ -93,10 +108,8 @@ def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArr
 
     zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
     shared, elastic = frequencies.copy(), frequencies[zeros:]
-    # Most roots have no neighbours.
-    near = groups(elastic, NEAR_ROOT) if (elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]).any() else []
-    for group in groups(elastic, ONE_NULL_SPACE) if near else []:
-        shared[zeros:][group] = elastic[group].mean()
+    shared[zeros:] = shared_roots(elastic)
+    near = groups(elastic, NEAR_ROOT) if _has_neighbours(elastic) else []
     states = null_states(shared[zeros:] ** 2, *chain_arrays(chain))
     if zeros:
         states = np.concatenate([rigid_states(chain)[:zeros], states])

@@ -17,7 +17,8 @@ from .coalesced_roots import refine_roots
 from .errors import require_finite
 from .exact_roots import ExactRoots, Speed, constant_speed
 from .lateral import LateralModes
-from .projection import DEFAULT_COUNT, Projection, basis_for
+from .planar_basis import DEFAULT_COUNT
+from .projection import Projection, basis_for
 from .segment import Segment
 from .shaft import Rotor
 from .spatial_chain import SpatialChain, spatial_chain, whirl_reach

@@ -46,7 +46,6 @@ MISFIT = 0.3
 SIDE_SAMPLES = 5
 # Known roots nearer to the contour than this, in ln λ, are not divided out.
 TOO_NEAR = 1e-4
-MOST_ROUNDS = 48
 # The second step of a sample, as a part of the interval it was put into.
 SLOPE_PART = 1e-3
 # An interval of ln λ still unsafe at this length passes through a root to rounding.
@@ -157,6 +156,8 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
     RootOnContourError
         The phase does not settle however finely an edge is sampled.
     """
+    from .winding_kernels import walk
+
     scale = float(chain.force_scale(np.array([sector.most]))[0])
     corners = sector.corners
     apart = np.abs(sector.distance(known)) > TOO_NEAR
@@ -167,50 +168,24 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
         real = speed(mirrored) == speed(divided).conj()
         divided = np.concatenate([divided, mirrored[real & (sector.distance(mirrored) > TOO_NEAR)]])
 
-    def logarithm(w: ComplexArray) -> ComplexArray:
-        at = np.exp(w)
-        whole = chain.entries.log_determinants(at, speed(at), np.full(at.size, scale))
-        return np.asarray(whole - np.log(at[:, None] - divided).sum(axis=1))
-
-    def sampled(w: ComplexArray, step: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        both = logarithm(np.concatenate([w, w + step]))
-        logs, ahead = both[: w.size], both[w.size :]
-        return logs, _principal(ahead - logs) / step
-
-    edges = [np.linspace(a, b, SIDE_SAMPLES)[:-1] for a, b in zip(corners, np.roll(corners, -1), strict=True)]
-    points = np.concatenate([*edges, corners[:1]])
-    logs, slopes = sampled(points[:-1], np.asarray(SLOPE_PART * np.diff(points), dtype=np.complex128))
-    # Motions at zero, of a free shaft, are outside: divided out like the others.
-    at_zero = round(float(slopes[0].real))
-    logs, slopes = logs - at_zero * points[:-1], slopes - at_zero
-    logs, slopes = np.append(logs, logs[0]), np.append(slopes, slopes[0])
-    samples = 2 * (points.size - 1)
-    # The slope along one edge serves the next one too: it is the derivative of an analytic function.
-    for _ in range(MOST_ROUNDS):
-        h = np.diff(points)
-        change = _principal(np.diff(logs))
-        steep = np.maximum(np.abs(h * slopes[1:]), np.abs(h * slopes[:-1])) > STEEPEST
-        misfit = np.abs(change - 0.5 * h * (slopes[1:] + slopes[:-1])) > MISFIT
-        unsafe = np.flatnonzero(steep | misfit)
-        if unsafe.size and (np.abs(h[unsafe]).min() < SHORTEST or samples > MOST_SAMPLES):
-            break
-        if unsafe.size == 0:
-            count = inside + round(float(change.imag.sum()) / (2.0 * np.pi))
-            continued = logs[0] + np.concatenate([[0.0], np.cumsum(change)])
-            return Winding(count, samples, points, continued, slopes, left)
-        middles = 0.5 * (points[unsafe] + points[unsafe + 1])
-        new_logs, new_slopes = sampled(middles, np.asarray(0.5 * SLOPE_PART * h[unsafe], dtype=np.complex128))
-        samples += 2 * unsafe.size
-        new_logs, new_slopes = new_logs - at_zero * middles, new_slopes - at_zero
-        points = np.insert(points, unsafe + 1, middles)
-        logs, slopes = np.insert(logs, unsafe + 1, new_logs), np.insert(slopes, unsafe + 1, new_slopes)
+    sides = corners[[1, 2, 3, 0]] - corners
+    edge = corners[:, None] + sides[:, None] * (np.arange(SIDE_SAMPLES - 1) / (SIDE_SAMPLES - 1))
+    rule = np.array([STEEPEST, MISFIT, SHORTEST, SLOPE_PART])
+    count, samples, path = walk(
+        np.append(edge, corners[0]),
+        np.array([speed.base, speed.rate], dtype=np.complex128),
+        scale,
+        divided,
+        rule,
+        MOST_SAMPLES,
+        chain.entries.arrays,
+        chain.entries.pattern.arrays,
+    )
+    if count:
+        path = path[:, :count]
+        turns = round(float(path[1, -1].imag - path[1, 0].imag) / (2.0 * np.pi))
+        return Winding(inside + turns, samples, path[0], path[1], path[2], left)
     raise RootOnContourError(
         f"the count of whirl modes with {sector.least:g} < |λ| < {sector.most:g} rad/s does not settle, as one lies "
         "on the edge of the region; choose a limit a little apart from it"
     )
-
-
-def _principal(difference: ComplexArray) -> ComplexArray:
-    """Differences of logarithms with the imaginary part brought into (−π, π]."""
-    turns = np.round(difference.imag / (2.0 * np.pi))
-    return np.asarray(difference - 2j * np.pi * turns)

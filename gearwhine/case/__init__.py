@@ -13,6 +13,7 @@ What the room offers:
 - :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques` -- what follows
   without solving anything.
 - :func:`whirl_speeds`, :func:`campbell_speeds`, :func:`response_speeds` -- at which speeds a rotor is looked at.
+- :func:`swept_keys` -- the keys that a sweep goes through, each a :class:`SweptKey` with its values.
 - :func:`require` -- the error for what a command needs and a case lacks.
 - :func:`bundled_cases` -- the examples that ship with the package.
 
@@ -33,6 +34,7 @@ from gearwhine.case.attachments import (
     SixSprings,
     amounts,
 )
+from gearwhine.case.base_motion import Base, BaseHarmonic, BaseHistory
 from gearwhine.case.box import Box, Feet, Walls
 from gearwhine.case.bundled import bundled_case, bundled_cases
 from gearwhine.case.dump import case_document, dump_case
@@ -85,12 +87,18 @@ from gearwhine.case.shafts import (
     RadialStiffness,
     RollingStiffness,
 )
+from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
+from gearwhine.case.torques import Run, TorqueHistory, TorqueLine, TorqueRipple
 from gearwhine.case.train import shaft_of
 
 __all__ = [
+    "SPEED_KEY",
     "AppliedTorque",
     "AxialDashpots",
     "AxialSprings",
+    "Base",
+    "BaseHarmonic",
+    "BaseHistory",
     "Bearing",
     "BearingLoad",
     "Boss",
@@ -138,6 +146,7 @@ __all__ = [
     "Rotor",
     "RotorAnalysis",
     "RoundDisc",
+    "Run",
     "Seat",
     "Segment",
     "Sensor",
@@ -148,7 +157,11 @@ __all__ = [
     "StiffnessMap",
     "Support",
     "Sweep",
+    "SweptKey",
     "ToothStiffness",
+    "TorqueHistory",
+    "TorqueLine",
+    "TorqueRipple",
     "Transient",
     "Unbalance",
     "UnbalanceResponse",
@@ -171,6 +184,7 @@ __all__ = [
     "rotor_speeds",
     "shaft_of",
     "speed_ratios",
+    "swept_keys",
     "table_range",
     "whirl_speeds",
 ]

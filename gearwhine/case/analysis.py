@@ -6,13 +6,11 @@ from typing import Annotated
 
 from pydantic import ConfigDict, Field, model_validator
 
-from gearwhine.case import units
-from gearwhine.case.fields import Angle, LengthFromZero, Name, PositiveStiffness, Quantity, Table, Whole, wrong
+from gearwhine.case.base_motion import Acceleration
+from gearwhine.case.fields import Angle, LengthFromZero, Name, PositiveStiffness, Table, Whole, wrong
 from gearwhine.case.running import Speeds
 
 MOST_PROBES = 100
-
-Acceleration = Annotated[float, Quantity(units.ACCELERATION, at_least=-1e4, at_most=1e4)]
 
 STANDARD_GRAVITY = 9.80665
 """The standard acceleration of free fall [m/s²]."""

@@ -67,6 +67,8 @@ def _check_reach(
 def _named_speeds(draft: Draft) -> list[float]:
     """Return the speeds of the first driver's rotor that a case names."""
     speeds = [] if draft.operation is None else [draft.operation.speed]
+    if draft.transient is not None and draft.transient.run is not None:
+        speeds += draft.transient.run.line[1]
     speeds += draft.sweep.speeds if draft.sweep is not None else ()
     if draft.analysis is not None:
         for given in (draft.analysis.speed, draft.analysis.unbalance_response.speed):

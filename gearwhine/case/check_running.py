@@ -39,10 +39,28 @@ def check_running(draft: Draft) -> Iterator[Finding]:
         yield Finding(("operation",), "a [[rotor]] or [[gear]] to turn", NOTHING)
     if "transient" in document and operation.speed == 0.0:
         yield Finding(("operation", "speed"), "a speed other than zero for the [transient]")
+    yield from _check_run(draft, operation)
     if draft.broken & {"rotor", "gear", "gear_pair"} or not turning:
         return  # what turns what cannot be told from half a train
     yield from _check_stations(draft, operation)
     yield from _check_train(draft, operation)
+
+
+def _check_run(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield a run on a base that tilts, or free without a motor or an output, and torque lines that none follows."""
+    run = None if draft.transient is None else draft.transient.run
+    if run is not None and operation.base is not None and operation.base.tilts:
+        expected = "no turning about x or y during a [transient.run]: gyroscopic moments of a base are for one speed"
+        yield Finding(("operation", "base"), expected, UNSAID)
+    if run is not None and run.free:
+        if operation.motor is None:
+            yield Finding(("operation", "motor"), "a torque over speed, which drives the free [transient.run]", NOTHING)
+        if not draft.gear_pairs and not operation.output:
+            yield Finding(("operation", "output"), "an output, on the rotor that the free run drives", NOTHING)
+    elif draft.transient is not None:
+        for key in ("motor", "load"):
+            if getattr(operation, key) is not None:
+                yield Finding(("operation", key), "a [transient.run] without 'to', whose speed is free to follow it")
 
 
 def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:

@@ -27,6 +27,8 @@ _PLAIN_WORDS = {
 def findings_of(error: ValidationError) -> Iterator[Finding]:
     """Yield a finding for each error that validating a document as a `Case` has met."""
     for detail in error.errors(include_url=False):
+        if detail["type"] == "default_factory_not_called":
+            continue  # a default that follows from a key which is itself at fault
         context = detail.get("ctx", {})
         # Steps that begin with "~" tell which form of a key was meant; they are not in the file.
         steps = [step for step in detail["loc"] if not str(step).startswith("~") and step != "[key]"]

@@ -75,8 +75,15 @@ def mesh_frequencies(case: Case, speed: float | None = None) -> tuple[float, ...
     return tuple(abs(speeds[shaft_of(gear)]) * gear.teeth / (2.0 * math.pi) for gear in drivers)
 
 
-def applied_torques(case: Case) -> tuple[AppliedTorque, ...]:
+def applied_torques(case: Case, torque: float | None = None) -> tuple[AppliedTorque, ...]:
     """Return the torques from outside: the input first, then the outputs. They balance through the gears.
+
+    Parameters
+    ----------
+    case
+        With an `[operation]`.
+    torque
+        What comes in [N m], the outputs taking it in their proportions; None: the torque of `[operation]`.
 
     The input drives the first driver's shaft in its direction of turning; outputs work against the turning of theirs.
     Without outputs, the shafts that drive no other take equal power. Outputs are scaled, within the 1 % that a case
@@ -92,19 +99,21 @@ def applied_torques(case: Case) -> tuple[AppliedTorque, ...]:
     operation = case.operation
     assert operation is not None
     ratios = speed_ratios(case)
-    if operation.torque == 0.0 or not ratios or not (case.gear_pair or operation.output):
+    entering = operation.torque if torque is None else torque
+    if entering == 0.0 or not ratios or not (case.gear_pair or operation.output):
         return ()
     first = next(iter(ratios)) if case.gear_pair else operation.output[0].rotor
     turning = math.copysign(1.0, operation.speed)
-    applied = [AppliedTorque(first, _station(case, first, operation.at, 0.0), turning * operation.torque)]
+    applied = [AppliedTorque(first, _station(case, first, operation.at, 0.0), turning * entering)]
     taken = [(output.rotor, output.torque, output.at) for output in operation.output]
-    if not taken:
-        last = train_of(case).last
-        taken = [(shaft, operation.torque / len(last) / abs(float(ratios[shaft])), None) for shaft in last]
-    power = sum(torque * abs(float(ratios[shaft])) for shaft, torque, _ in taken)
-    for shaft, torque, at in taken:
+    if not any(share for _, share, _ in taken):
+        last = [(output.rotor, output.at) for output in operation.output]
+        last = last or [(shaft, None) for shaft in train_of(case).last]
+        taken = [(shaft, entering / len(last) / abs(float(ratios[shaft])), at) for shaft, at in last]
+    power = sum(share * abs(float(ratios[shaft])) for shaft, share, _ in taken)
+    for shaft, share, at in taken:
         against = -turning * math.copysign(1.0, ratios[shaft])
-        balanced = torque * operation.torque / power
+        balanced = share * entering / power
         applied.append(AppliedTorque(shaft, _station(case, shaft, at, 1.0), against * balanced))
     return tuple(applied)
 

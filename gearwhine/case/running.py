@@ -6,11 +6,12 @@ Attributes are named as the keys and are in SI; speeds in rad/s, frequencies in 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
 from gearwhine.case import units
+from gearwhine.case.base_motion import Acceleration, Base
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     LengthFromZero,
@@ -24,14 +25,20 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
+from gearwhine.case.torques import Run, TorqueHistory, TorqueLine, TorqueRipple
 
 
 class Output(Table):
-    """`[[operation.output]]`: a torque taken off a rotor [N m], at a station [m]; None: its right end."""
+    """`[[operation.output]]`: a torque taken off a rotor [N m], at a station [m]; None: its right end.
+
+    `over_time` is added to it, `ripple` swings about it.
+    """
 
     rotor: Name
     torque: Torque
     at: LengthFromZero | None = None
+    over_time: TorqueHistory | None = None
+    ripple: tuple[TorqueRipple, ...] = Field(default=(), max_length=MOST_ENTRIES)
 
 
 class Operation(Table):
@@ -39,28 +46,53 @@ class Operation(Table):
 
     Positive speeds are counter-clockwise seen from +z. The torque drives in the direction of turning, at station
     `at` [m] (None: the left end). Without outputs, the rotors that drive no other share the power equally.
+    `over_time` is added to the torque, and the outputs take it in their proportions unless one has its own; `ripple`
+    swings about it. `motor` and `load` are torque over speed of a run whose speed is free: what drives, and what
+    the outputs together take, both at the first driver's rotor (without `load`: `torque`, whatever the speed).
+    `base` moves the ground; `gravity` is an acceleration along x, y, z [m/s²], None for none.
     """
 
     speed: Speed
     torque: Torque = 0.0
     at: LengthFromZero | None = None
+    over_time: TorqueHistory | None = None
+    ripple: tuple[TorqueRipple, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    motor: TorqueLine | None = None
+    load: TorqueLine | None = None
+    base: Base | None = None
+    gravity: tuple[Acceleration, Acceleration, Acceleration] | None = None
     output: tuple[Output, ...] = Field(default=(), max_length=1000)
 
 
 def _half_the_run(data: dict[str, Any]) -> float:
-    return float(data.get("revolutions", 0.0)) / 2.0
+    return float(data.get("revolutions") or 0.0) / 2.0
 
 
 class Transient(Table):
-    """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps."""
+    """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps.
 
-    revolutions: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e6)]
+    `start`: from static equilibrium under the load, or from turning unloaded, so that the load comes on at once.
+    `modal_coordinates`: how many of each part's modes to record in time.
+
+    With a `run` the speed varies over its time, in place of a number of revolutions; then none is discarded by default.
+    """
+
+    revolutions: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e6)] | None = None
+    run: Run | None = None
     discard: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = Field(default_factory=_half_the_run)
     points_per_revolution: Annotated[int, Whole(200, 1_000_000)] = 200
     tolerance: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=0.1)] = 1e-4
+    start: Literal["equilibrium", "unloaded"] = "equilibrium"
+    modal_coordinates: Annotated[int, Whole(0, 1000)] = 0
 
     @model_validator(mode="after")
     def _something_left(self) -> Transient:
+        if self.run is not None and self.revolutions is not None:
+            raise wrong("no number of revolutions beside a 'run', which has its own time", "revolutions")
+        if self.revolutions is None:
+            if self.run is None:
+                raise wrong("a plain number above 0 of revolutions, or a 'run'", "revolutions")
+            return self
         if self.discard >= self.revolutions:
             raise wrong(f"fewer revolutions than the {self.revolutions:g} of the run", "discard")
         return self

@@ -74,6 +74,8 @@ TILT_DAMPING = Dimension("a tilting damping", "N*m*s/rad", "0.1 N*m*s/rad")
 FORCE = Dimension("a force", "N", "1 kN")
 TORQUE = Dimension("a torque", "N*m", "71.77 N*m")
 ACCELERATION = Dimension("an acceleration", "m/s^2", "9.81 m/s^2")
+ANGULAR_ACCELERATION = Dimension("an angular acceleration", "rad/s^2", "10 rad/s^2")
+TIME = Dimension("a time", "s", "10 s")
 ANGLE = Dimension("an angle", "rad", "24 deg", display="deg")
 FREQUENCY = Dimension("a frequency", "Hz", "3.2 kHz")
 SPEED = Dimension("an angular speed", "rad/s", "5500 rpm", display="rpm")
@@ -82,7 +84,7 @@ RATIO = Dimension("a plain number", "", "0.01")
 
 _DIMENSIONS = (
     *(LENGTH, MASS, DENSITY, STRESS, INERTIA, IMBALANCE, STIFFNESS, COUPLED_STIFFNESS, DAMPING, TILT_DAMPING),
-    *(TORQUE, ACCELERATION, ANGLE, FREQUENCY, SPEED, DIAMETRAL_PITCH),
+    *(TORQUE, ACCELERATION, TIME, ANGLE, FREQUENCY, SPEED, DIAMETRAL_PITCH),
 )
 
 
@@ -223,6 +225,23 @@ def _parse_text(text: str, dimension: Dimension, expected: str) -> float:
 def _unit_advice(unit_text: str) -> str:
     """Say how products are written, where that is the likely slip."""
     return " (write 'N*m' for newton metres)" if unit_text == "Nm" else ""
+
+
+def split_quantity(text: str) -> tuple[Decimal, str] | None:
+    """Split a number from its unit, which may be none; None where the text is neither a number nor a quantity."""
+    match = _NUMBER.fullmatch(text.strip()) if len(text) <= LONGEST_QUANTITY else None
+    if match is None:
+        return None
+    unit = match[2].strip()
+    return (Decimal(match[1]), unit) if not unit or _parse_unit(unit) is not None else None
+
+
+def unit_ratio(unit: str, other: str) -> Decimal | None:
+    """How many of another unit one of this is; None where they measure different things."""
+    if unit == other:
+        return Decimal(1)
+    one, two = (_parse_unit(text) if text else None for text in (unit, other))
+    return one.factor / two.factor if one is not None and two is not None and one.powers == two.powers else None
 
 
 def format_quantity(number: float, dimension: Dimension) -> str | float:

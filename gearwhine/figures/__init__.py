@@ -1,7 +1,7 @@
 """Figures by matplotlib, made without a screen: plain arrays and the rooms' own results in, a `Figure` or a file out.
 
-``draw_transient``, ``draw_gear_pairs``, ``draw_tooth_pair`` and ``draw_rotors`` write what a command shows into a
-folder; the others return a figure for print, 160 mm wide, that :func:`save` writes::
+``draw_transient``, ``draw_gear_pairs``, ``draw_tooth_pair``, ``draw_system`` and ``draw_rotors`` write what a command
+shows into a folder; the others return a figure for print, 160 mm wide, that :func:`save` writes::
 
     assembly = RotorAssembly(rotor, bearings)
     save(draw_shaft(assembly), Path("shaft.png"))
@@ -19,11 +19,16 @@ from .harris_map import draw_harris_map
 from .mesh_stiffness import draw_mesh_stiffness
 from .mode_shapes import draw_lateral_modes, draw_torsional_modes
 from .rotors import draw_rotors
+from .run_up import draw_order_slices, draw_run_up_waterfall
 from .shaft import draw_shaft
 from .static_deflection import draw_static_deflection
 from .style import save
+from .sweep import draw_sweep
+from .system import draw_system
+from .system_campbell import draw_system_campbell
 from .tooth_pair import draw_tooth_pair
 from .transient import draw_transient
+from .transmissibility import draw_transmissibility
 from .transmission_error import draw_transmission_error
 from .unbalance import ProbeResponse, draw_unbalance_response
 from .whirl_shapes import draw_whirl_modes
@@ -43,12 +48,18 @@ __all__ = [
     "draw_harris_map",
     "draw_lateral_modes",
     "draw_mesh_stiffness",
+    "draw_order_slices",
     "draw_rotors",
+    "draw_run_up_waterfall",
     "draw_shaft",
     "draw_static_deflection",
+    "draw_sweep",
+    "draw_system",
+    "draw_system_campbell",
     "draw_tooth_pair",
     "draw_torsional_modes",
     "draw_transient",
+    "draw_transmissibility",
     "draw_transmission_error",
     "draw_unbalance_response",
     "draw_whirl_modes",

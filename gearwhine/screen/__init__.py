@@ -3,8 +3,10 @@
 from gearwhine.screen.case import show_check, show_examples, show_mesh
 from gearwhine.screen.gears import show_gears
 from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail
-from gearwhine.screen.machine import show_run, show_system
+from gearwhine.screen.machine import show_run
 from gearwhine.screen.rotors import show_rotors
+from gearwhine.screen.sweep import show_sweep
+from gearwhine.screen.system import show_system
 
 __all__ = [
     "show_check",
@@ -17,5 +19,6 @@ __all__ = [
     "show_modes_in_detail",
     "show_rotors",
     "show_run",
+    "show_sweep",
     "show_system",
 ]

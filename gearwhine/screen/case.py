@@ -36,19 +36,37 @@ def _parts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         for torque in operation["torques"]:
             place = "" if torque["at_m"] is None else f" at {1e3 * torque['at_m']:.4g} mm"
             lines.append(f"torque on {torque['rotor']}{place}: {torque['torque_n_m']:+.6g} N·m about z")
+        for key in ("motor", "load"):
+            if key in operation:
+                points = zip(operation[key]["speed_rpm"], operation[key]["torque_n_m"], strict=True)
+                lines.append(f"{key}: " + ", ".join(f"{torque:.6g} N·m at {speed:.6g} rpm" for speed, torque in points))
+        if "gravity_m_per_s2" in operation:
+            lines.append("gravity: " + ", ".join(f"{part:g}" for part in operation["gravity_m_per_s2"]) + " m/s²")
+        if "base" in operation:
+            base = operation["base"]
+            moves = [f"{frequency:.6g} Hz" for frequency in base["harmonics_hz"]]
+            lines.append("base moves: " + ", ".join(moves + ["a table over time"] * base["over_time"]))
         yield from _named("operation", lines)
     if "transient" in document:
-        given = document["transient"]
-        recorded, all_of_them = given["recorded_revolutions"], given["revolutions"]
-        yield (
-            "transient",
-            f"{all_of_them:g} revolutions, the last {recorded:g} recorded; tolerance {given['tolerance']:g}",
-        )
+        yield "transient", _transient_line(document["transient"])
     if "sweep" in document:
         yield "sweep", counted(document["sweep"]["speeds"], "speed")
     if "measured" in document:
         yield "measured", ", ".join(f"{one:g}" for one in document["measured"]["frequencies_hz"]) + " Hz"
     yield from _named("standing", [f"{key}: {text}" for key, text in document.get("provenance", {}).items()])
+
+
+def _transient_line(given: dict[str, Any]) -> str:
+    tolerance = f"tolerance {given['tolerance']:g}"
+    if "run" not in given:
+        recorded = given["recorded_revolutions"]
+        return f"{given['revolutions']:g} revolutions, the last {recorded:g} recorded; {tolerance}"
+    run = given["run"]
+    speeds = " → ".join(f"{speed:.6g}" for speed in dict.fromkeys(run["speeds_rpm"]))
+    line = f"free from {speeds} rpm" if run["free"] else f"{speeds} rpm"
+    discarded = given["discarded_revolutions"]
+    first = f", the first {discarded:g} revolutions not recorded" if discarded else ""
+    return f"{line} in {run['seconds']:g} s{first}; {tolerance}"
 
 
 def _named(part: str, lines: Sequence[str]) -> Iterator[tuple[str, str]]:

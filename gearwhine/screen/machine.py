@@ -1,4 +1,4 @@
-"""The coupled system, and the main job that runs everything."""
+"""The main job that runs everything."""
 
 from typing import Any
 
@@ -6,8 +6,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from gearwhine.screen.console import counted, open_console, percent, show_origin, show_written
-from gearwhine.screen.health import static_error_line
+from gearwhine.screen.console import counted, open_console, percent, show_written
 from gearwhine.screen.housing import comparison_table, modes_line
 
 
@@ -46,33 +45,39 @@ def _sensors(console: Console, document: dict[str, Any]) -> None:
         )
         table.add_row(sensor["name"], f"{sensor['rms_m_per_s2']:.3g}", lines)
     console.print(table)
+    _signature(console, document)
 
 
-def show_system(document: dict[str, Any]) -> None:
-    """Coupled modes, up to twice the frequency below which the housing's modes are all there."""
-    console = open_console()
-    modes, trusted = document["modes"], document.get("trusted_below_hz")
-    shown = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
-    console.print(f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm")
-    # Few machines have motions along the axis or pedestals: no columns of zeros for the others.
-    rare = [kind for kind in ("axial", "pedestal") if any(mode["energy"][kind] > 0.0 for mode in shown)]
-    shares_of = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
-    heads = ["teeth" if kind == "mesh" else kind for kind in shares_of]
-    table = Table("frequency [Hz]", "damping ratio", "kind", *heads, box=SIMPLE_HEAD)
-    for column in table.columns:
-        column.justify = "right"
-    for mode in shown:
-        # A rigid mode is the free turning of the train: its shares say nothing of vibration.
-        kinds = () if mode["kind"] == "rigid" else shares_of
-        shares = [f"{100 * mode['energy'][kind]:z.0f} %" for kind in kinds]
-        table.add_row(f"{mode['frequency_hz']:z.2f}", f"{mode['damping_ratio']:z.4f}", mode["kind"], *shares)
-    console.print(table)
-    console.print("Shares of the kinetic energy; teeth: share of the strain energy.")
-    if any(mode["kind"] == "residual" for mode in shown):
-        console.print("Residual: local compliance at the seats, no mode of the housing; its frequency means nothing.")
-    if error := document.get("static_error"):
-        console.print(static_error_line(error))
-    if trusted and len(shown) < len(modes):
-        console.print(f"{counted(len(modes) - len(shown), 'more mode')} above {2.0 * trusted:.5g} Hz.")
-    show_origin(console, document)
-    show_written(console, document)
+def _signature(console: Console, document: dict[str, Any]) -> None:
+    """What the leading lines are, and which housing modes and bearings they come from."""
+    table = Table("sensor", "Hz", "dB", "what it is", "near", "by housing modes", "by bearings", box=SIMPLE_HEAD)
+    for column in (1, 2):
+        table.columns[column].justify = "right"
+    for sensor in document["sensors"]:
+        for number, peak in enumerate(sensor["peaks"][:3]):
+            if "contributions" not in peak:
+                continue
+            near = peak["near_mode"]
+            parts = peak["contributions"]
+            table.add_row(
+                sensor["name"] if number == 0 else "",
+                f"{peak['frequency_hz']:.0f}",
+                f"{peak['level_db']:.0f}",
+                peak["name"] if peak["kind"] != "mode" else f"free {peak['name']}",
+                "" if near is None else f"{near['frequency_hz']:.0f} Hz {near['kind']}",
+                ", ".join(f"{part.get('number', 'local')}: {_share(part)}" for part in parts["housing_modes"][:3]),
+                ", ".join(f"{part['name']}: {_share(part)}" for part in _with_free(parts)[:3]),
+            )
+    if table.rows:
+        console.print(table)
+        console.print("Levels of rms values re 1 µm/s²; shares in phase with the line, all of which add up to it.")
+
+
+def _with_free(parts: dict[str, Any]) -> list[dict[str, Any]]:
+    """Bearings, and free vibration where it counts."""
+    both = [*parts["bearings"], parts["free_vibration"]]
+    return sorted(both, key=lambda part: -part["amplitude_m_per_s2"])
+
+
+def _share(part: dict[str, Any]) -> str:
+    return f"{100.0 * part['share']:.0f} %"

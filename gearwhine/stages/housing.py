@@ -88,6 +88,11 @@ class SolvedHousing:
     warnings: list[dict[str, Any]] = field(default_factory=list)
 
     @property
+    def trusted_limit_hz(self) -> float:
+        """Up to where the modes are complete [Hz]."""
+        return self.modes.certificate.limit / _HERTZ
+
+    @property
     def total_damping_ratios(self) -> FloatArray:
         """Each mode's ratio with its own share of what is attached; the coupling of modes by it left aside."""
         if self.damping_matrix is None:
@@ -234,6 +239,17 @@ def _solve_modes(
     checks = housing_checks(case, mesh, free, matrices, modes, room.mass_properties(parted, material, materials))
     seconds = {"assembly": assembled, **modes.seconds, "checks": time.perf_counter() - begin}
     return modes, matrices.total_mass, damping, checks, seconds
+
+
+def base_participation(case: Case, mesh: Mesh, modes: room.ModeSet) -> FloatArray:
+    """Participation of modes and attachments in the motions of the ground, about the origin, shape (n, 6) [√kg, √kg m].
+
+    φᵀ M R over every degree of freedom: what is fixed moves with the ground, and pulls by the consistent mass.
+    """
+    parted, material, materials = materials_of(case, mesh)
+    mass = attach_all(case, mesh, room.assemble(parted, material, materials)).mass
+    moved = mass @ room.rigid_motions(mesh.points, np.zeros(3)).reshape(-1, 6)
+    return modes.project_all(sparse.csr_array(moved.T))
 
 
 def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:

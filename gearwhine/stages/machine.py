@@ -1,19 +1,25 @@
-"""The whole machine of a case: rotors, housing, bearings, gears and loads in one system; its complex modes."""
+"""The whole machine of a case: rotors, housing, bearings, gears and loads in one system."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import coupling as room
 import rotors as rotor_room
-from gearwhine.case import Case, CaseError, Problem, applied_torques, require, rotor_speeds
+from gearwhine.case import Case, require, rotor_speeds
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
+from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import SolvedPair, solve_gears
-from gearwhine.stages.housing import SolvedHousing, solve_housing
-from gearwhine.stages.housing_checks import static_error_document
+from gearwhine.stages.housing import SolvedHousing, base_participation, solve_housing
+from gearwhine.stages.rotor_loads import given_bow
+
+FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 
@@ -23,8 +29,53 @@ _LATERAL_LIMIT_HZ = 8000.0
 _LIMIT_FACTOR = 2.5
 
 
+@dataclass(frozen=True)
+class SensorPlace:
+    """Where a sensor sits [m] and the unit vector along which it measures, shapes (3,)."""
+
+    position: FloatArray
+    direction: FloatArray
+
+
+@dataclass(frozen=True)
+class HousingInMachine:
+    """What a machine takes of a solved housing: kilobytes, in place of its mesh and shapes.
+
+    Attributes
+    ----------
+    component : coupling.HousingComponent
+    frequencies_hz : ndarray, shape (n_modes,)
+        Natural frequencies of its modes [Hz].
+    trusted_limit_hz : float
+        Up to where they are complete [Hz].
+    warnings : tuple of dict
+        What the user should know of it, as the documents have it.
+    sensors : mapping of str to SensorPlace
+    """
+
+    component: room.HousingComponent
+    frequencies_hz: FloatArray
+    trusted_limit_hz: float
+    warnings: tuple[dict[str, Any], ...] = ()
+    sensors: Mapping[str, SensorPlace] = field(default_factory=dict)
+
+
+def housing_in_machine(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingInMachine:
+    """What a machine takes of a solved housing."""
+    return HousingInMachine(
+        _housing_component(case, solved, progress),
+        solved.modes.frequencies_hz,
+        solved.trusted_limit_hz,
+        tuple(solved.warnings),
+        {name: SensorPlace(port.position, port.direction) for name, port in solved.sensors.items()},
+    )
+
+
 def build_machine(
-    case: Case, housing: SolvedHousing | None, pairs: tuple[SolvedPair, ...], progress: Progress = silent
+    case: Case,
+    housing: SolvedHousing | HousingInMachine | None,
+    pairs: tuple[SolvedPair, ...],
+    progress: Progress = silent,
 ) -> room.Machine:
     """Couple the parts of a case at its speed of operation.
 
@@ -32,17 +83,19 @@ def build_machine(
     ------
     CaseError, rotors.RotorError, coupling.CouplingError
         Where the parts do not make a machine.
+    coupling.TransientError
+        Where a free speed cannot start or stalls.
     """
     require(case, "rotor", "operation", command="system")
     assert case.operation is not None
     speeds = rotor_speeds(case)
-    require_no_bow(case)
-    components = []
+    components, bows = [], []
     bearings: list[room.MountedBearing] = []
     for given in case.rotor:
         progress(f"modes of rotor {given.name}")
         rotor, held = build_rotor(case, given), build_bearings(case, given.name)
         limit, count = _kept(case, given.name)
+        bow = given_bow(given)
         gears_at = [gear.at for gear in case.gear if gear.rotor == given.name and gear.at is not None]
         components.append(
             room.rotor_component(
@@ -53,17 +106,24 @@ def build_machine(
                     frequency_limit=limit,
                     count=count,
                     gears_at=gears_at,
+                    forces_at=() if bow is None else bow.at.tolist(),
                 ),
                 start=given.start,
                 damping_ratio=given.damping_ratio,
+                axis=given.axis,
             )
         )
+        if bow is not None:
+            bows.append(room.BowReactions(given.name, bow.at, rotor_room.bow_shape(rotor, bow).reactions))
         # Those of the rotor's own file stand on the ground.
         seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
         bearings += [room.MountedBearing(bearing, given.name, seats.get(bearing.name)) for bearing in held]
+    driven = driving(case, components)
+    if isinstance(housing, SolvedHousing):
+        housing = housing_in_machine(case, housing, progress)
     return room.couple(
         components,
-        None if housing is None else _housing_component(case, housing),
+        None if housing is None else housing.component,
         speeds=speeds,
         bearings=bearings,
         meshes=[_mesh(case, pair) for pair in pairs],
@@ -72,11 +132,12 @@ def build_machine(
             for rotor in case.rotor
             for entry in rotor.unbalance
         ],
-        torques=[
-            room.Torque(torque.shaft, torque.at, torque.torque)
-            for torque in applied_torques(case)
-            if torque.at is not None
-        ],
+        bows=bows,
+        torques=driven.torques,
+        drives=driven.drives,
+        rates=driven.rates,
+        base=base_motion(case),
+        gravity=case.operation.gravity,
     )
 
 
@@ -88,39 +149,9 @@ def solve_machine(
     ``folder`` and ``fresh`` are those of :func:`gearwhine.stages.housing.solve_housing`.
     """
     require(case, "rotor", "operation", command="system")
-    require_no_bow(case)
     pairs = solve_gears(case, progress) if case.gear_pair else ()
     housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     return housing, pairs, build_machine(case, housing, pairs, progress)
-
-
-def coupled_modes(machine: room.Machine) -> room.CoupledModes:
-    """Complex modes of the machine about its mean contact."""
-    return room.coupled_modes(machine.system)
-
-
-def system_document(
-    case: Case, machine: room.Machine, modes: room.CoupledModes, housing: SolvedHousing | None = None
-) -> dict[str, Any]:
-    """The coupled modes as the command's JSON."""
-    assert case.operation is not None
-    return {
-        "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
-        "modes": [
-            {
-                "frequency_hz": float(frequency),
-                "damping_ratio": float(damping),
-                "kind": kind,
-                "energy": energy,
-            }
-            for frequency, damping, kind, energy in zip(
-                modes.frequencies_hz, modes.damping_ratios, modes.kinds, modes.energy, strict=True
-            )
-        ],
-        "coordinates": machine.system.size,
-        "trusted_below_hz": None if housing is None else housing.modes.certificate.limit / _HERTZ,
-        "static_error": None if housing is None else static_error_document(housing.modes, housing.loaded),
-    }
 
 
 def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
@@ -134,8 +165,27 @@ def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
     return _HERTZ * max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit), None
 
 
-def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingComponent:
+def base_motion(case: Case) -> room.BaseMotion | None:
+    """How the ground of a case moves, if it does."""
+    given = None if case.operation is None else case.operation.base
+    if given is None:
+        return None
+    parts: list[room.BaseHarmonic | room.BaseHistory] = [
+        room.BaseHarmonic(_HERTZ * one.frequency, np.array(one.amplitudes) * np.exp(1j * one.phase))
+        for one in given.harmonic
+    ]
+    if given.over_time is not None:
+        parts.append(room.BaseHistory(np.array(given.over_time.time), np.array(given.over_time.rows).T))
+    return room.BaseMotion(tuple(parts), given.point)
+
+
+def _housing_component(case: Case, solved: SolvedHousing, progress: Progress) -> room.HousingComponent:
     assert case.housing is not None
+    assert case.operation is not None
+    participation = None
+    if case.operation.base is not None or case.operation.gravity is not None:
+        progress("taking the housing's mass for the motion of its base and its weight")
+        participation = base_participation(case, solved.mesh, solved.modes)
     return room.housing_component(
         solved.modes,
         solved.damping_ratios,
@@ -143,6 +193,7 @@ def _housing_component(case: Case, solved: SolvedHousing) -> room.HousingCompone
         seat_z={seat.name: seat.center[2] for seat in case.housing.seat},
         damping_matrix=solved.damping_matrix,
         sensors={name: solved.modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
+        participation=participation,
     )
 
 
@@ -154,16 +205,3 @@ def _mesh(case: Case, pair: SolvedPair) -> room.GearMesh:
         assert gear.at is not None
         mounted.append(room.MountedGear(name, gear.rotor, gear.at, case.rotor_named(gear.rotor).axis))
     return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, pair.given.backlash)
-
-
-def require_no_bow(case: Case) -> None:
-    """Raise for residual bows, which so far only the analysis of a rotor by itself knows.
-
-    Raises
-    ------
-    CaseError
-    """
-    for index, rotor in enumerate(case.rotor):
-        if rotor.bow:
-            expected = "no bow for the coupled system, which takes it in a later version; 'gearwhine rotors' does now"
-            raise CaseError([Problem(f"rotor[{index}].bow", "a bow", expected, label=f'rotor "{rotor.name}"')])

@@ -19,6 +19,32 @@ def block_arrays(columns: FloatArray, held: FloatArray, after: room.Checkpoint) 
 
 
 @dataclass(frozen=True)
+class Signals:
+    """What is recorded of a transient: the histories, and the modal motion that explains them."""
+
+    histories: room.Histories
+    modal: room.ModalRecord
+
+    @property
+    def times(self) -> FloatArray:
+        """[s], shape (s,)."""
+        return self.histories.times
+
+    @property
+    def columns(self) -> FloatArray:
+        """Every signal beside the others, shape (s, k)."""
+        return np.concatenate([self.histories.columns, self.modal.columns], axis=1)
+
+    def with_columns(self, times: FloatArray, columns: FloatArray) -> "Signals":
+        """Other samples of the same signals, from what :attr:`columns` gives."""
+        modal = self.modal.columns.shape[1]
+        split = columns.shape[1] - modal
+        return Signals(
+            self.histories.with_columns(times, columns[:, :split]), self.modal.with_columns(columns[:, split:])
+        )
+
+
+@dataclass(frozen=True)
 class MarchRecord:
     """A finished march.
 
@@ -27,13 +53,13 @@ class MarchRecord:
     sampling : Sampling
     blocks : Blocks
         At least one.
-    signals : coupling.Histories
+    signals : Signals
         Names of the signals; samples in it do not count.
     """
 
     sampling: Sampling
     blocks: Blocks
-    signals: room.Histories
+    signals: Signals
 
     @property
     def end(self) -> room.Checkpoint:
@@ -45,7 +71,7 @@ class MarchRecord:
         """How many are kept."""
         return self.sampling.decimation.kept(self.end.sample)
 
-    def pieces(self) -> Iterator[room.Histories]:
+    def pieces(self) -> Iterator[Signals]:
         """The histories, block by block."""
         done = 0
         for number in range(len(self.blocks)):
@@ -53,7 +79,7 @@ class MarchRecord:
             yield self._named(columns, done)
             done += len(columns)
 
-    def stretches(self) -> Iterator[room.Histories]:
+    def stretches(self) -> Iterator[Signals]:
         """The histories in stretches of equal length, the last of which ends with the record."""
         length = min(self.sampling.stretch, self.samples)
         skipped = self.samples % length
@@ -68,7 +94,7 @@ class MarchRecord:
                 yield self._named(waiting[:length], done)
                 waiting, done = waiting[length:], done + length
 
-    def last_stretch(self) -> room.Histories:
+    def last_stretch(self) -> Signals:
         """The last of them; of a record that fits in memory, all of it."""
         length = min(self.sampling.stretch, self.samples)
         parts: list[FloatArray] = []
@@ -79,13 +105,21 @@ class MarchRecord:
         columns = parts[0] if len(parts) == 1 else np.concatenate(parts)
         return self._named(columns[len(columns) - length :], self.samples - length)
 
-    def _named(self, columns: FloatArray, first: int) -> room.Histories:
+    def _named(self, columns: FloatArray, first: int) -> Signals:
         """The samples under their names, counted from a first one."""
         recorded = self.sampling.decimation.delay + self.sampling.decimation.factor * np.arange(
             first, first + len(columns), dtype=np.float64
         )
         settings = self.sampling.settings
         return self.signals.with_columns(settings.record_from + settings.sample_interval * recorded, columns)
+
+    def spectrum(self, stretch: FloatArray, limit: float) -> room.Spectrum:
+        """Lines of signals over one stretch, shape (..., s), as far as the record holds them in full.
+
+        Of a long record, that is up to a limit [Hz].
+        """
+        spectrum = room.amplitude_spectrum(stretch, self.sampling.interval, self.sampling.window)
+        return _below(spectrum, limit) if self.sampling.is_long else spectrum
 
 
 def record_spectra(
@@ -97,24 +131,32 @@ def record_spectra(
     limit [Hz] below which all of it was kept.
     """
     sensors, meshes = list(last.sensor_acceleration), list(last.mesh_force)
-    interval, window = record.sampling.interval, record.sampling.window
     if not record.sampling.is_long:
         of_sensors, of_meshes = (
-            {name: room.amplitude_spectrum(signal, interval, window) for name, signal in group.items()}
+            {name: record.spectrum(signal, limit) for name, signal in group.items()}
             for group in (last.sensor_acceleration, last.mesh_force)
         )
         return of_sensors, of_meshes
     if not sensors and not meshes:
         return {}, {}
     rows = (
-        np.array([*stretch.sensor_acceleration.values(), *stretch.mesh_force.values()])
+        np.array([*stretch.histories.sensor_acceleration.values(), *stretch.histories.mesh_force.values()])
         for stretch in record.stretches()
     )
-    together = room.averaged_spectrum(rows, interval, window)
-    # A line at the limit stands out only beside its neighbours.
-    below = together.frequencies <= limit + 2.0 * together.frequencies[1]
+    together = _below(room.averaged_spectrum(rows, record.sampling.interval, record.sampling.window), limit)
     each = [
-        replace(together, frequencies=together.frequencies[below], amplitude=amplitude[below], phase=phase[below])
+        replace(together, amplitude=amplitude, phase=phase)
         for amplitude, phase in zip(together.amplitude, together.phase, strict=True)
     ]
     return dict(zip(sensors, each, strict=False)), dict(zip(meshes, each[len(sensors) :], strict=True))
+
+
+def _below(spectrum: room.Spectrum, limit: float) -> room.Spectrum:
+    """The lines up to a limit [Hz], and two more: a line at the limit stands out only beside its neighbours."""
+    kept = int(np.searchsorted(spectrum.frequencies, limit + 2.0 * spectrum.frequencies[1], side="right"))
+    return replace(
+        spectrum,
+        frequencies=spectrum.frequencies[:kept],
+        amplitude=spectrum.amplitude[..., :kept],
+        phase=spectrum.phase[..., :kept],
+    )

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import coupling as room
-from gearwhine.case import Case, rotor_speeds, speed_ratios
+from gearwhine.case import Case, CaseError, Problem, Transient, rotor_speeds, speed_ratios
 
 _HERTZ = 2.0 * math.pi
 _OVERSAMPLING = 100.0  # of the march over the highest frequency of interest
@@ -62,14 +62,23 @@ class Sampling:
 
 
 def sampling(
-    case: Case, limit: float, signals: int, rows: int, *, largest: int = RECORD_BYTES, block: int | None = None
+    case: Case,
+    turning: room.Turning | None,
+    limit: float,
+    signals: int,
+    rows: int,
+    *,
+    largest: int = RECORD_BYTES,
+    block: int | None = None,
 ) -> Sampling:
-    """Choose how a case is sampled.
+    """Choose how a case is sampled: for its highest speed, where that varies.
 
     Parameters
     ----------
     case : Case
         With an operation and a transient.
+    turning : coupling.Turning or None
+        Speed over time; None where it is the nominal one all along.
     limit : float
         Highest frequency of interest [Hz].
     signals, rows : int
@@ -78,17 +87,23 @@ def sampling(
         The longest record that is kept as it was sampled [bytes].
     block : int, optional
         Samples in a block, about; by default as many as suit the length.
+
+    Raises
+    ------
+    CaseError
+        Where more is discarded than a run turns.
     """
     assert case.operation is not None
     assert case.transient is not None
     given = case.transient
-    period = _HERTZ / abs(case.operation.speed)
+    nominal = _HERTZ / abs(case.operation.speed)
+    period = nominal / (1.0 if turning is None else float(turning.rates.max()))
     per_revolution = _power_of_two(max(given.points_per_revolution, _OVERSAMPLING * limit * period))
     settings = room.TransientSettings(
-        duration=given.revolutions * period,
-        record_from=given.discard * period,
+        duration=_duration(given, nominal),
+        record_from=_record_from(given, nominal, turning),
         sample_interval=period / per_revolution,
-        largest_step=period / given.points_per_revolution,
+        largest_step=nominal / given.points_per_revolution,
         tolerance=given.tolerance,
     )
     if 8 * signals * settings.samples <= largest:
@@ -100,13 +115,39 @@ def sampling(
     kept = decimation.kept(settings.samples)
     most = max(min(_LONGEST_STRETCH, _STRETCH_BYTES // (8 * signals)), kept_per_revolution)
     whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
-    window: room.Window = "uniform" if whole * kept_per_revolution <= min(most, kept) else "hann"
-    unit = kept_per_revolution * (whole if window == "uniform" else 1)
+    repeats = turning is None and whole * kept_per_revolution <= min(most, kept)
+    unit = kept_per_revolution * (whole if repeats else 1)
     units = max(kept // unit, 1)
     stretch = unit * (units // math.ceil(units * unit / most)) if unit <= kept else kept
     if block is None:
         block = min(max(_BLOCK_BYTES // (8 * rows), room.SAMPLES_PER_BLOCK), _LARGEST_BLOCK)
-    return Sampling(settings, block, decimation, stretch, window)
+    return Sampling(settings, block, decimation, stretch, "uniform" if repeats else "hann")
+
+
+def _duration(given: Transient, period: float) -> float:
+    """[s]."""
+    if given.run is not None:
+        return given.run.duration
+    assert given.revolutions is not None
+    return given.revolutions * period
+
+
+def _record_from(given: Transient, period: float, turning: room.Turning | None) -> float:
+    """When the discarded revolutions are done [s].
+
+    Raises
+    ------
+    CaseError
+        Where a run does not turn so far.
+    """
+    if turning is None or given.discard == 0.0:
+        return given.discard * period
+    time = float(turning.times_of(np.array([given.discard * period]))[0])
+    if not time < _duration(given, period):
+        turned = float(turning.at(_duration(given, period))[0][0]) / period
+        expected = f"fewer revolutions than the {turned:g} that the run turns"
+        raise CaseError([Problem("transient.discard", given.discard, expected)])
+    return time
 
 
 def _power_of_two(least: float) -> int:
@@ -116,6 +157,8 @@ def _power_of_two(least: float) -> int:
 def _window(case: Case) -> room.Window:
     """Uniform where every shaft turns a whole number of times in the record."""
     assert case.transient is not None
+    if case.transient.revolutions is None:
+        return "hann"
     recorded = case.transient.revolutions - case.transient.discard
     turns = [recorded * abs(ratio) for ratio in rotor_speeds(case, 1.0).values()]
     return "uniform" if all(abs(turn - round(turn)) < 1e-9 for turn in turns) else "hann"

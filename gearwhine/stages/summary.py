@@ -10,6 +10,8 @@ from gearwhine.case import (
     CouplingSegment,
     Joint,
     Mount,
+    Operation,
+    Transient,
     amounts,
     applied_torques,
     campbell_speeds,
@@ -48,12 +50,9 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
                 for torque in applied_torques(case)
             ],
         }
+        document["operation"] |= _lines(case.operation)
     if case.transient is not None:
-        document["transient"] = {
-            "revolutions": case.transient.revolutions,
-            "recorded_revolutions": case.transient.revolutions - case.transient.discard,
-            "tolerance": case.transient.tolerance,
-        }
+        document["transient"] = _transient(case.transient)
     if case.sweep is not None:
         document["sweep"] = {"speeds": len(case.sweep.speeds)}
     if case.measured is not None:
@@ -61,6 +60,46 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
     if case.provenance:
         document["provenance"] = dict(case.provenance)
     return document
+
+
+def _lines(operation: Operation) -> dict[str, Any]:
+    """Torque over speed, as the free speed of a run follows it; gravity, and what of the base moves."""
+    document: dict[str, Any] = {}
+    if operation.gravity is not None:
+        document["gravity_m_per_s2"] = list(operation.gravity)
+    if operation.base is not None:
+        document["base"] = {
+            "point_m": list(operation.base.point),
+            "harmonics_hz": [one.frequency for one in operation.base.harmonic],
+            "over_time": operation.base.over_time is not None,
+        }
+    return document | {
+        key: {"speed_rpm": [speed * _RPM for speed in line.speed], "torque_n_m": list(line.torque)}
+        for key, line in (("motor", operation.motor), ("load", operation.load))
+        if line is not None
+    }
+
+
+def _transient(given: Transient) -> dict[str, Any]:
+    if given.run is None:
+        assert given.revolutions is not None
+        recorded = given.revolutions - given.discard
+        return {
+            "revolutions": given.revolutions,
+            "recorded_revolutions": recorded,
+            "tolerance": given.tolerance,
+        }
+    times, speeds = given.run.line
+    return {
+        "run": {
+            "seconds": given.run.duration,
+            "free": given.run.free,
+            "times_s": list(times),
+            "speeds_rpm": [speed * _RPM for speed in speeds],
+        },
+        "discarded_revolutions": given.discard,
+        "tolerance": given.tolerance,
+    }
 
 
 def _housing(case: Case) -> dict[str, Any]:

@@ -1,21 +1,27 @@
 """The transient of a case: the machine turning under load, and what its sensors, gears and bearings show."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import coupling as room
 import gearwhine
+from coupling.fingerprint import fingerprint
 from gearwhine.case import Case, require
 from gearwhine.march_files import Arrays, Blocks
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.contents import installed, source_digest
+from gearwhine.stages.driving import driving
 from gearwhine.stages.housing import SolvedHousing
-from gearwhine.stages.march_record import MarchRecord, block_arrays, record_spectra
+from gearwhine.stages.machine import HousingInMachine, base_motion
+from gearwhine.stages.march_record import MarchRecord, Signals, block_arrays, record_spectra
 from gearwhine.stages.sampling import RECORD_BYTES, Sampling, sampling
 from housing.labelled import content_key
+
+FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
@@ -28,10 +34,12 @@ class SolvedTransient:
     Attributes
     ----------
     machine : coupling.Machine
+    turning : coupling.Turning or None
+        Speed over time; None where it is the nominal one all along.
     result : coupling.TransientFigures
     record : MarchRecord
-        Histories of the recorded revolutions, piece by piece.
-    histories : coupling.Histories
+        Everything recorded, piece by piece.
+    signals : Signals
         The same at once; of a long record its last stretch.
     sensor_spectra : dict of str to coupling.Spectrum
         Acceleration [m/s²]; of a long record averaged over stretches, up to the trusted limit.
@@ -42,12 +50,33 @@ class SolvedTransient:
     """
 
     machine: room.Machine
+    turning: room.Turning | None
     result: room.TransientFigures
     record: MarchRecord
-    histories: room.Histories
+    signals: Signals
     sensor_spectra: dict[str, room.Spectrum]
     force_spectra: dict[str, room.Spectrum]
     trusted_limit: float
+
+    @property
+    def histories(self) -> room.Histories:
+        """Of the signals."""
+        return self.signals.histories
+
+    @property
+    def modal(self) -> room.ModalRecord:
+        """Of the signals."""
+        return self.signals.modal
+
+
+def is_traced(case: Case) -> bool:
+    """Whether lines of the sensors are traced to their origin.
+
+    Lines have names, and parts that add up, where speeds are steady and the ground is at rest.
+    """
+    assert case.operation is not None
+    assert case.transient is not None
+    return case.transient.run is None and case.operation.base is None
 
 
 def solve_transient(
@@ -56,16 +85,17 @@ def solve_transient(
     mesh_frequencies: tuple[float, ...],
     progress: Progress = silent,
     *,
-    housing: SolvedHousing | None = None,
+    housing: SolvedHousing | HousingInMachine | None = None,
     keep: Callable[[str], Blocks] = lambda key: _InMemory(),
     record_bytes: int = RECORD_BYTES,
     samples_per_block: int | None = None,
 ) -> SolvedTransient:
-    """March the machine through the case's revolutions and take the spectra of those not discarded.
+    """March the machine through the case's revolutions, or its run, and take the spectra of what is not discarded.
 
     The record holds whole revolutions of the first driver. Where every shaft then turns a whole number of times
-    the spectra are taken as they are, each line exact; otherwise under Hann's window. A record that is too long for
-    memory is filtered and kept at fewer samples, see :mod:`gearwhine.stages.sampling`.
+    the spectra are taken as they are, each line exact; otherwise, and over a run, under Hann's window. A run is sampled
+    for its highest speed, and ``discard`` counts revolutions as they are turned. A record that is too long for memory
+    is filtered and kept at fewer samples, see :mod:`gearwhine.stages.sampling`.
 
     Parameters
     ----------
@@ -81,32 +111,57 @@ def solve_transient(
         Where the motion cannot be followed or its energies do not balance.
     """
     require(case, "operation", "transient", command="run")
-    limit = _trusted_limit(housing, mesh_frequencies)
-    outputs, nothing = room.transient_outputs(machine), room.empty_histories(machine)
+    assert case.transient is not None
+    turning = driving(case, machine.rotors).turning
+    fastest = 1.0 if turning is None else max(1.0, float(turning.rates.max()))
+    limit = _trusted_limit(housing, tuple(fastest * frequency for frequency in mesh_frequencies))
+    modal, traced = case.transient.modal_coordinates, is_traced(case)
+    outputs = room.with_modal_rows(machine, room.transient_outputs(machine), modal, housing=traced)
+
+    def named(result: room.Recorded) -> Signals:
+        histories = _in_space(case, housing, room.histories(machine, result, turning))
+        return Signals(histories, room.modal_record(machine, result, modal, housing=traced))
+
+    nothing = named(room.nothing_recorded(machine, outputs))
     rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))
     rows += 2 * len(machine.system.contacts)
     signals = nothing.columns.shape[1]
-    chosen = sampling(case, limit, signals, rows, largest=record_bytes, block=samples_per_block)
+    chosen = sampling(case, turning, limit, signals, rows, largest=record_bytes, block=samples_per_block)
     progress("compiling the time stepper (the first time takes longer)")
     march = (machine.system, chosen.settings, outputs)
-    key = room.march_key(*march, samples_per_block=chosen.samples_per_block)
-    blocks = keep(_with_code(key, chosen))
+    start = starting_state(case, machine)
+    key = room.march_key(*march, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
+    blocks = keep(_with_code(fingerprint(key, base_motion(case)), chosen))
     last = blocks[len(blocks) - 1] if len(blocks) else None
     held = nothing.columns if last is None else last["held"]
     marched = room.march_blocks(
         *march,
+        turning=turning,
+        initial=start,
         after=None if last is None else room.Checkpoint.from_arrays(last),
         samples_per_block=chosen.samples_per_block,
         progress=lambda fraction: progress("marching through the transient", fraction),
     )
     for block in marched:
-        columns, held = chosen.decimation.through(held, room.histories(machine, block).columns)
+        columns, held = chosen.decimation.through(held, named(block).columns)
         blocks.append(block_arrays(columns, held, block.after))
     record = MarchRecord(chosen, blocks, nothing)
     figures = room.transient_figures(chosen.settings, record.end)
-    named = record.last_stretch()
-    of_sensors, of_meshes = record_spectra(record, named, limit)
-    return SolvedTransient(machine, figures, record, named, of_sensors, of_meshes, limit)
+    stretch = record.last_stretch()
+    of_sensors, of_meshes = record_spectra(record, stretch.histories, limit)
+    return SolvedTransient(machine, turning, figures, record, stretch, of_sensors, of_meshes, limit)
+
+
+def _in_space(case: Case, housing: SolvedHousing | HousingInMachine | None, named: room.Histories) -> room.Histories:
+    """Histories as accelerometers show them: their motion in space, not beside a base that moves."""
+    base = base_motion(case)
+    if base is None or housing is None:
+        return named
+    absolute = {
+        name: named.sensor_acceleration[name] + base.acceleration_at(port.position, port.direction, named.times)
+        for name, port in housing.sensors.items()
+    }
+    return replace(named, sensor_acceleration=absolute)
 
 
 def _with_code(key: str, chosen: Sampling) -> str:
@@ -128,6 +183,17 @@ class _InMemory(list[Arrays]):
     """Blocks that nobody keeps."""
 
 
+def starting_state(case: Case, machine: room.Machine) -> tuple[FloatArray, FloatArray] | None:
+    """Coordinates and rates that the case starts from; None: static equilibrium under its load.
+
+    A train that turns unloaded has straight, untwisted shafts and teeth that just touch: all coordinates are zero.
+    """
+    assert case.transient is not None
+    if case.transient.start == "equilibrium":
+        return None
+    return np.zeros(machine.system.size), np.zeros(machine.system.size)
+
+
 def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     """The transient as the command's JSON."""
     assert case.operation is not None
@@ -145,13 +211,13 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
                 "contact_loss_fraction": float(result.contact_loss[number]),
                 "back_flank_peak_force_n": _back_flank_peak(solved, number, drives),
                 "force_peaks": [
-                    {"frequency_hz": peak.frequency, "amplitude_n": peak.amplitude}
-                    for peak in room.spectrum_peaks(spectrum, count=8)
+                    {"frequency_hz": peak.frequency, "amplitude_n": peak.amplitude} for peak in force_peaks(spectrum)
                 ],
             }
         )
     return {
         "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
+        "run": _run_document(case, solved.turning),
         "steps": result.steps,
         "rejected_steps": result.rejected,
         "smallest_step_s": result.smallest_step,
@@ -164,8 +230,8 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
             "teeth": result.energy.teeth,
         },
         "coordinates": solved.machine.system.size,
-        "record": record_document(solved),
         "trusted_below_hz": solved.trusted_limit,
+        "record": record_document(solved),
         "sensors": [
             {
                 "name": name,
@@ -173,7 +239,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
                 "rms_m_per_s2": float(spectrum.rms(solved.trusted_limit)),
                 "peaks": [
                     {"frequency_hz": peak.frequency, "amplitude_m_per_s2": peak.amplitude}
-                    for peak in room.spectrum_peaks(spectrum, count=20, limit=solved.trusted_limit, floor=1e-5)
+                    for peak in sensor_peaks(solved, name)
                 ],
             }
             for name, spectrum in solved.sensor_spectra.items()
@@ -182,9 +248,23 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     }
 
 
+def _run_document(case: Case, turning: room.Turning | None) -> dict[str, Any] | None:
+    """Speeds of the first driver's rotor over a run; None at steady speed."""
+    if turning is None:
+        return None
+    assert case.operation is not None
+    speeds = case.operation.speed * turning.rates * 60.0 / _HERTZ
+    return {
+        "from_rpm": float(speeds[0]),
+        "to_rpm": float(speeds[-1]),
+        "seconds": float(turning.times[-1]),
+        "revolutions": float(turning.at(turning.times[-1])[0][0]) * abs(case.operation.speed) / _HERTZ,
+    }
+
+
 def record_document(solved: SolvedTransient) -> dict[str, Any]:
     """How much was recorded, how finely, and what the spectra were taken over."""
-    record = solved.record
+    record, spectra = solved.record, [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
     return {
         "samples": record.samples,
         "interval_s": record.sampling.interval,
@@ -192,13 +272,19 @@ def record_document(solved: SolvedTransient) -> dict[str, Any]:
         "spectra": {
             "window": record.sampling.window,
             "samples": min(record.sampling.stretch, record.samples),
-            "averages": next((one.averages for one in _spectra(solved)), 1),
+            "averages": next((one.averages for one in spectra), 1),
         },
     }
 
 
-def _spectra(solved: SolvedTransient) -> list[room.Spectrum]:
-    return [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
+def sensor_peaks(solved: SolvedTransient, sensor: str) -> list[room.Peak]:
+    """The lines of a sensor that are told of, highest first."""
+    return room.spectrum_peaks(solved.sensor_spectra[sensor], count=20, limit=solved.trusted_limit, floor=1e-5)
+
+
+def force_peaks(spectrum: room.Spectrum) -> list[room.Peak]:
+    """The lines of a gear-mesh force that are told of, highest first."""
+    return room.spectrum_peaks(spectrum, count=8)
 
 
 def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float | None:
@@ -210,8 +296,8 @@ def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float
     return float(solved.result.peak_force[drives + before])
 
 
-def _trusted_limit(housing: SolvedHousing | None, mesh_frequencies: tuple[float, ...]) -> float:
+def _trusted_limit(housing: SolvedHousing | HousingInMachine | None, mesh_frequencies: tuple[float, ...]) -> float:
     """Up to where the housing's modes are complete [Hz]; without a housing, what the gears excite."""
     if housing is not None:
-        return housing.modes.certificate.limit / _HERTZ
+        return housing.trusted_limit_hz
     return 4.0 * max(mesh_frequencies, default=1000.0)

@@ -11,17 +11,20 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from coupling import (
+    Checkpoint,
     Component,
     ContactConnector,
     CoupledSystem,
     CouplingError,
     HarmonicLoad,
     LinearConnector,
+    TimedLoad,
     TransientError,
     TransientOutputs,
     TransientResult,
     TransientSettings,
     coupled_modes,
+    march_blocks,
     simulate,
     static_equilibrium,
 )
@@ -302,3 +305,36 @@ def test_event_times() -> None:
         distance = np.abs((fractions[:, None] - marks + 0.5) % 1.0 - 0.5).min(axis=1)
         assert distance.max() < 1e-9
     assert ContactConnector("still", np.ones(1), contact, 0.0, 0.0, np.empty((0, 3))).event_times(0.0, 9.0).size == 0
+
+
+def test_teeth_that_part_for_good_are_named() -> None:
+    """The load turns round after 10 s: nothing presses the masses together any more, and no spring holds them."""
+    zeros = np.zeros((2, 2))
+    body = Component("masses", ("torsion", "torsion"), zeros, zeros, zeros)
+    apart = np.array([1.0, -1.0])
+    tooth = ContactConnector("pinion -> wheel", apart, pair_contact(1.6), 0.0, 0.45, np.empty((0, 3)))
+    turning_round = TimedLoad(np.array([10.0, 11.0]), np.array([0.0, -2.0]), apart)
+    system = CoupledSystem((body,), (0.0,), contacts=(tooth,), load=apart, timed_loads=(turning_round,))
+    settings = TransientSettings(duration=1000.0, record_from=0.0, sample_interval=1.0, largest_step=0.1)
+    with pytest.raises(TransientError, match=r"pinion -> wheel came apart at t = 1[01]\.\d+ s and did not meet again"):
+        simulate(system, settings, all_rows(system))
+
+
+def test_blocks_make_the_run() -> None:
+    """Handed over block by block, or gone on with from a checkpoint kept as arrays, a run is the same bit for bit."""
+    system = two_masses(pair_contact(1.6, damping=0.05), 0.45, errors=((0.2, 0.3, 0.1),))
+    settings = replace(SETTINGS, duration=3000.0, sample_interval=0.02)
+    whole = simulate(system, settings, all_rows(system))
+    blocks = list(march_blocks(system, settings, all_rows(system)))
+    assert len(blocks) > 3
+    np.testing.assert_array_equal(np.concatenate([block.displacement for block in blocks]), whole.displacement)
+    assert [block.first for block in blocks] == np.cumsum([0, *(len(block.force) for block in blocks)])[:-1].tolist()
+    kept = {name: np.array(value) for name, value in blocks[1].after.as_arrays().items()}
+    later = list(march_blocks(system, settings, all_rows(system), after=Checkpoint.from_arrays(kept)))
+    assert len(later) == len(blocks) - 2
+    for one, other in zip(later, blocks[2:], strict=True):
+        for name in ("first", "displacement", "velocity", "acceleration", "compression", "force"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    last, same = (run[-1].after.as_arrays() for run in (blocks, later))
+    for name in last.keys() - {"seconds"}:
+        np.testing.assert_array_equal(last[name], same[name], err_msg=name)

@@ -147,7 +147,7 @@ def test_every_command_that_needs_modes_reads_them(gearwhine, tmp_path: Path) ->
 
     first = command("system")
     assert first["reused"] is False
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"case.toml", "modes.nc", "summary.json"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} >= {"case.toml", "modes.nc", "summary.json"}
     again = command("system")
     assert again["reused"] is True
     assert result(again) == result(first)  # read modes lead to the very numbers that solved ones did

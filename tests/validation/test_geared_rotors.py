@@ -10,6 +10,7 @@ size in rigid contact.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -23,9 +24,12 @@ from coupling import (
     Machine,
     MountedBearing,
     MountedGear,
+    contact_at,
     couple,
     coupled_modes,
+    mesh_error_response,
     rotor_component,
+    stability,
 )
 from coupling.gears import (
     ConstantStiffness,
@@ -136,6 +140,42 @@ def test_turbo_generator_knows_the_centre_line() -> None:
     assert np.abs(turned / oscillating(turbo_generator()) - 1.0).max() > 5e-3
 
 
+def test_turbo_generator_at_an_instant() -> None:
+    """Under a load that presses the teeth, contact of an instant: the stiffness being constant, the same modes."""
+    machine = turbo_generator()
+    pressed = replace(machine.system, load=1e4 * machine.system.contacts[0].direction)
+    modes = coupled_modes(pressed, contact_at(pressed, 0.0123))
+    np.testing.assert_allclose(modes.frequencies_hz[1:14], oscillating(machine), rtol=1e-9)
+
+
+def test_turbo_generator_energies() -> None:
+    """What the source says of its machine: the lowest modes bend the shafts, and every dashpot only takes."""
+    modes = coupled_modes(turbo_generator().system)
+    assert modes.certificate.found == modes.certificate.expected
+    assert modes.certificate.max_residual < 1e-9
+    np.testing.assert_allclose(modes.shares.kinetic.sum(axis=1), 1.0, rtol=1e-12)
+    np.testing.assert_allclose(modes.shares.strain[1:].sum(axis=1), 1.0, rtol=1e-9)
+    np.testing.assert_allclose(modes.shares.damping.sum(axis=1), modes.damping_ratios, rtol=1e-9, atol=1e-12)
+    assert stability(modes).stable
+    # The bearings are the only dashpots, and the mesh has none.
+    dashpots = np.array([part.kind == "connector" for part in modes.shares.parts])
+    assert not modes.shares.damping[:, ~dashpots].any()
+    assert np.all(modes.shares.damping[1:, dashpots].sum(axis=1) > 0.0)
+
+
+def test_turbo_generator_error_finds_its_modes() -> None:
+    """At a mode that strains the teeth, the force by a transmission error has a peak: there."""
+    machine = turbo_generator()
+    modes = coupled_modes(machine.system)
+    teeth = np.array([part.kind == "contact" for part in modes.shares.parts])
+    strained = 1 + int(np.argmax(modes.shares.strain[1:14, teeth].sum(axis=1)))
+    centre = modes.eigenvalues[strained].imag
+    w = np.linspace(0.97 * centre, 1.03 * centre, 801)
+    force = np.abs(next(iter(mesh_error_response(machine, w, modes=modes).mesh_force.values())))
+    assert w[np.argmax(force)] == pytest.approx(centre, rel=2e-3)
+    assert force.max() > 2.0 * max(force[0], force[-1])
+
+
 def test_geared_branch_in_torsion(published: Published) -> None:
     """Rigid contact stands in as a spring 1e5 times as stiff as the shafts, in torsion about the base circles.
 
@@ -157,5 +197,11 @@ def test_geared_branch_in_torsion(published: Published) -> None:
     for number, (value, ours) in enumerate(zip([0.0, 425.4, 634.1, 3247.2], modes.frequencies_hz[:4], strict=True)):
         published(BRANCH, f"torsional {number}" if number else "rigid rotation", value, ours, "Hz", abs=0.051)
     assert modes.kinds == ("rigid", "torsion", "torsion", "torsion", "mesh")
+    assert modes.where[1] == "rotors"
+    assert modes.eigenvalues[0] == 0.0
+    # Rigid contact strains nothing; the gears stand still while the two rotors swing against each other.
+    np.testing.assert_allclose(modes.shares.strain[1:4, 2], 0.0, atol=1e-4)
+    np.testing.assert_allclose(modes.shares.strain[1], [0.0, 1.0, 0.0], atol=1e-9)
+    np.testing.assert_allclose(modes.shares.kinetic[1], [0.0, 1.0], atol=1e-9)
     # The two rotors against each other, the gears at rest: √(5e3 / 700e-6).
     assert modes.frequencies_hz[1] == pytest.approx(np.sqrt(5e3 / 700e-6) / (2.0 * np.pi), rel=1e-9)

@@ -1,0 +1,174 @@
+"""A base that moves: the coordinates are relative to it, and every mass is held back by its acceleration.
+
+With u = q + R s, R the six rigid motions of the base about a point, the coordinates are loaded by -P a, where
+P = ∫ φ R dm is their participation and a the acceleration, three components along and three about x, y and z.
+Rotations of the base are small: what is quadratic in them, and Coriolis forces on the vibration, are left out. Kept is
+the gyroscopic moment of a shaft that turns at Ω on a base that tilts at the rates ω_x and ω_y: Ω ∫ β dI_p ω_x on the
+x plane and Ω ∫ β dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, by P g.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.component import Component, HousingComponent, PedestalComponent, RotorComponent
+from coupling.errors import CouplingError
+from coupling.system import HarmonicLoad, TimedLoad
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+Point = tuple[float, float, float]
+
+_RATE_PIECES = 16  # straight pieces that stand for the parabola of a rate between two accelerations
+
+
+@dataclass(frozen=True)
+class BaseHarmonic:
+    """Re(amplitude e^{iwt}), w in rad/s, amplitude (6,) in m/s² and rad/s²."""
+
+    frequency: float
+    amplitude: ComplexArray
+
+
+@dataclass(frozen=True)
+class BaseHistory:
+    """Accelerations (l, 6) in m/s² and rad/s², linear between times (l,) in s and constant beyond them."""
+
+    times: FloatArray
+    values: FloatArray
+
+    def __post_init__(self) -> None:
+        if self.values.shape != (len(self.times), 6) or not len(self.times) or np.any(np.diff(self.times) <= 0.0):
+            raise CouplingError(
+                f"a base's accelerations of shape {self.values.shape} at {len(self.times)} times; expected six for "
+                "each, and times that ascend"
+            )
+
+
+@dataclass(frozen=True)
+class BaseMotion:
+    """How the base moves, at a point of it [m] and about axes through this point.
+
+    Attributes
+    ----------
+    parts : tuple
+        That add up.
+    point : tuple of float
+    """
+
+    parts: tuple[BaseHarmonic | BaseHistory, ...]
+    point: Point = (0.0, 0.0, 0.0)
+
+    def acceleration(self, times: FloatArray) -> FloatArray:
+        """Shape (s, 6)."""
+        total = np.zeros((len(times), 6))
+        for part in self.parts:
+            if isinstance(part, BaseHarmonic):
+                total += (np.exp(1j * part.frequency * times)[:, None] * part.amplitude).real
+            else:
+                total += np.column_stack([np.interp(times, part.times, column) for column in part.values.T])
+        return total
+
+    def acceleration_at(self, position: FloatArray, direction: FloatArray, times: FloatArray) -> FloatArray:
+        """Along a direction at a place that moves with the base [m/s²], shape (s,)."""
+        moment = np.cross(np.subtract(position, self.point), direction)
+        return np.asarray(self.acceleration(times) @ np.concatenate([direction, moment]))
+
+
+def base_loads(
+    components: Sequence[Component], speeds: Sequence[float], base: BaseMotion, places: dict[str, Point]
+) -> tuple[list[HarmonicLoad], list[TimedLoad]]:
+    """Loads of a base that moves; ``places`` are those of pedestals [m]."""
+    held = participations(components, base.point, places)
+    tilting = _gyroscopic(components, speeds)
+    harmonic: list[HarmonicLoad] = []
+    timed: list[TimedLoad] = []
+    for part in base.parts:
+        if isinstance(part, BaseHarmonic):
+            rate = part.amplitude / (1j * part.frequency)
+            harmonic.append(HarmonicLoad(part.frequency, tilting @ rate - held @ part.amplitude))
+            continue
+        moved = np.flatnonzero(np.any(part.values != 0.0, axis=0))
+        timed += [TimedLoad(part.times, part.values[:, k], -held[:, k]) for k in moved]
+        times, rates = _rates(part)
+        timed += [TimedLoad(times, rates[:, k], tilting[:, k]) for k in moved if np.any(tilting[:, k])]
+    return harmonic, timed
+
+
+def gravity_load(components: Sequence[Component], gravity: Sequence[float], places: dict[str, Point]) -> FloatArray:
+    """Load of the weight under an acceleration along x, y, z [m/s²], shape (n,)."""
+    return participations(components, (0.0, 0.0, 0.0), places)[:, :3] @ np.array(gravity, dtype=np.float64)
+
+
+def participations(components: Sequence[Component], point: Point, places: dict[str, Point]) -> FloatArray:
+    """P of all coordinates in the motions of a base about a point [√kg, √kg m], shape (n, 6).
+
+    Raises
+    ------
+    CouplingError
+        Where a component does not know its own.
+    """
+    rows = []
+    for component in components:
+        if isinstance(component, RotorComponent):
+            rows.append(_of_rotor(component, point))
+        elif isinstance(component, HousingComponent):
+            if component.participation is None:
+                raise CouplingError(f"{component.name}: expected its participation in the motions of its base")
+            rows.append(_about(component.participation, point))
+        elif isinstance(component, PedestalComponent):
+            whole = np.zeros((2, 6))
+            whole[:, :2] = np.linalg.inv(component.motion)
+            x, y, z = np.subtract(places[component.name], point)
+            whole[:, 3:] = whole[:, :2] @ np.array([[0.0, z, -y], [-z, 0.0, x]])
+            rows.append(whole)
+    return np.vstack(rows)
+
+
+def _about(participation: FloatArray, point: Point) -> FloatArray:
+    """Participation about the origin as that about a point: a turn about it is one about the origin, less p × α."""
+    x, y, z = point
+    # α × (r - p) = α × r + p × α.
+    moved = participation.copy()
+    moved[:, 3:] += participation[:, :3] @ np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return moved
+
+
+def _of_rotor(rotor: RotorComponent, point: Point) -> FloatArray:
+    held = rotor.modal.participation
+    if held is None:
+        raise CouplingError(f"{rotor.name}: expected its participation in the motions of its base")
+    m, (x, y) = rotor.modal.lateral.count, np.subtract(rotor.axis, point[:2])
+    shift, tilt = rotor.mixture.T @ held.displacement, rotor.mixture.T @ held.tilt
+    tilt = tilt + (rotor.start - point[2]) * shift
+    whole = np.zeros((rotor.size, 6))
+    whole[:m, 0], whole[:m, 4], whole[:m, 5] = shift, tilt, -y * shift
+    whole[m : 2 * m, 1], whole[m : 2 * m, 3], whole[m : 2 * m, 5] = shift, -tilt, x * shift
+    whole[:, 5] += rotor.turning
+    along = slice(rotor.size - len(held.axial), rotor.size)
+    whole[along, 2], whole[along, 3], whole[along, 4] = held.axial, y * held.axial, -x * held.axial
+    return whole
+
+
+def _gyroscopic(components: Sequence[Component], speeds: Sequence[float]) -> FloatArray:
+    """Load of a base that turns at one rad/s about each axis, in the columns of the rotations, shape (n, 6)."""
+    rows = []
+    for component, speed in zip(components, speeds, strict=True):
+        whole = np.zeros((component.size, 6))
+        if isinstance(component, RotorComponent) and component.modal.participation is not None:
+            m = component.modal.lateral.count
+            moment = speed * component.mixture.T @ component.modal.participation.spin
+            whole[:m, 3], whole[m : 2 * m, 4] = moment, moment
+        rows.append(whole)
+    return np.vstack(rows)
+
+
+def _rates(part: BaseHistory) -> tuple[FloatArray, FloatArray]:
+    """Velocities that a table of accelerations has led to from rest at its first time."""
+    gaps = np.arange(_RATE_PIECES) / _RATE_PIECES
+    times = np.append((part.times[:-1, None] + np.diff(part.times)[:, None] * gaps).ravel(), part.times[-1])
+    values = np.column_stack([np.interp(times, part.times, column) for column in part.values.T])
+    gained = 0.5 * (values[1:] + values[:-1]) * np.diff(times)[:, None]
+    return times, np.vstack([np.zeros(6), np.cumsum(gained, axis=0)])

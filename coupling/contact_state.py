@@ -1,0 +1,106 @@
+"""The tooth contacts as springs and dashpots: at their means, or as they stand at an instant."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from coupling.statics import static_equilibrium
+from coupling.system import CoupledSystem
+
+FloatArray = npt.NDArray[np.float64]
+
+_JUST_AFTER = 1e-9  # mesh periods: the side of an event on which a contact is looked at, as in the statics
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """What linear analyses take each contact for.
+
+    Attributes
+    ----------
+    stiffness : ndarray, shape (c,)
+        Of each contact of the system, drive flanks and back flanks [N/m]; 0 where they are apart.
+    damping : ndarray, shape (c,)
+        [N s/m].
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+
+
+def mean_contact(system: CoupledSystem) -> ContactState:
+    """Every drive flank at its mean stiffness over a mesh period, every back flank apart."""
+    drives = np.array([float(contact.drives) for contact in system.contacts])
+    laws = [contact.contact for contact in system.contacts]
+    return ContactState(
+        drives * np.array([law.mean_stiffness for law in laws]), drives * np.array([law.damping for law in laws])
+    )
+
+
+def contact_at(system: CoupledSystem, time: float) -> ContactState:
+    """Tangents of the contact law in static equilibrium under the constant load, the teeth where they are at a time.
+
+    Reliefs, deviations and backlash count: a pair that the load does not close is not there.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+    time : float
+        [s]; :func:`time_of_phase` gives that of a mesh phase.
+
+    Raises
+    ------
+    CouplingError, TransientError
+        As :func:`coupling.static_equilibrium`.
+    """
+    from coupling.gears.kernels import tooth_force
+
+    q = static_equilibrium(system, time)
+    tangents = []
+    for contact in system.contacts:
+        error = np.sum(contact.errors[:, 0] * np.cos(contact.errors[:, 1] * time + contact.errors[:, 2]))
+        compression = float(contact.direction @ q - error - contact.clearance)
+        phase = contact.phase + contact.rate * time + _JUST_AFTER
+        force, *tangent = tooth_force(phase, compression, 0.0, *contact.contact.kernel_arguments)[:3]
+        # Of a contact that is held apart the law gives the coefficient of its losses, which act on no force.
+        tangents.append(tangent if force > 0.0 else [0.0, 0.0])
+    stiffness, damping = np.array(tangents).reshape(-1, 2).T
+    return ContactState(stiffness, damping)
+
+
+def time_of_phase(system: CoupledSystem, phase: float, contact: int = 0) -> float:
+    """First time at or after 0 at which a contact stands at a phase of its mesh period [s].
+
+    Raises
+    ------
+    CouplingError
+        Where the system has no such contact, or it does not turn.
+    """
+    if not 0 <= contact < len(system.contacts):
+        raise CouplingError(
+            f"contact number {contact} of {len(system.contacts)}; expected 0 or more, below their count"
+        )
+    chosen = system.contacts[contact]
+    if chosen.rate == 0.0:
+        raise CouplingError(f"{chosen.name} does not turn, so it has no phase but its own; expected a speed")
+    return float(((np.sign(chosen.rate) * (phase - chosen.phase)) % 1.0) / abs(chosen.rate))
+
+
+def linear_matrices(system: CoupledSystem, contact: ContactState) -> tuple[FloatArray, FloatArray]:
+    """K [1/s²] and C [1/s] with the contacts in a state, shape (n, n) both.
+
+    Raises
+    ------
+    CouplingError
+        Where the state has not as many contacts as the system.
+    """
+    count = len(system.contacts)
+    if contact.stiffness.shape != (count,) or contact.damping.shape != (count,):
+        raise CouplingError(
+            f"a contact state of shapes {contact.stiffness.shape} and {contact.damping.shape}; expected ({count},) both"
+        )
+    directions = system.contact_directions
+    stiffness = system.stiffness + (directions * contact.stiffness) @ directions.T
+    return stiffness, system.damping + (directions * contact.damping) @ directions.T

@@ -1,0 +1,80 @@
+"""The frequencies that a turning machine excites: orders of its shafts and of its gear meshes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from coupling.errors import CouplingError
+from coupling.machine import Machine
+
+
+@dataclass(frozen=True)
+class ExcitationLine:
+    """A frequency in proportion to the speed.
+
+    Attributes
+    ----------
+    name : str
+        Such as ``2× input``, ``3× pinion -> wheel`` or ``1× pinion -> wheel + 1× input`` for a sideband.
+    kind : str
+        ``shaft``, ``mesh`` or ``sideband``.
+    order : float
+        Over the speed of the leading rotor, positive.
+    """
+
+    name: str
+    kind: Literal["shaft", "mesh", "sideband"]
+    order: float
+
+
+def excitation_lines(
+    machine: Machine,
+    *,
+    shaft_orders: Sequence[float] = (1.0, 2.0),
+    mesh_harmonics: Sequence[int] = (1, 2, 3),
+    sidebands: int = 0,
+) -> tuple[ExcitationLine, ...]:
+    """Orders of all shafts and meshes; shafts of one speed have one line together.
+
+    Parameters
+    ----------
+    machine : Machine
+        That turns.
+    shaft_orders : sequence of float
+        Multiples of each shaft's speed: 1 is its unbalance.
+    mesh_harmonics : sequence of int
+        Multiples of each mesh frequency.
+    sidebands : int
+        How many on either side of each harmonic of a mesh, at the distance of either gear's shaft speed.
+
+    Raises
+    ------
+    CouplingError
+        For a machine that stands still.
+    """
+    speeds = machine.speeds
+    leading = abs(speeds[machine.leading_rotor])
+    if leading == 0.0:
+        raise CouplingError(f"rotor {machine.leading_rotor!r} stands still; expected a machine that turns")
+    ratios = {name: abs(speed) / leading for name, speed in speeds.items() if speed != 0.0}
+    together: dict[float, list[str]] = {}
+    for name, ratio in ratios.items():
+        together.setdefault(round(ratio, 12), []).append(name)
+    lines = [
+        ExcitationLine(f"{multiple:g}× {', '.join(names)}", "shaft", multiple * ratios[names[0]])
+        for names in together.values()
+        for multiple in shaft_orders
+    ]
+    for mesh in machine.meshes:
+        teeth = mesh.geometry.driver.teeth * ratios[mesh.driver.rotor]
+        name = f"{mesh.driver.name} -> {mesh.driven.name}"
+        shafts = {round(ratios[rotor], 12): rotor for rotor in (mesh.driven.rotor, mesh.driver.rotor)}
+        for harmonic in mesh_harmonics:
+            lines.append(ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth))
+            for rotor in shafts.values():
+                for number in range(1, sidebands + 1):
+                    for sign, word in ((-1, "-"), (1, "+")):
+                        order = harmonic * teeth + sign * number * ratios[rotor]
+                        text = f"{harmonic}× {name} {word} {number}× {rotor}"
+                        lines.append(ExcitationLine(text, "sideband", order))
+    return tuple(lines)

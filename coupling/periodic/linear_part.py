@@ -1,0 +1,231 @@
+"""The machine with its teeth at their mean: eigenvalues, and its own periodic response to the loads.
+
+With K̄ and C̄ those of the system and of every drive flank at its mean stiffness and damping, and the runout errors
+e and clearances taken to the loads, the reference
+
+    q'' + C̄ q' + K̄ q = F + Σ Re(F_w e^{iwt}) + Σ d (k̄ (e + clearance) + c̄ e')
+
+has a periodic response in closed form, by a solution at each frequency (its receptance). The teeth's excess over the
+mean acts through its eigenvalues. Motions that nothing resists, such as gears that roll together, take no part in
+either: they swing freely under the harmonic loads, about a mean position of zero.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError, PeriodicError
+from coupling.periodic.arrays import Reference
+from coupling.system import CoupledSystem
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
+_BALANCE = 1e-6  # part of the load that may rest on such a motion
+_DEFECT = 1e-7  # by which eigenvalues and vectors may miss the matrix they are of
+
+
+@dataclass(frozen=True, eq=False)
+class LinearPart:
+    """Reference of a system whose motion repeats; n coordinates, N of them not rigid, m eigenvalues, h harmonics.
+
+    Attributes
+    ----------
+    system : CoupledSystem
+    rate_unit : float
+        Rates are counted in it, so that they compare with displacements [1/s].
+    basis, rigid : ndarray, shapes (n, N) and (n, n - N)
+        Orthonormal: all motions that something resists, and those that nothing does.
+    eigenvalues : ndarray of complex, shape (m,)
+        [1/s]; one of each conjugate pair.
+    right : ndarray of complex, shape (2 N, m)
+        The state (basisᵀ q, basisᵀ q' / rate_unit) is Re(right z).
+    left : ndarray of complex, shape (m, 2 N)
+        The amplitudes z of a state.
+    mean : ndarray, shape (n,)
+        Mean of the reference's own response.
+    frequencies : ndarray, shape (h,)
+        Its circular frequencies [rad/s].
+    amplitudes : ndarray of complex, shape (h, n)
+    matrices : tuple of ndarray
+        K̄ and C̄ on the whole coordinates, shape (n, n) each, that basis and eigenvalues are of.
+    """
+
+    system: CoupledSystem
+    rate_unit: float
+    basis: FloatArray
+    rigid: FloatArray
+    eigenvalues: ComplexArray
+    right: ComplexArray
+    left: ComplexArray
+    mean: FloatArray
+    frequencies: FloatArray
+    amplitudes: ComplexArray
+    matrices: tuple[FloatArray, FloatArray] = field(repr=False)
+
+    @property
+    def states(self) -> int:
+        """Number of states that are not rigid, 2 N."""
+        return len(self.right)
+
+    def own_response(self, time: float) -> tuple[FloatArray, FloatArray]:
+        """The reference's own displacements and rates at a time, shape (n,) each."""
+        turned = self.amplitudes * np.exp(1j * self.frequencies * time)[:, None]
+        return self.mean + turned.real.sum(axis=0), -(self.frequencies[:, None] * turned.imag).sum(axis=0)
+
+    def state(self, displacement: FloatArray, velocity: FloatArray, time: float = 0.0) -> FloatArray:
+        """What a motion is beyond the reference's own, shape (2 N,)."""
+        q, v = self.own_response(time)
+        return np.concatenate([self.basis.T @ (displacement - q), self.basis.T @ (velocity - v) / self.rate_unit])
+
+    def motion(self, state: FloatArray, time: float = 0.0) -> tuple[FloatArray, FloatArray]:
+        """Displacements and rates of a state, shape (n,) each."""
+        q, v = self.own_response(time)
+        half = len(state) // 2
+        return q + self.basis @ state[:half], v + self.rate_unit * (self.basis @ state[half:])
+
+    @cached_property
+    def reference(self) -> Reference:
+        """What the contacts see of it."""
+        contacts, half = self.system.contacts, self.states // 2
+        directions = self.basis.T @ self.system.contact_directions
+        frequencies = list(self.frequencies)
+        phasors = [list(row) for row in (self.amplitudes @ self.system.contact_directions).T]
+        for k, contact in enumerate(contacts):
+            for amplitude, frequency, phase in contact.errors:
+                frequencies.append(frequency)
+                for other, row in enumerate(phasors):
+                    row.append(-amplitude * np.exp(1j * phase) if other == k else 0.0)
+        mean = self.mean @ self.system.contact_directions - [contact.clearance for contact in contacts]
+        stiffness = _reference_values(self.system, [contact.contact.mean_stiffness for contact in contacts])
+        phasor = np.array(phasors, dtype=np.complex128).reshape(len(contacts), len(frequencies))
+        return Reference(
+            eigenvalue=self.eigenvalues,
+            source=np.ascontiguousarray(self.left[:, half:] @ directions / self.rate_unit),
+            displacement=np.ascontiguousarray(directions.T @ self.right[:half]),
+            rate=np.ascontiguousarray(self.rate_unit * (directions.T @ self.right[half:])),
+            stiffness=stiffness,
+            damping=_reference_values(self.system, [contact.contact.damping for contact in contacts]),
+            mean=np.asarray(mean, dtype=np.float64),
+            frequency=np.array(frequencies, dtype=np.float64),
+            phasor=phasor,
+            phase=np.array([contact.phase for contact in contacts], dtype=np.float64),
+            mesh_rate=np.array([contact.rate for contact in contacts], dtype=np.float64),
+            full_damping=np.array([contact.contact.damping for contact in contacts], dtype=np.float64),
+            scale=np.abs(mean) + np.abs(phasor).sum(axis=1) + 1e-300,
+        )
+
+
+def linear_part(system: CoupledSystem, rate_unit: float, like: LinearPart | None = None) -> LinearPart:
+    """Split a system into its linear reference and what its teeth add.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+    rate_unit : float
+        See :class:`LinearPart`.
+    like : LinearPart, optional
+        Of the same machine at another speed: its eigenvectors serve again where its matrices are the same.
+
+    Raises
+    ------
+    CouplingError
+        Where a load drives a motion that nothing resists.
+    PeriodicError
+        Where the reference has a load at an undamped natural frequency, or eigenvectors that do not separate.
+    """
+    directions = system.contact_directions
+    k_mean = _reference_values(system, [contact.contact.mean_stiffness for contact in system.contacts])
+    c_mean = _reference_values(system, [contact.contact.damping for contact in system.contacts])
+    stiffness = system.stiffness + (directions * k_mean) @ directions.T
+    damping = system.damping + (directions * c_mean) @ directions.T
+    same = like is not None and all(map(np.array_equal, like.matrices, (stiffness, damping)))
+    basis, rigid = (like.basis, like.rigid) if like is not None and same else _split(stiffness, damping, directions)
+
+    constant = system.load + directions @ (k_mean * [contact.clearance for contact in system.contacts])
+    harmonics: dict[float, ComplexArray] = {}
+    for load in system.harmonic_loads:
+        harmonics[load.frequency] = harmonics.get(load.frequency, 0.0) + load.amplitude
+    for k, contact in enumerate(system.contacts):
+        for amplitude, frequency, phase in contact.errors:
+            force = (k_mean[k] + 1j * frequency * c_mean[k]) * amplitude * np.exp(1j * phase) * contact.direction
+            harmonics[frequency] = harmonics.get(frequency, 0.0) + force
+    constant = constant + np.asarray(harmonics.pop(0.0, np.zeros(system.size))).real
+    if np.any(np.abs(rigid.T @ constant) > _BALANCE * (np.abs(rigid.T) @ np.abs(constant))):
+        raise CouplingError(
+            "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
+            "rotation, and no motion would repeat; check the torques in and out against the gear ratios"
+        )
+    within, resisting = basis.T @ stiffness @ basis, basis.T @ damping @ basis
+    if len(within) and np.linalg.cond(within) > 1.0 / _RIGID:
+        raise PeriodicError(
+            "a motion has no stiffness but meets damping, or a contact that is apart in the mean: nothing says where "
+            "its mean is; tie it with a soft spring"
+        )
+    frequencies = np.array(sorted(harmonics), dtype=np.float64)
+    amplitudes = np.zeros((len(frequencies), system.size), dtype=np.complex128)
+    identity = np.eye(basis.shape[1])
+    try:
+        mean = basis @ np.linalg.solve(within, basis.T @ constant)
+        for row, w in zip(amplitudes, frequencies, strict=True):
+            row[:] = basis @ np.linalg.solve(within + 1j * w * resisting - w * w * identity, basis.T @ harmonics[w])
+            row -= rigid @ (rigid.T @ harmonics[w]) / w**2
+    except np.linalg.LinAlgError as error:
+        raise PeriodicError(
+            "a load stands at an undamped natural frequency of the machine with its mean contact: no bounded reference "
+            "to start from; give the machine some damping"
+        ) from error
+    if like is not None and same:
+        ratio = np.repeat([1.0, like.rate_unit / rate_unit], basis.shape[1])
+        eigenvalues, right, left = like.eigenvalues, like.right * ratio[:, None], like.left / ratio
+    else:
+        eigenvalues, right, left = _eigenvectors(within, resisting, rate_unit)
+    matrices = (stiffness, damping)
+    return LinearPart(
+        system, rate_unit, basis, rigid, eigenvalues, right, left, mean, frequencies, amplitudes, matrices
+    )
+
+
+def _reference_values(system: CoupledSystem, values: list[float]) -> FloatArray:
+    """Of the drive flanks; the others are apart in the reference."""
+    pairs = zip(values, system.contacts, strict=True)
+    return np.array([value if contact.drives else 0.0 for value, contact in pairs], dtype=np.float64)
+
+
+def _split(stiffness: FloatArray, damping: FloatArray, directions: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Orthonormal bases of what something resists and of what nothing does, shapes (n, N) and (n, n - N)."""
+    parts = [stiffness, stiffness.T, damping, damping.T]
+    scaled = [part / (np.abs(part).max() or 1.0) for part in parts]
+    scaled.append((directions / (np.abs(directions).max(initial=0.0) or 1.0)).T)
+    _, values, rows = np.linalg.svd(np.vstack(scaled), full_matrices=False)
+    # Soft motions are far above: a stiffness is the square of a frequency.
+    free = values < _RIGID * values[0]
+    return np.ascontiguousarray(rows[~free].T), np.ascontiguousarray(rows[free].T)
+
+
+def _eigenvectors(
+    stiffness: FloatArray, damping: FloatArray, rate_unit: float
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Eigenvalues, one of each pair, with right vectors that count for both, and left ones."""
+    half = len(stiffness)
+    state = np.block([[np.zeros((half, half)), rate_unit * np.eye(half)], [-stiffness / rate_unit, -damping]])
+    values, vectors = np.linalg.eig(state)
+    vectors = np.asarray(vectors, dtype=np.complex128)
+    inverse = np.linalg.inv(vectors)
+    size = np.abs(vectors) @ np.abs(values[:, None] * inverse)
+    missing = np.abs((vectors * values) @ inverse - state).max(initial=0.0)
+    if missing > _DEFECT * np.abs(state).max(initial=1e-300):
+        raise PeriodicError(
+            f"the eigenvectors of the mean machine do not separate: they miss it by {missing:.1e} of "
+            f"{size.max():.1e}; an exactly critical damping is the usual reason, change it slightly"
+        )
+    kept = values.imag >= 0.0
+    weights = np.where(values.imag > 0.0, 2.0, 1.0)[kept]
+    return (
+        np.ascontiguousarray(values[kept], dtype=np.complex128),
+        np.ascontiguousarray(vectors[:, kept] * weights),
+        np.ascontiguousarray(inverse[kept]),
+    )

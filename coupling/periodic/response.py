@@ -1,0 +1,173 @@
+"""A periodic motion: what it is, how sure, and what sensors, gears and bearings show of it."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from coupling.periodic.arrays import Trace
+from coupling.periodic.collocation import WEIGHTS
+from coupling.periodic.floquet import FloquetMultipliers
+from coupling.periodic.linear_part import LinearPart
+from coupling.settings import TransientOutputs
+from coupling.system import CoupledSystem
+
+FloatArray = npt.NDArray[np.float64]
+
+_LOOKS = 16  # at each element for the peak
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicRecord:
+    """One period at even spacing, s samples from t = 0, the last one spacing before the period; c contacts.
+
+    Attributes
+    ----------
+    times : ndarray, shape (s,)
+        [s].
+    displacement, velocity, acceleration : ndarray, shapes (s, k)
+        The rows asked for.
+    compression : ndarray, shape (s, c)
+        δ of each contact [m].
+    force : ndarray, shape (s, c)
+        [N].
+    """
+
+    times: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    compression: FloatArray
+    force: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicResponse:
+    """A motion that repeats; n coordinates, c contacts.
+
+    Attributes
+    ----------
+    system : CoupledSystem
+    period : float
+        [s].
+    displacement, velocity : ndarray, shape (n,)
+        At t = 0. Motions that nothing resists stand at a mean of zero.
+    floquet : FloquetMultipliers
+        Stability.
+    residual : float
+        By which the state after the period misses that at its start, relative to the motion.
+    error : float
+        By which the last halving of the elements changed state or monodromy, relative; elements as they are now err
+        by much less.
+    elements, switches : int
+        Elements of time in the period, and how often a law changed its branch at a moment of its own.
+    level : int
+        Halvings of the coarsest element.
+    newton_steps : int
+    """
+
+    system: CoupledSystem
+    period: float
+    displacement: FloatArray
+    velocity: FloatArray
+    floquet: FloquetMultipliers
+    residual: float
+    error: float
+    elements: int
+    switches: int
+    level: int
+    newton_steps: int
+    part: LinearPart = field(repr=False)
+    recovery: FloatArray = field(repr=False)
+    laws: tuple[Any, ...] = field(repr=False)
+    trace: Trace = field(repr=False)
+
+    @property
+    def stable(self) -> bool:
+        """Whether no small disturbance grows."""
+        return self.floquet.stable
+
+    @cached_property
+    def mean_force(self) -> FloatArray:
+        """Of each contact over the period [N], shape (c,)."""
+        return self._mean(self.trace.force)
+
+    @cached_property
+    def mean_compression(self) -> FloatArray:
+        """Of each contact over the period [m], shape (c,)."""
+        return self._mean(self.trace.compression)
+
+    @cached_property
+    def rms_compression(self) -> FloatArray:
+        """Root mean square about the mean [m], shape (c,)."""
+        return np.sqrt(self._mean((self.trace.compression - self.mean_compression) ** 2))
+
+    @property
+    def contact_loss(self) -> FloatArray:
+        """Part of the period in which the flanks are apart, shape (c,)."""
+        return np.asarray(self.trace.size @ self.trace.apart / self.period)
+
+    @cached_property
+    def peak_force(self) -> FloatArray:
+        """Largest force of each contact [N], shape (c,)."""
+        inner = (np.arange(_LOOKS) + 0.5) / _LOOKS
+        times = (self.trace.start[:, None] + self.trace.size[:, None] * inner).ravel()
+        _, force = self._contacts(times, self._amplitudes(times))
+        return np.asarray(np.maximum(force.max(axis=0), self.trace.force.max(axis=(0, 1))))
+
+    def record(self, outputs: TransientOutputs, samples: int) -> PeriodicRecord:
+        """Rows of coordinates, rates and accelerations over the period, and the contacts.
+
+        Parameters
+        ----------
+        outputs : TransientOutputs
+            As for the transient.
+        samples : int
+            At even spacing; lines of spectra up to half of them are then exact but for what folds from above.
+        """
+        if samples < 1:
+            raise CouplingError(f"{samples} samples of a period; expected at least one")
+        times = self.period * np.arange(samples, dtype=np.float64) / samples
+        amplitudes = self._amplitudes(times)
+        part, half = self.part, self.part.states // 2
+        turned = np.exp(1j * np.outer(times, part.frequencies))
+        q = part.mean + (turned @ part.amplitudes).real + (amplitudes @ part.right[:half].T).real @ part.basis.T
+        v = -(turned @ (part.frequencies[:, None] * part.amplitudes)).imag
+        v = v + part.rate_unit * (amplitudes @ part.right[half:].T).real @ part.basis.T
+        compression, force = self._contacts(times, amplitudes)
+        system = part.system
+        a = system.load - q @ system.stiffness.T - v @ system.damping.T - force @ system.contact_directions.T
+        for load in system.harmonic_loads:
+            a = a + (np.exp(1j * load.frequency * times)[:, None] * load.amplitude).real
+        return PeriodicRecord(
+            times=times,
+            displacement=q @ (outputs.displacement @ self.recovery).T,
+            velocity=v @ (outputs.velocity @ self.recovery).T,
+            acceleration=a @ (outputs.acceleration @ self.recovery).T,
+            compression=compression,
+            force=force,
+        )
+
+    def _mean(self, values: FloatArray) -> FloatArray:
+        return np.asarray(np.einsum("e,s,esc->c", self.trace.size, WEIGHTS, values) / self.period)
+
+    def _amplitudes(self, times: FloatArray) -> npt.NDArray[np.complex128]:
+        from coupling.periodic.kernels import amplitudes_at
+
+        return np.asarray(amplitudes_at(self.part.reference, self.trace, len(self.trace.start), times))
+
+    def _contacts(self, times: FloatArray, amplitudes: npt.NDArray[np.complex128]) -> tuple[FloatArray, FloatArray]:
+        from coupling.periodic.kernels import forces_at
+
+        reference = self.part.reference
+        turned = np.exp(1j * np.outer(times, reference.frequency))
+        delta = reference.mean + (turned @ reference.phasor.T).real + (amplitudes @ reference.displacement.T).real
+        rate = (amplitudes @ reference.rate.T).real - (
+            turned @ (reference.frequency[:, None] * reference.phasor.T)
+        ).imag
+        force = np.zeros((len(times), len(reference.stiffness)))
+        forces_at(reference, self.laws, times, np.ascontiguousarray(delta), np.ascontiguousarray(rate), force)
+        return delta, force

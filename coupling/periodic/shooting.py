@@ -1,0 +1,233 @@
+"""The periodic motion of a coupled system, directly: Newton's method on the state after a period.
+
+A motion repeats where the state x(T) after the period is the state x(0) at its start. With the monodromy
+M = ∂x(T)/∂x(0), which the march of :mod:`coupling.periodic.kernels` carries along exactly, switches of contact
+included, Newton's step solves
+
+    (M - I) Δ = x(0) - x(T).
+
+While the same teeth touch the machine is linear with coefficients that vary in time, and one step is enough. Unstable
+motions are found as well as stable ones.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.condensation import Condensed, condensed
+from coupling.errors import CouplingError, PeriodicError
+from coupling.periodic.base_period import common_period
+from coupling.periodic.floquet import multipliers
+from coupling.periodic.linear_part import LinearPart, linear_part
+from coupling.periodic.orbit import Elements, Pass, coarsest_element, cut_period, laws_of, one_pass
+from coupling.periodic.response import PeriodicResponse
+from coupling.system import CoupledSystem
+
+FloatArray = npt.NDArray[np.float64]
+
+_NEWTON_STEPS = 25
+_SHORTEST_STEP = 1.0 / 64.0
+_ROUNDING = 1e-11  # closure relative to the motion that is called closed
+_FINEST = 12  # halvings of the coarsest element
+_ROUNDS = 6  # of settling in time before giving up ...
+_PERIODS = 8  # ... of so many periods each, doubled every time
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A system made ready for the search of its periodic motion.
+
+    Attributes
+    ----------
+    system : CoupledSystem
+        As given.
+    recovery : ndarray, shape (n, k)
+        Its coordinates from those that are followed.
+    kept : ndarray of int, shape (k,)
+        Which of them these are.
+    period : float
+        [s].
+    part : LinearPart
+        Of the system that is followed.
+    laws : tuple
+    """
+
+    system: CoupledSystem
+    recovery: FloatArray
+    kept: npt.NDArray[np.int64]
+    period: float
+    part: LinearPart
+    laws: tuple[Any, ...]
+
+    def elements(self, level: int) -> Elements:
+        """The period cut into elements, halved so many times."""
+        return cut_period(self.part, self.period, coarsest_element(self.system, self.period) / 2.0**level)
+
+    def scale(self, state: FloatArray) -> float:
+        """A motion that is not small, in the units of a state."""
+        response = np.linalg.norm(self.part.mean) + np.abs(self.part.amplitudes).sum()
+        return float(np.linalg.norm(state) + response) or 1e-300
+
+
+def problem(system: CoupledSystem, period: float | None = None, like: Problem | None = None) -> Problem:
+    """Make a system ready: its period, its linear part, the teeth's laws.
+
+    Of ``like``, the same machine at another speed, is taken what has not changed.
+    """
+    length = common_period(system, period)
+    followed = _followed(system)
+    part = linear_part(followed.system, 2.0 * np.pi / length, None if like is None else like.part)
+    laws = like.laws if like is not None and _same_teeth(system, like.system) else laws_of(followed.system)
+    return Problem(system, followed.recovery, followed.kept, length, part, laws)
+
+
+def _followed(system: CoupledSystem) -> Condensed:
+    """Without the coordinates that the transient holds too; see :mod:`coupling.condensation`."""
+    if system.resolved.all():
+        return Condensed(system, np.arange(system.size), np.eye(system.size))
+    return condensed(system)
+
+
+def _same_teeth(one: CoupledSystem, other: CoupledSystem) -> bool:
+    if len(one.contacts) != len(other.contacts):
+        return False
+    return all(a.contact is b.contact for a, b in zip(one.contacts, other.contacts, strict=True))
+
+
+def periodic_response(
+    system: CoupledSystem,
+    *,
+    period: float | None = None,
+    start: tuple[FloatArray, FloatArray] | PeriodicResponse | None = None,
+    tolerance: float = 1e-8,
+) -> PeriodicResponse:
+    """The motion of a system that repeats with its excitation.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+        At constant speed.
+    period : float, optional
+        [s]; by default the shortest common one of mesh phases, runout errors and harmonic loads. A multiple of it
+        finds subharmonic motions too.
+    start : tuple of ndarray, or PeriodicResponse, optional
+        Displacements and rates at t = 0 to search from, shape (n,) each, or a motion of a neighbouring system: where
+        contact is lost several motions may exist, and this says which is meant. By default the response with the teeth
+        at their mean stiffness.
+    tolerance : float
+        Of state and monodromy, relative: elements of time are halved until another halving changes neither by more.
+
+    Returns
+    -------
+    PeriodicResponse
+
+    Raises
+    ------
+    CouplingError
+        Where the excitation has no common period, or the loads do not balance.
+    PeriodicError
+        Where no periodic motion is found, or the tolerance is not met.
+    """
+    if not 0.0 < tolerance < 1.0:
+        raise CouplingError(f"a tolerance of {tolerance}; expected a small positive number")
+    ready = problem(system, period)
+    state = np.zeros(ready.part.states)
+    if start is not None:
+        q, v = (start.displacement, start.velocity) if isinstance(start, PeriodicResponse) else start
+        for what, given in (("displacements", q), ("rates", v)):
+            if np.shape(given) != (system.size,):
+                raise CouplingError(f"{what} of shape {np.shape(given)} to start from; expected ({system.size},)")
+        state = ready.part.state(np.asarray(q)[ready.kept], np.asarray(v)[ready.kept])
+    level = 0 if not isinstance(start, PeriodicResponse) else max(start.level - 1, 0)
+    found, steps = _search(ready, level, state)
+    return refined(ready, found, level, tolerance, steps)
+
+
+def refined(ready: Problem, found: Pass, level: int, tolerance: float, steps: int) -> PeriodicResponse:
+    """Halve the elements until neither state nor monodromy changes by more than the tolerance."""
+    while level < _FINEST:
+        finer = close(ready, ready.elements(level + 1), found.start)
+        if finer is None:
+            again, more = _search(ready, level + 1, found.start)
+            finer = again, more
+        better, more = finer
+        steps += more
+        level += 1
+        # Rounding sets a floor to what a halving can show.
+        moved = float(np.linalg.norm(better.start - found.start)) / ready.scale(better.start)
+        turned = float(np.abs(better.monodromy - found.monodromy).max(initial=0.0))
+        turned /= max(float(np.abs(better.monodromy).max(initial=0.0)), 1.0)
+        error = max(moved, turned)
+        found = better
+        if error <= tolerance:
+            return response_of(ready, found, level, error, steps)
+    raise PeriodicError(
+        f"elements of {ready.period / len(found.trace.start):.1e} s still change the motion by {error:.1e}, more than "
+        f"the tolerance {tolerance:g}; raise it, or look for contact that grazes"
+    )
+
+
+def response_of(ready: Problem, found: Pass, level: int, error: float, steps: int) -> PeriodicResponse:
+    """What was found, with its proof."""
+    q, v = ready.part.motion(found.start)
+    closure = float(np.linalg.norm(found.closure)) / ready.scale(found.start)
+    return PeriodicResponse(
+        system=ready.system,
+        period=ready.period,
+        displacement=ready.recovery @ q,
+        velocity=ready.recovery @ v,
+        floquet=multipliers(found.monodromy, ready.period),
+        residual=closure,
+        error=error,
+        elements=len(found.trace.start),
+        switches=found.switches,
+        level=level,
+        newton_steps=steps,
+        part=ready.part,
+        recovery=ready.recovery,
+        laws=ready.laws,
+        trace=found.trace,
+    )
+
+
+def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, int] | None:
+    """Newton's method on the closure; None where it stands still."""
+    here = one_pass(ready.part, ready.laws, elements, state)
+    best = float(np.linalg.norm(here.closure))
+    for step in range(_NEWTON_STEPS):
+        if best <= _ROUNDING * ready.scale(here.start):
+            return here, step
+        move = np.linalg.lstsq(here.monodromy - np.eye(len(state)), -here.closure, rcond=1e-14)[0]
+        part = 1.0
+        while True:
+            there = one_pass(ready.part, ready.laws, elements, here.start + part * move)
+            missing = float(np.linalg.norm(there.closure))
+            if missing < (1.0 - 0.1 * part) * best:
+                break
+            part *= 0.5
+            if part < _SHORTEST_STEP:
+                # What is left may be rounding, which no step takes away.
+                return (here, step) if best <= 1e3 * _ROUNDING * ready.scale(here.start) else None
+        here, best = there, missing
+    return None
+
+
+def _search(ready: Problem, level: int, state: FloatArray) -> tuple[Pass, int]:
+    """Newton's method, and where it stands still some periods of marching before it is tried again."""
+    elements = ready.elements(level)
+    found = close(ready, elements, state)
+    for turn in range(_ROUNDS):
+        if found is not None:
+            return found
+        for _ in range(_PERIODS * 2**turn):
+            state = one_pass(ready.part, ready.laws, elements, state, varied=False).end
+        found = close(ready, elements, state)
+    if found is not None:
+        return found
+    raise PeriodicError(
+        f"no motion of period {ready.period:.6g} s found, not even after {_PERIODS * (2**_ROUNDS - 1)} periods in "
+        "time: it may be chaotic or repeat after several periods (give a multiple as period), or the start is far from "
+        "one; start from a neighbouring speed or from the end of a transient"
+    )

@@ -1,0 +1,109 @@
+"""Who moves, who is strained and who damps in a mode: energies by component, bearing and gear mesh.
+
+A mode λ = σ + iω with shape q takes part in each matrix by a number: m = qᴴ q, c = qᴴ C q and k = qᴴ K q. The
+symmetric parts of C and K give their real parts; gyroscopic terms do no work, and the circulatory part of K, that of
+cross-coupled bearings, gives i k_c. The real part of λ* qᴴ (λ² + λ C + K) q = 0 is the balance of power, so that
+
+    σ = - Σ (|λ|² c + ω k_c) / (|λ|² m + k),
+
+a sum over all parts of the machine: each one's part in the damping ratio -σ/|λ|, exactly, however strongly damped.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.contact_state import ContactState
+from coupling.system import CoupledSystem
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_NOTHING = 1e-12  # strain or total energy below this part of the kinetic one is none
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the machine that is strained and damps: a component by itself, a connector, or a tooth contact."""
+
+    kind: Literal["component", "connector", "contact"]
+    name: str
+
+
+@dataclass(frozen=True)
+class ModeShares:
+    """Shares in m modes, of c components and p parts.
+
+    Attributes
+    ----------
+    parts : tuple of Part
+        Components (shafts, housing, pedestals with their own supports), then linear connectors, then contacts.
+    kinetic : ndarray, shape (m, c)
+        Of the kinetic energy, by component.
+    strain : ndarray, shape (m, p)
+        Of the strain energy; zeros for a rigid motion, negative where a part's stiffness is.
+    damping : ndarray, shape (m, p)
+        Parts of the damping ratio; their sum is the mode's. Negative where a part feeds the mode.
+    stiffness : ndarray, shape (m,)
+        Re qᴴ K q / qᴴ q [1/s²]; negative where the springs as a whole push the mode off.
+    """
+
+    parts: tuple[Part, ...]
+    kinetic: FloatArray
+    strain: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+
+
+def mode_shares(
+    system: CoupledSystem, contact: ContactState, eigenvalues: ComplexArray, shapes: ComplexArray
+) -> ModeShares:
+    """Shares of modes, shapes (m, n) along the rows."""
+    motion = np.abs(shapes) ** 2
+    mass = motion.sum(axis=1)
+    parts: list[Part] = []
+    kinetic, works = [], []
+    start = 0
+    for component in system.components:
+        rows = slice(start, start + component.size)
+        start += component.size
+        parts.append(Part("component", component.name))
+        kinetic.append(motion[:, rows].sum(axis=1))
+        # The gyroscopic terms, which are skew, take no part in any of the three.
+        works.append(_work(shapes[:, rows], component.stiffness, component.damping))
+    for connector in system.linear:
+        parts.append(Part("connector", connector.name))
+        works.append(_work(shapes @ connector.directions, connector.stiffness, connector.damping))
+    for tooth, k, c in zip(system.contacts, contact.stiffness, contact.damping, strict=True):
+        parts.append(Part("contact", tooth.name))
+        compression = np.abs(shapes @ tooth.direction) ** 2
+        works.append((k * compression, 0.0 * compression, c * compression))
+    strained, fed, lost = (np.array(rows) for rows in zip(*works, strict=True))
+    size = np.abs(eigenvalues)
+    strain = strained.sum(axis=0)
+    total = size**2 * mass + strain
+    # Real eigenvalues of an undamped system that a negative stiffness pushes off have no energy in all.
+    safe = np.where(np.abs(total) > _NOTHING * size**2 * mass, total * np.where(size > 0.0, size, 1.0), np.inf)
+    damping_shares = (size**2 * lost + eigenvalues.imag * fed) / safe
+    held = np.abs(strained).sum(axis=0)
+    return ModeShares(
+        parts=tuple(parts),
+        kinetic=np.array(kinetic).T / mass[:, None],
+        strain=(strained / np.where((size > 0.0) & (held > 0.0) & (strain != 0.0), strain, np.inf)).T,
+        damping=np.where(size > 0.0, damping_shares, 0.0).T,
+        stiffness=np.where(size > 0.0, strain / mass, 0.0),
+    )
+
+
+def _work(
+    deflections: ComplexArray, stiffness: FloatArray, damping: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Re qᴴ K q, Im qᴴ K q and Re qᴴ C q of deflections along the rows, shape (m,) each."""
+    symmetric, skew = 0.5 * (stiffness + stiffness.T), 0.5 * (stiffness - stiffness.T)
+
+    def form(matrix: FloatArray) -> ComplexArray:
+        return np.asarray(np.sum(deflections.conj() * (deflections @ matrix.T), axis=1))
+
+    return form(symmetric).real, form(skew).imag, form(0.5 * (damping + damping.T)).real

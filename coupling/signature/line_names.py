@@ -1,0 +1,140 @@
+"""Names of lines: which harmonic of which mesh, which order of which shaft, which sideband, or which mode ringing.
+
+A line at a frequency that the turning machine excites is named after what excites it, the simplest cause first: a mesh
+harmonic, a low order of a shaft, a sideband, any other whole order. A line that stands at none of these is free
+vibration: it is named after the mode that rings there. Either may be near a mode, which is told apart from the cause.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from coupling.errors import CouplingError
+from coupling.excitation import excitation_lines
+from coupling.machine import Machine
+from coupling.modes import CoupledModes
+
+LineKind = Literal["mean", "mesh", "shaft", "sideband", "mode", "other"]
+
+_SHAFT_ORDERS = 4  # that go before a sideband of the same frequency
+_SIDEBANDS = 4
+_HALF_POWER_WIDTHS = 2.0  # within which a line is near a mode
+
+
+@dataclass(frozen=True)
+class LineName:
+    """What a line is.
+
+    Attributes
+    ----------
+    kind : str
+        ``mean``, ``mesh``, ``shaft``, ``sideband``, ``mode`` for free vibration, or ``other``.
+    name : str
+        Such as ``1× pinion -> wheel``, several joined by commas where they coincide.
+    order : float
+        Cycles each turn of the leading shaft.
+    mode : int or None
+        Of the coupled modes, the nearest one, where the line lies within two half-power widths of it.
+    """
+
+    kind: LineKind
+    name: str
+    order: float
+    mode: int | None
+
+
+def line_names(
+    machine: Machine, frequencies: Sequence[float], tolerance: float, modes: CoupledModes | None = None
+) -> list[LineName]:
+    """Name lines of a machine that turns at its nominal speeds.
+
+    Parameters
+    ----------
+    machine : Machine
+    frequencies : sequence of float
+        [Hz].
+    tolerance : float
+        How far a line of the spectrum may be from what it shows [Hz]: a little of the spacing where the record holds
+        whole periods, half of it otherwise.
+    modes : CoupledModes, optional
+        About the mean contact.
+
+    Raises
+    ------
+    CouplingError
+        For a machine that stands still, or a tolerance that is not positive.
+    """
+    if not tolerance > 0.0:
+        raise CouplingError(f"names of lines within {tolerance} Hz; expected more than 0")
+    turning = abs(machine.speeds[machine.leading_rotor]) / (2.0 * np.pi)
+    highest = max(frequencies, default=0.0)
+    meshes = [abs(contact.rate) for contact in machine.system.contacts if contact.drives and contact.rate]
+    excited = excitation_lines(
+        machine,
+        shaft_orders=range(1, _SHAFT_ORDERS + 1),
+        mesh_harmonics=range(1, 2 + int(highest / min(meshes))) if meshes else (),
+        sidebands=_SIDEBANDS,
+    )
+    found = []
+    for frequency in frequencies:
+        order = frequency / turning
+        mode = _near(modes, frequency, tolerance)
+        if frequency <= 0.5 * tolerance:
+            found.append(LineName("mean", "mean", order, None))
+            continue
+        names = {
+            kind: [
+                line.name
+                for line in excited
+                if line.kind == kind and abs(line.order * turning - frequency) <= tolerance
+            ]
+            for kind in ("mesh", "shaft", "sideband")
+        }
+        kind = next((kind for kind in names if names[kind]), None)
+        if kind is not None:
+            text = ", ".join(names[kind] if kind != "sideband" else _nearest(names[kind]))
+            found.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
+        elif whole := _whole_order(machine, frequency, tolerance):
+            found.append(LineName("shaft", whole, order, mode))
+        elif modes is not None and mode is not None:
+            found.append(LineName("mode", _label(modes, mode), order, mode))
+        else:
+            found.append(LineName("other", f"{order:.4g}× {machine.leading_rotor}", order, None))
+    return found
+
+
+def _label(modes: CoupledModes, mode: int) -> str:
+    """Kind and place of a mode, once where they are one word."""
+    kind, place = modes.kinds[mode], modes.where[mode]
+    return f"{kind} mode" if place in ("", kind) else f"{kind} mode of {place}"
+
+
+def _near(modes: CoupledModes | None, frequency: float, tolerance: float) -> int | None:
+    """The mode nearest to a frequency, where it is near; local compliance has no frequency of its own."""
+    if modes is None:
+        return None
+    w = 2.0 * np.pi * frequency
+    distance = np.abs(modes.eigenvalues - 1j * w)
+    proper = np.array([kind not in ("residual", "rigid") for kind in modes.kinds]) & (modes.eigenvalues.imag > 0.0)
+    reach = np.maximum(_HALF_POWER_WIDTHS * np.abs(modes.eigenvalues.real), 2.0 * np.pi * tolerance)
+    proper &= np.abs(modes.eigenvalues.imag - w) <= reach
+    return int(np.argmin(np.where(proper, distance, np.inf))) if proper.any() else None
+
+
+def _nearest(names: list[str]) -> list[str]:
+    """Sidebands that are fewest steps from their carrier."""
+    steps = [int(name.rsplit("×", 1)[0].rsplit(" ", 1)[1]) for name in names]
+    return [name for name, step in zip(names, steps, strict=True) if step == min(steps)]
+
+
+def _whole_order(machine: Machine, frequency: float, tolerance: float) -> str | None:
+    """A multiple of a shaft's speed, the slowest multiple first."""
+    found = []
+    for name, speed in machine.speeds.items():
+        each = abs(speed) / (2.0 * np.pi)
+        # A shaft so slow that every line is near some multiple says nothing.
+        if each > 2.5 * tolerance and abs(frequency - round(frequency / each) * each) <= tolerance:
+            found.append((round(frequency / each), f"{round(frequency / each)}× {name}"))
+    return min(found)[1] if found else None

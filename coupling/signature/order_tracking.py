@@ -1,0 +1,189 @@
+"""Order tracking: signals of a machine that runs up or down, sampled anew by the angle that it has turned through.
+
+What repeats with every turn is a line at its order, however fast the machine turns: over time such a line is smeared
+across all frequencies that it passes. A tachometer would have to be interpolated for this (Potter 1990); here
+:class:`coupling.Turning` gives the angle exactly. Only the signal is interpolated, by splines of the fifth degree,
+whose error falls with the sixth power of the sampling interval.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import make_interp_spline
+
+from coupling.errors import CouplingError
+from coupling.spectrum import Spectrum, Window, amplitude_spectrum
+from coupling.turning import Turning
+
+FloatArray = npt.NDArray[np.float64]
+
+_MOST_SAMPLES = 50_000_000  # by angle
+_DEGREE = 5
+
+
+@dataclass(frozen=True)
+class TurnedSignal:
+    """A signal at even spacing in turns of the machine's leading shaft, s samples.
+
+    Attributes
+    ----------
+    turns : ndarray, shape (s,)
+        Since t = 0, from whole ones on.
+    times : ndarray, shape (s,)
+        [s].
+    speeds : ndarray, shape (s,)
+        In turns each second [Hz].
+    values : ndarray, shape (..., s)
+    per_turn : int
+        Samples.
+    """
+
+    turns: FloatArray
+    times: FloatArray
+    speeds: FloatArray
+    values: FloatArray
+    per_turn: int
+
+
+def order_resampled(
+    signal: FloatArray,
+    times: FloatArray,
+    turning: Turning,
+    turns_per_second: float,
+    *,
+    per_turn: int | None = None,
+) -> TurnedSignal:
+    """Sample a signal anew by turned angle, over the whole turns in its record.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (..., s)
+    times : ndarray, shape (s,)
+        [s], evenly spaced, s at least 6.
+    turning : Turning
+        Of the machine: its speed over time as a part of the nominal one.
+    turns_per_second : float
+        Nominal speed of the leading shaft [Hz], positive.
+    per_turn : int, optional
+        Samples each turn. By default as many as there are in time at the lowest speed, so that nothing folds back;
+        where fewer are asked for, the signal must be free of orders above half of them.
+
+    Raises
+    ------
+    CouplingError
+        Where the machine does not turn once in the record, stands still in it, or so slowly that the samples would be
+        without end.
+    """
+    if not 0.0 < turns_per_second < np.inf:
+        raise CouplingError(f"a nominal speed of {turns_per_second} turns a second; expected a positive number")
+    if times.ndim != 1 or signal.shape[-1] != times.size or times.size <= _DEGREE:
+        raise CouplingError(
+            f"a signal of shape {signal.shape} at times of shape {times.shape}; expected as many, 6 or more"
+        )
+    interval = float(times[-1] - times[0]) / (times.size - 1)
+    rates = turning.at(
+        np.concatenate([times, turning.times[(turning.times > times[0]) & (turning.times < times[-1])]])
+    )[1]
+    slowest = turns_per_second * float(rates.min())
+    if slowest <= 0.0:
+        raise CouplingError("the machine stands still in the record; take a part of it in which the machine turns")
+    begin, end = turns_per_second * turning.at(times[[0, -1]])[0]
+    # The end of the last sample's interval closes a turn.
+    first, last = (
+        np.ceil(begin - 1e-9),
+        np.floor(end + turns_per_second * float(rates[times.size - 1]) * interval + 1e-9),
+    )
+    if last - first < 1.0:
+        raise CouplingError(f"the record has {end - begin:.3g} turns; expected a whole one at least")
+    needed = int(np.ceil(1.0 / (slowest * interval) - 1e-9)) if per_turn is None else per_turn
+    if needed < 2 or needed * (last - first) > _MOST_SAMPLES:
+        raise CouplingError(
+            f"{needed} samples a turn over {last - first:.0f} turns; expected 2 or more, at most {_MOST_SAMPLES} in "
+            "all: say how many a turn, or take a part of the record in which the machine turns faster"
+        )
+    turns = first + np.arange(int(last - first) * needed) / needed
+    # The last ones may lie within the last sample's interval, where the spline goes on.
+    at = turning.times_of(turns / turns_per_second)
+    values = make_interp_spline(times, np.moveaxis(signal, -1, 0), k=_DEGREE)(at)
+    speeds = turns_per_second * turning.at(at)[1]
+    return TurnedSignal(turns, at, speeds, np.moveaxis(np.asarray(values), 0, -1), needed)
+
+
+def order_spectrum(turned: TurnedSignal, window: Window = "uniform") -> Spectrum:
+    """Amplitudes by order, over all turns: ``frequencies`` are in cycles each turn of the leading shaft."""
+    return amplitude_spectrum(turned.values, 1.0 / turned.per_turn, window)
+
+
+@dataclass(frozen=True)
+class OrderMap:
+    """Order spectra along a run-up, w windows of whole turns.
+
+    Attributes
+    ----------
+    times : ndarray, shape (w,)
+        Of the middle turn [s].
+    speeds : ndarray, shape (w,)
+        Of the leading shaft, turns by time over each window [Hz].
+    orders : ndarray, shape (m,)
+        Cycles each turn of the leading shaft.
+    amplitude : ndarray, shape (w, m)
+        Peak amplitudes in the signal's unit; the mean at order 0.
+    window : {"uniform", "hann"}
+    """
+
+    times: FloatArray
+    speeds: FloatArray
+    orders: FloatArray
+    amplitude: FloatArray
+    window: Window
+
+    def order_slice(self, order: float) -> FloatArray:
+        """Amplitude of an order over speed, shape (w,).
+
+        Raises
+        ------
+        CouplingError
+            Where the windows do not hold whole cycles of it, or it is beyond half the samples of a turn.
+        """
+        nearest = int(np.argmin(np.abs(self.orders - order)))
+        if abs(float(self.orders[nearest]) - order) > 1e-6 * max(order, 1.0):
+            raise CouplingError(
+                f"no line at order {order:g}; there are multiples of {self.orders[1]:g} to {self.orders[-1]:g}: take "
+                "windows of as many turns as hold whole cycles of it"
+            )
+        return np.asarray(self.amplitude[:, nearest])
+
+
+def order_map(turned: TurnedSignal, *, turns: int, step: int = 1, window: Window = "hann") -> OrderMap:
+    """Order spectra of windows along a signal of shape (s,).
+
+    Parameters
+    ----------
+    turned : TurnedSignal
+    turns, step : int
+        Of a window, and from one to the next.
+    window : {"uniform", "hann"}
+
+    Raises
+    ------
+    CouplingError
+        Where the windows are longer than the record.
+    """
+    total = turned.turns.size // turned.per_turn
+    if not (1 <= turns <= total and step >= 1):
+        raise CouplingError(
+            f"windows of {turns} turns, {step} apart, of a record of {total}; expected 1 or more of each"
+        )
+    starts = np.arange(0, total - turns + 1, step) * turned.per_turn
+    length = turns * turned.per_turn
+    spectra = [amplitude_spectrum(turned.values[s : s + length], 1.0 / turned.per_turn, window) for s in starts]
+    # A window's last sample closes it but for one interval.
+    spans = [turned.times[s + length - 1] - turned.times[s] for s in starts]
+    return OrderMap(
+        times=np.array([turned.times[s + length // 2] for s in starts]),
+        speeds=(turns - 1.0 / turned.per_turn) / np.array(spans),
+        orders=spectra[0].frequencies,
+        amplitude=np.array([spectrum.amplitude for spectrum in spectra]),
+        window=window,
+    )

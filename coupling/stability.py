@@ -1,0 +1,93 @@
+"""Which modes grow, how fast, and what feeds them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coupling.modes import CoupledModes
+from coupling.shares import Part
+
+_NEUTRAL = 1e-9  # damping ratios this small are rounding
+
+
+@dataclass(frozen=True)
+class GrowingMode:
+    """A mode that grows from any disturbance until something nonlinear stops it.
+
+    Attributes
+    ----------
+    mode : int
+        Its place in the modes.
+    eigenvalue : complex
+        λ [1/s]; real where it runs off without swinging.
+    kind, where : str
+        As in :class:`coupling.CoupledModes`.
+    feeders : tuple of (Part, float)
+        Parts that feed it, the strongest first, and what each takes from the damping ratio: negative. Of a mode that
+        runs off because springs push, those parts, and their shares of the strain energy with a minus.
+    """
+
+    mode: int
+    eigenvalue: complex
+    kind: str
+    where: str
+    feeders: tuple[tuple[Part, float], ...]
+
+    @property
+    def damping_ratio(self) -> float:
+        """-Re λ / |λ|, negative."""
+        return float(-self.eigenvalue.real / abs(self.eigenvalue))
+
+    @property
+    def doubling_time(self) -> float:
+        """Time in which its amplitude doubles [s]."""
+        return float(np.log(2.0) / self.eigenvalue.real)
+
+
+@dataclass(frozen=True)
+class Stability:
+    """The verdict on a set of modes.
+
+    Attributes
+    ----------
+    growing : tuple of GrowingMode
+        The fastest first; none in a stable system.
+    least_damped : int or None
+        Place of the oscillating mode with the lowest damping ratio.
+    """
+
+    growing: tuple[GrowingMode, ...]
+    least_damped: int | None
+
+    @property
+    def stable(self) -> bool:
+        """Whether nothing grows."""
+        return not self.growing
+
+
+def stability(modes: CoupledModes, tolerance: float = _NEUTRAL) -> Stability:
+    """Judge modes by the sign of their damping.
+
+    Parameters
+    ----------
+    modes : CoupledModes
+    tolerance : float
+        Damping ratios from -tolerance up are not growth.
+    """
+    ratios = modes.damping_ratios
+    growing = [_growing(modes, int(i)) for i in np.flatnonzero(ratios < -tolerance)]
+    swinging = np.flatnonzero(modes.eigenvalues.imag > 0.0)
+    return Stability(
+        growing=tuple(sorted(growing, key=lambda one: -one.eigenvalue.real)),
+        least_damped=int(swinging[np.argmin(ratios[swinging])]) if swinging.size else None,
+    )
+
+
+def _growing(modes: CoupledModes, i: int) -> GrowingMode:
+    shares = modes.shares
+    swings = modes.eigenvalues[i].imag != 0.0
+    # What runs off over springs that push does so however it is damped: the dashpots only slow it.
+    given = shares.damping[i] if swings or shares.stiffness[i] >= 0.0 else -shares.strain[i]
+    least = -_NEUTRAL * float(np.abs(given).max(initial=0.0))
+    feeders = [(shares.parts[j], float(given[j])) for j in np.argsort(given, kind="stable") if given[j] < least]
+    return GrowingMode(i, complex(modes.eigenvalues[i]), modes.kinds[i], modes.where[i], tuple(feeders))

@@ -1,0 +1,225 @@
+"""From what excites a machine to what its gears, bearings and sensors feel, over frequency.
+
+A transmission error e = e^{iwt} at one mesh presses its contact by δ = dᵀq - e. It drives the coordinates with the load
+(k + iwc) d e, and every contact carries F = (k + iwc)(dᵀq - e), the error being its own alone: the dynamic mesh force
+by unit error, d.c. limit k of the mesh in series with all that gives way behind it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.contact_state import ContactState, mean_contact
+from coupling.errors import CouplingError
+from coupling.machine import Machine
+from coupling.modes import CoupledModes
+from coupling.receptance import response
+from coupling.system import CoupledSystem, embed
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """Complex amplitudes by a harmonic excitation at f frequencies; real parts of a e^{iwt} are the signals.
+
+    Attributes
+    ----------
+    excitation : str
+        In words.
+    unit : str
+        Of the excitation: amplitudes are by one of it.
+    frequencies : ndarray, shape (f,)
+        w [rad/s].
+    coordinates : ndarray of complex, shape (f, n)
+        Of the whole system.
+    sensor_acceleration : dict of str to ndarray of complex, shape (f,)
+        Along each sensor [m/s²].
+    bearing_force : dict of str to ndarray of complex, shape (f, 2)
+        Force of each shaft on its bearing along x and y [N].
+    mesh_force : dict of str to ndarray of complex, shape (f,)
+        Force along each line of action [N]; contacts that do not touch are left out.
+    """
+
+    excitation: str
+    unit: str
+    frequencies: FloatArray
+    coordinates: ComplexArray
+    sensor_acceleration: dict[str, ComplexArray]
+    bearing_force: dict[str, ComplexArray]
+    mesh_force: dict[str, ComplexArray]
+
+
+def mesh_error_response(
+    machine: Machine,
+    frequencies: FloatArray,
+    *,
+    mesh: int = 0,
+    contact: ContactState | None = None,
+    modes: CoupledModes | None = None,
+) -> FrequencyResponse:
+    """Response to a unit transmission error along one line of action [1/m].
+
+    Parameters
+    ----------
+    machine : Machine
+    frequencies : ndarray, shape (f,)
+        w > 0 [rad/s].
+    mesh : int
+        Number of the gear mesh.
+    contact : ContactState, optional
+        The mean contact where not given.
+    modes : CoupledModes, optional
+        To be superposed, of the same contact; the system is solved at every frequency where not given.
+
+    Raises
+    ------
+    CouplingError
+        Where the machine has no such mesh, or it does not touch.
+    ModesError
+        As :func:`coupling.receptance`.
+    """
+    if not 0 <= mesh < len(machine.meshes):
+        raise CouplingError(f"gear mesh number {mesh} of {len(machine.meshes)}; expected one of those, from 0")
+    state = mean_contact(machine.system) if contact is None else contact
+    tooth = machine.system.contacts[mesh]
+    law = state.stiffness[mesh] + 1j * frequencies * state.damping[mesh]
+    if state.stiffness[mesh] == 0.0:
+        raise CouplingError(f"{tooth.name} does not touch; expected a contact that carries an error on")
+    loads = law[:, None, None] * tooth.direction
+    moved = response(machine.system, loads, frequencies, state, modes)[:, 0]
+    return _named(machine, state, frequencies, moved, f"transmission error of {tooth.name}", "m", mesh)
+
+
+def sensor_force_response(
+    machine: Machine,
+    frequencies: FloatArray,
+    *,
+    sensor: str,
+    contact: ContactState | None = None,
+    modes: CoupledModes | None = None,
+) -> FrequencyResponse:
+    """Response to a unit force along a sensor [1/N], as of a hammer that strikes there.
+
+    Raises
+    ------
+    CouplingError
+        Where the housing has no such sensor.
+    ModesError
+        As :func:`coupling.receptance`.
+    """
+    rows = sensor_rows(machine)
+    if sensor not in rows:
+        raise CouplingError(f"no sensor {sensor!r}; there are: {', '.join(rows) or 'none'}")
+    state = mean_contact(machine.system) if contact is None else contact
+    loads = np.broadcast_to(rows[sensor], (len(frequencies), 1, machine.system.size))
+    moved = response(machine.system, loads, frequencies, state, modes)[:, 0]
+    return _named(machine, state, frequencies, moved, f"force at {sensor}", "N")
+
+
+def unbalance_response(machine: Machine, speeds: Sequence[float] | FloatArray, *, rotor: str) -> FrequencyResponse:
+    """Response to all unbalances of a rotor as they are, over the speed of the leading rotor, about the mean contact.
+
+    The machine is coupled anew at each speed: gyroscopic terms and bearings with tables follow.
+
+    Parameters
+    ----------
+    machine : Machine
+    speeds : sequence of float
+        Of the leading rotor [rad/s], none 0.
+    rotor : str
+
+    Returns
+    -------
+    FrequencyResponse
+        With w the signed speeds of that rotor: amplitudes turn with it.
+
+    Raises
+    ------
+    CouplingError
+        Where the rotor has no unbalance, or a speed is 0.
+    """
+    if not any(one.rotor == rotor and one.moment != 0.0 for one in machine.unbalances):
+        raise CouplingError(f"rotor {rotor!r} has no unbalance; expected one")
+    turned = [machine.at_speed(float(speed)) for speed in speeds]
+    frequencies = np.array([one.speeds[rotor] for one in turned])
+    if np.any(frequencies == 0.0):
+        raise CouplingError("a speed of 0, where an unbalance has no force; expected others")
+    number = [part.name for part in machine.system.components].index(rotor)
+    rows = _rows_of(machine.system, number)
+    parts = []
+    for one, w in zip(turned, frequencies, strict=True):
+        # Other rotors of the same speed have loads of that frequency too: those act on their own coordinates.
+        load = sum(
+            (each.amplitude for each in one.system.harmonic_loads if each.frequency == w),
+            np.zeros(one.system.size, dtype=np.complex128),
+        )
+        alone = np.where(rows, load, 0.0)
+        moved = response(one.system, alone[None, None, :], np.array([w]))[:, 0]
+        parts.append(
+            _named(one, mean_contact(one.system), np.array([w]), moved, f"unbalance of {rotor}", "unbalance as it is")
+        )
+    first = parts[0]
+    return FrequencyResponse(
+        excitation=first.excitation,
+        unit=first.unit,
+        frequencies=frequencies,
+        coordinates=np.concatenate([part.coordinates for part in parts]),
+        sensor_acceleration=_joined([part.sensor_acceleration for part in parts]),
+        bearing_force=_joined([part.bearing_force for part in parts]),
+        mesh_force=_joined([part.mesh_force for part in parts]),
+    )
+
+
+def sensor_rows(machine: Machine) -> dict[str, FloatArray]:
+    """Motion along each sensor by the coordinates of the whole system, shape (n,) each."""
+    if machine.housing is None:
+        return {}
+    number = [part.name for part in machine.system.components].index(machine.housing.name)
+    return {name: embed(machine.system.components, number, row) for name, row in machine.housing.sensors.items()}
+
+
+def _rows_of(system: CoupledSystem, number: int) -> npt.NDArray[np.bool_]:
+    """Which coordinates are a component's, shape (n,)."""
+    owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
+    return np.asarray(owners == number)
+
+
+def _joined(each: list[dict[str, ComplexArray]]) -> dict[str, ComplexArray]:
+    return {name: np.concatenate([one[name] for one in each]) for name in each[0]}
+
+
+def _named(
+    machine: Machine,
+    state: ContactState,
+    frequencies: FloatArray,
+    moved: ComplexArray,
+    excitation: str,
+    unit: str,
+    erring: int | None = None,
+) -> FrequencyResponse:
+    """What coordinates (f, n) mean at sensors, bearings and meshes; one mesh may have a unit error."""
+    system, rate = machine.system, 1j * frequencies
+    forces = {}
+    for connector in system.linear[: len(machine.bearings)]:
+        deflection = moved @ connector.directions
+        forces[connector.name] = (
+            deflection @ connector.stiffness.T + (rate[:, None] * deflection) @ connector.damping.T
+        )[:, :2]
+    pressed = {}
+    for number, tooth in enumerate(system.contacts):
+        if state.stiffness[number] != 0.0 or state.damping[number] != 0.0:
+            compression = moved @ tooth.direction - (1.0 if number == erring else 0.0)
+            pressed[tooth.name] = (state.stiffness[number] + rate * state.damping[number]) * compression
+    return FrequencyResponse(
+        excitation=excitation,
+        unit=unit,
+        frequencies=np.asarray(frequencies),
+        coordinates=moved,
+        sensor_acceleration={name: -(frequencies**2) * (moved @ row) for name, row in sensor_rows(machine).items()},
+        bearing_force=forces,
+        mesh_force=pressed,
+    )

@@ -1,0 +1,187 @@
+"""The keys that a sweep goes through: the speeds of ``[sweep]``, and ``--over key.path=from:to:n`` or ``=a,b,c``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+
+from gearwhine.case import units
+from gearwhine.case.fields import MOST_ENTRIES
+from gearwhine.case.model import Case
+from gearwhine.case.overrides import parse_key_path
+from gearwhine.case.problems import NOTHING, CaseError, Problem
+
+SPEED_KEY = "operation.speed"
+
+_EXPECTED = "key.path=from:to:n or key.path=a,b,c, such as operation.torque='10 N*m:100 N*m:10'"
+_DIGITS = 12  # of a value between two ends
+_BRACKETS = {"[": "]", "{": "}", "(": ")"}
+
+
+@dataclass(frozen=True)
+class SweptKey:
+    """A key of the case and the values that it takes in turn.
+
+    Attributes
+    ----------
+    key
+        Key path, as ``--set`` takes it.
+    texts
+        The values as ``--set`` takes them.
+    values
+        The same as numbers in ``unit``; the texts themselves where they are no numbers of one kind.
+    unit
+        That of the first value; empty for plain numbers and texts.
+    """
+
+    key: str
+    texts: tuple[str, ...]
+    values: tuple[float, ...] | tuple[str, ...]
+    unit: str = ""
+
+    @property
+    def is_numeric(self) -> bool:
+        """Whether the values are numbers."""
+        return not isinstance(self.values[0], str)
+
+    @property
+    def overrides(self) -> tuple[str, ...]:
+        """``key.path=value`` for each value."""
+        return tuple(f"{self.key}={text}" for text in self.texts)
+
+
+def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
+    """The keys of a sweep, the slowest first: the speeds of ``[sweep]``, then each ``--over``.
+
+    An ``--over`` of the speed itself takes the place of ``[sweep]``.
+
+    Raises
+    ------
+    CaseError
+        Where a text is no ``--over``, a key is gone through twice, there is nothing to go through, or too much.
+    """
+    keys, problems = list[SweptKey](), list[Problem]()
+    for text in over:
+        try:
+            keys.append(parse_over(text))
+        except CaseError as error:
+            problems += error.problems
+    paths = [parse_key_path(key.key) for key in keys]
+    problems += [
+        Problem("--over", key.key, "each key once")
+        for number, key in enumerate(keys)
+        if paths[number] in paths[:number]
+    ]
+    if case.sweep is not None and parse_key_path(SPEED_KEY) not in paths:
+        keys.insert(0, _speeds(case.sweep.speeds))
+    if not keys and not problems:
+        expected = "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }, or --over: "
+        problems.append(Problem("sweep", NOTHING, f"{expected}{_EXPECTED}"))
+    count = math.prod(len(key.texts) for key in keys)
+    if count > MOST_ENTRIES:
+        problems.append(Problem("--over", f"{count} points", f"at most {MOST_ENTRIES} points in all"))
+    if problems:
+        raise CaseError(problems)
+    return tuple(keys)
+
+
+def parse_over(text: str) -> SweptKey:
+    """Read ``key.path=from:to:n``, ``n`` values evenly spaced with both ends, or ``key.path=a,b,c``.
+
+    Ends and entries may have units, of their own each where they measure the same; commas and colons within quotes and
+    brackets divide nothing.
+
+    Raises
+    ------
+    CaseError
+    """
+    key, equals, values = text.partition("=")
+    key = key.strip()
+    if not equals or parse_key_path(key) is None or not values.strip():
+        raise _wrong(text, _EXPECTED)
+    ends = _divided(values, ":")
+    if len(ends) == 1:
+        return _listed(text, key, _divided(values, ","))
+    if len(ends) != 3:
+        raise _wrong(text, _EXPECTED)
+    if not ends[2].isdecimal() or not 2 <= int(ends[2][:6]) <= MOST_ENTRIES:
+        raise _wrong(text, f"a number of values from 2 to {MOST_ENTRIES} after the second colon")
+    numbers = _in_one_unit(ends[:2])
+    if numbers is None or numbers[0][0] == numbers[0][1]:
+        raise _wrong(text, "two different ends that measure the same, such as 10 N*m:100 N*m:10")
+    (low, high), unit = numbers
+    count = int(ends[2])
+    with localcontext() as context:
+        context.prec = 28
+        inner = [low + (high - low) * step / (count - 1) for step in range(1, count - 1)]
+    spaced = [low, *(_rounded(number) for number in inner), high]
+    return SweptKey(key, tuple(_written(number, unit) for number in spaced), tuple(map(float, spaced)), unit)
+
+
+def _listed(text: str, key: str, entries: list[str]) -> SweptKey:
+    if not all(entries) or len(set(entries)) < len(entries):
+        raise _wrong(text, "values with commas between, each of them once")
+    numbers = _in_one_unit(entries)
+    if numbers is None:
+        return SweptKey(key, tuple(entries), tuple(entries))
+    if len(set(numbers[0])) < len(entries):
+        raise _wrong(text, "values that differ")
+    return SweptKey(key, tuple(entries), tuple(map(float, numbers[0])), numbers[1])
+
+
+def _speeds(speeds: Iterable[float]) -> SweptKey:
+    """The speeds of ``[sweep]`` [rad/s], in rpm, exact as they are in the case."""
+    values = tuple(speeds)
+    texts = tuple(str(units.format_quantity(speed, units.SPEED)) for speed in values)
+    return SweptKey(SPEED_KEY, texts, tuple(float(f"{speed * 30.0 / math.pi:.12g}") for speed in values), "rpm")
+
+
+def _in_one_unit(texts: Sequence[str]) -> tuple[list[Decimal], str] | None:
+    """Numbers in the unit of the first; None where they are no numbers, or not of one kind."""
+    numbers, unit = list[Decimal](), None
+    for text in texts:
+        parts = units.split_quantity(text)
+        if parts is None:
+            return None
+        unit = parts[1] if unit is None else unit
+        ratio = units.unit_ratio(parts[1], unit)
+        if ratio is None:
+            return None
+        numbers.append(parts[0] if ratio == 1 else _rounded(parts[0] * ratio))
+    return (numbers, unit) if unit is not None else None
+
+
+def _rounded(number: Decimal) -> Decimal:
+    with localcontext() as context:
+        context.prec = _DIGITS
+        return (+number).normalize()
+
+
+def _written(number: Decimal, unit: str) -> str:
+    """As ``--set`` takes it: a whole number without a point, so that it may be a number of teeth."""
+    whole = number == number.to_integral_value() and abs(number) < Decimal(10) ** _DIGITS
+    digits = f"{int(number)}" if whole else f"{number:f}" if abs(number) > Decimal("1e-6") else f"{float(number)!r}"
+    return f"{digits} {unit}" if unit else digits
+
+
+def _divided(text: str, mark: str) -> list[str]:
+    """The parts of a text between marks that stand outside quotes and brackets."""
+    parts, open_marks = [""], list[str]()
+    for letter in text:
+        if open_marks and letter == open_marks[-1]:
+            open_marks.pop()
+        elif letter in "\"'" and (not open_marks or open_marks[-1] not in "\"'"):
+            open_marks.append(letter)
+        elif letter in _BRACKETS and (not open_marks or open_marks[-1] not in "\"'"):
+            open_marks.append(_BRACKETS[letter])
+        elif letter == mark and not open_marks:
+            parts.append("")
+            continue
+        parts[-1] += letter
+    return [part.strip() for part in parts]
+
+
+def _wrong(text: str, expected: str) -> CaseError:
+    return CaseError([Problem("--over", text, expected)])

@@ -1,0 +1,91 @@
+"""A run-up or run-down: the waterfall over speed, and orders over speed."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.figure import Figure
+
+from coupling.signature import OrderMap, Spectrogram
+from gearwhine.figures.style import SERIES, tidy
+from gearwhine.figures.waterfall import draw_waterfall
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def draw_run_up_waterfall(
+    title: str,
+    spectra: Spectrogram,
+    speeds_rpm: FloatArray,
+    *,
+    unit: str,
+    limit: float,
+    mesh_orders: Sequence[float] = (),
+    housing_frequencies: FloatArray | None = None,
+) -> Figure:
+    """Draw spectra along a run as rows over the speed, as :func:`draw_waterfall` does those of a sweep.
+
+    Parameters
+    ----------
+    title
+        Of the figure.
+    spectra
+        Of stretches along the run.
+    speeds_rpm
+        (t,): of the leading shaft in the middle of each stretch, distinct.
+    unit
+        Of the amplitudes.
+    limit
+        Of the frequency axis, Hz.
+    mesh_orders
+        Of each gear pair, cycles each turn of the leading shaft.
+    housing_frequencies
+        (n,): Hz.
+    """
+    shown = spectra.frequencies <= limit * (1.0 + 1e-9)
+    rows = len(speeds_rpm)
+    modes = np.empty(0) if housing_frequencies is None else housing_frequencies
+    return draw_waterfall(
+        title,
+        speeds_rpm,
+        np.tile(spectra.frequencies[shown], (rows, 1)),
+        spectra.amplitude[:, shown],
+        value_name="speed [rpm]",
+        unit=unit,
+        mesh_frequencies=np.outer(speeds_rpm / 60.0, mesh_orders) if mesh_orders else (),
+        housing_frequencies=np.tile(modes, (rows, 1)) if modes.size else (),
+    )
+
+
+def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, unit: str) -> Figure:
+    """Draw the amplitude of some orders over the speed of the leading shaft.
+
+    Parameters
+    ----------
+    title
+        Of the figure.
+    orders
+        Order spectra along the run.
+    named
+        Orders by their names.
+    unit
+        Of the amplitudes.
+
+    Raises
+    ------
+    coupling.CouplingError
+        Where an order is not a line of the map.
+    """
+    figure = Figure(figsize=(9.0, 4.6), layout="constrained")
+    axes = figure.subplots()
+    for number, (name, order) in enumerate(named.items()):
+        color = SERIES[number % len(SERIES)]
+        axes.plot(60.0 * orders.speeds, orders.order_slice(order), color=color, lw=1.2, label=name)
+    axes.set_yscale("log")
+    axes.set(xlabel="speed [rpm]", ylabel=f"amplitude [{unit}, peak]")
+    tidy(axes)
+    legend = figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize=8)
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+    figure.suptitle(title, fontsize=11, parse_math=False)
+    return figure

@@ -1,0 +1,80 @@
+"""Signatures in the results file: bearing force spectra, modal coordinates, and the lines of sensors with their
+parts."""
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.rotor_results import Variables
+from gearwhine.stages.signature import SolvedSignature
+from gearwhine.stages.transient import SolvedTransient
+from gearwhine.transient_results import MODAL_COORDINATE
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def write_signature(
+    transient: SolvedTransient, found: SolvedSignature, variables: Variables, coordinates: Variables
+) -> None:
+    """Add what was found to the variables; complex numbers stand along a dimension of real and imaginary part."""
+    if found.bearing_spectra:
+        spectra = list(found.bearing_spectra.values())
+        coordinates["frequency"] = ("frequency", spectra[0].frequencies, _unit("Hz", "frequency"))
+        variables["bearing_force_spectrum"] = (
+            ("bearing", "axis", "frequency"),
+            np.array([spectrum.amplitude[:2] for spectrum in spectra]),
+            _unit("N", "peak amplitude of the force of the shaft on its bearing") | {"window": spectra[0].window},
+        )
+    if transient.modal.coordinates:
+        _coordinates(transient, variables, coordinates)
+    if any(found.lines.values()):
+        _lines(found, variables, coordinates)
+
+
+def _coordinates(transient: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
+    named = transient.modal.coordinates
+    spectrum = transient.record.spectrum(np.array(list(named.values())), transient.trusted_limit)
+    coordinates["modal_coordinate"] = ("modal_coordinate", list(named), {})
+    coordinates["frequency"] = ("frequency", spectrum.frequencies, _unit("Hz", "frequency"))
+    variables["modal_displacement_spectrum"] = (
+        ("modal_coordinate", "frequency"),
+        spectrum.amplitude,
+        _unit("m kg0.5", f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz")
+        | {"window": spectrum.window},
+    )
+
+
+def _lines(found: SolvedSignature, variables: Variables, coordinates: Variables) -> None:
+    count = max(len(lines) for lines in found.lines.values())
+    first = next(line for lines in found.lines.values() for line in lines)
+    bearings = [part.name for part in first.bearings]
+    # In the order of their numbers, the local compliance last.
+    ordered = sorted(first.modes, key=lambda part: (part.mode is None, part.mode or 0))
+    modes = [part.name for part in ordered]
+    shape = (len(found.lines), count)
+    frequency, names = np.full(shape, np.nan), np.full(shape, "", dtype=object)
+    by_mode, by_bearing = np.full((*shape, len(modes), 2), np.nan), np.full((*shape, len(bearings), 2), np.nan)
+    line_values = np.full((*shape, 2), np.nan)
+    for i, lines in enumerate(found.lines.values()):
+        for j, line in enumerate(lines):
+            frequency[i, j], names[i, j] = line.frequency, line.named.name
+            line_values[i, j] = line.value.real, line.value.imag
+            for table, order, parts in ((by_mode, modes, line.modes), (by_bearing, bearings, line.bearings)):
+                for part in parts:
+                    table[i, j, order.index(part.name)] = part.value.real, part.value.imag
+    coordinates["line"] = ("line", np.arange(1, count + 1), _unit("1", "rank of the line, highest first"))
+    coordinates["part"] = ("part", ["real", "imaginary"], {})
+    coordinates["mode_path"] = ("mode_path", modes, {})
+    coordinates["bearing_path"] = ("bearing_path", bearings, {})
+    variables["line_frequency"] = (("sensor", "line"), frequency, _unit("Hz", "frequency of the sensor's line"))
+    variables["line_name"] = (("sensor", "line"), names.astype(str), {"long_name": "what the line is"})
+    tables: tuple[tuple[str, FloatArray, tuple[str, ...], str], ...] = (
+        ("line_amplitude", line_values, (), "complex amplitude of the sensor's line"),
+        ("line_by_mode", by_mode, ("mode_path",), "part of a housing mode in the line; they add up to it"),
+        ("line_by_bearing", by_bearing, ("bearing_path",), "part of a bearing's force in the line"),
+    )
+    for name, values, path, what in tables:
+        variables[name] = (("sensor", "line", *path, "part"), values, _unit("m/s2", what))
+
+
+def _unit(unit: str, what: str) -> dict[str, str]:
+    return {"units": unit, "long_name": what}

@@ -1,0 +1,164 @@
+"""What drives the machine of a case: its speed over time, and its torques in and out."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling as room
+from gearwhine.case import AppliedTorque, Case, TorqueHistory, TorqueLine, TorqueRipple, applied_torques, speed_ratios
+
+FloatArray = npt.NDArray[np.float64]
+
+_SLOPE_STEP = 1e-6  # part of the nominal speed to both sides of a corner of a torque line
+
+
+@dataclass(frozen=True)
+class Driving:
+    """How a machine is driven.
+
+    Attributes
+    ----------
+    turning : coupling.Turning or None
+        Speed over time; None where it is the nominal one all along.
+    torques : list of coupling torques
+    drives : list of coupling.Drive
+    """
+
+    turning: room.Turning | None
+    torques: list[room.AnyTorque]
+    drives: list[room.Drive]
+
+    @property
+    def rates(self) -> tuple[float, float]:
+        """The least and the highest speed as parts of the nominal one, which is between them."""
+        if self.turning is None:
+            return 1.0, 1.0
+        return min(1.0, float(self.turning.rates.min())), max(1.0, float(self.turning.rates.max()))
+
+
+def driving(case: Case, rotors: Sequence[room.RotorComponent]) -> Driving:
+    """Speed over time and torques of a case with an operation.
+
+    Raises
+    ------
+    coupling.TransientError
+        Where a free speed cannot start or stalls.
+    """
+    operation = case.operation
+    assert operation is not None
+    nominal = abs(operation.speed)
+    run = None if case.transient is None else case.transient.run
+    shares = applied_torques(case, 1.0)
+    turning = None
+    if run is not None and run.free:
+        assert operation.motor is not None
+        motor, load = operation.motor, operation.load
+        turning = room.free_speed(
+            lambda speed: _torque(motor, speed),
+            lambda speed: operation.torque if load is None else _torque(load, speed),
+            train_inertia(case, rotors),
+            start=run.line[1][0],
+            duration=run.duration,
+            nominal=nominal,
+        )
+    elif run is not None:
+        times, speeds = (np.array(part) for part in run.line)
+        turning = room.Turning(times, speeds / nominal)
+    torques: list[room.AnyTorque] = []
+    if turning is not None and run is not None and run.free and operation.load is not None:
+        values = np.array([_torque(operation.load, rate * nominal) for rate in turning.rates])
+        torques += [_history(share, turning.times, values) for share in shares]
+    else:
+        torques += [room.Torque(one.shaft, _place(one), one.torque) for one in applied_torques(case)]
+    if run is not None and run.free:
+        torques += _slopes(case, shares)
+    torques += _variations(case, shares)
+    drives = [room.Drive(shares[0].shaft, _place(shares[0]))] if shares else []
+    return Driving(turning, torques, drives)
+
+
+def train_inertia(case: Case, rotors: Sequence[room.RotorComponent]) -> float:
+    """Polar inertia of all that the first driver turns, at its own rotor [kg m²]."""
+    ratios = speed_ratios(case)
+    shares = applied_torques(case, 1.0)
+    turned = set(ratios) if case.gear_pair else {shares[0].shaft}
+    inertias = {rotor.name: float(np.sum(rotor.turning**2)) for rotor in rotors}
+    first = float(ratios[shares[0].shaft])
+    return sum(inertias[name] * (float(ratios[name]) / first) ** 2 for name in inertias if name in turned)
+
+
+def _torque(line: TorqueLine, speed: float) -> float:
+    return float(np.interp(speed, line.speed, line.torque))
+
+
+def _place(applied: AppliedTorque) -> float:
+    assert applied.at is not None
+    return applied.at
+
+
+def _history(share: AppliedTorque, times: FloatArray, values: FloatArray) -> room.TorqueHistory:
+    return room.TorqueHistory(share.shaft, _place(share), times, share.torque * values)
+
+
+def _slopes(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[room.TorqueSlope]:
+    """What the motor's and the load's torques change where a shaft departs from its nominal rotation.
+
+    A line's torque T(ω) at the first driver stands for ±T share on a rotor of r times the speed, which changes by
+    ±T' share / |r| with the rotor's own speed: the motor's with the turning, the load's against it.
+    """
+    operation = case.operation
+    assert operation is not None
+    ratios = speed_ratios(case)
+    first = abs(float(ratios[shares[0].shaft]))
+    for number, share in enumerate(shares):
+        line = operation.load if number else operation.motor
+        if line is None:
+            continue
+        rates, slopes = _slope_table(line, abs(operation.speed))
+        sense = 1.0 if number == 0 else -1.0
+        factor = sense * abs(share.torque) * first / abs(float(ratios[share.shaft]))
+        name = f"load on {share.shaft}, {number}" if number else "motor"
+        yield room.TorqueSlope(name, share.shaft, _place(share), rates, factor * slopes)
+
+
+def _slope_table(line: TorqueLine, nominal: float) -> tuple[FloatArray, FloatArray]:
+    """dT/dω of a line of straight pieces, level beyond its ends, on both sides of every corner."""
+    corners = np.array(line.speed) / nominal
+    steps = np.concatenate([[0.0], np.diff(line.torque) / np.diff(line.speed), [0.0]])
+    hair = min(_SLOPE_STEP, 0.25 * float(np.diff(corners).min()))
+    return np.column_stack([corners - hair, corners + hair]).ravel(), np.repeat(steps, 2)[1:-1]
+
+
+def _variations(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[room.AnyTorque]:
+    """What is added to the torques over time and swings about them, each in the sense of its torque."""
+    operation = case.operation
+    assert operation is not None
+    if shares:
+        entering, leaving = shares[0], shares[1:]
+    else:
+        turning = math.copysign(1.0, operation.speed)
+        entering, leaving = AppliedTorque(case.rotor[0].name, operation.at or 0.0, turning), ()
+    own = [output.over_time for output in operation.output]
+    if operation.over_time is not None:
+        yield _added(entering, operation.over_time)
+        if not any(own):
+            yield from (_added(share, operation.over_time, share.torque) for share in leaving)
+    yield from (_swinging(entering, ripple) for ripple in operation.ripple)
+    for output, share in zip(operation.output, leaving, strict=False):
+        if output.over_time is not None:
+            yield _added(share, output.over_time)
+        yield from (_swinging(share, ripple) for ripple in output.ripple)
+
+
+def _added(share: AppliedTorque, given: TorqueHistory, factor: float | None = None) -> room.TorqueHistory:
+    factor = math.copysign(1.0, share.torque) if factor is None else factor
+    return room.TorqueHistory(share.shaft, _place(share), np.array(given.time), factor * np.array(given.torque))
+
+
+def _swinging(share: AppliedTorque, ripple: TorqueRipple) -> room.TorqueRipple:
+    frequency = None if ripple.frequency is None else 2.0 * np.pi * ripple.frequency
+    amplitude = math.copysign(ripple.amplitude, share.torque * ripple.amplitude)
+    return room.TorqueRipple(share.shaft, _place(share), amplitude, ripple.phase, ripple.order, frequency)

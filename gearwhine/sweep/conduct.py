@@ -1,0 +1,174 @@
+"""A sweep from its points to their results: what is done already is read, the rest goes to the workers."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gearwhine.failures import WorkersError
+from gearwhine.output import staging
+from gearwhine.progress import Progress
+from gearwhine.stages.housing import solve_housing
+from gearwhine.stages.kept_modes import keep_modes
+from gearwhine.stages.machine import HousingInMachine, housing_in_machine
+from gearwhine.sweep.point_files import read_point, stale_points, write_point
+from gearwhine.sweep.points import Point, code_digest
+from gearwhine.sweep.solution import PointFailure, PointResult, solve_point, solve_point_housing, warm_up
+from gearwhine.sweep.workers import connected
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+Outcome = PointResult | PointFailure
+
+
+@dataclass(frozen=True)
+class SweptPoint:
+    """A point with what came of it, and whether an earlier run left it."""
+
+    point: Point
+    outcome: Outcome
+    resumed: bool
+
+
+def conduct_sweep(
+    points: Sequence[Point],
+    folder: Path,
+    progress: Progress,
+    *,
+    workers: int,
+    scheduler: str | None = None,
+    fresh: bool = False,
+) -> tuple[SweptPoint, ...]:
+    """Solve every point that the folder does not hold yet; each is written there as it ends.
+
+    Points that failed before are tried again. The housing's modes are solved here and kept where they are those of all
+    points; where the sweep changes them, by the workers.
+
+    Parameters
+    ----------
+    points
+        From :func:`gearwhine.sweep.sweep_points`.
+    folder
+        For the results.
+    workers, scheduler
+        See :func:`gearwhine.sweep.workers.connected`.
+    fresh
+        Solve also what the folder holds.
+
+    Raises
+    ------
+    CaseError, WorkersError, housing.HousingError, housing.IncompleteModesError, ...
+        Where the housing that all points share cannot be solved, or there are no workers.
+    """
+    outcomes: dict[int, Outcome] = {}
+    if not fresh:
+        held = ((number, read_point(folder, point)) for number, point in enumerate(points))
+        outcomes = {number: outcome for number, outcome in held if isinstance(outcome, PointResult)}
+    resumed = frozenset(outcomes)
+    todo = [number for number in range(len(points)) if number not in resumed]
+    if todo:
+        workers = min(workers, len(todo))
+        with staging(folder) as place:
+            progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
+            with connected(workers, scheduler, place) as client:
+                _warm_up(client, workers)
+                shared = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
+                told = _teller(len(points), len(resumed), progress)
+                told(0)
+                futures = _submitted(client, {number: points[number] for number in todo}, shared)
+                for count, (number, outcome) in enumerate(_as_they_end(client, futures), start=1):
+                    outcomes[number] = outcome
+                    write_point(folder, place, points[number], outcome)
+                    told(count)
+    for path in stale_points(folder, tuple(points)):
+        path.unlink(missing_ok=True)
+    return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))
+
+
+def _warm_up(client: Client, workers: int) -> None:
+    """Let the workers read our code while the housing is solved here."""
+    from distributed import fire_and_forget
+
+    for number in range(workers):
+        fire_and_forget(client.submit(warm_up, key=f"warm-up-{number}", pure=False))
+
+
+def _shared_housings(
+    points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
+) -> dict[str | None, HousingInMachine]:
+    """By its key, each housing of the points where all have the same modes; nothing where they differ or are none."""
+    if len({point.modes_key for point in points}) > 1 or points[0].modes_key is None:
+        return {}
+    found: dict[str | None, HousingInMachine] = {}
+    for point in points:
+        if point.housing_key in found:
+            continue
+        solved = solve_housing(point.case, progress, command="sweep", folder=folder, fresh=fresh and not found)
+        with staging(folder) as place:
+            keep_modes(place, solved)
+        found[point.housing_key] = housing_in_machine(point.case, solved)
+    return found
+
+
+def _submitted(
+    client: Client, points: dict[int, Point], shared: dict[str | None, HousingInMachine]
+) -> dict[Future[Any], int]:
+    """Hand every point to the workers, and before it its housing where that is not shared."""
+    code = code_digest()
+    housings: dict[str | None, Any] = dict(shared)
+    futures = {}
+    for number, point in points.items():
+        key = point.housing_key
+        if key is not None and key not in housings:
+            housings[key] = client.submit(solve_point_housing, point.case, code, key=f"housing-{key}", pure=False)
+        housing = None if key is None else housings[key]
+        future = client.submit(solve_point, point.case, housing, code, key=f"point-{number}-{point.key}", pure=False)
+        futures[future] = number
+    return futures
+
+
+def _as_they_end(client: Client, futures: dict[Future[Any], int]) -> Iterator[tuple[int, Outcome]]:
+    """Each point's number and outcome as it comes."""
+    from distributed import KilledWorker, as_completed
+
+    for future in as_completed(list(futures), loop=client.loop):
+        number = futures.pop(future)
+        error = future.exception() if future.status == "error" else None
+        if isinstance(error, KilledWorker):
+            yield (
+                number,
+                PointFailure(
+                    "the worker at this point died again and again, perhaps for want of memory; try fewer --workers"
+                ),
+            )
+        elif error is not None:
+            yield number, PointFailure(f"unexpected {type(error).__name__}: {error}")
+        elif future.cancelled():
+            raise WorkersError("the workers were lost; run the sweep again to do the points that are missing")
+        else:
+            yield number, future.result()
+        # What is written need not stay in the workers' memory.
+        future.release()
+
+
+def _teller(total: int, before: int, progress: Progress) -> Callable[[int], None]:
+    """Tell how many points are done and how long the rest will take, after so many of this run."""
+    start = time.perf_counter()
+
+    def told(count: int) -> None:
+        done = before + count
+        left = (time.perf_counter() - start) * (total - done) / count if count else None
+        text = "" if left is None or done == total else f", about {_duration(left)} left"
+        progress(f"sweep: {done} of {total} points{text}", done / total)
+
+    return told
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"

@@ -1,0 +1,120 @@
+"""A point on file: NetCDF4 with everything that a sweep gathers of it, written whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from gearwhine import __version__
+from gearwhine.case import dump_case
+from gearwhine.output import finite, json_text
+from gearwhine.sweep.points import Point
+from gearwhine.sweep.solution import PointFailure, PointResult
+
+POINTS = "points"
+"""Folder of the points within the results folder."""
+
+# Group of results, its dimension, unit, and what it is.
+_SPECTRA = {
+    "sensor_spectra": ("sensor", "m/s2", "peak amplitude of acceleration"),
+    "force_spectra": ("contact", "N", "peak amplitude of the gear-mesh force"),
+}
+_FORCES = {
+    "bearing_force_mean": "mean force of the shaft on its bearing",
+    "bearing_force_rms": "root mean square of that force without its mean",
+}
+
+
+def write_point(folder: Path, place: Path, point: Point, result: PointResult | PointFailure) -> None:
+    """Write a point and move it to its place.
+
+    Parameters
+    ----------
+    folder
+        The results folder.
+    place
+        A staging folder on the same file system.
+    point, result
+        What to write.
+    """
+    attributes = {
+        "source": f"gearwhine {__version__}",
+        "key": point.key,
+        "case": dump_case(point.case),
+        "failure": "",
+    }
+    if isinstance(result, PointFailure):
+        attributes["failure"] = json_text({"message": result.message, "traceback": result.traceback})
+        dataset = xr.Dataset(attrs=attributes)
+    else:
+        attributes |= {"document": json_text(finite(result.document)), "window": result.window}
+        dataset = _arrays(result).assign_attrs(attributes)
+    staged = place / point.file
+    dataset.to_netcdf(staged, engine="h5netcdf")
+    (folder / POINTS).mkdir(exist_ok=True)
+    os.replace(staged, folder / POINTS / point.file)
+
+
+def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
+    """Read a point; None where there is no file of it, or one that is of other content or cannot be read."""
+    try:
+        with xr.open_dataset(folder / POINTS / point.file, engine="h5netcdf") as data:
+            if data.attrs.get("key") != point.key:
+                return None
+            if data.attrs["failure"]:
+                return PointFailure(**json.loads(data.attrs["failure"]))
+            return _result(data.load())
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def stale_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:
+    """Files of points that are not of this sweep: those of the case as it was."""
+    names = {point.file for point in points}
+    return [path for path in sorted((folder / POINTS).glob("*.nc")) if path.name not in names]
+
+
+def _arrays(result: PointResult) -> xr.Dataset:
+    orders = ("order", result.orders, {"units": "1", "long_name": "cycles for each turn of the first driver"})
+    dataset = xr.Dataset(coords={"order": orders})
+    for group, (dimension, unit, what) in _SPECTRA.items():
+        spectra = getattr(result, group)
+        if spectra:
+            dataset[dimension] = (dimension, list(spectra))
+            values = np.array(list(spectra.values()))
+            dataset[group] = ((dimension, "order"), values, {"units": unit, "long_name": what})
+    for group, what in _FORCES.items():
+        forces = getattr(result, group)
+        if forces:
+            dataset["bearing"] = ("bearing", list(forces))
+            dataset["axis"] = ("axis", ["x", "y"])
+            values = np.array(list(forces.values()))
+            dataset[group] = (("bearing", "axis"), values, {"units": "N", "long_name": what})
+    attributes = {"units": "Hz", "long_name": "housing natural frequency"}
+    dataset["housing_frequencies_hz"] = ("housing_mode", result.housing_frequencies_hz, attributes)
+    return dataset
+
+
+def _result(data: xr.Dataset) -> PointResult:
+    named = {
+        group: {
+            str(name): row
+            for name, row in zip(data[dimension].values, np.asarray(data[group].values, dtype=np.float64), strict=True)
+        }
+        for group, dimension in (
+            *((group, labels[0]) for group, labels in _SPECTRA.items()),
+            *((group, "bearing") for group in _FORCES),
+        )
+        if group in data
+    }
+    return PointResult(
+        document=json.loads(data.attrs["document"]),
+        orders=np.asarray(data["order"].values, dtype=np.float64),
+        housing_frequencies_hz=np.asarray(data["housing_frequencies_hz"].values, dtype=np.float64),
+        window=data.attrs["window"],
+        **named,
+    )

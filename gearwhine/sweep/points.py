@@ -1,0 +1,129 @@
+"""The points of a sweep: the case with each combination of the swept values, checked before anything is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+import coupling
+import gearwhine
+import housing
+import meshes
+import rotors
+from gearwhine.case import SPEED_KEY, Case, CaseError, Problem, SweptKey, case_document, load_case, require
+from gearwhine.output import file_stems
+from gearwhine.stages.contents import file_contents, installed, source_digest, with_contents
+from gearwhine.stages.kept_modes import solution_inputs
+
+# Tables that no transient depends on.
+_WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "provenance"})
+_LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
+
+
+@dataclass(frozen=True)
+class Point:
+    """One combination of the swept values.
+
+    Attributes
+    ----------
+    place : tuple of int
+        Along each swept key.
+    texts : tuple of str
+        The value of each swept key, as ``--set`` takes it.
+    case : Case
+        With these values.
+    key : str
+        Of the content that its result depends on: case, files, libraries and our code.
+    modes_key : str or None
+        Of what its housing's modes are solved from; None without a housing.
+    housing_key : str or None
+        Of all that its machine takes of the housing, damping and sensors with it.
+    file : str
+        Name of its file.
+    """
+
+    place: tuple[int, ...]
+    texts: tuple[str, ...]
+    case: Case
+    key: str
+    modes_key: str | None
+    housing_key: str | None
+    file: str
+
+
+def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey]) -> tuple[Point, ...]:
+    """Every point of the grid, the last key fastest.
+
+    Parameters
+    ----------
+    source
+        The case file or bundled name.
+    settings
+        Changes by ``--set``, made before those of the sweep.
+    keys
+        From :func:`gearwhine.case.swept_keys`.
+
+    Raises
+    ------
+    CaseError
+        With what is wrong at any of the points, each problem once.
+    """
+    grid = list(product(*(range(len(key.texts)) for key in keys)))
+    stems = file_stems([_described(keys, place) for place in grid])
+    points, problems = list[Point](), dict[Problem, None]()
+    for place, stem in zip(grid, stems, strict=True):
+        overrides = [key.overrides[index] for key, index in zip(keys, place, strict=True)]
+        try:
+            case = load_case(source, [*settings, *overrides]).case
+            require(case, "rotor", "operation", "transient", command="sweep")
+        except CaseError as error:
+            for problem in error.problems:
+                problems[_of_the_sweep(problem, overrides)] = None
+        else:
+            texts = tuple(key.texts[index] for key, index in zip(keys, place, strict=True))
+            points.append(_point(place, texts, case, stem))
+    if problems:
+        raise CaseError(problems)
+    return tuple(points)
+
+
+def code_digest() -> str:
+    """SHA-256 of all our code: points and workers of another are not used."""
+    return source_digest(meshes, housing, rotors, coupling, gearwhine)
+
+
+def axis_name(key: str) -> str:
+    """A swept key as the name of a dimension: ``speed`` for the speed, else letters, digits and underscores."""
+    if key == SPEED_KEY:
+        return "speed"
+    return "_".join("".join(letter if letter.isalnum() else " " for letter in key).split())
+
+
+def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str) -> Point:
+    document = {name: table for name, table in case_document(case).items() if name not in _WITHOUT_EFFECT}
+    key = housing.content_key(
+        {
+            "case": with_contents(document, file_contents(case.model_dump())),
+            "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
+            "source": code_digest(),
+        }
+    )
+    modes_key = housing_key = None
+    if case.housing is not None:
+        inputs = solution_inputs(case)
+        modes_key = housing.content_key(inputs)
+        whole: dict[str, Any] = {"modes": modes_key, "housing": case.housing.model_dump(mode="json")}
+        housing_key = housing.content_key(whole)
+    return Point(place, texts, case, key, modes_key, housing_key, f"{stem}-{key[:12]}.nc")
+
+
+def _described(keys: Sequence[SweptKey], place: tuple[int, ...]) -> str:
+    return "_".join(f"{axis_name(key.key)}-{key.texts[index]}" for key, index in zip(keys, place, strict=True))
+
+
+def _of_the_sweep(problem: Problem, overrides: Sequence[str]) -> Problem:
+    """A problem with a value that the sweep has set, as one of the sweep."""
+    text = problem.source.removeprefix("--set ")
+    return replace(problem, source=f"sweep, {text}") if text in overrides else problem

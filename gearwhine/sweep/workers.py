@@ -1,0 +1,165 @@
+"""Workers for a sweep: processes on this machine, or those of a Dask cluster that runs already."""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from gearwhine.case import CaseError, Problem
+from gearwhine.failures import WorkersError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+# Every worker is one thread: BLAS and factorisations with threads of their own on top cost more than they give.
+_ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
+)
+_FIND_SCHEDULER = "10s"
+
+
+def default_workers() -> int:
+    """As many as this process may use of the machine's cores."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def connected(workers: int, scheduler: str | None, place: Path) -> Iterator[Client]:
+    """A client of the workers; those started here end with the block, whatever ends it.
+
+    Workers of our own die with this process even where it is killed. A worker that dies is replaced, and what it was
+    at is done again.
+
+    Parameters
+    ----------
+    workers
+        How many processes to start.
+    scheduler
+        Address of a cluster that runs already, whose workers are used in place of our own.
+    place
+        In which Dask keeps files while it runs.
+
+    Raises
+    ------
+    CaseError
+        Where no scheduler answers at the address.
+    WorkersError
+        Where the processes do not start.
+    """
+    import dask
+    import distributed  # noqa: F401 - its own settings must be there before ours, or they go with them
+
+    settings = {
+        "distributed.nanny.pre-spawn-environ": _ONE_THREAD,
+        "distributed.scheduler.http.routes": [],
+        "distributed.worker.http.routes": [],
+        "distributed.worker.profile.enabled": False,
+    }
+    with (
+        dask.config.set(settings),
+        _environment_restored(),
+        _quiet(),
+        TemporaryDirectory(prefix="dask-", dir=place, ignore_cleanup_errors=True) as scratch,
+        _own_processes(workers, scratch) if scheduler is None else _cluster_at(scheduler) as client,
+    ):
+        yield client
+
+
+@contextmanager
+def _own_processes(workers: int, scratch: str) -> Iterator[Client]:
+    from distributed import Client, LocalCluster
+
+    try:
+        with _without_ctrl_c():
+            cluster = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                # None: points hand back kilobytes, so nothing is to be spilled to disk.
+                memory_limit=0,
+                local_directory=scratch,
+                silence_logs=logging.CRITICAL,
+                # No dashboard, and a port that nobody else has for what is left of its server.
+                dashboard_address="127.0.0.1:0",
+                scheduler_kwargs={"dashboard": False},
+            )
+    except (OSError, RuntimeError, TimeoutError) as error:
+        raise WorkersError(f"the workers did not start: {error}") from error
+    try:
+        with Client(cluster, set_as_default=False) as client:
+            yield client
+    except BaseException:
+        # Interrupted or failed: what the workers are at is not wanted, and waiting for it takes seconds.
+        for nanny in cluster.workers.values():
+            nanny.auto_restart = False
+            if nanny.pid:
+                with suppress(ProcessLookupError):
+                    os.kill(nanny.pid, signal.SIGKILL)
+        raise
+    finally:
+        cluster.close()
+
+
+@contextmanager
+def _cluster_at(address: str) -> Iterator[Client]:
+    from distributed import Client
+
+    try:
+        client = Client(address, timeout=_FIND_SCHEDULER, set_as_default=False)
+    except (OSError, ValueError, RuntimeError, TimeoutError) as error:
+        expected = f"the address of a running Dask scheduler, such as tcp://host:8786 ({error})"
+        raise CaseError([Problem("--scheduler", address, expected)]) from error
+    with client:
+        yield client
+
+
+@contextmanager
+def _without_ctrl_c() -> Iterator[None]:
+    """Start threads and processes that a Ctrl-C at the terminal does not reach: it is for this thread to unwind.
+
+    A thread inherits its mask from the one that starts it, and a process from the thread that starts it, so the
+    workers that replace others are spared too. A Ctrl-C meanwhile comes right after.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _environment_restored() -> Iterator[None]:
+    """Undo what Dask puts in this process's environment for its workers to inherit."""
+    before = {name: os.environ.get(name) for name in _ONE_THREAD}
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Let Dask log nothing: that a worker died is told in the sweep's own words where it matters."""
+    loggers = [logging.getLogger(name) for name in ("distributed", "asyncio", "tornado", "bokeh")]
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)

@@ -1,0 +1,172 @@
+"""Planar motions that whirl is projected on: modes, and the static answers to loads where bearings and discs act.
+
+`rotors.whirl_basis` gives the same as certified modes, to be looked at and held. A single solution needs less: any
+mass-orthonormal basis of the same space gives the same starting values, and the roots have a proof of their own. Here
+the modes' fields and the responses are made orthonormal one after another, by Gram and Schmidt on their values at
+the points of quadrature, so that what little a response adds to the modes keeps its digits.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .attachment import FREE_SHIFT, NOTHING_LEFT
+from .bearing import Bearing, RadialSupport
+from .buckling import require_unbuckled
+from .chain import GAUSS_FRACTIONS, GAUSS_WEIGHTS, Chain
+from .errors import require, require_finite
+from .lateral import LateralModes
+from .lines import Line
+from .root_count import chain_arrays, count_below, isolate
+from .rotor_lines import bending_line
+from .search import chain_that_holds
+from .shaft import Rotor
+from .shapes import responses, rigid_states, shared_roots
+
+FloatArray = npt.NDArray[np.float64]
+
+DEFAULT_COUNT = 12
+LEAST_MODES = 8
+SPARE_MODES = 4
+# The basis reaches this many times beyond the highest whirl frequency asked for: it gives starting values only.
+BASIS_REACH = 1.5
+
+
+@dataclass(frozen=True)
+class PlanarBasis:
+    """Mass-orthonormal motions of the shaft in one plane, and what they do at its bearings.
+
+    Attributes
+    ----------
+    stiffness
+        (b, b): of the shaft without supports, 1/s².
+    polar_inertia
+        (b, b): the gyroscopic matrix per rad/s.
+    displacement, slope
+        (b, bearings): at the bearings, in m and rad per unit modal coordinate.
+    floor
+        The lowest frequency on the mean supports that is not a rigid motion's zero, rad/s.
+    """
+
+    stiffness: FloatArray
+    polar_inertia: FloatArray
+    displacement: FloatArray
+    slope: FloatArray
+    floor: float
+
+    @property
+    def count(self) -> int:
+        """Number of motions b."""
+        return int(self.stiffness.shape[0])
+
+    @classmethod
+    def of_modes(cls, modes: LateralModes, bearings: Sequence[Bearing]) -> "PlanarBasis":
+        """The basis that certified modes and attachment vectors are, at the given bearings."""
+        displacement = slope = np.zeros((modes.count, 0))
+        if bearings:
+            displacement, slope = modes.evaluate([bearing.at for bearing in bearings])
+        moving = modes.frequencies[modes.frequencies > 0.0]
+        return cls(
+            stiffness=np.diag(modes.frequencies**2) - modes.support_matrix,
+            polar_inertia=modes.polar_inertia_matrix,
+            displacement=displacement,
+            slope=slope,
+            floor=float(moving.min()) if moving.size else 1.0,
+        )
+
+
+def mean_supports(bearings: Sequence[Bearing]) -> tuple[RadialSupport, ...]:
+    """The planar springs that a basis holds, of tables those at the middle of their speeds."""
+    return tuple(
+        bearing.at_speed(float(bearing.speeds[bearing.speeds.size // 2])).mean_support
+        if bearing.speeds is not None
+        else bearing.mean_support
+        for bearing in bearings
+    )
+
+
+def loaded_places(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[list[float], list[float]]:
+    """Where forces and where moments act on the turning shaft, beside its own inertia, m."""
+    moments = [disc.at for disc in rotor.discs if disc.polar_inertia > 0.0]
+    moments += [bearing.at for bearing in bearings if bearing.stiffness.shape[-1] == 5]
+    return [bearing.at for bearing in bearings], moments
+
+
+def modes_needed(count: int | None, available: float) -> int:
+    """How many planar modes the basis for so many whirl modes has."""
+    return int(min(max((count or DEFAULT_COUNT) // 2 + SPARE_MODES, LEAST_MODES), available))
+
+
+def planar_basis(
+    rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
+) -> PlanarBasis:
+    """The space of `rotors.whirl_basis`, without its proof.
+
+    Raises
+    ------
+    RotorError, IncompleteModesError
+        As `rotors.whirl_basis`, of wrong arguments, or where the root count does not reach the modes.
+    """
+    from .basis_kernels import mass_orthonormal
+    from .energy_kernels import energy_rows, energy_weights
+    from .shape_kernels import null_states
+
+    both = (frequency_limit, count)
+    require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
+    supports = mean_supports(bearings)
+    require_unbuckled(rotor, supports)
+    chain, frequencies = _lowest_modes(bending_line(rotor, supports), frequency_limit, count)
+    zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
+    elastic = frequencies[zeros:]
+    forces, moments = loaded_places(rotor, bearings)
+    nodes = [chain.node_at(place) for place in forces]
+    loads = [(node, 0) for node in nodes] + [(chain.node_at(place), 1) for place in moments]
+    loads = list(dict.fromkeys(loads))
+    # As in `rotors.attachment`, a free shaft answers a little below zero.
+    shift = -((FREE_SHIFT * (float(elastic[0]) if elastic.size else 1.0)) ** 2) if zeros else 0.0
+    squared = shared_roots(elastic) ** 2
+    states = [null_states(squared, *chain_arrays(chain))]
+    if zeros:
+        states.insert(0, rigid_states(chain)[:zeros])
+    if loads:
+        states.append(responses(chain, loads, shift))
+    squared = np.concatenate([np.zeros(zeros), squared, np.full(len(loads), shift)])
+    fields = np.concatenate(states) if len(states) > 1 else states[0]
+    arrays = chain.table.lengths, chain.table.coefficients, chain.element
+    # Springs are the bearings' to add.
+    nodal = np.zeros_like(chain.node_stiffness), chain.node_inertia, chain.node_polar
+    mass, polar, stiffness = energy_weights(GAUSS_FRACTIONS, GAUSS_WEIGHTS, *arrays, *nodal)
+    motion, strain = np.empty((squared.size, mass.size)), np.empty((squared.size, stiffness.size))
+    energy_rows(squared, fields, GAUSS_FRACTIONS, *arrays, motion, strain)
+    at_bearings = fields[:, nodes, :2] * chain.displacement_unit
+    shapes = np.ascontiguousarray(at_bearings.reshape(squared.size, -1))
+    kept = mass_orthonormal(motion, strain, shapes, mass, NOTHING_LEFT)
+    motion, strain, shapes = motion[:kept], strain[:kept], shapes[:kept]
+    own = (strain * stiffness) @ strain.T
+    moving = np.sqrt(own.diagonal()[own.diagonal() > 0.0]) if elastic.size == 0 else elastic
+    return PlanarBasis(
+        stiffness=own,
+        polar_inertia=(motion * polar) @ motion.T,
+        displacement=shapes[:, 0::2],
+        slope=shapes[:, 1::2],
+        floor=float(moving.min()) if moving.size else 1.0,
+    )
+
+
+def _lowest_modes(line: Line, frequency_limit: float | None, count: int | None) -> tuple[Chain, FloatArray]:
+    """A chain and its lowest natural frequencies, as many as the basis needs, rad/s."""
+    available = line.available_modes
+    if frequency_limit is not None:
+        require_finite("frequency_limit", frequency_limit, positive=True)
+        highest = BASIS_REACH * frequency_limit
+        chain = line.cut(highest)
+        below = count_below(chain, highest)
+        if below >= min(LEAST_MODES, available):
+            return chain, isolate(chain, below, highest)
+        wanted = int(min(LEAST_MODES, available))
+    else:
+        wanted = modes_needed(count, available)
+    chain = chain_that_holds(line, wanted)
+    return chain, isolate(chain, wanted, chain.highest)

@@ -1,0 +1,48 @@
+"""Modal coordinates of a rotor in the machine, against the planar modes that they belong to."""
+
+import numpy as np
+import pytest
+
+from coupling import CouplingError, Machine, modal_rows
+from gearwhine.case import load_case
+from gearwhine.stages.gears import solve_gears
+from gearwhine.stages.machine import build_machine
+
+
+@pytest.fixture(scope="module")
+def machine() -> Machine:
+    """Two rotors on isotropic bearings, whose averaged stiffness is their own."""
+    case = load_case("spur-pair").case
+    return build_machine(case, None, solve_gears(case))
+
+
+@pytest.mark.parametrize("name", ["input", "output"])
+def test_rows_diagonalise_the_rotor_on_its_supports(machine: Machine, name: str) -> None:
+    """In a plane, rotor and bearings have the stiffness diag(ω²) by these coordinates: they are its modes, in order."""
+    rotor = next(part for part in machine.rotors if part.name == name)
+    rows = modal_rows(machine, name)
+    expected = np.diag(rotor.modal.lateral.frequencies[: len(rows.x)] ** 2)
+    for plane in (rows.x, rows.y):
+        assert plane @ plane.T == pytest.approx(np.eye(len(plane)), abs=1e-12)
+        assert plane @ machine.system.stiffness @ plane.T == pytest.approx(expected, abs=1e-9 * expected.max())
+    assert rows.x @ machine.system.stiffness @ rows.y.T == pytest.approx(0.0 * expected, abs=1e-9 * expected.max())
+    torsional = np.diag(rotor.modal.torsional.frequencies[: len(rows.torsion)] ** 2)
+    assert rows.torsion @ machine.system.stiffness @ rows.torsion.T == pytest.approx(torsional, abs=1e-9)
+
+
+def test_unit_coordinates_move_the_shaft_by_the_mode_shapes(machine: Machine) -> None:
+    rotor = machine.rotors[0]
+    rows = modal_rows(machine, rotor.name)
+    shapes = rotor.modal.lateral.evaluate([0.03, 0.17])[0][: len(rows.x)]
+    own = slice(0, rotor.size)  # the first rotor's coordinates come first
+    for place, at in enumerate((0.03, 0.17)):
+        assert rows.x[:, own] @ rotor.direction(at, 0) == pytest.approx(shapes[:, place], rel=1e-9, abs=1e-12)
+        assert rows.y[:, own] @ rotor.direction(at, 1) == pytest.approx(shapes[:, place], rel=1e-9, abs=1e-12)
+        assert rows.x[:, own] @ rotor.direction(at, 1) == pytest.approx(0.0 * shapes[:, place])
+    turned = rotor.modal.torsional.evaluate([0.17])[: len(rows.torsion), 0]
+    assert rows.torsion[:, own] @ rotor.rotation(0.17) == pytest.approx(turned)
+
+
+def test_an_unknown_rotor_is_named_with_those_there_are(machine: Machine) -> None:
+    with pytest.raises(CouplingError, match=r"'outptu'; there are: input, output"):
+        modal_rows(machine, "outptu")

@@ -1,0 +1,160 @@
+"""Shares of modes by hand: springs in series, dashpots, cross-coupled bearings, negative stiffness."""
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from coupling import (
+    Component,
+    ContactConnector,
+    CoupledSystem,
+    CouplingError,
+    LinearConnector,
+    Part,
+    contact_at,
+    coupled_modes,
+    linear_matrices,
+    mean_contact,
+    stability,
+    time_of_phase,
+)
+from coupling.gears import ToothContact, piecewise
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def mass(name: str, n: int = 1, kind: str = "rotor") -> Component:
+    """Free, n unit masses."""
+    return Component(name, (kind,) * n, *np.zeros((3, n, n)))
+
+
+def spring(name: str, directions: npt.ArrayLike, stiffness: npt.ArrayLike, damping: npt.ArrayLike) -> LinearConnector:
+    k, c = np.atleast_2d(np.array(stiffness, dtype=float)), np.atleast_2d(np.array(damping, dtype=float))
+    return LinearConnector(name, np.array(directions, dtype=float).reshape(-1, len(k)), k, c)
+
+
+def test_chain_of_two() -> None:
+    """Two unit masses, wall -k- one -k- two: the golden ratio's shapes, and energies from them."""
+    k, c = 7.0, 0.01
+    system = CoupledSystem(
+        (mass("one"), mass("two")),
+        (0.0, 0.0),
+        (spring("wall", [1.0, 0.0], k, 0.0), spring("between", [1.0, -1.0], k, c)),
+    )
+    modes = coupled_modes(system)
+    golden = 0.5 * (1.0 + np.sqrt(5.0))
+    # Undamped shapes (1, φ) and (φ, -1); the dashpot changes them in second order.
+    for i, shape in enumerate(np.array([[1.0, golden], [golden, -1.0]])):
+        square = shape**2 / (shape @ shape)
+        np.testing.assert_allclose(modes.shares.kinetic[i], square, atol=1e-4)
+        strain = k * np.array([shape[0] ** 2, (shape[0] - shape[1]) ** 2])
+        np.testing.assert_allclose(modes.shares.strain[i], [0.0, 0.0, *strain / strain.sum()], atol=1e-4)
+        omega = np.sqrt(strain.sum() / (shape @ shape))
+        ratio = 0.5 * c * (shape[0] - shape[1]) ** 2 / (shape @ shape) / omega
+        np.testing.assert_allclose(modes.shares.damping[i], [0.0, 0.0, 0.0, ratio], atol=1e-6)
+    names = [("component", "one"), ("component", "two"), ("connector", "wall"), ("connector", "between")]
+    assert modes.shares.parts == tuple(Part(kind, name) for kind, name in names)  # type: ignore[arg-type]
+    assert modes.where == ("two", "one")
+
+
+@pytest.mark.parametrize("cross", [40.0, -40.0])
+def test_cross_coupling_feeds(cross: float) -> None:
+    """A mass on k with cross terms ±κ and a dashpot c elsewhere: λ² + cλ + k = ±iκ, and who does what to it."""
+    k, c = 1e4, 0.2
+    system = CoupledSystem(
+        (mass("shaft", 2),),
+        (0.0,),
+        (
+            spring("seal", np.eye(2), [[k, cross], [-cross, k]], np.zeros((2, 2))),
+            spring("damper", np.eye(2), np.zeros((2, 2)), c * np.eye(2)),
+        ),
+    )
+    roots = np.concatenate([np.roots([1.0, c, k - 1j * s * cross]) for s in (1.0, -1.0)])
+    modes = coupled_modes(system)
+    expected = roots[roots.imag > 0.0]
+    np.testing.assert_allclose(np.sort_complex(modes.eigenvalues), np.sort_complex(expected), rtol=1e-11)
+    verdict = stability(modes)
+    assert not verdict.stable
+    (growing,) = verdict.growing
+    assert growing.eigenvalue == pytest.approx(complex(expected[np.argmax(expected.real)]), rel=1e-11)
+    (feeder,) = growing.feeders
+    assert feeder[0] == Part("connector", "seal")
+    # q circles, so by hand: σ (|λ|² + k) = -|λ|² c + ω κ.
+    value = growing.eigenvalue
+    share = -value.imag * abs(cross) / (abs(value) ** 2 + k) / abs(value)
+    assert feeder[1] == pytest.approx(share, rel=1e-9)
+    assert growing.damping_ratio == pytest.approx(modes.shares.damping[growing.mode].sum(), rel=1e-9)
+    assert growing.doubling_time == pytest.approx(np.log(2.0) / value.real)
+
+
+def test_negative_stiffness_runs_off() -> None:
+    """A magnet of -3 N/m beside a spring of 2: λ² + 0.4 λ - 1 = 0; the dashpot slows it, and feeds nothing."""
+    magnet, held = spring("magnet", [1.0], -3.0, 0.0), spring("spring", [1.0], 2.0, 0.4)
+    modes = coupled_modes(CoupledSystem((mass("rotor"),), (0.0,), (magnet, held)))
+    (growing,) = stability(modes).growing
+    assert growing.eigenvalue == pytest.approx(max(np.roots([1.0, 0.4, -1.0])), rel=1e-13)
+    assert growing.eigenvalue.imag == 0.0
+    assert [part.name for part, _ in growing.feeders] == ["magnet"]
+
+
+def test_lossless_is_stable_and_free_is_rigid() -> None:
+    modes = coupled_modes(CoupledSystem((mass("one"), mass("two")), (0.0, 0.0), (spring("k", [1.0, -1.0], 9.0, 0.0),)))
+    assert modes.kinds == ("rigid", "rotor")
+    assert stability(modes).stable
+    assert stability(modes).least_damped == 1
+    assert not modes.shares.strain[0].any()
+    assert not modes.shares.damping[0].any()
+
+
+def geared(load: float, backlash: float | None = None, relief: float = 0.0) -> CoupledSystem:
+    """Two inertias in torsion on base radii of 1: pairs of 100 N/m, one and a half of them on average."""
+    ratio = 1.5
+    law = ToothContact(
+        ratio,
+        piecewise.constant(100.0, ratio),
+        piecewise.polyline(np.array([0.0, ratio]), np.array([relief, 0.0])),
+        0.3,
+    )
+    drive = ContactConnector("mesh", np.array([1.0, 1.0]), law, 0.0, 10.0, np.empty((0, 3)))
+    contacts = [drive]
+    if backlash is not None:
+        contacts.append(
+            ContactConnector("back", -drive.direction, law, 0.0, -10.0, drive.errors, backlash, drives=False)
+        )
+    return CoupledSystem(
+        (mass("one", kind="torsion"), mass("two", kind="torsion")),
+        (1.0, -1.0),
+        contacts=tuple(contacts),
+        load=load * np.ones(2),
+    )
+
+
+def test_contact_of_an_instant() -> None:
+    """Two pairs in the first half of the period, one in the second; the mean of both; frequencies √(2 k)."""
+    system = geared(2.0, backlash=1.0)
+    np.testing.assert_allclose(mean_contact(system).stiffness, [150.0, 0.0])
+    for phase, stiffness in ((0.25, 200.0), (0.75, 100.0)):
+        state = contact_at(system, time_of_phase(system, phase))
+        np.testing.assert_allclose(state.stiffness, [stiffness, 0.0], rtol=1e-9)
+        np.testing.assert_allclose(state.damping, [0.3, 0.0])
+        modes = coupled_modes(system, state)
+        assert modes.kinds == ("rigid", "mesh")
+        assert modes.where[1] == "mesh"
+        assert abs(modes.eigenvalues[1]) == pytest.approx(np.sqrt(2.0 * stiffness), rel=1e-9)
+        assert modes.damping_ratios[1] == pytest.approx(0.3 / np.sqrt(2.0 * stiffness), rel=1e-9)
+
+
+def test_relief_that_the_load_does_not_close() -> None:
+    """At phase 0.25 pairs stand at 0.25 and 1.25 of their path; with 1 N and 0.06 m of relief one of them is open."""
+    state = contact_at(geared(1.0, relief=0.06), 0.025)
+    np.testing.assert_allclose(state.stiffness, [100.0], rtol=1e-9)
+    np.testing.assert_allclose(contact_at(geared(20.0, relief=0.06), 0.025).stiffness, [200.0], rtol=1e-9)
+
+
+def test_states_and_phases_that_do_not_fit() -> None:
+    system = geared(1.0)
+    assert time_of_phase(system, 0.3) == pytest.approx(0.03)
+    with pytest.raises(CouplingError, match="contact number 1 of 1"):
+        time_of_phase(system, 0.3, contact=1)
+    with pytest.raises(CouplingError, match="expected \\(1,\\) both"):
+        linear_matrices(system, mean_contact(geared(1.0, backlash=1.0)))

@@ -1,0 +1,150 @@
+"""Branches of periodic motions over speed: folds, jumps, period doubling, and a linear machine's own curve."""
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.integrate import solve_ivp
+
+from coupling import (
+    Component,
+    ContactConnector,
+    CoupledSystem,
+    CouplingError,
+    HarmonicLoad,
+    TransientOutputs,
+    TransientSettings,
+    simulate,
+)
+from coupling.gears import ToothContact, piecewise
+from coupling.periodic import periodic_response, response_curve
+
+FloatArray = npt.NDArray[np.float64]
+
+ROW = np.ones((1, 1))
+
+
+def waving(depth: float) -> ToothContact:
+    stiffness = piecewise.tabulated(lambda s: 1.0 + depth * np.cos(2.0 * np.pi * s), 1.0, tolerance=1e-7)
+    return ToothContact(1.0, stiffness, piecewise.constant(0.0, 1.0))
+
+
+DEEP, SHALLOW = waving(0.3), waving(0.15)
+
+
+def one_mass(speed: float, contact: ToothContact, damping: float) -> CoupledSystem:
+    mass = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 2.0 * damping), np.zeros((1, 1)))
+    teeth = ContactConnector("teeth", np.ones(1), contact, 0.0, speed / (2.0 * np.pi), np.empty((0, 3)))
+    return CoupledSystem((mass,), (0.0,), contacts=(teeth,), load=np.ones(1))
+
+
+def deep(speed: float) -> CoupledSystem:
+    return one_mass(speed, DEEP, 0.05)
+
+
+def test_the_branch_turns_at_two_folds() -> None:
+    """Contact loss bends the resonance to lower speeds: three motions between the folds, the middle one unstable."""
+    up = response_curve(deep, 0.6, 1.2, points=50)
+    assert [event.kind for event in up.bifurcations] == ["fold", "fold"]
+    high, low = up.folds
+    assert low.speed < high.speed
+    assert up.speeds[0] == 0.6
+    assert up.speeds[-1] == pytest.approx(1.2, rel=1e-11)
+    # A motion has one multiplier of 1 at its fold.
+    for fold in up.folds:
+        values = up.responses[fold.index].floquet.values
+        assert np.abs(values - 1.0).min() < 1e-4
+    assert up.stable[: high.index].all()
+    assert not up.stable[high.index + 1 : low.index].any()
+    assert up.stable[low.index + 1 :].all()
+    three = up.at(0.78)
+    assert [motion.stable for motion in three] == [True, False, True]
+    swings = [float(motion.rms_compression[0]) for motion in three]
+    assert swings == sorted(swings)
+    assert len(up.at(0.9)) == 1
+    # The other way round the same branch has the same folds.
+    down = response_curve(deep, 1.2, 0.6, points=60)
+    assert [fold.speed for fold in down.folds] == pytest.approx([low.speed, high.speed], abs=1e-7)
+    with pytest.raises(CouplingError, match="was followed from"):
+        up.at(2.0)
+
+
+def test_a_machine_jumps_where_the_branch_turns() -> None:
+    """The transient, let go on either side of the lower fold at the motion that turns there."""
+    curve = response_curve(deep, 0.9, 0.6, points=50, most_points=200)
+    fold = curve.folds[0]
+    at_fold = curve.responses[fold.index]
+    lost = []
+    for part in (0.995, 1.005):
+        period = 2.0 * np.pi / (part * fold.speed)
+        settings = TransientSettings(120.0 * period, 100.0 * period, period / 40.0, period / 200.0, tolerance=1.0)
+        start = (at_fold.displacement, at_fold.velocity)
+        result = simulate(deep(part * fold.speed), settings, TransientOutputs(ROW, ROW, ROW), initial=start)
+        lost.append(result.contact_loss[0])
+    assert lost[0] == 0.0
+    assert lost[1] == pytest.approx(at_fold.contact_loss[0], abs=0.05)
+    assert lost[1] > 0.4
+
+
+def test_period_doubling_of_mathieu() -> None:
+    """Closed teeth near twice their natural frequency: stability is lost and won where Hill's determinant says."""
+    depth, damping = 0.15, 0.02
+    curve = response_curve(lambda speed: one_mass(speed, SHALLOW, damping), 1.7, 2.4, points=30)
+    assert [event.kind for event in curve.bifurcations] == ["period doubling", "period doubling"]
+    for event in curve.bifurcations:
+        period = 2.0 * np.pi / event.speed
+
+        def rates(time: float, state: FloatArray, speed: float = event.speed) -> FloatArray:
+            x, v = state.reshape(2, 2)
+            return np.concatenate([v, -2.0 * damping * v - (1.0 + depth * np.cos(speed * time)) * x])
+
+        end = solve_ivp(rates, (0.0, period), np.eye(2).ravel(), rtol=1e-10, atol=1e-12).y[:, -1]
+        values = np.linalg.eigvals(end.reshape(2, 2))
+        assert np.abs(values + 1.0).min() < 1e-5
+    inside = slice(curve.bifurcations[0].index + 1, curve.bifurcations[1].index)
+    assert not curve.stable[inside].any()
+    assert curve.responses[inside.start].floquet.leaving == "period doubling"
+
+
+def test_double_period_after_period_doubling() -> None:
+    """Within the tongue the teeth part, in a motion of twice the period that the transient settles to."""
+    system = one_mass(2.0, SHALLOW, 0.02)
+    once = periodic_response(system)
+    assert not once.stable
+    assert once.floquet.leaving == "period doubling"
+    period = once.period
+    settings = TransientSettings(400.5 * period, 398.0 * period, period / 40.0, period / 400.0, tolerance=1.0)
+    start = (1.1 * once.displacement, once.velocity)
+    result = simulate(system, settings, TransientOutputs(ROW, ROW, ROW), initial=start)
+    twice = periodic_response(system, period=2.0 * period, start=(result.displacement[0], result.velocity[0]))
+    assert twice.stable
+    assert twice.contact_loss[0] > 0.0
+    record = twice.record(TransientOutputs(ROW, ROW, ROW), 80)
+    np.testing.assert_allclose(record.displacement, result.displacement[:80], atol=1e-3)
+    assert twice.rms_compression[0] > 2.0 * once.rms_compression[0]
+
+
+def test_a_rotor_with_unbalance_follows_its_receptance() -> None:
+    """Two planes with gyroscopic coupling; forces with the square of the speed."""
+    stiffness, damping = np.diag([1.0, 1.3]), 0.05 * np.eye(2)
+    gyroscopic = np.array([[0.0, 0.4], [-0.4, 0.0]])
+    part = Component("rotor", ("rotor", "rotor"), stiffness, damping, gyroscopic)
+
+    def system_at(speed: float) -> CoupledSystem:
+        load = HarmonicLoad(speed, 0.1 * speed**2 * np.array([1.0, -1.0j]))
+        return CoupledSystem((part,), (speed,), harmonic_loads=(load,))
+
+    curve = response_curve(system_at, 0.4, 2.2, points=40)
+    assert curve.bifurcations == ()
+    assert curve.stable.all()
+    assert np.all(np.diff(curve.speeds) > 0.0)
+    assert len(curve.speeds) >= 40
+    for speed, response in zip(curve.speeds, curve.responses, strict=True):
+        matrix = stiffness + 1j * speed * (damping + speed * gyroscopic) - speed**2 * np.eye(2)
+        exact = np.linalg.solve(matrix, 0.1 * speed**2 * np.array([1.0, -1.0j]))
+        np.testing.assert_allclose(response.displacement, exact.real, atol=1e-9 * np.abs(exact).max())
+        np.testing.assert_allclose(response.velocity, -speed * exact.imag, atol=1e-9 * np.abs(exact).max())
+
+
+def test_wrong_ranges() -> None:
+    with pytest.raises(CouplingError, match="expected a range"):
+        response_curve(deep, 0.6, 0.6)

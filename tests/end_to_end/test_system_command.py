@@ -1,0 +1,92 @@
+"""The linear analyses through the command: shares, stability, diagram over speed, transmissibility, files."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+# Coarser than the case's own mesh: here the housing only has to be one.
+COARSE = ("--set", "housing.box.mesh_size='50 mm'", "--set", "housing.frequency_limit='2 kHz'")
+SWEEP = (*COARSE, "--set", "sweep.speed={ from = '1000 rpm', to = '5000 rpm', step = '1000 rpm' }")
+
+
+def test_shares_and_verdict(answer: Any) -> None:
+    document = answer("system", "small-gearbox", *COARSE, "--json", "-q").document
+    assert document["certificate"]["complete"]
+    assert document["certificate"]["max_residual"] < 1e-9
+    assert document["stability"]["stable"]
+    assert "campbell" not in document
+    assert document["superposition_error"] < 1e-8
+    for mode in document["modes"]:
+        assert sum(mode["kinetic_energy"].values()) == pytest.approx(1.0)
+        damping = sum(sum(group.values()) for group in mode["damping"].values())
+        assert damping == pytest.approx(mode["damping_ratio"], abs=1e-9)
+        if mode["kind"] != "rigid":
+            assert sum(sum(group.values()) for group in mode["strain_energy"].values()) == pytest.approx(1.0)
+    assert set(document["modes"][5]["strain_energy"]["bearings"]) == {
+        f"{shaft}-{end}" for shaft in ("input", "output") for end in ("back", "front")
+    }
+    (response,) = document["transmissibility"]
+    assert set(response["sensor_acceleration_m_per_s2"]) == {"top", "right wall"}
+    assert response["per"] == "m"
+
+
+def test_over_speed_with_files(gearwhine: Any, tmp_path: Path) -> None:
+    outcome = gearwhine("system", "small-gearbox", *SWEEP, "-o", "out", "--json", "-q")
+    assert outcome.code == 0
+    document = outcome.document
+    assert {"system-campbell.png", "transmissibility-pinion-wheel.png", "results.nc"} <= set(document["files"])
+    diagram = document["campbell"]
+    np.testing.assert_allclose(diagram["speeds_rpm"], [1000, 2000, 3000, 4000, 5000])
+    assert diagram["crossings"]
+    assert not diagram["unsettled"]
+    for one in diagram["crossings"]:
+        assert one["frequency_hz"] == pytest.approx(one["order"] * abs(one["speed_rpm"]) / 60.0, rel=1e-6)
+        assert 1000.0 <= one["speed_rpm"] <= 5000.0
+    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as data:
+        assert data["system_campbell_frequency"].shape == (5, len(diagram["branches"]))
+        assert data["system_campbell_frequency"].attrs["units"] == "Hz"
+        assert data["system_strain_share"].sum("machine_part").values[1] == pytest.approx(1.0)
+        assert data["transmissibility_sensor_acceleration"].attrs["units"] == "m s-2 m-1"
+        peak = data["transmissibility_sensor_acceleration"].sel(transmissibility_sensor="top").max().item()
+        largest = document["transmissibility"][0]["sensor_acceleration_m_per_s2"]["top"][0]["amplitude"]
+        assert peak == pytest.approx(largest)
+        assert data["unbalance_response_bearing_force"].dims[-2:] == ("unbalance_speed", "plane")
+
+
+def test_contact_of_an_instant(gearwhine: Any) -> None:
+    """One pair in contact at most phases of a spur pair, two at the others: softer and stiffer mesh modes."""
+    meshes = []
+    for phase in ("0.2", "0.8"):
+        document = gearwhine("system", "spur-pair", "--mesh-phase", phase, "--json", "-q").document
+        assert document["mesh_phase"] == float(phase)
+        shares = [sum(mode["strain_energy"]["gear_meshes"].values()) for mode in document["modes"]]
+        meshes.append(document["modes"][int(np.argmax(shares))]["frequency_hz"])
+    assert meshes[0] > 1.05 * meshes[1]
+
+
+def test_what_cannot_be_asked(gearwhine: Any) -> None:
+    refused = gearwhine("system", "friswell-rotor", "--mesh-phase", "0.5", "-q")
+    assert refused.code == 2
+    assert "[[gear_pair]]" in refused.err
+    refused = gearwhine("system", "spur-pair", "--mesh-phase", "1.5", "-q")
+    assert refused.code == 2
+    assert "0 to 1" in refused.err
+    still = gearwhine("system", "friswell-rotor", "--campbell", "--set", "operation.speed=0", "-q")
+    assert still.code == 2
+    assert "a machine that turns" in still.err
+
+
+def test_an_unstable_machine_says_what_feeds_it(gearwhine: Any) -> None:
+    """Friswell's rotor with cross-coupled bearings and no damping but the shaft's own."""
+    change = "bearing.0.stiffness={ xx = '1e6 N/m', yy = '1e6 N/m', xy = '5e4 N/m', yx = '-5e4 N/m' }"
+    outcome = gearwhine("system", "friswell-rotor", "--set", change, "-q")
+    assert outcome.code == 0
+    assert "UNSTABLE" in outcome.out
+    document = gearwhine("system", "friswell-rotor", "--set", change, "--json", "-q").document
+    growing = document["stability"]["growing"]
+    names = {feeder["name"] for one in growing for feeder in one["fed_by"]}
+    assert names == {"left"}
+    assert all(one["damping_ratio"] < 0.0 < one["doubling_time_s"] for one in growing)

@@ -1,0 +1,224 @@
+"""Speed and torque over time, from the case to the motion: run-up, free speed, ripple, tables."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import pytest
+
+import coupling as room
+from gearwhine.case import Case, CaseError, dump_case, parse_case
+from gearwhine.screen.case import show_check
+from gearwhine.stages.driving import driving, train_inertia
+from gearwhine.stages.gears import solve_gears
+from gearwhine.stages.machine import build_machine
+from gearwhine.stages.summary import check_document
+from gearwhine.stages.transient import SolvedTransient, solve_transient, transient_document
+
+RPM = math.pi / 30.0
+LINE = {"speed": ["0 rpm", "3000 rpm"], "torque": ["90 N*m", "0 N*m"]}
+FREE = {"from": "600 rpm", "time": "20 ms"}
+
+
+def spur_pair(transient: dict[str, Any], **operation: Any) -> dict[str, Any]:
+    """The bundled pair, 28 on 28 teeth, run otherwise; without its unbalance and provenance."""
+    document = tomllib.loads(files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8"))
+    del document["provenance"], document["rotor"][0]["unbalance"]
+    document["gear_pair"][0]["stiffness"] = {"model": "constant", "value": "2e8 N/m"}
+    for bearing in document["bearing"]:
+        bearing["damping"] = {"xx": "5e4 N*s/m", "yy": "5e4 N*s/m"}
+    return document | {"transient": transient, "operation": document["operation"] | operation}
+
+
+def run(case: Case) -> SolvedTransient:
+    machine = build_machine(case, None, solve_gears(case))
+    # Nominal mesh frequencies matter to sampling alone.
+    return solve_transient(case, machine, (500.0,))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        spur_pair({"run": {"from": "600 rpm", "to": "6000 rpm", "time": "10 s"}}),
+        spur_pair({"run": {"times": [0, 1, 2], "speeds": ["1 rpm", "20 rpm", "3 rpm"]}, "discard": 0.1}),
+        spur_pair({"run": FREE}, motor=LINE, load={"speed": [0, 400], "torque": [0, 30]}),
+        spur_pair(
+            {"revolutions": 4},
+            over_time={"time": [0, "1 s"], "torque": ["0 N*m", "-5 N*m"]},
+            ripple=[{"amplitude": "2 N*m", "order": 2, "phase": "30 deg"}, {"amplitude": 1, "frequency": "50 Hz"}],
+        ),
+        spur_pair(
+            {"revolutions": 4},
+            output=[
+                {
+                    "rotor": "output",
+                    "torque": "71.77 N*m",
+                    "over_time": {"time": [0], "torque": [0]},
+                    "ripple": [{"amplitude": 1, "order": 0.5}],
+                }
+            ],
+        ),
+    ],
+)
+def test_written_cases_load_back_equal(given: dict[str, Any]) -> None:
+    case = parse_case(given)
+    assert parse_case(tomllib.loads(dump_case(case))) == case
+    show_check(check_document(case))
+
+
+WRONG: dict[str, tuple[dict[str, Any], str]] = {
+    "nothing": (spur_pair({}), "transient.revolutions: expected a plain number above 0 of revolutions, or a 'run'"),
+    "both": (
+        spur_pair({"revolutions": 3, "run": {"from": 1, "to": 2, "time": 1}}),
+        "transient.revolutions: expected no number of revolutions beside a 'run'",
+    ),
+    "no start": (spur_pair({"run": {"to": 2, "time": 1}}), "transient.run.from: expected a speed to start from"),
+    "no time": (spur_pair({"run": {"from": 2, "to": 3}}), "transient.run.time: expected a time, or a table"),
+    "standing": (
+        spur_pair({"run": {"from": 0, "to": 0, "time": 1}}),
+        "transient.run.to: expected a speed other than zero at one end",
+    ),
+    "table with an end": (
+        spur_pair({"run": {"to": 2, "times": [0, 1], "speeds": [1, 2]}}),
+        "transient.run.to: expected no such key beside 'times' and 'speeds'",
+    ),
+    "uneven table": (
+        spur_pair({"run": {"times": [0, 1], "speeds": [1, 2, 3]}}),
+        "transient.run.speeds: expected one value for each entry of 'times', 2 (there are 3)",
+    ),
+    "later start": (
+        spur_pair({"run": {"times": [1, 2], "speeds": [1, 2]}}),
+        "transient.run.times: expected two times or more, the first of them 0 s",
+    ),
+    "falling times": (
+        spur_pair({"run": {"times": [0, 2, 2], "speeds": [1, 2, 3]}}),
+        "transient.run.times: expected entries that ascend",
+    ),
+    "no motor": (spur_pair({"run": FREE}), "operation.motor: expected a torque over speed, which drives the free"),
+    "no free run": (
+        spur_pair({"revolutions": 3}, motor=LINE),
+        "operation.motor: expected a [transient.run] without 'to', whose speed is free to follow it",
+    ),
+    "ripple of no pace": (
+        spur_pair({"revolutions": 3}, ripple=[{"amplitude": 3}]),
+        "operation.ripple[0].order: expected either an 'order' of the shaft's rotation or a 'frequency'",
+    ),
+    "time as a length": (
+        spur_pair({"run": {"from": 1, "to": 2, "time": "1 m"}}),
+        "transient.run.time: expected a time such as '10 s', got '1 m' (length)",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_runs_that_make_no_sense(name: str) -> None:
+    document, message = WRONG[name]
+    with pytest.raises(CaseError) as caught:
+        parse_case(document)
+    assert message in str(caught.value)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_bearing_table_must_reach_as_far_as_the_run() -> None:
+    document = spur_pair({"run": {"from": "600 rpm", "to": "6000 rpm", "time": "1 s"}})
+    document["bearing"][0] |= {"speeds": ["1000 rpm", "7000 rpm"], "stiffness": {"xx": [1e8, 2e8], "yy": [1e8, 2e8]}}
+    with pytest.raises(CaseError, match="600 to 6000 rpm"):
+        parse_case(document)
+
+
+def test_a_run_at_the_nominal_speed_is_the_steady_one() -> None:
+    """The same to the rounding of its duration."""
+    seconds = 4.0 * 60.0 / 5500.0
+    steady = run(parse_case(spur_pair({"revolutions": 4, "discard": 2})))
+    level = {"run": {"from": "5500 rpm", "to": "5500 rpm", "time": seconds}, "discard": 2}
+    varied = run(parse_case(spur_pair(level)))
+    for name, force in steady.histories.mesh_force.items():
+        np.testing.assert_allclose(varied.histories.mesh_force[name], force, rtol=1e-12)
+
+
+@pytest.mark.parametrize("speed", ["1000 rpm", "-1000 rpm"])
+def test_run_up_torque(speed: str) -> None:
+    """Mean mesh force: (T + J₂ dω/dt)/R, J₂ that of the far shaft."""
+    given = {"run": {"from": "500 rpm", "to": "1500 rpm", "time": "0.2 s"}, "discard": 1, "points_per_revolution": 400}
+    case = parse_case(spur_pair(given, speed=speed, torque="20 N*m"))
+    solved = run(case)
+    far = float(np.sum(solved.machine.rotors[1].turning ** 2))
+    radius = solved.machine.meshes[0].geometry.driver.base_radius
+    expected = (20.0 + far * 1000.0 * RPM / 0.2) / radius
+    assert solved.result.mean_force[0] == pytest.approx(expected, rel=1e-3)
+    document = transient_document(case, solved)["run"]
+    assert (abs(document["from_rpm"]), abs(document["to_rpm"])) == pytest.approx((500.0, 1500.0))
+    assert document["revolutions"] == pytest.approx(1000.0 / 60.0 * 0.2)
+
+
+def linear(first: float, last: float, at: float) -> Any:
+    return lambda speed: first + (last - first) * speed / at
+
+
+def test_free_speed_approaches_its_end_exponentially() -> None:
+    """J ω' = T₀(1 - ω/ω₀) - T₁ ω/ω₀: ω = ω₁ (1 - e^{-t/τ}), τ = J ω₀/(T₀ + T₁), ω₁ = ω₀ T₀/(T₀ + T₁)."""
+    inertia, top, motor, load = 0.3, 300.0, 50.0, 20.0
+    turning = room.free_speed(
+        linear(motor, 0.0, top), linear(0.0, load, top), inertia, start=0.0, duration=5.0, nominal=200.0
+    )
+    end, constant = top * motor / (motor + load), inertia * top / (motor + load)
+    expected = end * (1.0 - np.exp(-turning.times / constant))
+    np.testing.assert_allclose(200.0 * turning.rates, expected, atol=1e-7 * end)
+
+
+def test_machines_that_do_not_run_say_so() -> None:
+    with pytest.raises(
+        room.TransientError, match=r"cannot start: at rest its motor gives 5 N m against a load of 8 N m"
+    ):
+        room.free_speed(linear(5.0, 0.0, 100.0), lambda _: 8.0, 0.1, start=0.0, duration=1.0, nominal=100.0)
+    # ω' = -(3 + 5 ω/100)/0.1 from 50 rad/s: at rest after (100/5) 0.1 ln(1 + 5·50/(3·100)).
+    when = 2.0 * math.log(1.0 + 2.5 / 3.0)
+    with pytest.raises(room.TransientError, match=r"stalls at t = (\S+) s: it started at 477.465 rpm") as caught:
+        room.free_speed(linear(5.0, 0.0, 100.0), lambda _: 8.0, 0.1, start=50.0, duration=10.0, nominal=100.0)
+    assert float(str(caught.value).split("t = ")[1].split(" s")[0]) == pytest.approx(when, rel=1e-5)
+
+
+def test_free_run_of_a_geared_machine() -> None:
+    """Motor and load against the train's inertia, and the mean mesh force that the far shaft asks for."""
+    load = {"speed": ["0 rpm", "3000 rpm"], "torque": ["10 N*m", "40 N*m"]}
+    given = {"run": {"from": "600 rpm", "time": "30 ms"}, "points_per_revolution": 400}
+    case = parse_case(spur_pair(given, speed="1500 rpm", motor=LINE, load=load))
+    solved = run(case)
+    assert solved.turning is not None
+    # 90 - 90 ω/ω₀ - 10 - 30 ω/ω₀ about its end.
+    inertia, top = 2.0 * float(np.sum(solved.machine.rotors[0].turning ** 2)), 3000.0 * RPM
+    assert train_inertia(case, solved.machine.rotors) == pytest.approx(inertia, rel=1e-9)
+    end, constant = top * 80.0 / 120.0, inertia * top / 120.0
+    speed = end + (600.0 * RPM - end) * np.exp(-solved.turning.times / constant)
+    np.testing.assert_allclose(1500.0 * RPM * solved.turning.rates, speed, rtol=1e-6)
+    # From rest relative to the nominal rotation the mean over the run: impulse over time.
+    gained, mean_speed = speed[-1] - speed[0], np.trapezoid(speed, solved.turning.times) / 0.03
+    far = 0.5 * inertia
+    expected = (10.0 + 30.0 * mean_speed / top + far * gained / 0.03) / solved.machine.meshes[
+        0
+    ].geometry.driver.base_radius
+    assert solved.result.mean_force[0] == pytest.approx(expected, rel=2e-3)
+
+
+def test_torques_of_a_case() -> None:
+    """Outputs take what is added to the input in their proportions; everything in the sense of its torque."""
+    document = spur_pair(
+        {"revolutions": 4},
+        over_time={"time": [0, 1], "torque": [0, 6]},
+        ripple=[{"amplitude": 2, "order": 3}, {"amplitude": 1, "frequency": "50 Hz"}],
+    )
+    rotors = build_machine(parse_case(document), None, solve_gears(parse_case(document))).rotors
+    steady, geared, added, taken, order, frequency = driving(parse_case(document), rotors).torques
+    assert isinstance(steady, room.Torque)
+    assert isinstance(geared, room.Torque)
+    assert (steady.value, geared.value) == pytest.approx((71.77, 71.77))
+    assert isinstance(added, room.TorqueHistory)
+    assert isinstance(taken, room.TorqueHistory)
+    # Both turn counter to each other, so that drive and load have one sign about z.
+    np.testing.assert_allclose([added.values, taken.values], [[0.0, 6.0], [0.0, 6.0]])
+    assert order == room.TorqueRipple("input", 0.0, 2.0, 0.0, order=3.0)
+    assert frequency == room.TorqueRipple("input", 0.0, 1.0, 0.0, frequency=100.0 * math.pi)

@@ -1,0 +1,80 @@
+"""Pictures of signatures: what they show of signals whose content is known."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coupling import Turning
+from coupling.signature import LineName, order_map, order_resampled, spectrogram
+from gearwhine.figures import draw_order_slices, draw_run_up_waterfall, save
+from gearwhine.figures.contributions import draw_contributions
+from gearwhine.figures.modal_coordinates import draw_modal_coordinates
+from gearwhine.figures.orbits import draw_orbits
+from gearwhine.stages.signature import Contribution, TracedLine
+
+
+def test_run_up(tmp_path: Path) -> None:
+    """Orders 1 and 28 through a resonance at 600 Hz: the slice of the latter is highest at 600/28 turns a second."""
+    interval = 1e-4
+    times = interval * np.arange(40_000)
+    turning = Turning(np.array([0.0, 4.0]), np.array([0.5, 1.5]))
+    turned, rates, _ = turning.at(times)
+    hertz = 28.0 * 20.0 * rates
+    swell = 1.0 / np.abs(600.0**2 - hertz**2 + 0.06j * 600.0 * hertz) * 600.0**2
+    signal = swell * np.cos(2 * np.pi * 28.0 * 20.0 * turned) + 0.2 * np.cos(2 * np.pi * 20.0 * turned)
+    orders = order_map(order_resampled(signal, times, turning, 20.0), turns=2)
+    figure = draw_order_slices("Run-up", orders, {"mesh": 28.0, "shaft": 1.0}, unit="m/s²")
+    mesh, shaft = figure.axes[0].lines
+    top = np.asarray(mesh.get_xdata())[np.argmax(mesh.get_ydata())]
+    assert top == pytest.approx(60.0 * 600.0 / 28.0, rel=0.03)
+    assert np.asarray(shaft.get_ydata()) == pytest.approx(0.2, rel=0.1)
+    save(figure, tmp_path / "orders.png")
+    spectra = spectrogram(signal, interval, 1000, 2000)
+    speeds = 60.0 * 20.0 * turning.at(spectra.times)[1]
+    waterfall = draw_run_up_waterfall(
+        "Run-up", spectra, speeds, unit="m/s²", limit=1200.0, mesh_orders=[28.0], housing_frequencies=np.array([600.0])
+    )
+    save(waterfall, tmp_path / "waterfall.png")
+    assert any(text.get_text() == "1×" for text in waterfall.axes[0].texts)
+    assert waterfall.axes[0].get_xlim()[1] == pytest.approx(1200.0)
+
+
+def test_orbits_stand_where_the_shaft_rests(tmp_path: Path) -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 200, endpoint=False)
+    circle = 1e-6 * np.column_stack([30.0 + 2.0 * np.cos(angle), -10.0 + np.sin(angle), angle])
+    figure = draw_orbits("$x", {"pinion": circle, "wheel": -circle})
+    above, _, below, _ = figure.axes
+    assert np.asarray(above.lines[-1].get_xdata()).mean() == pytest.approx(30.0)
+    assert np.abs(np.asarray(below.lines[0].get_xdata())).max() == pytest.approx(2.0)
+    assert "d.c. (30, -10) µm\na.c. ±(2, 1) µm" in [text.get_text() for text in above.texts]
+    save(figure, tmp_path / "orbits.png")
+
+
+def test_bars_are_the_shares(tmp_path: Path) -> None:
+    line = TracedLine(
+        frequency=2567.0,
+        value=2.0,
+        named=LineName("mesh", "1× pinion -> wheel", 28.0, None),
+        modes=tuple(Contribution(f"housing mode {i}", 2.0 * share, share, i) for i, share in enumerate([1.4, -0.4], 1)),
+        bearings=(Contribution("front", 1.8, 0.9),),
+        free=Contribution("free vibration", 0.2, 0.1),
+    )
+    figure = draw_contributions("$1", {"top": (line,)})
+    widths = [[bar.get_width() for bar in axes.patches] for axes in figure.axes]
+    assert widths[0] == pytest.approx([140.0, -40.0])
+    assert widths[1] == pytest.approx([90.0, 10.0])
+    assert [text.get_text() for text in figure.axes[0].texts] == ["140", "-40"]
+    save(figure, tmp_path / "contributions.png")
+
+
+def test_modal_coordinates_are_told_with_their_fixed_part(tmp_path: Path) -> None:
+    times = 1e-3 * np.arange(1000)
+    wave = np.cos(2 * np.pi * 50.0 * times)
+    named = {"input: torsion 1": 3.0 + np.sqrt(2.0) * wave, "input: torsion 2": 0.0 * wave, "input: bending 1, x": wave}
+    figure = draw_modal_coordinates("A case", times, named, 200.0, "uniform")
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["input: torsion", "", "input: bending, x", ""]
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    assert legend.get_texts()[0].get_text() == "mode 1: d.c. 3.00e+00, a.c. 1.0e+00 rms"
+    save(figure, tmp_path / "modal.png")

@@ -1,0 +1,160 @@
+"""Points of a sweep: what they are known again by, what a machine takes of a housing, and what is gathered."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
+from gearwhine.figures.waterfall import draw_waterfall
+from gearwhine.stages.gears import solve_gears
+from gearwhine.stages.housing import solve_housing
+from gearwhine.stages.machine import build_machine, housing_in_machine
+from gearwhine.stages.transient import solve_transient
+from gearwhine.sweep import PointFailure, PointResult, SweptPoint, gathered, sweep_points
+from gearwhine.sweep.point_files import read_point, stale_points, write_point
+from gearwhine.sweep.points import code_digest
+from gearwhine.sweep.solution import solve_point
+
+COARSE = ("housing.box.mesh_size=50 mm", "transient.revolutions=2", "transient.discard=1", "transient.tolerance=1e-3")
+
+
+def points_of(*settings: str, over: tuple[str, ...] = ("operation.speed=3000 rpm,6000 rpm",)):
+    case = load_case("small-gearbox", settings).case
+    return sweep_points("small-gearbox", settings, swept_keys(case, over))
+
+
+def test_a_point_is_known_again_by_what_bears_on_it() -> None:
+    """Titles, measured modes and other points do not; the torque does, and each part of the case its own modes."""
+    slow, fast = points_of()
+    assert slow.key != fast.key
+    assert (slow.modes_key, slow.housing_key) == (fast.modes_key, fast.housing_key)
+    assert [point.key for point in points_of("title=Another", "measured=")] == [slow.key, fast.key]
+    grown = points_of(over=("operation.speed=3000 rpm,4000 rpm,6000 rpm",))
+    assert [grown[0].file, grown[2].file] == [slow.file, fast.file]
+    assert points_of("operation.torque=50 N*m")[0].key != slow.key
+    damped = points_of("housing.damping_ratio=0.02")[0]
+    assert damped.modes_key == slow.modes_key
+    assert damped.housing_key != slow.housing_key
+    assert points_of("housing.box.wall=11 mm")[0].modes_key != slow.modes_key
+
+
+def test_a_grid_goes_through_its_last_key_first() -> None:
+    points = points_of(over=("operation.speed=3000 rpm,6000 rpm", "operation.torque=10 N*m:30 N*m:3"))
+    assert [point.place for point in points] == [(i, j) for i in range(2) for j in range(3)]
+    assert [point.case.operation.torque for point in points[:3]] == [10.0, 20.0, 30.0]  # type: ignore[union-attr]
+    assert len({point.file for point in points}) == 6
+
+
+def test_what_is_wrong_at_several_points_is_said_together() -> None:
+    with pytest.raises(CaseError) as caught:
+        points_of(over=("gear.pinion.teeth=1,28", "operation.torque=ten,71"))
+    assert len(caught.value.problems) == 2
+    assert all(str(problem).startswith("sweep, ") for problem in caught.value.problems)
+
+
+@pytest.fixture(scope="module")
+def solved() -> tuple:
+    (point, _) = points_of(*COARSE)
+    housing = solve_housing(point.case)
+    result = solve_point(point.case, housing_in_machine(point.case, housing), code_digest())
+    assert isinstance(result, PointResult)
+    return point, housing, result
+
+
+def test_a_point_is_the_main_job_bit_for_bit(solved: tuple) -> None:
+    point, housing, result = solved
+    machine = build_machine(point.case, housing, solve_gears(point.case))
+    whole = solve_transient(point.case, machine, mesh_frequencies(point.case), housing=housing)
+    for name, spectrum in whole.sensor_spectra.items():
+        np.testing.assert_array_equal(result.sensor_spectra[name], spectrum.amplitude[: result.orders.size])
+    # Orders are cycles for each turn: one turn is recorded, so they are whole numbers.
+    assert result.orders == pytest.approx(np.arange(result.orders.size), abs=1e-9)
+
+
+def test_a_point_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> None:
+    point, _, result = solved
+    write_point(tmp_path, tmp_path, point, result)
+    back = read_point(tmp_path, point)
+    assert isinstance(back, PointResult)
+    assert back.document == result.document
+    for group in ("sensor_spectra", "force_spectra", "bearing_force_mean", "bearing_force_rms"):
+        assert list(getattr(back, group)) == list(getattr(result, group))
+        for name, values in getattr(result, group).items():
+            np.testing.assert_array_equal(getattr(back, group)[name], values)
+    np.testing.assert_array_equal(back.orders, result.orders)
+    # Another content under the same name is not this point, nor is half a file.
+    assert read_point(tmp_path, replace(point, key="another")) is None
+    file = tmp_path / "points" / point.file
+    file.write_bytes(file.read_bytes()[:100])
+    assert read_point(tmp_path, point) is None
+    assert stale_points(tmp_path, (point,)) == []
+    assert stale_points(tmp_path, ()) == [file]
+
+
+def test_a_failure_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> None:
+    failure = PointFailure("it diverged", "a traceback")
+    write_point(tmp_path, tmp_path, solved[0], failure)
+    assert read_point(tmp_path, solved[0]) == failure
+
+
+def test_a_worker_with_other_code_solves_nothing(solved: tuple) -> None:
+    failure = solve_point(solved[0].case, None, "of another version")
+    assert isinstance(failure, PointFailure)
+    assert "another version of gearwhine" in failure.message
+    assert failure.traceback == ""
+
+
+def test_spectra_of_unlike_lengths_meet_on_their_orders(solved: tuple) -> None:
+    """Two turns recorded give lines at every half order: both stand on the finer axis, the coarser with gaps."""
+    point, _, result = solved
+    case = load_case("small-gearbox", COARSE).case
+    keys = swept_keys(case, ["transient.discard=1,0"])
+    finer = replace(
+        result,
+        orders=np.arange(5) / 2.0,
+        sensor_spectra={name: np.arange(5.0) for name in result.sensor_spectra},
+        force_spectra={name: np.arange(5.0) for name in result.force_spectra},
+    )
+    swept = [
+        SweptPoint(replace(point, place=(0,)), result, False),
+        SweptPoint(replace(point, place=(1,)), finer, False),
+    ]
+    data = gathered(case, keys, swept)
+    assert data.order.values[:5].tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
+    top = data.sensor_spectrum.sel(sensor="top")
+    np.testing.assert_array_equal(top[1, :5], np.arange(5.0))
+    np.testing.assert_array_equal(top[0, [0, 2, 4]], result.sensor_spectra["top"][:3])
+    assert np.isnan(top[0, [1, 3]]).all()
+    assert np.isnan(top[1, 5:]).all()
+
+
+def test_words_are_swept_too(solved: tuple) -> None:
+    point, _, result = solved
+    keys = swept_keys(point.case, ["rotor.input.mass=lumped,distributed"])
+    swept = [
+        SweptPoint(replace(point, place=(0,)), result, False),
+        SweptPoint(replace(point, place=(1,)), PointFailure("no"), False),
+    ]
+    data = gathered(point.case, keys, swept)
+    assert data.rotor_input_mass.values.tolist() == ["lumped", "distributed"]
+    assert data.done.values.tolist() == [True, False]
+    assert data.failure.values.tolist() == ["", "no"]
+
+
+def test_a_waterfall_draws_a_row_for_each_spectrum() -> None:
+    frequencies = np.outer([1.0, 2.0, 3.0], np.arange(50.0))
+    heights = np.full((3, 50), 1e-3)
+    heights[2] = np.nan
+    figure = draw_waterfall("three", [1, 2, 3], frequencies, heights, value_name="speed", unit="m/s²")
+    rows = [line for line in figure.axes[0].lines if len(line.get_xdata()) > 10]
+    assert len(rows) == 2
+    # The second spectrum reaches twice as far as the first.
+    assert [float(max(line.get_xdata())) for line in rows] == [49.0, 98.0]
+    with pytest.raises(ValueError, match="no spectrum"):
+        draw_waterfall("none", [1, 2, 3], frequencies, np.nan * heights, value_name="speed", unit="m/s²")
+    with pytest.raises(ValueError, match="not"):
+        draw_waterfall("unlike", [1, 2], frequencies, heights, value_name="speed", unit="m/s²")

@@ -1,0 +1,90 @@
+"""Pictures of the coupled system: its Campbell diagram and transmissibility, from made-up curves."""
+
+import math
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from coupling import ExcitationLine, FrequencyResponse, SystemCampbell, SystemCrossing
+from gearwhine.figures import draw_system_campbell, draw_transmissibility
+from gearwhine.figures.system_campbell import KIND_COLORS
+
+RPM = 60.0 / (2.0 * math.pi)
+SPEEDS = np.linspace(0.0, 100.0, 11)
+MESH = ExcitationLine("1× pinion -> wheel", "mesh", 20.0)
+SHAFT = ExcitationLine("1× input", "shaft", 1.0)
+
+
+def diagram() -> SystemCampbell:
+    """A housing mode at 800 rad/s and a bending mode that is called torsion from the sixth speed on, then ends."""
+    bending = np.where(np.arange(11) < 9, 1000.0 + 2.0 * SPEEDS, np.nan)
+    values = np.column_stack([-8.0 + 800.0j * np.ones(11), -5.0 + 1j * bending])
+    values[9:, 1] = complex(np.nan, np.nan)
+    kinds = np.array([["housing", "rotor"]] * 5 + [["housing", "torsion"]] * 4 + [["housing", ""]] * 2)
+    crossings = (
+        SystemCrossing(40.0, MESH, -8.0 + 800.0j, 0, "housing", "housing", 0.0),
+        SystemCrossing(55.0, MESH, -5.0 + 1100.0j, 1, "torsion", "input", 0.4),
+    )
+    lines = (SHAFT, MESH)
+    nothing = np.zeros((11, 2))
+    return SystemCampbell(SPEEDS, values, kinds, kinds, nothing, nothing, lines, crossings, (), 1500.0)
+
+
+def labelled(figure: Figure, label: str) -> list[np.ndarray]:
+    return [np.array(line.get_data()) for line in figure.axes[0].get_lines() if line.get_label() == label]
+
+
+def test_branches_take_the_colours_of_what_moves() -> None:
+    figure = draw_system_campbell("t", diagram(), operating_speed=-50.0)
+    lines = [line for line in figure.axes[0].get_lines() if line.get_label() == "branch"]
+    assert [line.get_color() for line in lines] == [KIND_COLORS[kind] for kind in ("housing", "rotor", "torsion")]
+    speeds, hertz = (np.array(data) for data in lines[0].get_data())
+    assert speeds == pytest.approx(RPM * SPEEDS)
+    assert hertz == pytest.approx(800.0 / (2.0 * math.pi))
+    ((at, _),) = labelled(figure, "operation")
+    assert at[0] == pytest.approx(50.0 * RPM)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["rotor", "housing", "torsion", "operation"]
+
+
+def test_orders_have_their_slopes_and_crossings_their_marks() -> None:
+    figure = draw_system_campbell("t", diagram())
+    ((speeds, hertz),) = labelled(figure, MESH.name)
+    assert hertz[-1] / speeds[-1] == pytest.approx(20.0 / 60.0)
+    marks = [mark for mark in figure.axes[0].collections if mark.get_label() == "crossing"]
+    places = np.array([np.ravel(mark.get_offsets()) for mark in marks])
+    expected = np.array([[40.0 * RPM, 800.0 / (2.0 * math.pi)], [55.0 * RPM, 1100.0 / (2.0 * math.pi)]])
+    assert places == pytest.approx(expected)
+    # More strain in the teeth makes a larger mark.
+    assert marks[1].get_sizes()[0] > marks[0].get_sizes()[0]
+    texts = {text.get_text() for text in figure.axes[0].texts}
+    assert {MESH.name, SHAFT.name} <= texts
+
+
+def response(*, sensors: bool) -> FrequencyResponse:
+    w = 2.0 * math.pi * np.linspace(10.0, 1000.0, 50)
+    force = (3e6 + 4e6j) * np.ones(50)
+    return FrequencyResponse(
+        "transmission error of m",
+        "m",
+        w,
+        np.zeros((50, 1), dtype=complex),
+        {"top": 1e6 * w.astype(complex)} if sensors else {},
+        {"left": np.column_stack([force, 0.0 * force])},
+        {"m": force},
+    )
+
+
+def test_a_panel_for_each_kind_of_answer() -> None:
+    figure = draw_transmissibility("t", response(sensors=True), mesh_frequencies=[300.0])
+    sensors, bearings, mesh = figure.axes
+    assert [axes.get_ylabel().split(" [")[0] for axes in (mesh, bearings, sensors)] == [
+        "mesh force",
+        "bearing force",
+        "acceleration",
+    ]
+    # By a micrometre: 5e6 N/m are 5 N/µm.
+    assert np.array(mesh.get_lines()[0].get_ydata()) == pytest.approx(5.0)
+    marked = [line.get_xdata()[0] for line in mesh.get_lines() if line.get_label() == "mesh frequency"]
+    assert marked == pytest.approx([300.0, 600.0, 900.0])
+    assert len(draw_transmissibility("t", response(sensors=False)).axes) == 2
