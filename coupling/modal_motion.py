@@ -88,9 +88,8 @@ class ModalRecord:
     @property
     def columns(self) -> FloatArray:
         """Every signal beside the others, shape (s, k)."""
-        count = len(self.housing_acceleration)
-        moved = np.array(list(self.coordinates.values())).reshape(-1, count)
-        return np.concatenate([moved.T, self.housing_acceleration], axis=1)
+        moved = [coordinate[:, None] for coordinate in self.coordinates.values()]
+        return np.concatenate([*moved, self.housing_acceleration], axis=1)
 
     def with_columns(self, columns: FloatArray) -> "ModalRecord":
         """Other samples of the same signals, from what :attr:`columns` gives."""
