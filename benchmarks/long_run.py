@@ -1,6 +1,7 @@
 """A long run of the command: peak memory, and what is left of it after kills.
 
     python benchmarks/long_run.py --revolutions 120 --kills 10
+    python benchmarks/long_run.py --run-up 600 --kills 10
 
 Runs ``gearwhine run`` on a bundled case as processes of their own: once through, and with --kills again, killed with
 SIGKILL at random moments of the march and started anew each time. Prints the peak memory of each process and
@@ -31,17 +32,33 @@ sys.exit(code)
 """
 
 
+# Two modes of each shaft and coarse steps: they follow the shafts, not their highest vibrations.
+_RUN_UP = (
+    "transient.revolutions=",
+    "transient.discard=0",
+    "transient.tolerance=1e-2",
+    "operation.speed=600 rpm",
+    "transient.run.from=60 rpm",
+    "transient.run.to=600 rpm",
+    "rotor.input.modes=2",
+    "rotor.output.modes=2",
+)
+
+
 def main() -> None:
     """Run once through, then once with kills, and compare."""
     given = arguments(
         "A long run of the command.",
         case=(str, "spur-pair", "case file or bundled case"),
         revolutions=(int, 120, "of the first driver; a tenth of them is discarded"),
+        run_up=(float, 0.0, "seconds of a run-up from 60 to 600 rpm in place of the revolutions"),
         kills=(int, 0, "how often to kill the second run"),
         seed=(int, 1, "of the moments"),
     )
     print(machine())
     settings = [f"transient.revolutions={given.revolutions}", f"transient.discard={given.revolutions // 10}"]
+    if given.run_up:
+        settings = [*_RUN_UP, f"transient.run.time={given.run_up}"]
     with tempfile.TemporaryDirectory() as place:
         whole, killed = Path(place) / "whole", Path(place) / "killed"
         begin = time.perf_counter()
