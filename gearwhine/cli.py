@@ -197,6 +197,41 @@ def system(
 
 
 @app.command
+def steady(
+    case: CaseName,
+    *,
+    curve: Annotated[
+        bool,
+        Parameter(
+            name=["--curve"],
+            negative=(),
+            help="Also follow the motion over speed, through folds: over the range of the case's [sweep], else from "
+            "half the speed of operation to half again.",
+        ),
+    ] = False,
+    down: Annotated[
+        bool, Parameter(name=["--down"], negative=(), help="Follow it from the highest speed downwards.")
+    ] = False,
+    points: Annotated[
+        int, Parameter(help="Points of the curve where it runs straight.", validator=Number(gte=2, lte=2000))
+    ] = 100,
+    fresh: Fresh = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """The motion that repeats with the excitation, without marching to it; whether it is stable, and over speed."""
+    from gearwhine.screen import show_steady
+    from gearwhine.work import steady_case
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        over_speed = curve or down
+        return steady_case(
+            given, common.output, progress, over_speed=over_speed, downwards=down, points=points, fresh=fresh
+        )
+
+    _on_case(case, common, work, show_steady)
+
+
+@app.command
 def sweep(
     case: CaseName,
     *,

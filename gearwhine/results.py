@@ -15,8 +15,10 @@ from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.rotors import SolvedRotor
 from gearwhine.stages.signature import SolvedSignature
+from gearwhine.stages.steady import SolvedSteady
 from gearwhine.stages.system import SolvedSystem
 from gearwhine.stages.transient import SolvedTransient
+from gearwhine.steady_results import write_steady
 from gearwhine.system_results import write_system
 from gearwhine.transient_results import append_histories, write_transient
 
@@ -34,6 +36,7 @@ def write(
     system: SolvedSystem | None,
     transient: SolvedTransient | None,
     signature: SolvedSignature | None = None,
+    steady: SolvedSteady | None = None,
 ) -> None:
     """Write what was solved; the rest is left out."""
     variables: Variables = {}
@@ -50,6 +53,8 @@ def write(
         write_transient(transient, variables, coordinates)
     if transient is not None and signature is not None:
         write_signature(transient, signature, variables, coordinates)
+    if steady is not None:
+        write_steady(steady, variables, coordinates)
     if case.operation is not None:
         coordinates["speed"] = ((), case.operation.speed * 60.0 / _HERTZ, _unit("rpm", "speed of the first driver"))
     attributes = {

@@ -36,6 +36,7 @@ from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import signature as signature_stage
+from gearwhine.stages import steady as steady_stage
 from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
@@ -242,6 +243,33 @@ def system_case(
         progress("writing results")
         results.write(place / "results.nc", case, housing, (), (), solved, None)
         figures.draw_system(place, case, solved)
+
+    return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
+
+
+def steady_case(
+    case: Case,
+    folder: Path | None,
+    progress: Progress,
+    *,
+    over_speed: bool = False,
+    downwards: bool = False,
+    points: int = 100,
+    fresh: bool = False,
+) -> dict[str, Any]:
+    """The motion that repeats at the speed of operation, and its branch over speed; with a folder, also as pictures."""
+    housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
+    solved = steady_stage.solve_steady(
+        case, machine, housing, progress, over_speed=over_speed, downwards=downwards, points=points
+    )
+    document = steady_stage.steady_document(case, solved)
+
+    def write(place: Path) -> None:
+        from gearwhine import figures, results
+
+        progress("writing results")
+        results.write(place / "results.nc", case, housing, (), (), None, None, steady=solved)
+        figures.draw_steady(place, case, solved)
 
     return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
 
