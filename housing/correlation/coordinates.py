@@ -1,7 +1,7 @@
 """Where two sets of paired shapes differ: criteria for each degree of freedom, over the pairs.
 
-Shapes to unknown scales cannot be compared at one place before they are scaled alike. Here every model shape is scaled
-to unit norm (``comac``) or unit largest entry (``enhanced_comac``), and its partner to it.
+Shapes to unknown scales cannot be compared at one place before they are scaled alike. Here both shapes of a pair are
+scaled to unit norm (``comac``) or unit largest entry (``enhanced_comac``) over the degrees of freedom that both have.
 """
 
 import numpy as np
@@ -36,9 +36,7 @@ def comac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
         Where the sets do not fit together or there is no pair.
     """
     phi, psi = _paired(model, measured)
-    phi = phi / np.linalg.norm(phi, axis=1, keepdims=True)
-    psi = psi * modal_scale_factor(phi, psi)[:, None]
-    phi = np.where(np.isnan(psi), np.nan, phi)
+    phi, psi = _unit_norm(np.where(np.isnan(psi), np.nan, phi)), _unit_norm(psi)
     product = np.nansum(np.abs(phi * psi), axis=0) ** 2
     norms = np.nansum(np.abs(phi) ** 2, axis=0) * np.nansum(np.abs(psi) ** 2, axis=0)
     return np.asarray(np.where(norms > 0.0, np.minimum(product / np.where(norms > 0.0, norms, 1.0), 1.0), np.nan))
@@ -68,6 +66,11 @@ def enhanced_comac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     difference = np.abs(_unit(phi) - _unit(turned))
     pairs = (~np.isnan(difference)).sum(axis=0)
     return np.asarray(np.where(pairs > 0, np.nansum(difference, axis=0) / np.maximum(2 * pairs, 1), np.nan))
+
+
+def _unit_norm(shapes: ShapeArray) -> ShapeArray:
+    norm = np.sqrt(np.nansum(np.abs(shapes) ** 2, axis=1, keepdims=True))
+    return np.asarray(shapes / np.where(norm > 0.0, norm, 1.0))
 
 
 def _unit(shapes: ShapeArray) -> ShapeArray:

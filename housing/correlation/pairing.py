@@ -135,9 +135,10 @@ def pair_modes(
     test_groups = _groups(measured_frequencies, rule, len(psi), "measured")
     own = mac(phi, psi)
     shared = _shared(phi, psi, own, groups, test_groups)
+    alike = (shared >= rule.least_mac).T
     weight = _weight(model_frequencies, measured_frequencies, rule)
     scores = (shared * weight).T
-    chosen = best_assignment(np.where(shared.T < rule.least_mac, 0.0, scores))
+    chosen = best_assignment(np.where(alike, scores, 0.0))
     distance = np.abs(np.log(np.maximum(model_frequencies, 1e-300)[:, None] / measured_frequencies))
     pairs = []
     for members, rivals in _blocks(chosen, groups, test_groups):
