@@ -139,12 +139,12 @@ def _close(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tupl
 
 
 def _partners(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tuple[ComplexArray, ComplexArray]:
-    """Shapes of the pairs, row by row; for a mixed pair the model's close modes combined as they are nearest to it."""
+    """Shapes of the pairs, row by row; close modes of the model combined as they are nearest to the test's."""
     model = np.empty((len(pairs), phi.shape[1]), dtype=np.complex128)
     measured = np.empty_like(model)
     for row, pair in enumerate(pairs):
         model[row], measured[row] = phi[pair.model], psi[pair.measured]
-        if pair.mixed and pair.close_model:
+        if pair.close_model:
             model[row] = nearest_in_span(phi[list(pair.close_model)], psi[pair.measured])[0]
     return model, measured
 

@@ -20,7 +20,7 @@ class ModePair:
     strength : float or None
         The model mode's lateral acceleration strength [1/kg]; None where nothing drives the housing.
     mac : float or None
-        Modal assurance criterion, with the close modes together where the pair is mixed; None without shapes.
+        Modal assurance criterion, with the close modes together where there are any; None without shapes.
     confidence : float or None
         By how much this pair beats the next best assignment, from 0 to 1, not a probability; None without shapes.
     close_modes : tuple of int

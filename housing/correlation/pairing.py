@@ -82,7 +82,8 @@ class ShapePair:
     model, measured : int
         Indices.
     mac : float
-        Of the two shapes; of a mixed pair, of the shape with the span of the close modes.
+        Of the two shapes; among close modes, of one with the span of the other's, which is the same however these are
+        mixed.
     confidence : float
         By how much the best assignment with this pair beats the best without it, as a part of the pair's score, from 0
         (another is as good) to 1; see :func:`housing.correlation.assignment.margin`. Not a probability.
@@ -152,7 +153,7 @@ def pair_modes(
                 ShapePair(
                     i,
                     int(j),
-                    float(shared[i, j] if mixed else own[i, j]),
+                    float(shared[i, j]),
                     margin(scores, int(j), inside),
                     _company(groups, i),
                     _company(test_groups, int(j)),

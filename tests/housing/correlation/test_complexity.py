@@ -27,7 +27,7 @@ def test_a_wave_that_travels_has_no_collinearity() -> None:
 
 
 def test_phases_scatter_about_the_mean_by_size() -> None:
-    """Two entries 0.2 rad to either side of the line, of sizes that balance: deviation 0.2 rad; a real shape has none."""
+    """Entries 0.2 rad to either side of the line, deviate by 0.2 rad; those of a real shape do not."""
     shape = np.array([2.0, 2.0, -1.0, -1.0]) * np.exp(1j * np.array([0.2, -0.2, 0.2, -0.2])) * 1j
     assert phase_deviation(shape) == pytest.approx(0.2)
     assert phase_deviation(X * (1.0 + 2.0j)) == pytest.approx(0.0, abs=1e-8)
