@@ -16,10 +16,12 @@ from gearwhine.case import (
     require,
     swept_keys,
 )
+from gearwhine.comparison_files import write_comparison
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
 from gearwhine.stages import (
+    comparison_documents,
     gear_analysis,
     gear_documents,
     gear_torques,
@@ -77,7 +79,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         document |= housing_documents.origin_document(housing)
         if case.measured is not None:
             comparison = housing_stage.compare_housing(case, housing)
-            document["compare"] = housing_documents.comparison_document(comparison, housing)
+            document["compare"] = comparison_documents.comparison_document(comparison, housing)
 
     transient, system, signature = None, None, None
     if case.rotor and case.operation:
@@ -115,6 +117,8 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
             results.write_shapes(place / "modes.vtu", housing)
             keep_modes(place, housing)
             draw_modes(housing, comparison, "dominant", "iso", "png", place, progress)
+        if housing is not None and comparison is not None:
+            write_comparison(place, case.title, comparison, housing.modes.frequencies)
         timed("writing", begin)
         seconds["total"] = time.perf_counter() - start
         document |= {"seconds": seconds, "folder": str(folder), "files": _files(place, housing)}
@@ -267,8 +271,13 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
     require(case, "housing", "measured", command="compare")
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
     comparison = housing_stage.compare_housing(case, housing)
-    document = housing_documents.comparison_document(comparison, housing)
-    return _kept(document | housing_documents.origin_document(housing), case, folder, housing=housing)
+    document = comparison_documents.comparison_document(comparison, housing)
+
+    def write(place: Path) -> None:
+        progress("writing results")
+        write_comparison(place, case.title, comparison, housing.modes.frequencies)
+
+    return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
 
 
 def render_case(

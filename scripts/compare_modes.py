@@ -9,7 +9,8 @@ from pathlib import Path
 from gearwhine.case import load_case
 from gearwhine.failures import run_script
 from gearwhine.output import finite, json_text, staging
-from gearwhine.stages.housing import compare_housing, comparison_document, solve_housing
+from gearwhine.stages.comparison_documents import comparison_document
+from gearwhine.stages.housing import compare_housing, solve_housing
 from gearwhine.stages.kept_modes import keep_modes
 
 

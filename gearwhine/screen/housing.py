@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from gearwhine.screen.console import counted, open_console, show_origin, show_written
+from gearwhine.screen.correlation import show_shapes
 from gearwhine.screen.health import show_detail, show_health
 
 
@@ -56,18 +57,27 @@ def show_files(document: dict[str, Any]) -> None:
 
 def comparison_table(console: Console, document: dict[str, Any]) -> None:
     """Pairs of measured and model modes, and how much the pairing is worth."""
-    table = Table("mode", "measured [Hz]", "model [Hz]", "error", "strength [1/kg]", box=SIMPLE_HEAD)
+    shapes = "auto_mac_off_diagonal" in document
+    driven = any(pair["strength"] is not None for pair in document["pairs"])
+    heads = ["MAC", "confidence"] if shapes else []
+    heads += ["strength [1/kg]"] if driven else []
+    table = Table("mode", "measured [Hz]", "model [Hz]", "error", *heads, box=SIMPLE_HEAD)
     for column in table.columns:
         column.justify = "right"
     for pair in document["pairs"]:
+        cells = [f"{pair['mac']:.3f}", f"{pair['confidence']:.2f}"] if shapes else []
+        cells += [f"{pair['strength']:.2e}"] if driven else []
         table.add_row(
             str(pair["mode"]),
             f"{pair['measured_hz']:.0f}",
             f"{pair['model_hz']:.1f}",
             f"{pair['error_percent']:+.2f} %",
-            f"{pair['strength']:.2e}",
+            *cells,
         )
     console.print(table)
+    if shapes:
+        show_shapes(console, document)
+        return
     count = document["model_modes"]
     agree = "agree" if document["measures_agree"] else "do not all agree"
     gap = document["gap"]
