@@ -45,7 +45,7 @@ def write_comparison(
     from gearwhine.figures import draw_comparison, save
 
     _write_table(folder / "comparison.csv", *_pairs(comparison))
-    figure = draw_comparison(f"{title}: measured and model modes", comparison, model_frequencies)
+    figure = draw_comparison(f"Measured and model modes: {title}", comparison, model_frequencies)
     files = ["comparison.csv", save(figure, folder / "comparison.png")]
     if comparison.shapes is not None:
         files += _write_matrices(folder, title, comparison, comparison.shapes)
@@ -107,13 +107,13 @@ def _write_matrices(folder: Path, title: str, comparison: Comparison, shapes: Sh
         outlined = [(row, paired[mode]) for row, mode in enumerate(shown) if mode in paired]
         note = "pairs outlined; close modes are paired by their span, not by the single values"
         figure = draw_mac_matrix(
-            f"{title}: MAC", shapes.mac[shown], _names(shown, model), columns, outlined=outlined, note=note
+            f"MAC: {title}", shapes.mac[shown], _names(shown, model), columns, outlined=outlined, note=note
         )
         files.append(save(figure, folder / "mac.png"))
     note = "large values off the diagonal: modes found twice, or that the survey cannot tell apart"
     named = ("measured mode", "measured mode")
     figure = draw_mac_matrix(
-        f"{title}: auto-MAC of the test", shapes.measured_auto_mac, columns, columns, axes_named=named, note=note
+        f"Auto-MAC of the test: {title}", shapes.measured_auto_mac, columns, columns, axes_named=named, note=note
     )
     files.append(save(figure, folder / "auto-mac.png"))
     if shapes.cross_orthogonality is not None:
@@ -121,7 +121,7 @@ def _write_matrices(folder: Path, title: str, comparison: Comparison, shapes: Sh
         note = "in the model's mass, reduced to the survey by SEREP; squares of a column add up to 1"
         outlined = [(row, paired[mode]) for row, mode in enumerate(modes) if mode in paired]
         figure = draw_mac_matrix(
-            f"{title}: cross-orthogonality",
+            f"Cross-orthogonality: {title}",
             shapes.cross_orthogonality,
             _names(modes, model),
             columns,
@@ -146,7 +146,7 @@ def _write_coordinates(
         for name, plain, enhanced in zip(names, shapes.comac, shapes.enhanced_comac, strict=True)
     ]
     _write_table(folder / "comac.csv", ["degree_of_freedom", "comac", "enhanced_comac"], table)
-    figure = draw_coordinate_criteria(f"{title}: where shapes differ", shapes.comac, shapes.enhanced_comac, names)
+    figure = draw_coordinate_criteria(f"Where shapes differ: {title}", shapes.comac, shapes.enhanced_comac, names)
     return ["comac.csv", save(figure, folder / "comac.png")]
 
 

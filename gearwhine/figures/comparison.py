@@ -4,8 +4,6 @@ Circles whose area is the MAC, at the frequencies of both modes, are the FMAC of
 shapes, frequencies and what the survey confuses.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 from matplotlib.artist import Artist
@@ -14,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, NOTE, PALE, RED, legend, panel, sheet
+from gearwhine.figures.labels import Label, LabelRow, arrange, draw_row
+from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, NOTE, PALE, PANEL_WIDTH, RED, panel, sheet
 from housing import Comparison
 
 FloatArray = npt.NDArray[np.float64]
@@ -42,8 +41,10 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
     measured = _measured(comparison)
     model = np.asarray(model_frequencies) / _HERTZ
     highest = 1.06 * max(float(measured.max()), max((pair.model / _HERTZ for pair in comparison.pairs), default=0.0))
-    figure = sheet(HEAD + _PLANE + _BETWEEN + _ERRORS + FOOT, title, _note(comparison))
-    plane = panel(figure, FOOT + _ERRORS + _BETWEEN, _PLANE)
+    row = _error_labels(comparison, highest)
+    above = _ERRORS + row.height + 2.0 + _BETWEEN
+    figure = sheet(HEAD + _PLANE + above + FOOT, title, _note(comparison))
+    plane = panel(figure, FOOT + above, _PLANE)
     below = panel(figure, FOOT, _ERRORS)
     ends = np.array([0.0, highest])
     plane.fill_between(ends, (1.0 - _BAND) * ends, (1.0 + _BAND) * ends, color=PALE, lw=0.0, zorder=1)
@@ -59,10 +60,14 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
     _mark_unpaired(plane, comparison, measured, model[model <= highest])
     if comparison.shapes is not None and (comparison.shapes.unpaired_measured or comparison.shapes.unpaired_model):
         handles.append(Line2D([], [], color=RED, lw=1.2, label="without a partner"))
+    if comparison.shapes is None and np.count_nonzero(model <= highest) > len(comparison.pairs):
+        handles.append(Line2D([], [], color=GREY, lw=1.2, label="other model modes"))
     plane.set(xlim=(0.0, highest), ylim=(0.0, highest), ylabel="model [Hz]")
     plane.tick_params(labelbottom=False)
     _draw_errors(below, comparison, highest)
-    legend(figure, handles)
+    draw_row(below, row, _ERRORS + 1.0)
+    key = plane.legend(handles=handles, loc="lower right", frameon=False, fontsize=NOTE, labelspacing=0.35)
+    key.set_zorder(6)
     return figure
 
 
@@ -114,34 +119,22 @@ def _mark_unpaired(axes: Axes, comparison: Comparison, measured: FloatArray, mod
 
 def _draw_errors(axes: Axes, comparison: Comparison, highest: float) -> None:
     errors = np.array([pair.error_percent for pair in comparison.pairs])
-    reach = max(1.45 * float(np.abs(errors).max(initial=0.0)), 130.0 * _BAND)
+    reach = max(1.15 * float(np.abs(errors).max(initial=0.0)), 130.0 * _BAND)
     axes.axhspan(-100.0 * _BAND, 100.0 * _BAND, color=PALE, lw=0.0, zorder=1)
     axes.axhline(0.0, color=GREY, lw=0.7, zorder=2)
     places = np.array([pair.measured for pair in comparison.pairs]) / _HERTZ
     axes.vlines(places, 0.0, errors, color=BLUE, lw=1.6, zorder=3)
     axes.plot(places, errors, color=BLUE, marker="o", ms=3.5, ls="", zorder=4, label="error")
-    for place, error, level in zip(places, errors, _levels(places, highest), strict=True):
-        side = 1.0 if error >= 0.0 else -1.0
-        axes.annotate(
-            f"{error:+.1f}",
-            (place, error),
-            (0.0, side * (4.0 + 7.0 * level)),
-            textcoords="offset points",
-            ha="center",
-            va="bottom" if side > 0.0 else "top",
-            size=NOTE,
-            color=INK,
-        )
     axes.set(xlim=(0.0, highest), ylim=(-reach, reach), xlabel="measured [Hz]", ylabel="error [%]")
 
 
-def _levels(places: FloatArray, highest: float) -> Sequence[int]:
-    """Labels of neighbours too near each other stand on two levels."""
-    levels: list[int] = []
-    for number, place in enumerate(places):
-        near = number > 0 and place - places[number - 1] < 0.045 * highest
-        levels.append(1 - levels[-1] if near else 0)
-    return levels
+def _error_labels(comparison: Comparison, highest: float) -> LabelRow:
+    pairs = comparison.pairs
+    labels = [
+        Label(f"{round(pair.error_percent, 1) + 0.0:+.1f}", pair.measured / _HERTZ, pair.error_percent)
+        for pair in pairs
+    ]
+    return arrange(labels, [PANEL_WIDTH * label.x / highest for label in labels], PANEL_WIDTH)
 
 
 def _dot(name: str, color: str, *, filled: bool = True) -> Line2D:

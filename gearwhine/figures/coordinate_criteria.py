@@ -13,11 +13,12 @@ from gearwhine.figures.style import BLUE, FOOT, HEAD, PANEL_WIDTH, RED, panel, s
 FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _BETWEEN = 40.0, 5.0  # of a panel, and between them [mm of paper]
-_NAMED = 6  # of the worst degrees of freedom
+_NAMED = 6  # at most, of the degrees of freedom that stand out
+_STANDS_OUT = 2.0  # times the median of the enhanced criterion
 
 
 def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray, names: Sequence[str]) -> Figure:
-    """Draw both criteria as bars in the survey's order; red the worst by the enhanced one, which sees signs and gains.
+    """Draw both criteria as bars in the survey's order; red what stands out by the one that sees signs and gains.
 
     Parameters
     ----------
@@ -38,7 +39,8 @@ def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray
         raise ValueError(f"criteria of shapes {comac.shape} and {enhanced.shape} for {count} degrees of freedom")
     known = np.flatnonzero(np.isfinite(enhanced))
     worst = known[np.argsort(-enhanced[known], kind="stable")][:_NAMED]
-    labels = [Label(names[dof], float(dof), float(enhanced[dof]), RED) for dof in worst]
+    worst = worst[enhanced[worst] > _STANDS_OUT * np.median(enhanced[known])] if known.size else worst
+    labels = [Label(names[dof], float(dof + 1), float(enhanced[dof]), RED) for dof in worst]
     row = arrange(labels, [PANEL_WIDTH * (dof + 0.5) / count for dof in worst], PANEL_WIDTH)
     note = "COMAC: 1 where pairs agree in amplitude; enhanced COMAC: 0 where they agree in sign and size too"
     figure = sheet(HEAD + 2.0 * _HEIGHT + 2.0 * _BETWEEN + row.height + 2.0 + FOOT, title, note)
@@ -56,8 +58,8 @@ def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray
 
 
 def _bars(axes: Axes, values: FloatArray, worst: npt.NDArray[np.int64]) -> None:
-    places = np.arange(len(values))
-    colors = [RED if dof in worst else BLUE for dof in places]
+    places = np.arange(1, len(values) + 1)
+    colors = [RED if place - 1 in worst else BLUE for place in places]
     axes.bar(places, np.nan_to_num(values), width=0.85, color=colors, lw=0.0)
-    axes.set_xlim(-0.5, len(values) - 0.5)
+    axes.set_xlim(0.5, len(values) + 0.5)
     axes.grid(visible=False, axis="x")

@@ -29,9 +29,10 @@ FloatArray = npt.NDArray[np.float64]
 
 _COLORS = LinearSegmentedColormap.from_list("likeness", ["#ffffff", "#cfdeec", BLUE, "#0b2540"])
 _LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # beside the cells: row names, gap, colours, their numbers [mm]
-_BELOW = 20.0  # for the columns' names, which stand [mm]
+_BELOW = 11.0  # for the columns' names, which stand [mm]
 _CELL, _LEAST_CELL, _TALLEST = 9.0, 2.6, 190.0  # a cell's largest and least height, and the most of all [mm]
-_FITS = (5.6, 2.8)  # a cell from which on a number of two digits can be read in it [mm]
+_FITS = (4.2, 2.8)  # a cell from which on a number of two digits can be read in it [mm]
+_NOTHING = 0.05  # values below it are left blank
 _DARK = 0.5  # values above it are written in white
 
 
@@ -83,9 +84,10 @@ def draw_mac_matrix(
         axes.add_patch(Rectangle((column, row), 1.0, 1.0, fill=False, edgecolor=RED, lw=1.2, zorder=4))
     if wide >= _FITS[0] and high >= _FITS[1]:
         for (row, column), value in np.ndenumerate(values):
-            color = "white" if value > _DARK else INK
-            text = f"{value:.2f}"
-            axes.text(column + 0.5, row + 0.5, text, ha="center", va="center", size=5.5, color=color)
+            if value >= _NOTHING:
+                color, size = "white" if value > _DARK else INK, min(1.05 * wide, 5.5)
+                text = f"{value:.2f}"
+                axes.text(column + 0.5, row + 0.5, text, ha="center", va="center", size=size, color=color)
     _name(axes.xaxis, columns, wide, upright=True)
     _name(axes.yaxis, rows, high, upright=False)
     axes.tick_params(length=0.0)

@@ -46,7 +46,7 @@ def show_shapes(console: Console, document: dict[str, Any]) -> None:
             f"{_listed(group['measured_modes'])}, largest angle {group['largest_angle_deg']:.1f}°."
         )
     worst = document["auto_mac_off_diagonal"]
-    remark = "; a survey with more points would tell modes apart better" if max(worst.values()) > _POOR else ""
+    remark = "; a survey with more points would tell modes apart better" if worst["model"] > _POOR else ""
     console.print(
         f"Largest MAC between different modes: {worst['measured']:.2f} of the test, {worst['model']:.2f} of the model"
         f"{remark}."

@@ -11,8 +11,8 @@ are what is in question.
 
 Close modes, of the model or of the test, mix. Each is then scored by the part of a shape that lies in the span of the
 other's group (:func:`housing.correlation.subspaces.span_mac`), which is the same however a group is mixed. Within a
-group the members' own MACs decide where they are clear; where not, there is no saying which is which, and the order
-of frequency is kept.
+group the members' own MACs decide where each is most of that; where not, there is no saying which is which, and the
+order of frequency is kept.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ from housing.errors import HousingError
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_CLEAR = 0.8  # own MACs from which on the members of a close group are told apart by them
+_CLEAR = 0.75  # the part of what a shape has in the span of close modes that one of them must hold to be told apart
 _WINDOW = 2.0  # spreads of frequency within which pairs are made
 
 
@@ -143,7 +143,7 @@ def pair_modes(
     distance = np.abs(np.log(np.maximum(model_frequencies, 1e-300)[:, None] / measured_frequencies))
     pairs = []
     for members, rivals in _blocks(chosen, groups, test_groups):
-        told = _told_apart(own[np.ix_(rivals, members)])
+        told = _told_apart(own[np.ix_(rivals, members)], shared[np.ix_(rivals, members)])
         mixed = told is None
         order = _in_order(distance[np.ix_(rivals, members)]) if told is None else told
         inside = np.isin(np.arange(len(phi)), rivals)
@@ -214,12 +214,12 @@ def _blocks(
     return [(np.array(sorted(members)), np.array(sorted(rivals))) for members, rivals in blocks]
 
 
-def _told_apart(own: FloatArray) -> IntArray | None:
-    """For each measured mode (columns) its model mode (rows) by their own MACs, where all of these are clear."""
+def _told_apart(own: FloatArray, shared: FloatArray) -> IntArray | None:
+    """For each measured mode (columns) its model mode (rows), where own MACs are most of the shared ones."""
     if own.shape == (1, 1):
         return np.zeros(1, dtype=np.int64)
     columns, rows = linear_sum_assignment(own.T, maximize=True)
-    return rows if own[rows, columns].min() >= _CLEAR else None
+    return rows if (own[rows, columns] >= _CLEAR * shared[rows, columns]).all() else None
 
 
 def _in_order(distance: FloatArray) -> IntArray:
