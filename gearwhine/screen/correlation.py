@@ -1,5 +1,6 @@
 """What measured shapes say below the table of pairs: what is missing, double, close or alike; if the survey serves."""
 
+import math
 from typing import Any
 
 from rich.console import Console
@@ -41,9 +42,11 @@ def show_shapes(console: Console, document: dict[str, Any]) -> None:
                 "it needs more points."
             )
     for group in document["close_modes"]:
+        angle = group["largest_angle_deg"]
+        apart = "" if angle is None or math.isnan(angle) else f", largest angle {angle:.1f}°"
         console.print(
             f"Modes {_listed(group['modes'])} are close and compared as one space: measured "
-            f"{_listed(group['measured_modes'])}, largest angle {group['largest_angle_deg']:.1f}°."
+            f"{_listed(group['measured_modes'])}{apart}."
         )
     worst = document["auto_mac_off_diagonal"]
     remark = "; a survey with more points would tell modes apart better" if worst["model"] > _POOR else ""

@@ -259,6 +259,7 @@ def compare_housing(
     solved: SolvedHousing,
     measured: MeasuredModes | None = None,
     shapes: FloatArray | None = None,
+    rule: room.PairingRule | None = None,
 ) -> room.Comparison:
     """Pair the model's modes with measured ones: by shape and frequency where there are shapes, else by dominance.
 
@@ -270,6 +271,8 @@ def compare_housing(
         What was measured; by default the frequencies in the case.
     shapes : ndarray, shape (n_modes, n_dofs), optional
         The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
+    rule : housing.PairingRule, optional
+        Of the pairing by shape.
 
     Raises
     ------
@@ -281,7 +284,7 @@ def compare_housing(
     """
     if measured is not None and measured.shapes is not None and shapes is not None:
         _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
-        return room.compare_by_shapes(solved.modes.frequencies, shapes, measured, strengths=solved.strengths)
+        return room.compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
     if measured is not None:
         return _compare_by_dominance(solved, measured.frequencies)
     require(case, "measured", command="compare")

@@ -12,7 +12,7 @@ points on one wall judges mostly that wall, and one with too few points finds di
 import numpy as np
 import numpy.typing as npt
 
-from housing.correlation.shape_sets import ComplexArray, FloatArray, ShapeArray, filled, shape_set, two_sets
+from housing.correlation.shape_sets import ComplexArray, FloatArray, ShapeArray, filled, two_sets
 from housing.errors import HousingError
 
 
@@ -27,23 +27,21 @@ def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
     Returns
     -------
     ndarray, shape (a, b)
-        From 0 to 1. A shape that is zero wherever the other was measured is like nothing: 0.
+        From 0 to 1; NaN where two shapes share no degree of freedom. A shape that is zero wherever the other was
+        measured is like nothing: 0.
 
     Raises
     ------
     HousingError
-        Where the sets do not fit together or two shapes share no degree of freedom.
+        Where the sets do not fit together.
     """
     one, other = two_sets(first, second)
     (a, seen_a), (b, seen_b) = filled(one), filled(other)
-    shared = seen_a.astype(np.float64) @ seen_b.T.astype(np.float64)
-    if not shared.all():
-        i, j = np.argwhere(shared == 0.0)[0]
-        raise HousingError(f"shape {i + 1} of the first set and {j + 1} of the second share no degree of freedom")
+    shared = seen_a @ seen_b.T
     product = np.abs(a.conj() @ b.T) ** 2
     norms = (np.abs(a) ** 2 @ seen_b.T) * (seen_a @ np.abs(b.T) ** 2)
     # Rounding may lift a perfect match above one.
-    return np.asarray(np.minimum(product / np.where(norms > 0.0, norms, 1.0), 1.0))
+    return np.asarray(np.where(shared, np.minimum(product / np.where(norms > 0.0, norms, 1.0), 1.0), np.nan))
 
 
 def auto_mac(shapes: npt.ArrayLike) -> FloatArray:
@@ -134,6 +132,6 @@ def _largest_energy(shapes: ShapeArray, poles: ComplexArray) -> FloatArray:
 
 
 def largest_off_diagonal(matrix: FloatArray) -> float:
-    """Of a square matrix; 0 where it has one row."""
-    count = len(shape_set(matrix, "a matrix's"))
-    return float(np.max(matrix[~np.eye(count, dtype=bool)], initial=0.0))
+    """Of a square matrix; what is unknown is left aside, and 0 where nothing is left."""
+    others = matrix[~np.eye(len(matrix), dtype=bool)]
+    return float(np.max(others[~np.isnan(others)], initial=0.0))

@@ -133,7 +133,9 @@ def _close(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tupl
     found = []
     for group in groups:
         members = tuple(pair.measured for pair in pairs if pair.close_model == group)
-        angle = float(principal_angles(phi[list(group)], psi[list(members)])[0])
+        seen = ~np.isnan(psi[list(members)]).any(axis=0)
+        known = seen.sum() > max(len(group), len(members))
+        angle = float(principal_angles(phi[list(group)], psi[list(members)])[0]) if known else float("nan")
         found.append(CloseModes(tuple(i + 1 for i in group), tuple(j + 1 for j in members), angle))
     return tuple(found)
 

@@ -39,7 +39,8 @@ class CloseModes:
     model, measured : tuple of int
         Their numbers, from 1.
     largest_angle : float
-        Between the spaces that they span [rad]: 0 where the measured ones are combinations of the model's.
+        Between the spaces that they span [rad]: 0 where the measured ones are combinations of the model's; NaN where
+        they were measured at too few degrees of freedom in common.
     """
 
     model: tuple[int, ...]

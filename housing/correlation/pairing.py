@@ -31,6 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _CLEAR = 0.75  # the part of what a shape has in the span of close modes that one of them must hold to be told apart
+_LEAST_FREEDOMS = 2
 _WINDOW = 2.0  # spreads of frequency within which pairs are made
 
 
@@ -132,6 +133,11 @@ def pair_modes(
     """
     rule = rule or PairingRule()
     phi, psi = two_sets(model_shapes, measured_shapes, ("the model's", "the measured"))
+    few = np.flatnonzero((~np.isnan(psi)).sum(axis=1) < _LEAST_FREEDOMS)
+    if few.size:
+        raise HousingError(
+            f"measured shape {int(few[0]) + 1} has one degree of freedom, at which every mode looks alike; measure more"
+        )
     groups = _groups(model_frequencies, rule, len(phi), "model")
     test_groups = _groups(measured_frequencies, rule, len(psi), "measured")
     own = mac(phi, psi)

@@ -142,7 +142,7 @@ def fdac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     Raises
     ------
     HousingError
-        Where the degrees of freedom differ, or two lines share none.
+        Where the degrees of freedom differ.
     """
     return mac(np.asarray(model).T, np.asarray(measured).T)
 

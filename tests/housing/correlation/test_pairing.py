@@ -193,6 +193,19 @@ def test_what_is_too_unlike_or_too_far_stays_alone() -> None:
     assert len(pair_modes(frequencies[:3], shapes[:3], frequencies[:1], half, PairingRule(least_mac=0.3))) == 1
 
 
+def test_a_test_in_pieces_leaves_unknown_what_its_pieces_do_not_share() -> None:
+    """Measured modes 2 and 3, both of a double one, at points of their own each: no angle between spans, but pairs."""
+    frequencies, shapes = SQUARE
+    test = shapes[:3] + 0j
+    test[1, ::2] = np.nan
+    test[2, 1::2] = np.nan
+    comparison = compare_by_shapes(frequencies, shapes, _measured(frequencies[:3], test))
+    assert [pair.mode for pair in comparison.pairs] == [1, 2, 3]
+    assert comparison.shapes is not None
+    assert np.isnan(comparison.shapes.measured_auto_mac[1, 2])
+    assert np.isnan(comparison.shapes.close[0].largest_angle)
+
+
 def test_rigid_motion_of_the_model_is_paired_with_nothing() -> None:
     frequencies = np.array([0.0, 0.0, 1000.0])
     (pair,) = pair_modes(frequencies, OBLONG[1][:3], np.array([990.0]), OBLONG[1][2])
@@ -225,6 +238,8 @@ def test_inputs_that_do_not_fit_are_refused() -> None:
         compare_by_shapes(frequencies, shapes, MeasuredModes(frequencies))
     with pytest.raises(HousingError, match="11 model frequencies for 12 shapes"):
         pair_modes(frequencies[1:], shapes, frequencies[:1], shapes[:1])
+    with pytest.raises(HousingError, match="has one degree of freedom, at which every mode looks alike"):
+        pair_modes(frequencies[:2], shapes[:2, :1], frequencies[:1], shapes[:1, :1])
     with pytest.raises(HousingError, match="measured frequency is not above zero"):
         pair_modes(frequencies, shapes, np.zeros(1), shapes[:1])
     with pytest.raises(HousingError, match=r"least_mac is 0; expected a number above 0 and at most 1"):
