@@ -128,16 +128,23 @@ def _look_alikes(
 
 
 def _close(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tuple[CloseModes, ...]:
-    """Each group of close model modes that has partners, and how far apart the two spaces are."""
-    groups = dict.fromkeys(pair.close_model for pair in pairs if pair.close_model)
-    found = []
-    for group in groups:
-        members = tuple(pair.measured for pair in pairs if pair.close_model == group)
-        seen = ~np.isnan(psi[list(members)]).any(axis=0)
-        known = seen.sum() > max(len(group), len(members))
-        angle = float(principal_angles(phi[list(group)], psi[list(members)])[0]) if known else float("nan")
-        found.append(CloseModes(tuple(i + 1 for i in group), tuple(j + 1 for j in members), angle))
-    return tuple(found)
+    """Each group of close modes, of the model or of the test, with its partners: how far apart the two spaces are."""
+    found: dict[tuple[tuple[int, ...], tuple[int, ...]], CloseModes] = {}
+    for pair in pairs:
+        mates = [mate for mate in pairs if _together(pair, mate)]
+        model = tuple(sorted({pair.model, *pair.close_model, *(mate.model for mate in mates)}))
+        measured = tuple(sorted({pair.measured, *(mate.measured for mate in mates)}))
+        if len(model) > 1 and (model, measured) not in found:
+            seen = ~np.isnan(psi[list(measured)]).any(axis=0)
+            known = seen.sum() > max(len(model), len(measured))
+            angle = float(principal_angles(phi[list(model)], psi[list(measured)])[0]) if known else float("nan")
+            numbers = tuple(i + 1 for i in model), tuple(j + 1 for j in measured)
+            found[model, measured] = CloseModes(*numbers, angle)
+    return tuple(found.values())
+
+
+def _together(pair: ShapePair, other: ShapePair) -> bool:
+    return other.model in pair.close_model or other.measured in pair.close_measured
 
 
 def _partners(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tuple[ComplexArray, ComplexArray]:

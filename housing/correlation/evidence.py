@@ -32,7 +32,7 @@ class LookAlikes:
 
 @dataclass(frozen=True)
 class CloseModes:
-    """Model modes close to each other and the measured modes paired with them, compared as spaces.
+    """Modes close to each other, of the model or of the test, and their partners, compared as spaces.
 
     Attributes
     ----------

@@ -164,6 +164,11 @@ def test_a_test_whose_modes_are_closer_than_the_models() -> None:
     assert [pair.mode for pair in pairs] == [1, 2, 3, 4]
     assert [pair.mixed for pair in pairs] == [False, True, True, False]
     assert [pair.mac for pair in pairs] == pytest.approx([1.0] * 4)
+    evidence = compare_by_shapes(frequencies, shapes, test).shapes
+    assert evidence is not None
+    (close,) = evidence.close
+    assert (close.model, close.measured) == ((2, 3), (2, 3))
+    assert close.largest_angle == pytest.approx(0.0, abs=1e-6)
     # Nothing but the span tells: without closeness neither half is above the least MAC of a pair.
     strict = compare_by_shapes(frequencies, shapes, test, rule=PairingRule(closeness=0.0, least_mac=0.51)).pairs
     assert [pair.measured_mode for pair in strict] == [1, 4]
