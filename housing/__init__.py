@@ -16,6 +16,7 @@ What the room offers:
 - :func:`health_report` -- mass, rigid motions, grounding, orthogonality, static error: each with its bound.
 - :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
 - :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance` -- model against measured modes.
+- ``housing.measured`` -- files of measured modes and responses, and where on the model they were measured.
 - ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
 - ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
 """
@@ -35,6 +36,7 @@ from housing.errors import (
     HealthError,
     HousingError,
     IncompleteModesError,
+    MeasuredDataError,
     ModeFileError,
     ReductionError,
 )
@@ -89,6 +91,7 @@ __all__ = [
     "MassProperties",
     "Material",
     "Matrices",
+    "MeasuredDataError",
     "ModeFileError",
     "ModePair",
     "ModeRecord",
