@@ -26,11 +26,13 @@ from gearwhine.stages import (
     housing_documents,
     mesh_health,
     rotor_documents,
+    survey_plan,
 )
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
+from gearwhine.stages import measured as measured_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import signature as signature_stage
 from gearwhine.stages import system as system_stage
@@ -76,7 +78,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         document["housing"] = housing_documents.modes_document(housing)
         document |= housing_documents.origin_document(housing)
         if case.measured is not None:
-            comparison = housing_stage.compare_housing(case, housing)
+            comparison = housing_stage.compare_housing(housing, measured_stage.read_measured(case, progress))
             document["compare"] = housing_documents.comparison_document(comparison, housing)
 
     transient, system, signature = None, None, None
@@ -266,9 +268,24 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
     """Model modes against measured ones."""
     require(case, "housing", "measured", command="compare")
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
-    comparison = housing_stage.compare_housing(case, housing)
+    measured = measured_stage.read_measured(case, progress)
+    comparison = housing_stage.compare_housing(housing, measured)
     document = housing_documents.comparison_document(comparison, housing)
+    if measured.geometry is not None:
+        survey = measured_stage.map_measured(case, housing.mesh, measured.geometry)
+        document["survey"] = measured_stage.survey_document(survey)
     return _kept(document | housing_documents.origin_document(housing), case, folder, housing=housing)
+
+
+def survey_case(
+    case: Case, sensors: int, modes: int | None, folder: Path, progress: Progress, *, fresh: bool = False
+) -> dict[str, Any]:
+    """Where to measure the housing's modes, as files that a test program reads."""
+    housing = housing_stage.solve_housing(case, progress, command="survey", folder=folder, fresh=fresh)
+    progress(f"choosing {sensors} sensors")
+    planned = survey_plan.plan_housing(case, housing, sensors, modes)
+    document = survey_plan.plan_document(planned, housing) | housing_documents.origin_document(housing)
+    return _kept(document, case, folder, lambda place: survey_plan.write_plan(place, planned), housing)
 
 
 def render_case(
@@ -291,7 +308,7 @@ def render_case(
     housing = housing_stage.solve_housing(case, progress, command="render", folder=folder, fresh=fresh)
     comparison = None
     if case.measured is not None and housing.strengths is not None:
-        comparison = housing_stage.compare_housing(case, housing)
+        comparison = housing_stage.compare_housing(housing, measured_stage.read_measured(case, progress))
     with staging(folder) as place:
         draw_modes(housing, comparison, which, view, mode_format, place, progress)
         keep_modes(place, housing)

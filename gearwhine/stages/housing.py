@@ -19,6 +19,7 @@ from gearwhine.stages.housing_checks import bearing_places, bearing_port, housin
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
 from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, told_on_failure, warnings_document
 from gearwhine.stages.regions import materials_of
+from housing.measured import MeasuredModes
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -252,23 +253,21 @@ def base_participation(case: Case, mesh: Mesh, modes: room.ModeSet) -> FloatArra
     return modes.project_all(sparse.csr_array(moved.T))
 
 
-def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:
+def compare_housing(solved: SolvedHousing, measured: MeasuredModes) -> room.Comparison:
     """Pair the model's dominant modes with the measured ones.
 
     Raises
     ------
     CaseError
-        Where nothing is measured or the housing has no seats to be driven at.
+        Where the housing has no seats to be driven at, or its modes are not known high enough.
     housing.HousingError
         Where the model has too few modes in the band.
     """
-    require(case, "measured", command="compare")
-    assert case.measured is not None
     if solved.strengths is None:
         raise CaseError(
             [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
         )
-    comparison = room.compare_by_dominance(_HERTZ * np.array(case.measured.frequencies), solved.strengths)
+    comparison = room.compare_by_dominance(measured.frequencies, solved.strengths)
     limit = solved.modes.certificate.limit
     if limit < comparison.band[1]:
         expected = (
