@@ -9,14 +9,16 @@ from pathlib import Path
 from gearwhine.case import load_case
 from gearwhine.failures import run_script
 from gearwhine.output import finite, json_text, staging
-from gearwhine.stages.housing import compare_housing, comparison_document, solve_housing
+from gearwhine.stages.housing import compare_housing, solve_housing
+from gearwhine.stages.housing_documents import comparison_document
 from gearwhine.stages.kept_modes import keep_modes
+from gearwhine.stages.measured import read_measured
 
 
 def main(case_name: str, folder: str, *changes: str) -> None:
     case = load_case(case_name, changes).case
     housing = solve_housing(case, folder=Path(folder))
-    document = comparison_document(compare_housing(case, housing), housing)
+    document = comparison_document(compare_housing(housing, read_measured(case)), housing)
     with staging(Path(folder)) as place:
         keep_modes(place, housing)
         (place / "comparison.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
