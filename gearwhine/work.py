@@ -20,6 +20,7 @@ from gearwhine.comparison_files import write_comparison
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
+from gearwhine.stages import comparison as comparison_stage
 from gearwhine.stages import (
     comparison_documents,
     gear_analysis,
@@ -28,11 +29,13 @@ from gearwhine.stages import (
     housing_documents,
     mesh_health,
     rotor_documents,
+    survey_plan,
 )
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
+from gearwhine.stages import measured as measured_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import signature as signature_stage
 from gearwhine.stages import system as system_stage
@@ -78,7 +81,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         document["housing"] = housing_documents.modes_document(housing)
         document |= housing_documents.origin_document(housing)
         if case.measured is not None:
-            comparison = housing_stage.compare_housing(case, housing)
+            comparison = comparison_stage.compare_housing(case, housing, progress)
             document["compare"] = comparison_documents.comparison_document(comparison, housing)
 
     transient, system, signature = None, None, None
@@ -270,14 +273,28 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
     """Model modes against measured ones."""
     require(case, "housing", "measured", command="compare")
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
-    comparison = housing_stage.compare_housing(case, housing)
+    comparison, survey = comparison_stage.compare_with_survey(case, housing, progress)
     document = comparison_documents.comparison_document(comparison, housing)
+    if survey is not None:
+        document["survey"] = measured_stage.survey_document(survey)
 
     def write(place: Path) -> None:
         progress("writing results")
-        write_comparison(place, case.title, comparison, housing.modes.frequencies)
+        geometry = None if survey is None else survey.geometry
+        write_comparison(place, case.title, comparison, housing.modes.frequencies, geometry)
 
     return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
+
+
+def survey_case(
+    case: Case, sensors: int, modes: int | None, folder: Path, progress: Progress, *, fresh: bool = False
+) -> dict[str, Any]:
+    """Where to measure the housing's modes, as files that a test program reads."""
+    housing = housing_stage.solve_housing(case, progress, command="survey", folder=folder, fresh=fresh)
+    progress(f"choosing {sensors} sensors")
+    planned = survey_plan.plan_housing(case, housing, sensors, modes)
+    document = survey_plan.plan_document(planned, housing) | housing_documents.origin_document(housing)
+    return _kept(document, case, folder, lambda place: survey_plan.write_plan(place, planned), housing)
 
 
 def render_case(
@@ -300,7 +317,7 @@ def render_case(
     housing = housing_stage.solve_housing(case, progress, command="render", folder=folder, fresh=fresh)
     comparison = None
     if case.measured is not None and housing.strengths is not None:
-        comparison = housing_stage.compare_housing(case, housing)
+        comparison = comparison_stage.compare_housing(case, housing, progress)
     with staging(folder) as place:
         draw_modes(housing, comparison, which, view, mode_format, place, progress)
         keep_modes(place, housing)

@@ -17,6 +17,7 @@ What the room offers:
 - :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
 - :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance`, :func:`compare_by_shapes` -- model against
   measured modes; ``housing.correlation`` has the criteria.
+- ``housing.measured`` -- files of measured modes and responses, and where on the model they were measured.
 - ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
 - ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
 """
@@ -43,6 +44,7 @@ from housing.errors import (
     HealthError,
     HousingError,
     IncompleteModesError,
+    MeasuredDataError,
     ModeFileError,
     ReductionError,
 )
@@ -97,6 +99,7 @@ __all__ = [
     "MassProperties",
     "Material",
     "Matrices",
+    "MeasuredDataError",
     "ModeFileError",
     "ModePair",
     "ModeRecord",

@@ -10,8 +10,9 @@ from gearwhine.case import load_case
 from gearwhine.comparison_files import write_comparison
 from gearwhine.failures import run_script
 from gearwhine.output import finite, json_text, staging
+from gearwhine.stages.comparison import compare_housing
 from gearwhine.stages.comparison_documents import comparison_document
-from gearwhine.stages.housing import compare_housing, solve_housing
+from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.kept_modes import keep_modes
 
 

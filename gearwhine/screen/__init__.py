@@ -2,7 +2,7 @@
 
 from gearwhine.screen.case import show_check, show_examples, show_mesh
 from gearwhine.screen.gears import show_gears
-from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail
+from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail, show_survey
 from gearwhine.screen.machine import show_run
 from gearwhine.screen.rotors import show_rotors
 from gearwhine.screen.sweep import show_sweep
@@ -19,6 +19,7 @@ __all__ = [
     "show_modes_in_detail",
     "show_rotors",
     "show_run",
+    "show_survey",
     "show_sweep",
     "show_system",
 ]

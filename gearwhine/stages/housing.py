@@ -254,10 +254,9 @@ def base_participation(case: Case, mesh: Mesh, modes: room.ModeSet) -> FloatArra
     return modes.project_all(sparse.csr_array(moved.T))
 
 
-def compare_housing(
-    case: Case,
+def pair_modes(
     solved: SolvedHousing,
-    measured: MeasuredModes | None = None,
+    measured: MeasuredModes,
     shapes: FloatArray | None = None,
     rule: room.PairingRule | None = None,
 ) -> room.Comparison:
@@ -265,10 +264,8 @@ def compare_housing(
 
     Parameters
     ----------
-    case : Case
     solved : SolvedHousing
-    measured : housing.measured.MeasuredModes, optional
-        What was measured; by default the frequencies in the case.
+    measured : housing.measured.MeasuredModes
     shapes : ndarray, shape (n_modes, n_dofs), optional
         The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
     rule : housing.PairingRule, optional
@@ -277,19 +274,15 @@ def compare_housing(
     Raises
     ------
     CaseError
-        Where nothing is measured, the model's modes are not known as high as the measured ones, or there are no shapes
-        and the housing has no seats to be driven at.
+        Where the model's modes are not known as high as the measured ones, or there are no shapes and the housing has
+        no seats to be driven at.
     housing.HousingError
         Where the model has too few modes in the band, or its shapes do not fit the measured ones.
     """
-    if measured is not None and measured.shapes is not None and shapes is not None:
-        _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
-        return room.compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
-    if measured is not None:
+    if measured.shapes is None or shapes is None:
         return _compare_by_dominance(solved, measured.frequencies)
-    require(case, "measured", command="compare")
-    assert case.measured is not None
-    return _compare_by_dominance(solved, _HERTZ * np.array(case.measured.frequencies))
+    _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
+    return room.compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
 
 
 def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> room.Comparison:

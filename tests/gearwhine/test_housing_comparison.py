@@ -9,8 +9,9 @@ import pytest
 from gearwhine import screen
 from gearwhine.case import CaseError, load_case
 from gearwhine.output import finite, json_text
+from gearwhine.stages.comparison import compare_housing
 from gearwhine.stages.comparison_documents import comparison_document
-from gearwhine.stages.housing import SolvedHousing, compare_housing, solve_housing
+from gearwhine.stages.housing import SolvedHousing, pair_modes, solve_housing
 from housing.measured import MeasuredGeometry, MeasuredModes
 
 CASE = load_case("small-gearbox", ("housing.box.mesh_size=30 mm", "housing.frequency_limit=4 kHz")).case
@@ -41,7 +42,7 @@ def twin(solved: SolvedHousing) -> tuple[MeasuredModes, np.ndarray]:
 
 
 def test_the_twin_is_paired_by_shape(solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray]) -> None:
-    comparison = compare_housing(CASE, solved, *twin)
+    comparison = pair_modes(solved, *twin)
     document = json.loads(json_text(finite(comparison_document(comparison, solved))))
     count = len(twin[0].frequencies)
     assert [pair["mode"] for pair in document["pairs"]] == [1, 2, *range(4, count + 1)]
@@ -61,7 +62,7 @@ def test_the_twin_is_paired_by_shape(solved: SolvedHousing, twin: tuple[Measured
 def test_the_screen_says_what_is_missing(
     solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    screen.show_comparison(finite(comparison_document(compare_housing(CASE, solved, *twin), solved)))
+    screen.show_comparison(finite(comparison_document(pair_modes(solved, *twin), solved)))
     out = capsys.readouterr().out
     assert "confidence" in out
     assert "Measured mode 2 (" in out
@@ -76,11 +77,11 @@ def test_a_model_known_less_high_than_the_test_is_refused(
     measured, shapes = twin
     high = replace(measured, frequencies=1.2 * measured.frequencies)
     with pytest.raises(CaseError, match="partners are looked for up to there"):
-        compare_housing(CASE, solved, high, shapes)
+        pair_modes(solved, high, shapes)
 
 
 def test_measured_frequencies_alone_are_paired_by_dominance(solved: SolvedHousing) -> None:
     given = MeasuredModes(2.0 * np.pi * np.array(CASE.measured.frequencies))
-    comparison = compare_housing(CASE, solved, given)
+    comparison = pair_modes(solved, given)
     assert comparison.shapes is None
     assert comparison.pairs == compare_housing(CASE, solved).pairs

@@ -1,0 +1,269 @@
+"""Modes from measured responses: poles by LSCF over rising orders, the stable ones chosen by a rule, shapes by LSFD.
+
+The two estimators are those of sdypy-EMA (extra ``ema``): the least-squares complex frequency-domain method with a
+common denominator (P. Verboven, dissertation, Vrije Universiteit Brussel, 2002), and the least-squares frequency-domain
+residues. Which poles are modes is decided here, by a rule that needs nobody to look at a chart.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import HousingError, MeasuredDataError
+from housing.measured.modes import MeasuredModes
+from housing.measured.responses import MeasuredResponses
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_FORMS = {"displacement": "receptance", "velocity": "mobility", "acceleration": "accelerance"}
+
+
+@dataclass(frozen=True)
+class StabilityRule:
+    """When a pole is that of a mode.
+
+    A pole of one order continues one of the order before where the frequency and the damping ratio differ by no more
+    than the two tolerances; each pole continues one at most, the nearest first. A mode is a line of poles that goes on
+    over at least `share` of the upper half of the orders; the one taken is nearest to the line's medians.
+
+    Attributes
+    ----------
+    orders : int
+        Highest order: pairs of poles of the common denominator.
+    frequency : float
+        Largest change from one order to the next, as a part.
+    damping : float
+        The same of the damping ratio.
+    largest_damping : float
+        Ratios of poles lie between 0 and this.
+    share : float
+        Of the upper half of the orders that a mode's line covers at least.
+    contribution : float
+        Part of the responses' energy near its resonance that a mode makes at least; what makes less is noise.
+    """
+
+    orders: int = 40
+    frequency: float = 0.005
+    damping: float = 0.10
+    largest_damping: float = 0.2
+    share: float = 0.6
+    contribution: float = 1e-3
+
+    def __post_init__(self) -> None:
+        if not 2 <= self.orders <= 200 or not 0.0 < self.share <= 1.0 or min(self.frequency, self.damping) <= 0.0:
+            raise HousingError(f"{self} is no rule; expected 2 to 200 orders, a share up to 1 and tolerances above 0")
+
+
+@dataclass(frozen=True)
+class IdentifiedModes:
+    """Modes found in responses, and how well they give them back.
+
+    Attributes
+    ----------
+    modes : MeasuredModes
+        Shapes are the residues over all references, scaled to 1 at their largest.
+    poles : ndarray of complex, shape (n_modes,)
+        [rad/s].
+    stability : ndarray, shape (n_modes,)
+        Part of the upper half of the orders over which each mode's pole went on.
+    misfit : float
+        Root mean square difference of measured and synthesised responses in the band, as a part of the measured.
+    rank : ndarray, shape (n_modes,)
+        Part of each mode's residues that one shape and one participation explain; below 1 there is another mode close
+        by, or noise. With one reference always 1.
+    """
+
+    modes: MeasuredModes
+    poles: ComplexArray
+    stability: FloatArray
+    misfit: float
+    rank: FloatArray
+
+
+_RULE = StabilityRule()
+
+
+def identify_modes(
+    responses: MeasuredResponses, *, band: tuple[float, float] | None = None, rule: StabilityRule = _RULE
+) -> IdentifiedModes:
+    """Find the modes in measured responses.
+
+    Parameters
+    ----------
+    responses : MeasuredResponses
+        At evenly spaced frequencies; pairs that were not measured are left out.
+    band : tuple of float, optional
+        Frequencies between which modes are looked for [rad/s]; by default all measured. Poles are estimated on all
+        lines; shapes on those of the band, whatever lies outside of it standing as a mass and a stiffness.
+    rule : StabilityRule
+
+    Raises
+    ------
+    MeasuredDataError
+        Where frequencies are not evenly spaced, no mode is stable in the band, or a degree of freedom or reference has
+        no response.
+    HousingError
+        Where sdypy-EMA is not installed.
+    """
+    try:
+        from sdypy import EMA
+    except ImportError as error:
+        raise HousingError("modes of measured responses need sdypy-EMA: pip install 'gearwhine[ema]'") from error
+    step, first = _spacing(responses.frequencies / (2.0 * np.pi))
+    lowest, highest = step * max(first, 1), step * (first + len(responses.frequencies) - 1)
+    low, high = (lowest, highest) if band is None else (band[0] / (2.0 * np.pi), band[1] / (2.0 * np.pi))
+    low, high = max(low, lowest), min(high, highest)
+    if not low < high:
+        raise MeasuredDataError(f"the band {low:g} to {high:g} Hz holds none of the responses' frequencies")
+    measured = np.asarray(~np.isnan(responses.values[:, :, 0]), dtype=np.bool_)
+    if not measured.any(axis=1).all() or not measured.any(axis=0).all():
+        raise MeasuredDataError(
+            "a degree of freedom or a reference of the responses was measured with none of the others"
+        )
+    # Lines from 0 on, as the estimator's Fourier sums need them; those below the band carry no weight.
+    rows = np.pad(responses.values[measured], ((0, 0), (first, 0)))
+    hertz = step * np.arange(rows.shape[1])
+    form = _FORMS[responses.motion]
+    # Poles are those of all lines: a denominator of real coefficients is ill-posed on a narrow band.
+    model = EMA.Model(rows, hertz, lower=lowest, upper=highest, pol_order_high=rule.orders, frf_form=form)
+    model.get_poles(method="lscf", show_progress=False)
+    lines = _lines(model.all_poles, rule, 2.0 * np.pi * low, 2.0 * np.pi * high)
+    if not lines:
+        raise MeasuredDataError(
+            f"no pole between {low:g} and {high:g} Hz is stable over the orders up to {rule.orders}"
+        )
+    while True:
+        fitted, residues = _residues(model, lines, low, min(high, float(model.freq[-1])))
+        kept = _contributing(lines, model.frf, residues, step, form, rule)
+        if len(kept) == len(lines) or not kept:
+            break
+        lines = kept
+    poles = np.array([line.pole for line in lines])
+    order = np.argsort(np.abs(poles))
+    shapes, rank = _shapes(residues[:, order], measured)
+    inside = (model.freq >= low) & (model.freq <= high)
+    own = model.frf[:, inside]
+    misfit = float(np.linalg.norm(fitted[:, inside] - own) / np.linalg.norm(own))
+    modes = MeasuredModes(np.abs(poles)[order], (-poles.real / np.abs(poles))[order], shapes, responses.geometry)
+    return IdentifiedModes(modes, poles[order], np.array([line.stability for line in lines])[order], misfit, rank)
+
+
+def _spacing(hertz: FloatArray) -> tuple[float, int]:
+    """The even spacing of frequencies [Hz], and how many spacings the first of them is from 0.
+
+    Raises
+    ------
+    MeasuredDataError
+        Where they are not whole multiples of one spacing, as the lines of an analyser are.
+    """
+    step = float((hertz[-1] - hertz[0]) / (len(hertz) - 1))
+    numbers = hertz / step
+    first = round(numbers[0])
+    if np.abs(numbers - first - np.arange(len(hertz))).max() > 0.01:
+        raise MeasuredDataError(
+            "the frequencies of the responses are not whole multiples of one spacing, which finding modes needs"
+        )
+    return step, first
+
+
+@dataclass
+class _Line:
+    """Poles that continue each other over the orders, each with its order and its place there."""
+
+    poles: list[complex] = field(default_factory=list)
+    places: list[tuple[int, int]] = field(default_factory=list)
+    stability: float = 0.0
+    chosen: int = 0
+
+    @property
+    def pole(self) -> complex:
+        return self.poles[self.chosen]
+
+    @property
+    def place(self) -> tuple[int, int]:
+        return self.places[self.chosen]
+
+
+def _lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high: float) -> list[_Line]:
+    """The lines of poles that are modes, each with the pole taken."""
+    growing: list[_Line] = []
+    ended: list[_Line] = []
+    for order, poles in enumerate(orders):
+        sizes = np.abs(poles)
+        ratios = -poles.real / np.where(sizes > 0.0, sizes, 1.0)
+        usable = (poles.imag > 0.0) & (ratios > 0.0) & (ratios < rule.largest_damping) & (sizes > low) & (sizes < high)
+        free = {int(place) for place in np.flatnonzero(usable)}
+        pairs = []
+        for number, line in enumerate(growing):
+            last = line.poles[-1]
+            ratio = -last.real / abs(last)
+            for place in free:
+                apart = abs(sizes[place] / abs(last) - 1.0) / rule.frequency
+                unlike = abs(ratios[place] / ratio - 1.0) / rule.damping
+                if apart <= 1.0 and unlike <= 1.0:
+                    pairs.append((apart + unlike, number, place))
+        going: dict[int, int] = {}
+        for _, number, place in sorted(pairs):
+            if number not in going and place in free:
+                going[number] = place
+                free.discard(place)
+        for number, line in enumerate(growing):
+            if number in going:
+                line.poles.append(complex(poles[going[number]]))
+                line.places.append((order, going[number]))
+        ended += [line for number, line in enumerate(growing) if number not in going]
+        growing = [line for number, line in enumerate(growing) if number in going]
+        growing += [_Line([complex(poles[place])], [(order, place)]) for place in sorted(free)]
+    half = len(orders) // 2
+    found = []
+    for line in ended + growing:
+        upper = [index for index, (order, _) in enumerate(line.places) if order >= half]
+        line.stability = len(upper) / (len(orders) - half)
+        if line.stability >= rule.share:
+            poles = np.array(line.poles)[upper]
+            sizes, ratios = np.abs(poles), -poles.real / np.abs(poles)
+            unlike = (
+                np.abs(sizes / np.median(sizes) - 1.0) / rule.frequency
+                + np.abs(ratios / np.median(ratios) - 1.0) / rule.damping
+            )
+            line.chosen = upper[int(np.argmin(unlike))]
+            found.append(line)
+    return sorted(found, key=lambda line: abs(line.pole))
+
+
+def _residues(model: Any, lines: list[_Line], low: float, high: float) -> tuple[ComplexArray, ComplexArray]:
+    """Synthesised responses and residues, shape (n_rows, n_modes), of the poles taken."""
+    model.pole_ind = np.array([line.place for line in lines])
+    fitted, residues = model.get_constants(method="lsfd", f_lower=low, f_upper=high)
+    return np.asarray(fitted), np.asarray(residues)[:, : len(lines)]
+
+
+def _contributing(
+    lines: list[_Line], rows: ComplexArray, residues: ComplexArray, step: float, form: str, rule: StabilityRule
+) -> list[_Line]:
+    """The lines whose modes make a good part of the responses at their own resonance."""
+    kept = []
+    power = ("receptance", "mobility", "accelerance").index(form)
+    for number, line in enumerate(lines):
+        omega = abs(line.pole)
+        index = min(round(omega / (2.0 * np.pi * step)), rows.shape[1] - 1)
+        own = omega**power * np.linalg.norm(residues[:, number]) / abs(line.pole.real)
+        if own**2 >= rule.contribution * float(np.linalg.norm(rows[:, index])) ** 2:
+            kept.append(line)
+    return kept
+
+
+def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[ComplexArray, FloatArray]:
+    """Shapes from residues R = φ ψᵀ of all references, and the part of R that one pair explains."""
+    shapes, parts = [], []
+    for residue in residues.T:
+        table = np.zeros(measured.shape, dtype=np.complex128)
+        table[measured] = residue
+        left, sizes, _ = np.linalg.svd(table, full_matrices=False)
+        shape = left[:, 0]
+        shapes.append(shape / shape[np.argmax(np.abs(shape))])
+        parts.append(sizes[0] ** 2 / (sizes**2).sum())
+    return np.array(shapes), np.array(parts)
