@@ -141,20 +141,23 @@ def pair_modes(
     groups = _groups(model_frequencies, rule, len(phi), "model")
     test_groups = _groups(measured_frequencies, rule, len(psi), "measured")
     own = mac(phi, psi)
-    shared = _shared(phi, psi, own, groups, test_groups)
-    alike = (shared >= rule.least_mac).T
-    weight = _weight(model_frequencies, measured_frequencies, rule)
-    scores = (shared * weight).T
-    chosen = best_assignment(np.where(alike, scores, 0.0))
+    elastic = tuple(group for group in groups if model_frequencies[group[0]] > 0.0)
+    shared = _shared(phi, psi, own, elastic, test_groups)
+    scores = (shared * _weight(model_frequencies, measured_frequencies, rule)).T
+    allowed = (shared >= rule.least_mac) & (scores > 0.0).T
+    chosen = best_assignment(np.where(allowed.T, scores, 0.0))
     distance = np.abs(np.log(np.maximum(model_frequencies, 1e-300)[:, None] / measured_frequencies))
     pairs = []
     for members, rivals in _blocks(chosen, groups, test_groups):
-        told = _told_apart(own[np.ix_(rivals, members)], shared[np.ix_(rivals, members)])
+        place = np.ix_(rivals, members)
+        told = _told_apart(own[place], shared[place])
+        order = _in_order(distance[place]) if told is None else told
         mixed = told is None
-        order = _in_order(distance[np.ix_(rivals, members)]) if told is None else told
+        partners = rivals[order]
+        if not allowed[partners, members].all():  # a chain of close modes, whose ends are not alike
+            partners = np.array([i for j, i in chosen if j in members])
         inside = np.isin(np.arange(len(phi)), rivals)
-        for j, place in zip(members, order, strict=True):
-            i = int(rivals[place])
+        for i, j in zip(map(int, partners), members, strict=True):
             pairs.append(
                 ShapePair(
                     i,
@@ -187,7 +190,8 @@ def _shared(
     """MAC of each mode with the span of the other's close modes, or with the other where it stands apart; (a, b)."""
     shared = own.copy()
     for group in groups:
-        shared[group] = np.maximum(shared[group], span_mac(phi[group], psi)) if len(group) > 1 else own[group]
+        if len(group) > 1:
+            shared[group] = np.maximum(shared[group], span_mac(phi[group], psi))
     for group in test_groups:
         seen = ~np.isnan(psi[group]).any(axis=0)
         if len(group) > 1 and seen.sum() > len(group):

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from housing.correlation import (
+    PairingRule,
     auto_mac,
     comac,
     complexity_factor,
@@ -129,3 +130,21 @@ def test_pairs_do_not_depend_on_scales_or_places(seed: int) -> None:
     assert [(pair.model, pair.measured) for pair in again] == [(pair.model, pair.measured) for pair in pairs]
     assert [pair.confidence for pair in again] == pytest.approx([pair.confidence for pair in pairs])
     assert len({pair.model for pair in pairs}) == len({pair.measured for pair in pairs}) == len(pairs)
+
+
+@settings(max_examples=60, deadline=None)
+@given(SEEDS, st.sampled_from([0.0, 0.01, 0.03]), st.sampled_from([0.2, 0.5]))
+def test_every_pair_keeps_the_rule(seed: int, closeness: float, least_mac: float) -> None:
+    """Crowded modes, mixed and noisy, in groups of all sizes: one partner each, alike enough, sure within bounds."""
+    random = np.random.default_rng(seed)
+    a, b = random.integers(1, 9, 2)
+    frequencies, measured = (np.sort(random.uniform(100.0, 140.0, count)) for count in (a, b))
+    model = random.normal(size=(a, 20))
+    test = random.normal(size=(b, a)) @ model + 0.3 * _shapes(random, b, 20)
+    test[random.random(test.shape) < 0.1] = np.nan
+    rule = PairingRule(closeness=closeness, least_mac=least_mac)
+    pairs = pair_modes(frequencies, model, measured, test, rule)
+    assert len({pair.model for pair in pairs}) == len({pair.measured for pair in pairs}) == len(pairs)
+    assert all(pair.mac >= least_mac - 1e-12 for pair in pairs)
+    assert all(0.0 <= pair.confidence <= 1.0 for pair in pairs)
+    assert all(pair.mac >= mac(model[pair.model], test[pair.measured])[0, 0] - 1e-12 for pair in pairs)

@@ -215,6 +215,9 @@ def test_rigid_motion_of_the_model_is_paired_with_nothing() -> None:
     frequencies = np.array([0.0, 0.0, 1000.0])
     (pair,) = pair_modes(frequencies, OBLONG[1][:3], np.array([990.0]), OBLONG[1][2])
     assert pair.model == 2
+    six = np.array([0.0] * 6 + [1000.0])  # at fewer points than there are rigid motions
+    (pair,) = pair_modes(six, OBLONG[1][:7, 3:8], np.array([990.0]), OBLONG[1][6, 3:8])
+    assert pair.model == 6
 
 
 def test_the_evidence_beside_the_pairs() -> None:
