@@ -36,9 +36,9 @@ class StabilityRule:
 
     orders: int = 40
     frequency: float = 0.005
-    damping: float = 0.10
+    damping: float = 0.20
     largest_damping: float = 0.2
-    share: float = 0.6
+    share: float = 0.5
     contribution: float = 1e-3
 
     def __post_init__(self) -> None:
