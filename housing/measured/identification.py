@@ -19,6 +19,8 @@ from housing.measured.stable_poles import PoleLine, StabilityRule, pole_lines
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+_TURNS = 200  # of the two least-squares problems
+_NOTHING = 1e-12  # of a weight, below which nothing was measured that would tell
 _FORMS = {"displacement": "receptance", "velocity": "mobility", "acceleration": "accelerance"}
 
 
@@ -103,7 +105,11 @@ def identify_modes(
     while True:
         fitted, residues = _residues(model, lines, low, min(high, float(model.freq[-1])))
         kept = _contributing(lines, model.frf, residues, step, form, rule)
-        if len(kept) == len(lines) or not kept:
+        if not kept:
+            raise MeasuredDataError(
+                f"no stable pole between {low:g} and {high:g} Hz makes a good part of the responses"
+            )
+        if len(kept) == len(lines):
             break
         lines = kept
     poles = np.array([line.pole for line in lines])
@@ -162,8 +168,28 @@ def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[Co
     for residue in residues.T:
         table = np.zeros(measured.shape, dtype=np.complex128)
         table[measured] = residue
-        left, sizes, _ = np.linalg.svd(table, full_matrices=False)
-        shape = left[:, 0]
+        left, sizes, right = np.linalg.svd(table, full_matrices=False)
+        shape, participation = left[:, 0], sizes[0] * right[0]
+        if not measured.all():
+            shape, participation = _completed(table, measured, shape, participation)
+        left_over = np.linalg.norm((table - np.outer(shape, participation))[measured]) / np.linalg.norm(table)
         shapes.append(shape / shape[np.argmax(np.abs(shape))])
-        parts.append(sizes[0] ** 2 / (sizes**2).sum())
+        parts.append(1.0 - left_over**2)
     return np.array(shapes), np.array(parts)
+
+
+def _completed(
+    table: ComplexArray, measured: npt.NDArray[np.bool_], shape: ComplexArray, participation: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """The pair φ, ψ of the least Σ |R - φ ψᵀ|² over what was measured, by least squares for each in turn."""
+    for _ in range(_TURNS):
+        before = shape
+        weight = measured.T @ np.abs(shape) ** 2
+        participation = (table.T @ shape.conj()) / np.maximum(weight, _NOTHING)
+        weight = measured @ np.abs(participation) ** 2
+        shape = (table @ participation.conj()) / np.maximum(weight, _NOTHING * np.abs(participation).max() ** 2)
+        scale = np.linalg.norm(shape)
+        shape, participation = shape / scale, participation * scale
+        if np.linalg.norm(shape - before) < 1e-12:
+            break
+    return shape, participation
