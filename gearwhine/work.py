@@ -78,7 +78,7 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         document["housing"] = housing_documents.modes_document(housing)
         document |= housing_documents.origin_document(housing)
         if case.measured is not None:
-            comparison = housing_stage.compare_housing(housing, measured_stage.read_measured(case, progress))
+            comparison = housing_stage.compare_housing(case, housing, measured_stage.read_measured(case, progress))
             document["compare"] = housing_documents.comparison_document(comparison, housing)
 
     transient, system, signature = None, None, None
@@ -269,7 +269,7 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
     require(case, "housing", "measured", command="compare")
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
     measured = measured_stage.read_measured(case, progress)
-    comparison = housing_stage.compare_housing(housing, measured)
+    comparison = housing_stage.compare_housing(case, housing, measured)
     document = housing_documents.comparison_document(comparison, housing)
     if measured.geometry is not None:
         survey = measured_stage.map_measured(case, housing.mesh, measured.geometry)
@@ -308,7 +308,7 @@ def render_case(
     housing = housing_stage.solve_housing(case, progress, command="render", folder=folder, fresh=fresh)
     comparison = None
     if case.measured is not None and housing.strengths is not None:
-        comparison = housing_stage.compare_housing(housing, measured_stage.read_measured(case, progress))
+        comparison = housing_stage.compare_housing(case, housing, measured_stage.read_measured(case, progress))
     with staging(folder) as place:
         draw_modes(housing, comparison, which, view, mode_format, place, progress)
         keep_modes(place, housing)

@@ -18,7 +18,7 @@ from gearwhine.stages.measured import read_measured
 def main(case_name: str, folder: str, *changes: str) -> None:
     case = load_case(case_name, changes).case
     housing = solve_housing(case, folder=Path(folder))
-    document = comparison_document(compare_housing(housing, read_measured(case)), housing)
+    document = comparison_document(compare_housing(case, housing, read_measured(case)), housing)
     with staging(Path(folder)) as place:
         keep_modes(place, housing)
         (place / "comparison.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")

@@ -253,16 +253,17 @@ def base_participation(case: Case, mesh: Mesh, modes: room.ModeSet) -> FloatArra
     return modes.project_all(sparse.csr_array(moved.T))
 
 
-def compare_housing(solved: SolvedHousing, measured: MeasuredModes) -> room.Comparison:
+def compare_housing(case: Case, solved: SolvedHousing, measured: MeasuredModes) -> room.Comparison:
     """Pair the model's dominant modes with the measured ones.
 
     Raises
     ------
     CaseError
-        Where the housing has no seats to be driven at, or its modes are not known high enough.
+        Where nothing is measured, the housing has no seats to be driven at, or its modes are not known high enough.
     housing.HousingError
         Where the model has too few modes in the band.
     """
+    require(case, "measured", command="compare")
     if solved.strengths is None:
         raise CaseError(
             [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]

@@ -479,6 +479,8 @@ def test_what_cannot_be_written_is_refused_and_leaves_the_old_file(tmp_path: Pat
     named = MeasuredGeometry(labels, given.geometry.positions, given.geometry.points, given.geometry.directions)
     with pytest.raises(MeasuredDataError, match="'lid': a universal file knows points by whole numbers"):
         write_universal(path, SurveyData(named))
+    with pytest.raises(MeasuredDataError, match="needs points"):
+        write_universal(path, SurveyData(modes=MeasuredModes(np.array([1.0]))))
     holes = given.modes.shapes.copy()
     holes[0, 3] = np.nan
     modes = MeasuredModes(given.modes.frequencies, None, holes, given.geometry)
