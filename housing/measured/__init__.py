@@ -10,13 +10,14 @@
 
 from housing.measured.alignment import Alignment, align_landmarks, align_to_surface
 from housing.measured.geometry import MeasuredGeometry
-from housing.measured.identification import IdentifiedModes, StabilityRule, identify_modes
+from housing.measured.identification import IdentifiedModes, identify_modes
 from housing.measured.mapping import MappedSurvey, map_survey
 from housing.measured.modes import MeasuredModes
 from housing.measured.outer_surface import outer_facets
 from housing.measured.planning import SurveyPlan, candidate_points, plan_survey, planned_geometry
 from housing.measured.responses import MeasuredResponses, Motion
 from housing.measured.rigid_fit import RigidMotion
+from housing.measured.stable_poles import StabilityRule
 from housing.measured.survey_data import SurveyData
 from housing.measured.survey_file import read_survey, write_survey
 from housing.measured.tables import read_table, write_table

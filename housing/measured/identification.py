@@ -5,7 +5,7 @@ common denominator (P. Verboven, dissertation, Vrije Universiteit Brussel, 2002)
 residues. Which poles are modes is decided here, by a rule that needs nobody to look at a chart.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,47 +14,14 @@ import numpy.typing as npt
 from housing.errors import HousingError, MeasuredDataError
 from housing.measured.modes import MeasuredModes
 from housing.measured.responses import MeasuredResponses
+from housing.measured.stable_poles import PoleLine, StabilityRule, pole_lines
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+_TURNS = 200  # of the two least-squares problems
+_NOTHING = 1e-12  # of a weight, below which nothing was measured that would tell
 _FORMS = {"displacement": "receptance", "velocity": "mobility", "acceleration": "accelerance"}
-
-
-@dataclass(frozen=True)
-class StabilityRule:
-    """When a pole is that of a mode.
-
-    A pole of one order continues one of the order before where the frequency and the damping ratio differ by no more
-    than the two tolerances; each pole continues one at most, the nearest first. A mode is a line of poles that goes on
-    over at least `share` of the upper half of the orders; the one taken is nearest to the line's medians.
-
-    Attributes
-    ----------
-    orders : int
-        Highest order: pairs of poles of the common denominator.
-    frequency : float
-        Largest change from one order to the next, as a part.
-    damping : float
-        The same of the damping ratio.
-    largest_damping : float
-        Ratios of poles lie between 0 and this.
-    share : float
-        Of the upper half of the orders that a mode's line covers at least.
-    contribution : float
-        Part of the responses' energy near its resonance that a mode makes at least; what makes less is noise.
-    """
-
-    orders: int = 40
-    frequency: float = 0.005
-    damping: float = 0.10
-    largest_damping: float = 0.2
-    share: float = 0.6
-    contribution: float = 1e-3
-
-    def __post_init__(self) -> None:
-        if not 2 <= self.orders <= 200 or not 0.0 < self.share <= 1.0 or min(self.frequency, self.damping) <= 0.0:
-            raise HousingError(f"{self} is no rule; expected 2 to 200 orders, a share up to 1 and tolerances above 0")
 
 
 @dataclass(frozen=True)
@@ -130,7 +97,7 @@ def identify_modes(
     # Poles are those of all lines: a denominator of real coefficients is ill-posed on a narrow band.
     model = EMA.Model(rows, hertz, lower=lowest, upper=highest, pol_order_high=rule.orders, frf_form=form)
     model.get_poles(method="lscf", show_progress=False)
-    lines = _lines(model.all_poles, rule, 2.0 * np.pi * low, 2.0 * np.pi * high)
+    lines = pole_lines(model.all_poles, rule, 2.0 * np.pi * low, 2.0 * np.pi * high)
     if not lines:
         raise MeasuredDataError(
             f"no pole between {low:g} and {high:g} Hz is stable over the orders up to {rule.orders}"
@@ -138,7 +105,11 @@ def identify_modes(
     while True:
         fitted, residues = _residues(model, lines, low, min(high, float(model.freq[-1])))
         kept = _contributing(lines, model.frf, residues, step, form, rule)
-        if len(kept) == len(lines) or not kept:
+        if not kept:
+            raise MeasuredDataError(
+                f"no stable pole between {low:g} and {high:g} Hz makes a good part of the responses"
+            )
+        if len(kept) == len(lines):
             break
         lines = kept
     poles = np.array([line.pole for line in lines])
@@ -169,72 +140,7 @@ def _spacing(hertz: FloatArray) -> tuple[float, int]:
     return step, first
 
 
-@dataclass
-class _Line:
-    """Poles that continue each other over the orders, each with its order and its place there."""
-
-    poles: list[complex] = field(default_factory=list)
-    places: list[tuple[int, int]] = field(default_factory=list)
-    stability: float = 0.0
-    chosen: int = 0
-
-    @property
-    def pole(self) -> complex:
-        return self.poles[self.chosen]
-
-    @property
-    def place(self) -> tuple[int, int]:
-        return self.places[self.chosen]
-
-
-def _lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high: float) -> list[_Line]:
-    """The lines of poles that are modes, each with the pole taken."""
-    growing: list[_Line] = []
-    ended: list[_Line] = []
-    for order, poles in enumerate(orders):
-        sizes = np.abs(poles)
-        ratios = -poles.real / np.where(sizes > 0.0, sizes, 1.0)
-        usable = (poles.imag > 0.0) & (ratios > 0.0) & (ratios < rule.largest_damping) & (sizes > low) & (sizes < high)
-        free = {int(place) for place in np.flatnonzero(usable)}
-        pairs = []
-        for number, line in enumerate(growing):
-            last = line.poles[-1]
-            ratio = -last.real / abs(last)
-            for place in free:
-                apart = abs(sizes[place] / abs(last) - 1.0) / rule.frequency
-                unlike = abs(ratios[place] / ratio - 1.0) / rule.damping
-                if apart <= 1.0 and unlike <= 1.0:
-                    pairs.append((apart + unlike, number, place))
-        going: dict[int, int] = {}
-        for _, number, place in sorted(pairs):
-            if number not in going and place in free:
-                going[number] = place
-                free.discard(place)
-        for number, line in enumerate(growing):
-            if number in going:
-                line.poles.append(complex(poles[going[number]]))
-                line.places.append((order, going[number]))
-        ended += [line for number, line in enumerate(growing) if number not in going]
-        growing = [line for number, line in enumerate(growing) if number in going]
-        growing += [_Line([complex(poles[place])], [(order, place)]) for place in sorted(free)]
-    half = len(orders) // 2
-    found = []
-    for line in ended + growing:
-        upper = [index for index, (order, _) in enumerate(line.places) if order >= half]
-        line.stability = len(upper) / (len(orders) - half)
-        if line.stability >= rule.share:
-            poles = np.array(line.poles)[upper]
-            sizes, ratios = np.abs(poles), -poles.real / np.abs(poles)
-            unlike = (
-                np.abs(sizes / np.median(sizes) - 1.0) / rule.frequency
-                + np.abs(ratios / np.median(ratios) - 1.0) / rule.damping
-            )
-            line.chosen = upper[int(np.argmin(unlike))]
-            found.append(line)
-    return sorted(found, key=lambda line: abs(line.pole))
-
-
-def _residues(model: Any, lines: list[_Line], low: float, high: float) -> tuple[ComplexArray, ComplexArray]:
+def _residues(model: Any, lines: list[PoleLine], low: float, high: float) -> tuple[ComplexArray, ComplexArray]:
     """Synthesised responses and residues, shape (n_rows, n_modes), of the poles taken."""
     model.pole_ind = np.array([line.place for line in lines])
     fitted, residues = model.get_constants(method="lsfd", f_lower=low, f_upper=high)
@@ -242,8 +148,8 @@ def _residues(model: Any, lines: list[_Line], low: float, high: float) -> tuple[
 
 
 def _contributing(
-    lines: list[_Line], rows: ComplexArray, residues: ComplexArray, step: float, form: str, rule: StabilityRule
-) -> list[_Line]:
+    lines: list[PoleLine], rows: ComplexArray, residues: ComplexArray, step: float, form: str, rule: StabilityRule
+) -> list[PoleLine]:
     """The lines whose modes make a good part of the responses at their own resonance."""
     kept = []
     power = ("receptance", "mobility", "accelerance").index(form)
@@ -262,8 +168,28 @@ def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[Co
     for residue in residues.T:
         table = np.zeros(measured.shape, dtype=np.complex128)
         table[measured] = residue
-        left, sizes, _ = np.linalg.svd(table, full_matrices=False)
-        shape = left[:, 0]
+        left, sizes, right = np.linalg.svd(table, full_matrices=False)
+        shape, participation = left[:, 0], sizes[0] * right[0]
+        if not measured.all():
+            shape, participation = _completed(table, measured, shape, participation)
+        left_over = np.linalg.norm((table - np.outer(shape, participation))[measured]) / np.linalg.norm(table)
         shapes.append(shape / shape[np.argmax(np.abs(shape))])
-        parts.append(sizes[0] ** 2 / (sizes**2).sum())
+        parts.append(1.0 - left_over**2)
     return np.array(shapes), np.array(parts)
+
+
+def _completed(
+    table: ComplexArray, measured: npt.NDArray[np.bool_], shape: ComplexArray, participation: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """The pair φ, ψ of the least Σ |R - φ ψᵀ|² over what was measured, by least squares for each in turn."""
+    for _ in range(_TURNS):
+        before = shape
+        weight = measured.T @ np.abs(shape) ** 2
+        participation = (table.T @ shape.conj()) / np.maximum(weight, _NOTHING)
+        weight = measured @ np.abs(participation) ** 2
+        shape = (table @ participation.conj()) / np.maximum(weight, _NOTHING * np.abs(participation).max() ** 2)
+        scale = np.linalg.norm(shape)
+        shape, participation = shape / scale, participation * scale
+        if np.linalg.norm(shape - before) < 1e-12:
+            break
+    return shape, participation

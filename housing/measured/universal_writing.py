@@ -43,14 +43,15 @@ def write_universal(path: str | Path, survey: SurveyData, *, points: Literal[15,
     Raises
     ------
     MeasuredDataError
-        Where labels are not whole numbers above 0, a point's directions are not perpendicular to each other, or shapes
-        lack values at single degrees of freedom, none of which the format can say.
+        Where there are no points, labels are not whole numbers above 0, a point's directions are not perpendicular to
+        each other, or shapes lack values at single degrees of freedom, none of which the format can say.
     """
     import pyuff
 
     path = Path(path)
     geometry = survey.geometry
-    assert geometry is not None
+    if geometry is None:
+        raise MeasuredDataError("a universal file needs points; write frequencies alone as a table (CSV)")
     measured = [geometry] + [one.geometry for one in (survey.modes, survey.responses) if one and one.geometry]
     nodes = _nodes(geometry)
     frames = _frames(geometry, measured, survey.responses)

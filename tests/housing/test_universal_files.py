@@ -174,6 +174,26 @@ def test_functions_of_any_form_read_alike(tmp_path: Path, binary: int, spacing: 
     np.testing.assert_allclose(found.frequencies, 2 * np.pi * FUNCTION["x"], rtol=SIX_DIGITS)
 
 
+@pytest.mark.parametrize(("kind", "order"), [("<f8", 1), (">f8", 2), ("<f4", 1), (">f4", 2)])
+def test_binary_parts_of_either_byte_order_and_precision_are_read(tmp_path: Path, kind: str, order: int) -> None:
+    """A block laid by hand after the format's text: record 1 fields 3 and 4, record 7 field 1 (5 single, 6 double)."""
+    path = one_function(tmp_path / "kinds.uff")
+    expected = read_universal(path).responses
+    content = path.read_bytes()
+    start = content.index(b"    58b") + 12 * 81
+    numbers = np.frombuffer(content[start : start + 50 * 3 * 8], dtype="<f8").astype(kind).tobytes()
+    header = content[:start].replace(
+        b"    58b     1     2          11        1200", b"    58b%6d     2          11%12d" % (order, len(numbers))
+    )
+    if kind.endswith("4"):
+        header = header.replace(b"         6        50", b"         5        50")
+    path.write_bytes(header + numbers + content[start + 50 * 3 * 8 :])
+    found = read_universal(path).responses
+    digits = 1e-15 if kind.endswith("8") else 1e-7
+    np.testing.assert_allclose(found.values, expected.values, rtol=digits)
+    np.testing.assert_allclose(found.frequencies, expected.frequencies, rtol=digits)
+
+
 @pytest.mark.parametrize(
     ("numerator", "denominator", "factor"), [("g", "N", 9.80665), ("m/s^2", "lbf", 1 / 4.4482216152605), ("", "", 1.0)]
 )
@@ -459,6 +479,8 @@ def test_what_cannot_be_written_is_refused_and_leaves_the_old_file(tmp_path: Pat
     named = MeasuredGeometry(labels, given.geometry.positions, given.geometry.points, given.geometry.directions)
     with pytest.raises(MeasuredDataError, match="'lid': a universal file knows points by whole numbers"):
         write_universal(path, SurveyData(named))
+    with pytest.raises(MeasuredDataError, match="needs points"):
+        write_universal(path, SurveyData(modes=MeasuredModes(np.array([1.0]))))
     holes = given.modes.shapes.copy()
     holes[0, 3] = np.nan
     modes = MeasuredModes(given.modes.frequencies, None, holes, given.geometry)
