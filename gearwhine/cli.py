@@ -285,6 +285,29 @@ def compare(case: CaseName, *, fresh: Fresh = False, common: Common = _DEFAULTS)
 
 
 @app.command
+def survey(
+    case: CaseName,
+    *,
+    sensors: Annotated[
+        int, Parameter(help="How many sensors, each along the surface's normal.", validator=Number(gte=1))
+    ],
+    modes: Annotated[
+        int | None, Parameter(help="For how many of the lowest modes (default: all known).", validator=Number(gte=1))
+    ] = None,
+    fresh: Fresh = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """Where to put sensors and the hammer for a modal survey, as files in OUT (default: ./<case>-results)."""
+    from gearwhine.screen import show_survey
+    from gearwhine.work import survey_case
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return survey_case(given, sensors, modes, _folder(case, common), progress, fresh=fresh)
+
+    _on_case(case, common, work, show_survey)
+
+
+@app.command
 def render(
     case: CaseName,
     *,

@@ -46,7 +46,8 @@ def draw_modes(
     notes = {}
     if comparison is not None:
         notes = {
-            pair.mode: f"measured {pair.measured / (2.0 * np.pi):.0f} Hz ({pair.error_percent:+.1f} %)"
+            pair.mode: f"measured {pair.measured / (2.0 * np.pi):.0f} Hz ({pair.error_percent:+.1f} %"
+            + (")" if pair.mac is None else f", MAC {pair.mac:.2f})")
             for pair in comparison.pairs
         }
     count = len(housing.modes.frequencies)

@@ -18,22 +18,27 @@ from gearwhine.case import (
     require,
     swept_keys,
 )
+from gearwhine.comparison_files import write_comparison
 from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
 from gearwhine.march_files import kept_march
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
+from gearwhine.stages import comparison as comparison_stage
 from gearwhine.stages import (
+    comparison_documents,
     gear_analysis,
     gear_documents,
     gear_torques,
     housing_documents,
     mesh_health,
     rotor_documents,
+    survey_plan,
 )
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
+from gearwhine.stages import measured as measured_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import signature as signature_stage
 from gearwhine.stages import steady as steady_stage
@@ -89,8 +94,8 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
         document["housing"] = housing_documents.modes_document(housing)
         document |= housing_documents.origin_document(housing)
         if case.measured is not None:
-            comparison = housing_stage.compare_housing(case, housing)
-            document["compare"] = housing_documents.comparison_document(comparison, housing)
+            comparison = comparison_stage.compare_housing(case, housing, progress)
+            document["compare"] = comparison_documents.comparison_document(comparison, housing)
 
     transient, system, signature = None, None, None
     if case.rotor and case.operation:
@@ -137,6 +142,8 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
             results.write_shapes(place / "modes.vtu", housing)
             keep_modes(place, housing)
             draw_modes(housing, comparison, "dominant", "iso", "png", place, progress)
+        if housing is not None and comparison is not None:
+            write_comparison(place, case.title, comparison, housing.modes.frequencies)
         timed("writing", begin)
         seconds["total"] = time.perf_counter() - start
         document |= {"seconds": seconds, "folder": str(folder), "files": _files(place, housing)}
@@ -315,9 +322,28 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
     """Model modes against measured ones."""
     require(case, "housing", "measured", command="compare")
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
-    comparison = housing_stage.compare_housing(case, housing)
-    document = housing_documents.comparison_document(comparison, housing)
-    return _kept(document | housing_documents.origin_document(housing), case, folder, housing=housing)
+    comparison, survey = comparison_stage.compare_with_survey(case, housing, progress)
+    document = comparison_documents.comparison_document(comparison, housing)
+    if survey is not None:
+        document["survey"] = measured_stage.survey_document(survey)
+
+    def write(place: Path) -> None:
+        progress("writing results")
+        geometry = None if survey is None else survey.geometry
+        write_comparison(place, case.title, comparison, housing.modes.frequencies, geometry)
+
+    return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
+
+
+def survey_case(
+    case: Case, sensors: int, modes: int | None, folder: Path, progress: Progress, *, fresh: bool = False
+) -> dict[str, Any]:
+    """Where to measure the housing's modes, as files that a test program reads."""
+    housing = housing_stage.solve_housing(case, progress, command="survey", folder=folder, fresh=fresh)
+    progress(f"choosing {sensors} sensors")
+    planned = survey_plan.plan_housing(case, housing, sensors, modes)
+    document = survey_plan.plan_document(planned, housing) | housing_documents.origin_document(housing)
+    return _kept(document, case, folder, lambda place: survey_plan.write_plan(place, planned), housing)
 
 
 def render_case(
@@ -340,7 +366,7 @@ def render_case(
     housing = housing_stage.solve_housing(case, progress, command="render", folder=folder, fresh=fresh)
     comparison = None
     if case.measured is not None and housing.strengths is not None:
-        comparison = housing_stage.compare_housing(case, housing)
+        comparison = comparison_stage.compare_housing(case, housing, progress)
     with staging(folder) as place:
         draw_modes(housing, comparison, which, view, mode_format, place, progress)
         keep_modes(place, housing)

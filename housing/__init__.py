@@ -15,7 +15,9 @@ What the room offers:
 - :func:`receptance`, :func:`select_modes`, :func:`effective_mass` -- what each mode carries between ports, and of mass.
 - :func:`health_report` -- mass, rigid motions, grounding, orthogonality, static error: each with its bound.
 - :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
-- :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance` -- model against measured modes.
+- :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance`, :func:`compare_by_shapes` -- model against
+  measured modes; ``housing.correlation`` has the criteria.
+- ``housing.measured`` -- files of measured modes and responses, and where on the model they were measured.
 - ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
 - ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
 """
@@ -25,7 +27,14 @@ from housing.attachments import Attachment, attach
 from housing.bolts import BoltedJoint, bolted_joint
 from housing.bushings import GLOBAL_AXES, Axial, Bushing, Joint, Mount, axes_along
 from housing.certificate import Certificate
-from housing.comparison import Comparison, ModePair, compare_by_dominance
+from housing.correlation import (
+    Comparison,
+    ModePair,
+    PairingRule,
+    ShapeCorrelation,
+    compare_by_dominance,
+    compare_by_shapes,
+)
 from housing.damping import damping_ratios, modal_damping
 from housing.dominance import Dominance, dominance
 from housing.effective_mass import EffectiveMass, effective_mass
@@ -35,6 +44,7 @@ from housing.errors import (
     HealthError,
     HousingError,
     IncompleteModesError,
+    MeasuredDataError,
     ModeFileError,
     ReductionError,
 )
@@ -89,12 +99,14 @@ __all__ = [
     "MassProperties",
     "Material",
     "Matrices",
+    "MeasuredDataError",
     "ModeFileError",
     "ModePair",
     "ModeRecord",
     "ModeSet",
     "Mount",
     "NodeBlocks",
+    "PairingRule",
     "Patch",
     "ReductionError",
     "RigidBody",
@@ -102,6 +114,7 @@ __all__ = [
     "Selection",
     "Sensor",
     "SensorPort",
+    "ShapeCorrelation",
     "StaticProof",
     "Support",
     "SupportHold",
@@ -112,6 +125,7 @@ __all__ = [
     "axes_along",
     "bolted_joint",
     "compare_by_dominance",
+    "compare_by_shapes",
     "content_key",
     "damping_ratios",
     "dominance",

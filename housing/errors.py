@@ -23,3 +23,7 @@ class HealthError(RuntimeError):
 
 class ModeFileError(HousingError):
     """A mode-set file cannot be used: missing, damaged, of another kind or another version."""
+
+
+class MeasuredDataError(HousingError):
+    """A file of measured data cannot be used, or does not belong to the model; the message says what was expected."""

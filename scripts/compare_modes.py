@@ -1,24 +1,29 @@
 """Compare a housing's modes with measured ones: compare_modes.py CASE OUT [key.path=value ...]
 
-Writes OUT/comparison.json and prints the pairs. Frequencies alone are paired by dominance, in order.
+Writes OUT/comparison.json, .csv and .png and prints the pairs. Frequencies alone are paired by dominance, in order.
 """
 
 import sys
 from pathlib import Path
 
 from gearwhine.case import load_case
+from gearwhine.comparison_files import write_comparison
 from gearwhine.failures import run_script
 from gearwhine.output import finite, json_text, staging
-from gearwhine.stages.housing import compare_housing, comparison_document, solve_housing
+from gearwhine.stages.comparison import compare_housing
+from gearwhine.stages.comparison_documents import comparison_document
+from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.kept_modes import keep_modes
 
 
 def main(case_name: str, folder: str, *changes: str) -> None:
     case = load_case(case_name, changes).case
     housing = solve_housing(case, folder=Path(folder))
-    document = comparison_document(compare_housing(case, housing), housing)
+    comparison = compare_housing(case, housing)
+    document = comparison_document(comparison, housing)
     with staging(Path(folder)) as place:
         keep_modes(place, housing)
+        write_comparison(place, case.title, comparison, housing.modes.frequencies)
         (place / "comparison.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
     print("measured [Hz]  model [Hz]  error")
     for pair in document["pairs"]:

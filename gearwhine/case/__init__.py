@@ -53,6 +53,7 @@ from gearwhine.case.housing import (
     Support,
 )
 from gearwhine.case.load import LoadedCase, load_case, parse_case
+from gearwhine.case.measured import Align, Landmark, Measured
 from gearwhine.case.model import Case
 from gearwhine.case.motion import (
     AppliedTorque,
@@ -77,7 +78,7 @@ from gearwhine.case.rotors import (
     Segment,
     Unbalance,
 )
-from gearwhine.case.running import Measured, Operation, Output, SpeedRange, Sweep, Transient
+from gearwhine.case.running import Operation, Output, SpeedRange, Sweep, Transient
 from gearwhine.case.shafts import (
     Bearing,
     MatrixDamping,
@@ -93,6 +94,7 @@ from gearwhine.case.train import shaft_of
 
 __all__ = [
     "SPEED_KEY",
+    "Align",
     "AppliedTorque",
     "AxialDashpots",
     "AxialSprings",
@@ -122,6 +124,7 @@ __all__ = [
     "Housing",
     "InertiaTensor",
     "Joint",
+    "Landmark",
     "LoadedCase",
     "LumpedMass",
     "Material",

@@ -11,8 +11,9 @@ from gearwhine.case.analysis import RotorAnalysis
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table
 from gearwhine.case.gears import Gear, GearPair
 from gearwhine.case.housing import Housing, Material, Seat
+from gearwhine.case.measured import Measured
 from gearwhine.case.rotors import Rotor
-from gearwhine.case.running import Measured, Operation, Sweep, Transient
+from gearwhine.case.running import Operation, Sweep, Transient
 from gearwhine.case.shafts import Bearing
 
 Text = Annotated[str, Field(max_length=10_000)]

@@ -1,6 +1,6 @@
-"""How a case runs and what it is compared with: operation, transient, sweep and measured modes.
+"""How a case runs: operation, transient and sweep.
 
-Attributes are named as the keys and are in SI; speeds in rad/s, frequencies in Hz.
+Attributes are named as the keys and are in SI; speeds in rad/s.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from gearwhine.case.fields import (
     MOST_ENTRIES,
     LengthFromZero,
     Name,
-    PositiveFrequency,
     Quantity,
     Speed,
     SpeedFromZero,
@@ -146,18 +145,3 @@ class Sweep(Table):
     def speeds(self) -> tuple[float, ...]:
         """Every speed of the sweep [rad/s], in order."""
         return listed(self.speed)
-
-
-class Measured(Table):
-    """`[measured]`: frequencies of measured modes [Hz], ascending."""
-
-    later = frozenset({"file"})
-
-    frequencies: tuple[PositiveFrequency, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
-
-    @model_validator(mode="after")
-    def _ascending(self) -> Measured:
-        for index in range(1, len(self.frequencies)):
-            if self.frequencies[index] <= self.frequencies[index - 1]:
-                raise wrong("a frequency above the one before it", "frequencies", index)
-        return self

@@ -11,12 +11,15 @@ shows into a folder; the others return a figure for print, 160 mm wide, that :fu
 
 from .assembly import DrawnGear, DrawnProbe, DrawnUnbalance, RotorAssembly
 from .campbell import draw_campbell
+from .comparison import draw_comparison
 from .contact_path import draw_contact_path
 from .contact_pattern import draw_contact_pattern
+from .coordinate_criteria import draw_coordinate_criteria
 from .critical_map import draw_critical_map
 from .flank_charts import draw_flank_charts
 from .gear_pairs import draw_gear_pairs
 from .harris_map import draw_harris_map
+from .mac_matrix import draw_mac_matrix
 from .mesh_stiffness import draw_mesh_stiffness
 from .mode_shapes import draw_lateral_modes, draw_torsional_modes
 from .rotors import draw_rotors
@@ -42,13 +45,16 @@ __all__ = [
     "ProbeResponse",
     "RotorAssembly",
     "draw_campbell",
+    "draw_comparison",
     "draw_contact_path",
     "draw_contact_pattern",
+    "draw_coordinate_criteria",
     "draw_critical_map",
     "draw_flank_charts",
     "draw_gear_pairs",
     "draw_harris_map",
     "draw_lateral_modes",
+    "draw_mac_matrix",
     "draw_mesh_stiffness",
     "draw_order_slices",
     "draw_response_curve",

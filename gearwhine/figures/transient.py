@@ -40,7 +40,8 @@ def draw_transient(
     meshes = mesh_frequencies(case) if case.gear_pair else ()
     if solved.sensor_spectra:
         marked = _marked_modes(housing, comparison)
-        legend = "housing modes" if comparison is None else "dominant housing modes"
+        found = "dominant" if comparison is None or comparison.shapes is None else "measured"
+        legend = "housing modes" if comparison is None else f"{found} housing modes"
         heading = f"{case.title}, {_speed(case)}"
         spectra = draw_sensor_spectra(heading, solved, lines, mesh_frequencies=meshes, marked=marked, marked_as=legend)
         files.append(save(spectra, folder / "spectrum.png"))

@@ -2,7 +2,7 @@
 
 from gearwhine.screen.case import show_check, show_examples, show_mesh
 from gearwhine.screen.gears import show_gears
-from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail
+from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail, show_survey
 from gearwhine.screen.machine import show_run
 from gearwhine.screen.rotors import show_rotors
 from gearwhine.screen.steady import show_steady
@@ -21,6 +21,7 @@ __all__ = [
     "show_rotors",
     "show_run",
     "show_steady",
+    "show_survey",
     "show_sweep",
     "show_system",
 ]

@@ -52,8 +52,27 @@ def _parts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if "sweep" in document:
         yield "sweep", counted(document["sweep"]["speeds"], "speed")
     if "measured" in document:
-        yield "measured", ", ".join(f"{one:g}" for one in document["measured"]["frequencies_hz"]) + " Hz"
+        yield from _named("measured", _measured_lines(document["measured"]))
     yield from _named("standing", [f"{key}: {text}" for key, text in document.get("provenance", {}).items()])
+
+
+def _measured_lines(given: dict[str, Any]) -> list[str]:
+    """The measured modes; of a file also what was read from it."""
+    lines = []
+    if "frequencies_hz" in given:
+        lines.append(", ".join(f"{one:.6g}" for one in given["frequencies_hz"]) + " Hz")
+    if "points" in given:
+        kind = "" if "frequencies_hz" not in given else f"; {'complex' if given['complex'] else 'real'} shapes"
+        size = " x ".join(f"{1e3 * side:.4g}" for side in given["extent_m"])
+        points = f"{counted(given['points'], 'point')} over {size} mm"
+        lines.append(f"{points}, {counted(given['degrees_of_freedom'], 'measured direction')}{kind}")
+    if "responses" in given:
+        found = given["responses"]
+        lines.append(
+            f"responses in {found['of']} to {counted(found['references'], 'force')}, {found['lines']} lines from "
+            f"{found['from_hz']:.6g} to {found['to_hz']:.6g} Hz"
+        )
+    return lines
 
 
 def _transient_line(given: dict[str, Any]) -> str:

@@ -19,12 +19,14 @@ from gearwhine.stages.housing_checks import bearing_places, bearing_port, housin
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
 from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, told_on_failure, warnings_document
 from gearwhine.stages.regions import materials_of
+from housing.measured import MeasuredModes
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 _COORDINATES = ("coordinate", "other_coordinate")
+_ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
 _DAMPING = "modal_damping"  # its name in a mode-set file
 
 
@@ -252,31 +254,54 @@ def base_participation(case: Case, mesh: Mesh, modes: room.ModeSet) -> FloatArra
     return modes.project_all(sparse.csr_array(moved.T))
 
 
-def compare_housing(case: Case, solved: SolvedHousing) -> room.Comparison:
-    """Pair the model's dominant modes with the measured ones.
+def pair_modes(
+    solved: SolvedHousing,
+    measured: MeasuredModes,
+    shapes: FloatArray | None = None,
+    rule: room.PairingRule | None = None,
+) -> room.Comparison:
+    """Pair the model's modes with measured ones: by shape and frequency where there are shapes, else by dominance.
+
+    Parameters
+    ----------
+    solved : SolvedHousing
+    measured : housing.measured.MeasuredModes
+    shapes : ndarray, shape (n_modes, n_dofs), optional
+        The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
+    rule : housing.PairingRule, optional
+        Of the pairing by shape.
 
     Raises
     ------
     CaseError
-        Where nothing is measured or the housing has no seats to be driven at.
+        Where the model's modes are not known as high as the measured ones, or there are no shapes and the housing has
+        no seats to be driven at.
     housing.HousingError
-        Where the model has too few modes in the band.
+        Where the model has too few modes in the band, or its shapes do not fit the measured ones.
     """
-    require(case, "measured", command="compare")
-    assert case.measured is not None
+    if measured.shapes is None or shapes is None:
+        return _compare_by_dominance(solved, measured.frequencies)
+    _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
+    return room.compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
+
+
+def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> room.Comparison:
     if solved.strengths is None:
         raise CaseError(
             [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
         )
-    comparison = room.compare_by_dominance(_HERTZ * np.array(case.measured.frequencies), solved.strengths)
+    comparison = room.compare_by_dominance(frequencies, solved.strengths)
+    _require_modes_up_to(solved, comparison.band[1], "dominant modes are looked for")
+    return comparison
+
+
+def _require_modes_up_to(solved: SolvedHousing, highest: float, why: str) -> None:
     limit = solved.modes.certificate.limit
-    if limit < comparison.band[1]:
+    if limit < highest:
         expected = (
-            f"at least {comparison.band[1] / _HERTZ:.5g} Hz: dominant modes are looked for up to there, and the "
-            "model's are known only below the limit"
+            f"at least {highest / _HERTZ:.5g} Hz: {why} up to there, and the model's are known only below the limit"
         )
         raise CaseError([Problem("housing.frequency_limit", f"{limit / _HERTZ:.5g} Hz", expected)])
-    return comparison
 
 
 def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:

@@ -1,10 +1,9 @@
-"""A solved housing as the commands' JSON: its modes, where they come from, how they compare with measured ones."""
+"""A solved housing as the commands' JSON: its modes, where they come from."""
 
 from typing import Any
 
 import numpy as np
 
-import housing as room
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.housing_checks import selection_document, static_error_document
 
@@ -69,34 +68,4 @@ def origin_document(solved: SolvedHousing | None) -> dict[str, Any]:
         "modes_read_from": str(solved.source),
         "seconds_when_solved": solved.record.notes["seconds"],
         "warnings": solved.warnings,
-    }
-
-
-def comparison_document(comparison: room.Comparison, solved: SolvedHousing) -> dict[str, Any]:
-    """The comparison as the command's JSON."""
-    # Counted below the next full kilohertz over the measured modes, as far as the model's modes are known.
-    highest = float(np.ceil(comparison.pairs[-1].measured / _HERTZ / 1000.0) * 1000.0)
-    highest = min(highest, solved.modes.certificate.limit / _HERTZ)
-    return {
-        "pairs": [
-            {
-                "measured_hz": pair.measured / _HERTZ,
-                "model_hz": pair.model / _HERTZ,
-                "error_percent": pair.error_percent,
-                "mode": pair.mode,
-                "mac": None,
-                "strength": pair.strength,
-            }
-            for pair in comparison.pairs
-        ],
-        "rms_error_percent": comparison.rms_error_percent,
-        "max_error_percent": comparison.max_error_percent,
-        "pairing": comparison.pairing,
-        "band_hz": [edge / _HERTZ for edge in comparison.band],
-        "gap": comparison.gap,
-        "measures_agree": comparison.measures_agree,
-        "model_modes": {
-            "below_hz": highest,
-            "count": int(np.count_nonzero(solved.modes.frequencies_hz < highest)),
-        },
     }

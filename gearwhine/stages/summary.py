@@ -23,6 +23,7 @@ from gearwhine.stages import mesh_health
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gear_shapes import doubts, geometry_document, pairs_document
 from gearwhine.stages.gears import pair_geometries
+from gearwhine.stages.measured import measured_document
 
 _RPM = 60.0 / (2.0 * np.pi)
 
@@ -56,7 +57,10 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
     if case.sweep is not None:
         document["sweep"] = {"speeds": len(case.sweep.speeds)}
     if case.measured is not None:
-        document["measured"] = {"frequencies_hz": list(case.measured.frequencies)}
+        document["measured"] = measured_document(case)
+        if remarks := document["measured"].get("remarks"):
+            found = [mesh_health.doubt("measured", f"{document['measured']['file']}: {remark}") for remark in remarks]
+            document["warnings"] = [*document.get("warnings", ()), *found]
     if case.provenance:
         document["provenance"] = dict(case.provenance)
     return document

@@ -165,7 +165,8 @@ def test_system(gearwhine) -> None:
 
 
 def test_compare(gearwhine) -> None:
-    document = gearwhine("compare", "small-gearbox", "--json", "-q").document
+    document = gearwhine("compare", "small-gearbox", "--json", "-q", "-o", "out").document
+    assert {"comparison.csv", "comparison.png"} <= set(document["files"])
     for pair in document["pairs"]:
         assert pair["error_percent"] == pytest.approx(100 * (pair["model_hz"] / pair["measured_hz"] - 1))
     errors = [abs(pair["error_percent"]) for pair in document["pairs"]]

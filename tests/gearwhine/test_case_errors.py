@@ -208,7 +208,7 @@ ONE_WRONG = {
     "pitch of one tooth": ("gear.0.errors", {"pitch": "1 um"}, "gear[0].errors.pitch", "a list"),
     "pitch by weight": ("gear.0.errors", {"pitch": ["0 um", "1 kg"]}, "gear[0].errors.pitch[1]", "a length"),
     "pitch in millimetres": ("gear.0.errors", {"pitch": [0, 5]}, "gear[0].errors.pitch[1]", "at most 0.001 m"),
-    "measured file": ("measured.file", "survey.uff", "measured.file", "comes in a later version"),
+    "measured file": ("measured.file", "survey.uff", "measured.file", "an existing file"),
     "missing key": ("gear.0.teeth", GONE, "gear[0].teeth", "a whole number from 5"),
     "missing length": ("rotor.0.segments.0.diameter", GONE, "rotor[0].segments[0].diameter", "'6.35 mm'"),
     "short vector": ("housing.box.size", ["1 m", "1 m"], "housing.box.size[2]", "a length"),

@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case
+from gearwhine.stages.comparison import compare_housing
 from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import compare_housing, solve_housing
+from gearwhine.stages.housing import solve_housing
 
 TABLE_I = "NASA TM-104434 (Choy et al., 1991), Table I, gears"
 TABLE_II = "NASA TM-104434 (Choy et al., 1991), Table II, housing modes"

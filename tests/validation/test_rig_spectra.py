@@ -17,8 +17,9 @@ import pytest
 import coupling as room
 from coupling.system import embed
 from gearwhine.case import load_case
+from gearwhine.stages.comparison import compare_housing
 from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import compare_housing, solve_housing
+from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.machine import build_machine, housing_in_machine
 
 FloatArray = npt.NDArray[np.float64]

@@ -1,15 +1,14 @@
-"""Model modes against measured ones, paired by a rule fixed beforehand.
+"""Measured frequencies without shapes, paired with the model's dominant modes by a rule fixed beforehand.
 
 When 25 model modes fill 3 kHz, any measured frequency has one within a few per cent, so the nearest one proves
 nothing. Where the measurement gives frequencies alone, the n dominant modes of the model, in order of frequency,
 are paired with the n measured ones; see :mod:`housing.dominance`.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
+from housing.correlation.comparison import Comparison, ModePair
 from housing.dominance import Dominance
 from housing.errors import HousingError
 
@@ -17,65 +16,6 @@ FloatArray = npt.NDArray[np.float64]
 
 # The band in which dominant modes are looked for reaches so far beyond the first and the last measured frequency.
 _BAND = (0.75, 1.05)
-
-
-@dataclass(frozen=True)
-class ModePair:
-    """A measured mode and the model's.
-
-    Attributes
-    ----------
-    measured, model : float
-        Circular frequencies [rad/s].
-    mode : int
-        The model mode's number, from 1.
-    strength : float
-        Its lateral acceleration strength [1/kg].
-    """
-
-    measured: float
-    model: float
-    mode: int
-    strength: float
-
-    @property
-    def error_percent(self) -> float:
-        """Model minus measured, in per cent of measured."""
-        return 100.0 * (self.model / self.measured - 1.0)
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Pairs of measured and model modes, and what the pairing is worth.
-
-    Attributes
-    ----------
-    pairs : tuple of ModePair
-    pairing : str
-        The rule by which they were paired.
-    band : tuple of float
-        Where dominant modes were looked for [rad/s].
-    gap : float
-        ln(strength of the last chosen mode / strength of the first left out); below 0.1 the choice is a coin toss.
-    measures_agree : bool
-        Whether acceleration, velocity and mean absolute strength all choose these modes.
-    """
-
-    pairs: tuple[ModePair, ...]
-    pairing: str
-    band: tuple[float, float]
-    gap: float
-    measures_agree: bool
-
-    @property
-    def rms_error_percent(self) -> float:
-        """Root-mean-square of the errors."""
-        return float(np.sqrt(np.mean([pair.error_percent**2 for pair in self.pairs])))
-
-    @property
-    def max_error_percent(self) -> float:
-        """Largest absolute error."""
-        return max(abs(pair.error_percent) for pair in self.pairs)
 
 
 def compare_by_dominance(
@@ -111,10 +51,11 @@ def compare_by_dominance(
         ModePair(
             float(frequency),
             float(strengths.frequencies[mode]),
+            number,
             int(mode) + 1,
             float(strengths.acceleration[mode]),
         )
-        for frequency, mode in zip(measured, chosen, strict=True)
+        for number, (frequency, mode) in enumerate(zip(measured, chosen, strict=True), start=1)
     )
     return Comparison(
         pairs=pairs,

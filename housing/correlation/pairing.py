@@ -1,0 +1,243 @@
+"""Which measured mode is which of the model's, by shape and frequency together.
+
+A measured mode j and a model mode i score
+
+    s_ij = MAC_ij · exp(-½ (ln(ω_i / ω_j) / σ)²),
+
+nothing where ω_i / ω_j is beyond exp(±2σ) or the MAC below its least. The pairs are those with the largest sum of
+scores, each mode in one pair at most: choosing the largest MAC row by row would give one model mode to two measured
+ones. The frequency has a light weight (σ = 0.2: 5 % off costs 3 % of the score), for shapes decide and frequencies
+are what is in question.
+
+Close modes, of the model or of the test, mix. Each is then scored by the part of a shape that lies in the span of the
+other's group (:func:`housing.correlation.subspaces.span_mac`), which is the same however a group is mixed. Within a
+group the members' own MACs decide where each is most of that; where not, there is no saying which is which, and the
+order of frequency is kept.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import linear_sum_assignment
+
+from housing.correlation.assignment import best_assignment, margin
+from housing.correlation.assurance import mac
+from housing.correlation.shape_sets import ShapeArray, two_sets
+from housing.correlation.subspaces import close_modes, span_mac
+from housing.errors import HousingError
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_CLEAR = 0.75  # the part of what a shape has in the span of close modes that one of them must hold to be told apart
+_LEAST_FREEDOMS = 2
+_WINDOW = 2.0  # spreads of frequency within which pairs are made
+
+
+@dataclass(frozen=True)
+class PairingRule:
+    """What makes a pair; fixed before the pairs are looked at.
+
+    Attributes
+    ----------
+    least_mac : float
+        Below it a measured mode stays alone. At 0.5 a pair shares more than half of the shape's square, which no second
+        model mode can where the survey sees the model's modes as orthogonal.
+    frequency_spread : float
+        σ of the logarithm of the frequencies' ratio.
+    closeness : float
+        Neighbours within this part of their frequency are close modes.
+    duplicate_mac : float
+        Two measured modes as alike as this are one mode found twice, or two that the survey cannot tell apart.
+    """
+
+    least_mac: float = 0.5
+    frequency_spread: float = 0.2
+    closeness: float = 0.01
+    duplicate_mac: float = 0.9
+
+    @property
+    def window(self) -> float:
+        """Largest logarithm of the frequencies' ratio within which pairs are made."""
+        return _WINDOW * self.frequency_spread
+
+    def __post_init__(self) -> None:
+        for name, low, high in (
+            ("least_mac", 0.0, 1.0),
+            ("frequency_spread", 0.0, np.inf),
+            ("duplicate_mac", 0.0, 1.0),
+        ):
+            value = getattr(self, name)
+            if not low < value <= high:
+                raise HousingError(f"{name} is {value}; expected a number above {low:g} and at most {high:g}")
+        close_modes([], self.closeness)
+
+
+@dataclass(frozen=True)
+class ShapePair:
+    """A measured mode and the model mode that it is.
+
+    Attributes
+    ----------
+    model, measured : int
+        Indices.
+    mac : float
+        Of the two shapes; among close modes, of one with the span of the other's, which is the same however these are
+        mixed.
+    confidence : float
+        By how much the best assignment with this pair beats the best without it, as a part of the pair's score, from 0
+        (another is as good) to 1; see :func:`housing.correlation.assignment.margin`. Not a probability.
+    close_model, close_measured : tuple of int
+        The modes close to each other that the pair's are among; empty where one stands apart.
+    mixed : bool
+        Whether shapes could not tell which of the close modes is which, so that the order of frequency was kept.
+    """
+
+    model: int
+    measured: int
+    mac: float
+    confidence: float
+    close_model: tuple[int, ...]
+    close_measured: tuple[int, ...]
+    mixed: bool
+
+
+def pair_modes(
+    model_frequencies: FloatArray,
+    model_shapes: npt.ArrayLike,
+    measured_frequencies: FloatArray,
+    measured_shapes: npt.ArrayLike,
+    rule: PairingRule | None = None,
+) -> tuple[ShapePair, ...]:
+    """Pair measured modes with the model's by the best assignment over shape and frequency.
+
+    Parameters
+    ----------
+    model_frequencies, measured_frequencies : ndarray, shapes (a,) and (b,)
+        Ascending [rad/s]; rigid motion of the model, at zero, is paired with nothing.
+    model_shapes, measured_shapes : array_like, shapes (a, n_dofs) and (b, n_dofs)
+        At the measured degrees of freedom; NaN where not measured.
+    rule : PairingRule, optional
+
+    Returns
+    -------
+    tuple of ShapePair
+        Ascending in the measured modes. The same whatever complex numbers scale the shapes.
+
+    Raises
+    ------
+    HousingError
+        Where sets and frequencies do not fit together, or a shape has too few degrees of freedom to be told from any
+        other.
+    """
+    rule = rule or PairingRule()
+    phi, psi = two_sets(model_shapes, measured_shapes, ("the model's", "the measured"))
+    few = np.flatnonzero((~np.isnan(psi)).sum(axis=1) < _LEAST_FREEDOMS)
+    if few.size:
+        raise HousingError(
+            f"measured shape {int(few[0]) + 1} has one degree of freedom, at which every mode looks alike; measure more"
+        )
+    groups = _groups(model_frequencies, rule, len(phi), "model")
+    test_groups = _groups(measured_frequencies, rule, len(psi), "measured")
+    own = mac(phi, psi)
+    elastic = tuple(group for group in groups if model_frequencies[group[0]] > 0.0)
+    shared = _shared(phi, psi, own, elastic, test_groups)
+    scores = (shared * _weight(model_frequencies, measured_frequencies, rule)).T
+    allowed = (shared >= rule.least_mac) & (scores > 0.0).T
+    chosen = best_assignment(np.where(allowed.T, scores, 0.0))
+    distance = np.abs(np.log(np.maximum(model_frequencies, 1e-300)[:, None] / measured_frequencies))
+    pairs = []
+    for members, rivals in _blocks(chosen, groups, test_groups):
+        place = np.ix_(rivals, members)
+        told = _told_apart(own[place], shared[place])
+        order = _in_order(distance[place]) if told is None else told
+        mixed = told is None
+        partners = rivals[order]
+        if not allowed[partners, members].all():  # a chain of close modes, whose ends are not alike
+            partners = np.array([i for j, i in chosen if j in members])
+        inside = np.isin(np.arange(len(phi)), rivals)
+        for i, j in zip(map(int, partners), members, strict=True):
+            pairs.append(
+                ShapePair(
+                    i,
+                    int(j),
+                    float(shared[i, j]),
+                    margin(scores, int(j), inside),
+                    _company(groups, i),
+                    _company(test_groups, int(j)),
+                    mixed,
+                )
+            )
+    return tuple(sorted(pairs, key=lambda pair: pair.measured))
+
+
+def _groups(frequencies: FloatArray, rule: PairingRule, count: int, whose: str) -> tuple[IntArray, ...]:
+    if np.shape(frequencies) != (count,):
+        raise HousingError(f"{np.size(frequencies)} {whose} frequencies for {count} shapes; expected as many")
+    if whose == "measured" and np.any(np.asarray(frequencies) <= 0.0):
+        raise HousingError("a measured frequency is not above zero")
+    return close_modes(frequencies, rule.closeness)
+
+
+def _shared(
+    phi: ShapeArray,
+    psi: ShapeArray,
+    own: FloatArray,
+    groups: tuple[IntArray, ...],
+    test_groups: tuple[IntArray, ...],
+) -> FloatArray:
+    """MAC of each mode with the span of the other's close modes, or with the other where it stands apart; (a, b)."""
+    shared = own.copy()
+    for group in groups:
+        if len(group) > 1:
+            shared[group] = np.maximum(shared[group], span_mac(phi[group], psi))
+    for group in test_groups:
+        seen = ~np.isnan(psi[group]).any(axis=0)
+        if len(group) > 1 and seen.sum() > len(group):
+            part = span_mac(psi[np.ix_(group, seen)], phi[:, seen])
+            shared[:, group] = np.maximum(shared[:, group], part[:, None])
+    return shared
+
+
+def _weight(model: FloatArray, measured: FloatArray, rule: PairingRule) -> FloatArray:
+    with np.errstate(divide="ignore"):
+        off = np.log(np.asarray(model)[:, None]) - np.log(measured)
+    return np.asarray(np.where(np.abs(off) <= rule.window, np.exp(-0.5 * (off / rule.frequency_spread) ** 2), 0.0))
+
+
+def _blocks(
+    chosen: list[tuple[int, int]], groups: tuple[IntArray, ...], test_groups: tuple[IntArray, ...]
+) -> list[tuple[IntArray, IntArray]]:
+    """Measured modes that share a group of close modes, each such set with all model modes that are in question."""
+    model = {int(i): number for number, group in enumerate(groups) for i in group}
+    test = {int(j): number for number, group in enumerate(test_groups) for j in group}
+    blocks: list[tuple[set[int], set[int]]] = []
+    for j, i in chosen:
+        members, rivals = {j}, {int(other) for other in groups[model[i]]}
+        for block in [
+            block for block in blocks if block[1] & rivals or any(test[other] == test[j] for other in block[0])
+        ]:
+            blocks.remove(block)
+            members, rivals = members | block[0], rivals | block[1]
+        blocks.append((members, rivals))
+    return [(np.array(sorted(members)), np.array(sorted(rivals))) for members, rivals in blocks]
+
+
+def _told_apart(own: FloatArray, shared: FloatArray) -> IntArray | None:
+    """For each measured mode (columns) its model mode (rows), where own MACs are most of the shared ones."""
+    if own.shape == (1, 1):
+        return np.zeros(1, dtype=np.int64)
+    columns, rows = linear_sum_assignment(own.T, maximize=True)
+    return rows if (own[rows, columns] >= _CLEAR * shared[rows, columns]).all() else None
+
+
+def _in_order(distance: FloatArray) -> IntArray:
+    """The model modes (rows) nearest in frequency to the measured ones (columns), in ascending order."""
+    _, rows = linear_sum_assignment(distance.T)
+    return np.sort(rows)
+
+
+def _company(groups: tuple[IntArray, ...], member: int) -> tuple[int, ...]:
+    group = next(group for group in groups if member in group)
+    return tuple(int(other) for other in group) if len(group) > 1 else ()

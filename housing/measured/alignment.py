@@ -1,0 +1,239 @@
+"""The survey's frame and the model's: how the one lies in the other."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import permutations, product
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+from housing.errors import MeasuredDataError
+from housing.measured.geometry import MeasuredGeometry
+from housing.measured.outer_surface import SurfaceSamples, outer_facets, sample_surface
+from housing.measured.rigid_fit import RigidMotion, fit_points, small_motion
+from meshes import UNITS, Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+_FIRST_STEPS, _STEPS = 6, 40  # from every start; from those that lead somewhere
+_PROMISING = 4.0  # times the least distance, and the spacing of the samples, after the first steps
+_SPREAD_STARTS = 60  # rotations spread over all there are, beside those of axes onto axes
+_SETTLED = 1e-6  # a step that moves points by less, as a part of the housing's diagonal, is the last
+_EQUAL = 0.005  # root mean square distances that differ by less, as a part of the diagonal, do not tell positions apart
+_DISTINCT_DEGREES, _DISTINCT_SHIFT = 5.0, 0.05  # positions that differ by less, the latter of the diagonal, are one
+_LOOSE = 0.02  # firmness below which a motion is not told by the points; evenly spread over a box it is 0.3 and more
+_SCALE_OFF = 0.03  # beyond which the survey is not as large as the model's
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """How the survey's frame lies in the model's.
+
+    Attributes
+    ----------
+    motion : RigidMotion
+        From the survey's frame to the model's.
+    rms, largest : float
+        Distances left, between landmarks or to the surface [m].
+    by : {"landmarks", "surface"}
+    others : tuple of RigidMotion
+        Positions of the survey that fit as well; the one nearest to how it was given is `motion`.
+    remarks : tuple of str
+        What the user should know of it, a sentence each.
+    """
+
+    motion: RigidMotion
+    rms: float
+    largest: float
+    by: str
+    others: tuple[RigidMotion, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+def align_landmarks(geometry: MeasuredGeometry, landmarks: Mapping[str, tuple[float, float, float]]) -> Alignment:
+    """Align a survey by points whose places on the model are known.
+
+    Parameters
+    ----------
+    geometry : MeasuredGeometry
+    landmarks : dict
+        From the label of a point to its place in the model's frame [m]; three or more, not on one line.
+
+    Raises
+    ------
+    MeasuredDataError
+        Where a label is not among the points, or too few landmarks tell no position.
+    """
+    if unknown := [label for label in landmarks if label not in geometry.labels]:
+        raise MeasuredDataError(f"landmark {unknown[0]!r} is not among the survey's {len(geometry.labels)} points")
+    points = geometry.positions[[geometry.labels.index(label) for label in landmarks]]
+    places = np.array(list(landmarks.values()), dtype=np.float64).reshape(-1, 3)
+    motion, scale = fit_points(points, places)
+    gaps = np.linalg.norm(motion.place(points) - places, axis=1)
+    remarks = () if abs(np.log(scale)) < _SCALE_OFF else (_scale_remark(scale),)
+    return Alignment(motion, float(np.sqrt((gaps**2).mean())), float(gaps.max()), "landmarks", remarks=remarks)
+
+
+def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
+    """Align a survey so that its points lie as near to the housing's outer surface as they can.
+
+    From many rotations, the survey's middle on the housing's, points and the nearest planes of the surface are brought
+    together by turns (:func:`small_motion`). A housing with symmetries, or one measured on too few faces, fits in
+    several positions: the one that turns the survey least is taken, and the others are said.
+
+    Raises
+    ------
+    MeasuredDataError
+        Where the survey has fewer than six points, too few to tell a position by their distances from a surface.
+    """
+    points = geometry.positions
+    if len(points) < 6:
+        raise MeasuredDataError(f"a survey of {len(points)} points cannot be aligned by the surface; give landmarks")
+    samples = sample_surface(mesh, outer_facets(mesh))
+    surface = _Surface(cKDTree(samples.points), samples)
+    diagonal = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
+    first = [
+        _settle(points, surface, _started(points, samples.points, rotation), diagonal, _FIRST_STEPS)
+        for rotation in _starts(points, samples.points)
+    ]
+    limit = _PROMISING * (min(rms for rms, _ in first) + samples.spacing)
+    found = [_settle(points, surface, motion, diagonal, _STEPS) for rms, motion in first if rms < limit]
+    found.sort(key=lambda one: one[0])
+    best = found[0][0]
+    fits: list[RigidMotion] = []
+    for rms, motion in found:
+        if rms < best + _EQUAL * diagonal and all(_distinct(motion, other, points, diagonal) for other in fits):
+            fits.append(motion)
+    fits.sort(key=lambda motion: motion.angle_degrees)
+    motion = fits[0]
+    gaps, _, firmness = surface.gaps(motion.place(points))
+    return Alignment(
+        motion,
+        float(np.sqrt((gaps**2).mean())),
+        float(gaps.max()),
+        "surface",
+        others=tuple(fits[1:]),
+        remarks=tuple(_remarks(fits, firmness, points, mesh)),
+    )
+
+
+def size_hint(geometry: MeasuredGeometry, mesh: Mesh, part: float = 2.5) -> str | None:
+    """What a survey of quite another size than the model's suggests; None where it is about as large.
+
+    The survey may be `part` times smaller than the model: one of a part of the housing.
+    """
+    own = float(np.linalg.norm(np.ptp(geometry.positions, axis=0)))
+    if not own > 0.0:
+        return None
+    scale = float(np.linalg.norm(np.ptp(mesh.points, axis=0))) / own
+    return None if 0.4 < scale < part else _scale_remark(scale)
+
+
+@dataclass(frozen=True)
+class _Surface:
+    """The surface as samples, and a tree to find the nearest."""
+
+    tree: cKDTree
+    samples: SurfaceSamples
+
+    def gaps(self, points: FloatArray) -> tuple[FloatArray, RigidMotion, FloatArray]:
+        """Distances to the planes of the nearest samples, the small motion that lessens them, and its firmness.
+
+        A point that lies beside its sample by more than their spacing is as much farther away.
+        """
+        far, nearest = self.tree.query(points)
+        targets, normals = self.samples.points[nearest], self.samples.normals[nearest]
+        away = np.einsum("pi,pi->p", points - targets, normals)
+        beside = np.sqrt(np.maximum(far**2 - away**2, 0.0))
+        distances = np.hypot(away, np.maximum(beside - self.samples.spacing, 0.0))
+        motion, firmness = small_motion(points, targets, normals)
+        return distances, motion, firmness
+
+
+def _starts(points: FloatArray, centers: FloatArray) -> Iterator[FloatArray]:
+    """Rotations to start from: axes onto axes, main axes onto main axes, and others spread over all there are."""
+    onto = [
+        np.eye(3)[list(order)] * np.array(signs)[:, None]
+        for order in permutations(range(3))
+        for signs in product((1.0, -1.0), repeat=3)
+    ]
+    onto = [rotation for rotation in onto if np.linalg.det(rotation) > 0.0]
+    yield from onto
+    own, theirs = (np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2] for places in (points, centers))
+    own, theirs = (axes * np.array([[1.0], [1.0], [np.linalg.det(axes)]]) for axes in (own, theirs))
+    yield from (theirs.T @ rotation @ own for rotation in onto)
+    yield from Rotation.random(_SPREAD_STARTS, rng=np.random.default_rng(0)).as_matrix()
+
+
+def _started(points: FloatArray, centers: FloatArray, rotation: FloatArray) -> RigidMotion:
+    """A rotation with the middle of the survey's extent on that of the surface."""
+    turned = points @ rotation.T
+    middles = [(places.min(axis=0) + places.max(axis=0)) / 2.0 for places in (centers, turned)]
+    return RigidMotion(rotation, middles[0] - middles[1])
+
+
+def _settle(
+    points: FloatArray, surface: _Surface, motion: RigidMotion, diagonal: float, steps: int
+) -> tuple[float, RigidMotion]:
+    """Follow small motions until they end; the root mean square distance and the motion at its least."""
+    best = (np.inf, motion)
+    for _ in range(steps):
+        placed = motion.place(points)
+        distances, step, _ = surface.gaps(placed)
+        rms = float(np.sqrt((distances**2).mean()))
+        if rms < best[0]:
+            best = (rms, motion)
+        moved = float(np.linalg.norm(step.place(placed) - placed, axis=1).max())
+        motion = RigidMotion(step.rotation @ motion.rotation, step.place(motion.translation[None])[0])
+        if moved < _SETTLED * diagonal:
+            break
+    return best
+
+
+def _distinct(one: RigidMotion, other: RigidMotion, points: FloatArray, diagonal: float) -> bool:
+    turned = RigidMotion(one.rotation @ other.rotation.T, np.zeros(3)).angle_degrees
+    shifted = np.linalg.norm(one.place(points).mean(axis=0) - other.place(points).mean(axis=0))
+    return bool(turned > _DISTINCT_DEGREES or shifted > _DISTINCT_SHIFT * diagonal)
+
+
+def _remarks(fits: list[RigidMotion], firmness: FloatArray, points: FloatArray, mesh: Mesh) -> Iterator[str]:
+    if len(fits) > 1:
+        turns = ", ".join(
+            _turn_text(RigidMotion(other.rotation @ fits[0].rotation.T, np.zeros(3))) for other in fits[1:5]
+        )
+        yield (
+            f"the survey fits in {len(fits)} positions equally well; the one that turns it least was taken, others are "
+            f"that {turns}; landmarks tell which is right"
+        )
+    loose = int(np.count_nonzero(firmness < _LOOSE))
+    if loose:
+        yield (
+            f"in {loose} of 6 ways the survey can slide along the surface without leaving it: points on too few faces; "
+            "give landmarks"
+        )
+    extent = float(np.linalg.norm(np.ptp(points, axis=0)) / np.linalg.norm(np.ptp(mesh.points, axis=0)))
+    if not 0.4 < extent < 2.5:
+        yield _scale_remark(1.0 / extent)
+
+
+def _turn_text(motion: RigidMotion) -> str:
+    vector = Rotation.from_matrix(motion.rotation).as_rotvec(degrees=True)
+    angle = float(np.linalg.norm(vector))
+    if angle < 1.0:
+        return "shifted"
+    axis = vector / angle
+    name = next((f"{letter}" for letter, share in zip("xyz", axis, strict=True) if abs(share) > 0.99), None)
+    return f"turned by {angle:.0f}° about {name or np.round(axis, 2).tolist()}"
+
+
+def _scale_remark(scale: float) -> str:
+    """A scale of the survey in words, as a unit taken for another where it is one."""
+    for told, size in UNITS.items():
+        for meant, other in UNITS.items():
+            if told != meant and abs(np.log(scale * size / other)) < 0.3:
+                return (
+                    f"the model is {scale:.4g} times as large as the survey: its lengths are in {meant}, not in {told}?"
+                )
+    return f"the model is {scale:.4g} times as large as the survey; a rigid motion does not bring them together"

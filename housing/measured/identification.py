@@ -1,0 +1,195 @@
+"""Modes from measured responses: poles by LSCF over rising orders, the stable ones chosen by a rule, shapes by LSFD.
+
+The two estimators are those of sdypy-EMA (extra ``ema``): the least-squares complex frequency-domain method with a
+common denominator (P. Verboven, dissertation, Vrije Universiteit Brussel, 2002), and the least-squares frequency-domain
+residues. Which poles are modes is decided here, by a rule that needs nobody to look at a chart.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import HousingError, MeasuredDataError
+from housing.measured.modes import MeasuredModes
+from housing.measured.responses import MeasuredResponses
+from housing.measured.stable_poles import PoleLine, StabilityRule, pole_lines
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_TURNS = 200  # of the two least-squares problems
+_NOTHING = 1e-12  # of a weight, below which nothing was measured that would tell
+_FORMS = {"displacement": "receptance", "velocity": "mobility", "acceleration": "accelerance"}
+
+
+@dataclass(frozen=True)
+class IdentifiedModes:
+    """Modes found in responses, and how well they give them back.
+
+    Attributes
+    ----------
+    modes : MeasuredModes
+        Shapes are the residues over all references, scaled to 1 at their largest.
+    poles : ndarray of complex, shape (n_modes,)
+        [rad/s].
+    stability : ndarray, shape (n_modes,)
+        Part of the upper half of the orders over which each mode's pole went on.
+    misfit : float
+        Root mean square difference of measured and synthesised responses in the band, as a part of the measured.
+    rank : ndarray, shape (n_modes,)
+        Part of each mode's residues that one shape and one participation explain; below 1 there is another mode close
+        by, or noise. With one reference always 1.
+    """
+
+    modes: MeasuredModes
+    poles: ComplexArray
+    stability: FloatArray
+    misfit: float
+    rank: FloatArray
+
+
+_RULE = StabilityRule()
+
+
+def identify_modes(
+    responses: MeasuredResponses, *, band: tuple[float, float] | None = None, rule: StabilityRule = _RULE
+) -> IdentifiedModes:
+    """Find the modes in measured responses.
+
+    Parameters
+    ----------
+    responses : MeasuredResponses
+        At evenly spaced frequencies; pairs that were not measured are left out.
+    band : tuple of float, optional
+        Frequencies between which modes are looked for [rad/s]; by default all measured. Poles are estimated on all
+        lines; shapes on those of the band, whatever lies outside of it standing as a mass and a stiffness.
+    rule : StabilityRule
+
+    Raises
+    ------
+    MeasuredDataError
+        Where frequencies are not evenly spaced, no mode is stable in the band, or a degree of freedom or reference has
+        no response.
+    HousingError
+        Where sdypy-EMA is not installed.
+    """
+    try:
+        from sdypy import EMA
+    except ImportError as error:
+        raise HousingError("modes of measured responses need sdypy-EMA: pip install 'gearwhine[ema]'") from error
+    step, first = _spacing(responses.frequencies / (2.0 * np.pi))
+    lowest, highest = step * max(first, 1), step * (first + len(responses.frequencies) - 1)
+    low, high = (lowest, highest) if band is None else (band[0] / (2.0 * np.pi), band[1] / (2.0 * np.pi))
+    low, high = max(low, lowest), min(high, highest)
+    if not low < high:
+        raise MeasuredDataError(f"the band {low:g} to {high:g} Hz holds none of the responses' frequencies")
+    measured = np.asarray(~np.isnan(responses.values[:, :, 0]), dtype=np.bool_)
+    if not measured.any(axis=1).all() or not measured.any(axis=0).all():
+        raise MeasuredDataError(
+            "a degree of freedom or a reference of the responses was measured with none of the others"
+        )
+    # Lines from 0 on, as the estimator's Fourier sums need them; those below the band carry no weight.
+    rows = np.pad(responses.values[measured], ((0, 0), (first, 0)))
+    hertz = step * np.arange(rows.shape[1])
+    form = _FORMS[responses.motion]
+    # Poles are those of all lines: a denominator of real coefficients is ill-posed on a narrow band.
+    model = EMA.Model(rows, hertz, lower=lowest, upper=highest, pol_order_high=rule.orders, frf_form=form)
+    model.get_poles(method="lscf", show_progress=False)
+    lines = pole_lines(model.all_poles, rule, 2.0 * np.pi * low, 2.0 * np.pi * high)
+    if not lines:
+        raise MeasuredDataError(
+            f"no pole between {low:g} and {high:g} Hz is stable over the orders up to {rule.orders}"
+        )
+    while True:
+        fitted, residues = _residues(model, lines, low, min(high, float(model.freq[-1])))
+        kept = _contributing(lines, model.frf, residues, step, form, rule)
+        if not kept:
+            raise MeasuredDataError(
+                f"no stable pole between {low:g} and {high:g} Hz makes a good part of the responses"
+            )
+        if len(kept) == len(lines):
+            break
+        lines = kept
+    poles = np.array([line.pole for line in lines])
+    order = np.argsort(np.abs(poles))
+    shapes, rank = _shapes(residues[:, order], measured)
+    inside = (model.freq >= low) & (model.freq <= high)
+    own = model.frf[:, inside]
+    misfit = float(np.linalg.norm(fitted[:, inside] - own) / np.linalg.norm(own))
+    modes = MeasuredModes(np.abs(poles)[order], (-poles.real / np.abs(poles))[order], shapes, responses.geometry)
+    return IdentifiedModes(modes, poles[order], np.array([line.stability for line in lines])[order], misfit, rank)
+
+
+def _spacing(hertz: FloatArray) -> tuple[float, int]:
+    """The even spacing of frequencies [Hz], and how many spacings the first of them is from 0.
+
+    Raises
+    ------
+    MeasuredDataError
+        Where they are not whole multiples of one spacing, as the lines of an analyser are.
+    """
+    step = float((hertz[-1] - hertz[0]) / (len(hertz) - 1))
+    numbers = hertz / step
+    first = round(numbers[0])
+    if np.abs(numbers - first - np.arange(len(hertz))).max() > 0.01:
+        raise MeasuredDataError(
+            "the frequencies of the responses are not whole multiples of one spacing, which finding modes needs"
+        )
+    return step, first
+
+
+def _residues(model: Any, lines: list[PoleLine], low: float, high: float) -> tuple[ComplexArray, ComplexArray]:
+    """Synthesised responses and residues, shape (n_rows, n_modes), of the poles taken."""
+    model.pole_ind = np.array([line.place for line in lines])
+    fitted, residues = model.get_constants(method="lsfd", f_lower=low, f_upper=high)
+    return np.asarray(fitted), np.asarray(residues)[:, : len(lines)]
+
+
+def _contributing(
+    lines: list[PoleLine], rows: ComplexArray, residues: ComplexArray, step: float, form: str, rule: StabilityRule
+) -> list[PoleLine]:
+    """The lines whose modes make a good part of the responses at their own resonance."""
+    kept = []
+    power = ("receptance", "mobility", "accelerance").index(form)
+    for number, line in enumerate(lines):
+        omega = abs(line.pole)
+        index = min(round(omega / (2.0 * np.pi * step)), rows.shape[1] - 1)
+        own = omega**power * np.linalg.norm(residues[:, number]) / abs(line.pole.real)
+        if own**2 >= rule.contribution * float(np.linalg.norm(rows[:, index])) ** 2:
+            kept.append(line)
+    return kept
+
+
+def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[ComplexArray, FloatArray]:
+    """Shapes from residues R = φ ψᵀ of all references, and the part of R that one pair explains."""
+    shapes, parts = [], []
+    for residue in residues.T:
+        table = np.zeros(measured.shape, dtype=np.complex128)
+        table[measured] = residue
+        left, sizes, right = np.linalg.svd(table, full_matrices=False)
+        shape, participation = left[:, 0], sizes[0] * right[0]
+        if not measured.all():
+            shape, participation = _completed(table, measured, shape, participation)
+        left_over = np.linalg.norm((table - np.outer(shape, participation))[measured]) / np.linalg.norm(table)
+        shapes.append(shape / shape[np.argmax(np.abs(shape))])
+        parts.append(1.0 - left_over**2)
+    return np.array(shapes), np.array(parts)
+
+
+def _completed(
+    table: ComplexArray, measured: npt.NDArray[np.bool_], shape: ComplexArray, participation: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """The pair φ, ψ of the least Σ |R - φ ψᵀ|² over what was measured, by least squares for each in turn."""
+    for _ in range(_TURNS):
+        before = shape
+        weight = measured.T @ np.abs(shape) ** 2
+        participation = (table.T @ shape.conj()) / np.maximum(weight, _NOTHING)
+        weight = measured @ np.abs(participation) ** 2
+        shape = (table @ participation.conj()) / np.maximum(weight, _NOTHING * np.abs(participation).max() ** 2)
+        scale = np.linalg.norm(shape)
+        shape, participation = shape / scale, participation * scale
+        if np.linalg.norm(shape - before) < 1e-12:
+            break
+    return shape, participation

@@ -1,0 +1,143 @@
+"""From a universal file to what a survey measured: points, shapes and responses, in SI and one frame."""
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import MeasuredDataError
+from housing.measured.coordinate_systems import GLOBAL, CoordinateSystem, systems_of
+from housing.measured.modes import MeasuredModes
+from housing.measured.survey_data import SurveyData
+from housing.measured.survey_points import SurveyPoints
+from housing.measured.universal_datasets import Dataset, read_datasets
+from housing.measured.universal_functions import read_functions
+from housing.measured.universal_shapes import read_shapes
+from meshes import UNITS
+
+FloatArray = npt.NDArray[np.float64]
+
+Frame = Literal["local", "global"]
+
+
+def read_universal(path: str | Path, *, unit: str | None = None, shape_frame: Frame = "local") -> SurveyData:
+    """Read a universal file: points (15, 2411), trace lines (82), shapes (55), responses (58), units (164).
+
+    Parameters
+    ----------
+    path : path
+    unit : {"m", "mm", "cm", "in"}, optional
+        Of the file's lengths, in place of what its dataset 164 says. Without either a metre is assumed, and said.
+    shape_frame : {"local", "global"}
+        In which frame shapes stand where points have a displacement system of their own. The format calls the vectors
+        of dataset 55 global; programs for modal tests write them in the points' own directions, as they measured.
+        Functions (58) are always in the points' own.
+
+    Raises
+    ------
+    MeasuredDataError
+        Where the file is damaged, or names a point or coordinate system that it does not hold.
+    """
+    path = Path(path)
+    datasets, passed_over = read_datasets(path)
+    remarks = list(passed_over)
+    length, force = _units(datasets, unit, remarks)
+    points = _points(datasets, length, remarks)
+    holds = {dataset["type"] for dataset in datasets}
+    if points is None:
+        if holds & {55, 58}:
+            what = "shapes" if 55 in holds else "functions"
+            raise MeasuredDataError(
+                f"{path.name} holds {what} but no points (dataset 15 or 2411): nobody can tell where they were measured"
+            )
+        raise MeasuredDataError(f"{path.name} holds no points, shapes or functions (datasets 15 or 2411, 55, 58)")
+    geometry = points.geometry([], [])
+    modes: MeasuredModes | None = None
+    turned = bool(np.any(np.abs(points.directions - np.eye(3)) > 1e-12))
+    if 55 in holds:
+        if turned:
+            remarks.append(
+                f"shapes taken to stand in the points' {'own' if shape_frame == 'local' else 'common'} frame"
+            )
+        own = points.directions if shape_frame == "local" else np.broadcast_to(np.eye(3), points.directions.shape)
+        modes = read_shapes([one for one in datasets if one["type"] == 55], points, own, remarks)
+    responses = None
+    if 58 in holds:
+        functions = [one for one in datasets if one["type"] == 58]
+        responses = read_functions(functions, points, length, force, remarks)
+    if modes is not None and modes.geometry is not None:
+        geometry = modes.geometry
+    elif responses is not None:
+        geometry = responses.geometry
+    return SurveyData(geometry, modes, responses, tuple(remarks))
+
+
+def _units(datasets: list[Dataset], unit: str | None, remarks: list[str]) -> tuple[float, float]:
+    """Metres in the file's unit of length, and newtons in its unit of force."""
+    stated = [dataset for dataset in datasets if dataset["type"] == 164]
+    if len({(one["length"], one["force"]) for one in stated}) > 1:
+        raise MeasuredDataError("the file states several systems of units (dataset 164); expected one")
+    force = 1.0 / stated[0]["force"] if stated else 1.0
+    if unit is not None:
+        if unit not in UNITS:
+            raise MeasuredDataError(f"unit {unit!r}; expected one of {', '.join(UNITS)}")
+        if stated and not np.isclose(UNITS[unit] * stated[0]["length"], 1.0, rtol=1e-6):
+            remarks.append(f"lengths taken in {unit}, as told, and not as the file's dataset 164 states")
+        return UNITS[unit], force
+    if stated:
+        return 1.0 / stated[0]["length"], force
+    remarks.append("no units stated (dataset 164): lengths taken in metres, forces in newtons")
+    return 1.0, force
+
+
+def _points(datasets: list[Dataset], length: float, remarks: list[str]) -> SurveyPoints | None:
+    """Positions in metres and directions of the points, their systems resolved; None where there are none."""
+    systems = systems_of(datasets)
+    found: dict[str, tuple[FloatArray, FloatArray]] = {}
+    for dataset in datasets:
+        if dataset["type"] not in (15, 2411):
+            continue
+        places = np.stack([np.asarray(dataset[key], dtype=np.float64) for key in "xyz"], axis=1)
+        for index, place in enumerate(places):
+            label = str(int(dataset["node_nums"][index]))
+            defined = _system(systems, dataset["def_cs"][index], label, remarks)
+            moved = _system(systems, dataset["disp_cs"][index], label, remarks)
+            # The coordinates of dataset 2411 are the part's, whatever system it was exported for.
+            position = defined.position(place) if dataset["type"] == 15 else place
+            if label in found and not np.allclose(found[label][0], position, rtol=1e-5, atol=1e-9):
+                raise MeasuredDataError(f"point {label} stands twice in the file, at different places")
+            found[label] = (position, moved.directions(position))
+    if not found:
+        return None
+    labels = tuple(found)
+    positions = length * np.array([position for position, _ in found.values()])
+    directions = np.array([axes for _, axes in found.values()])
+    if any(dataset["type"] == 2420 for dataset in datasets):
+        remarks.append("coordinate systems of dataset 2420 read with their axes as the rows of the matrix")
+    points = SurveyPoints(labels, positions, directions, ())
+    lines = [line for dataset in datasets if dataset["type"] == 82 for line in _lines(dataset, points)]
+    return SurveyPoints(labels, positions, directions, tuple(lines))
+
+
+def _system(systems: dict[int, CoordinateSystem], number: float, label: str, remarks: list[str]) -> CoordinateSystem:
+    """The system of this number. Number 1 that is defined nowhere is the program's own global frame."""
+    if int(number) in systems:
+        return systems[int(number)]
+    if int(number) == 1:
+        remark = "coordinate system 1, which the file does not define, taken for the survey's own frame"
+        if remark not in remarks:
+            remarks.append(remark)
+        return GLOBAL
+    raise MeasuredDataError(f"point {label} stands in coordinate system {int(number)}, which the file does not hold")
+
+
+def _lines(dataset: Dataset, points: SurveyPoints) -> list[tuple[int, ...]]:
+    """The trace lines of one dataset 82; a 0 lifts the pen."""
+    lines: list[list[int]] = [[]]
+    for node in dataset["nodes"]:
+        if node == 0:
+            lines.append([])
+        else:
+            lines[-1].append(points.index(node, "a trace line"))
+    return [tuple(line) for line in lines if len(line) > 1]

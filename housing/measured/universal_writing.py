@@ -1,0 +1,254 @@
+"""Universal files of a survey: written whole or not at all, and read back as they were within the format's digits.
+
+Points go out in double precision (2411) or, where a program asks for it, in single (15); directions that are not
+along the axes as coordinate systems (18); shapes as dataset 55 in the points' own directions; responses as dataset 58
+in binary, whose header and length of binary part are written here, because pyuff 2.5 counts complex values as half.
+"""
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import MeasuredDataError
+from housing.measured.geometry import MeasuredGeometry
+from housing.measured.modes import MeasuredModes
+from housing.measured.responses import MeasuredResponses
+from housing.measured.survey_data import SurveyData
+from housing.measured.universal_functions import FORCE, MOTIONS, RESPONSE_FUNCTION
+from housing.measured.universal_shapes import COMPLEX_FIRST, NORMAL
+
+FloatArray = npt.NDArray[np.float64]
+
+_SI = {"type": 164, "units_code": 1, "units_description": "SI: Meter (newton)", "temp_mode": 1}
+_SI |= {"length": 1.0, "force": 1.0, "temp": 1.0, "temp_offset": 273.15}
+_UNIT_LABELS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2"}
+_AXES = np.eye(3)
+_LONGEST_LINE = 250  # points of a trace line, by the format
+
+
+def write_universal(path: str | Path, survey: SurveyData, *, points: Literal[15, 2411] = 2411) -> None:
+    """Write points, trace lines, shapes and responses in SI.
+
+    Parameters
+    ----------
+    path : path
+    survey : SurveyData
+    points : {15, 2411}
+        Dataset of the points; 15 holds six digits and is read by every program, 2411 holds all.
+
+    Raises
+    ------
+    MeasuredDataError
+        Where there are no points, labels are not whole numbers above 0, a point's directions are not perpendicular to
+        each other, or shapes lack values at single degrees of freedom, none of which the format can say.
+    """
+    import pyuff
+
+    path = Path(path)
+    geometry = survey.geometry
+    if geometry is None:
+        raise MeasuredDataError("a universal file needs points; write frequencies alone as a table (CSV)")
+    measured = [geometry] + [one.geometry for one in (survey.modes, survey.responses) if one and one.geometry]
+    nodes = _nodes(geometry)
+    frames = _frames(geometry, measured, survey.responses)
+    turned = np.flatnonzero(np.any(frames != _AXES, axis=(1, 2)))
+    datasets: list[dict[str, Any]] = [{"type": 151, **_HEADER}, dict(_SI)]
+    systems = np.zeros(len(nodes), dtype=np.int64)
+    if len(turned):
+        systems[turned] = 2 + np.arange(len(turned))  # 1 is some programs' own global frame
+        datasets.append(_systems(systems[turned], frames[turned]))
+    datasets.append(_points(points, nodes, geometry.positions, systems))
+    datasets += _lines(geometry, nodes)
+    if survey.modes is not None and survey.modes.shapes is not None:
+        datasets += _shapes(survey.modes, nodes, frames)
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
+        staged = Path(folder, path.name)
+        pyuff.UFF(str(staged)).write_sets(datasets, "overwrite")
+        if survey.responses is not None:
+            with staged.open("ab") as file:
+                for block in _functions(survey.responses, nodes, frames):
+                    file.write(block)
+        os.replace(staged, path)
+
+
+_HEADER: dict[str, Any] = {
+    "model_name": "survey",
+    "description": "NONE",
+    "db_app": "gearwhine",
+    "date_db_created": "NONE",
+}
+_HEADER |= {"time_db_created": "NONE", "version_db1": 0, "version_db2": 0, "file_type": 0, "program": "gearwhine"}
+_HEADER |= {"date_db_saved": "NONE", "time_db_saved": "NONE", "date_file_written": "NONE", "time_file_written": "NONE"}
+
+
+def _nodes(geometry: MeasuredGeometry) -> list[int]:
+    """The labels as the format's numbers."""
+    wrong = [label for label in geometry.labels if not (label.isdecimal() and 0 < int(label) < 10**9)]
+    if wrong:
+        raise MeasuredDataError(f"point {wrong[0]!r}: a universal file knows points by whole numbers above 0")
+    return [int(label) for label in geometry.labels]
+
+
+def _frames(
+    geometry: MeasuredGeometry, measured: list[MeasuredGeometry], responses: MeasuredResponses | None
+) -> FloatArray:
+    """For each point three perpendicular directions, as rows, that hold all directions measured there."""
+    seen: list[list[FloatArray]] = [[] for _ in geometry.labels]
+    for one in measured:
+        if one.labels != geometry.labels or not np.array_equal(one.positions, geometry.positions):
+            raise MeasuredDataError("shapes and responses of one file need the same points; write two files")
+        for point, direction in zip(one.points, one.directions, strict=True):
+            seen[point].append(direction)
+    if responses is not None:
+        for point, direction in zip(responses.reference_points, responses.reference_directions, strict=True):
+            seen[point].append(direction)
+    return np.array([_frame(label, given) for label, given in zip(geometry.labels, seen, strict=True)])
+
+
+def _frame(label: str, given: list[FloatArray]) -> FloatArray:
+    """The axes themselves where the directions are along them, else the directions, made up to three."""
+    if all(np.any(np.abs(_AXES @ direction) > 1.0 - 1e-12) for direction in given):
+        return _AXES
+    frame: list[FloatArray] = []
+    for direction in given:
+        shares = np.array([direction @ axis for axis in frame])
+        if len(frame) and np.any(np.abs(shares) > 1.0 - 1e-9):
+            continue
+        if len(frame) == 3 or np.any(np.abs(shares) > 1e-6):
+            raise MeasuredDataError(
+                f"the directions at point {label} are not perpendicular to each other: no coordinate system holds them"
+            )
+        frame.append(direction)
+    if len(frame) == 1:
+        helper = _AXES[np.argmin(np.abs(frame[0]))]
+        across = np.cross(frame[0], helper)
+        frame.append(across / np.linalg.norm(across))
+    third = np.cross(frame[0], frame[1])
+    return np.stack([frame[0], frame[1], third / np.linalg.norm(third)])
+
+
+def _systems(numbers: npt.NDArray[np.int64], frames: FloatArray) -> dict[str, Any]:
+    """Dataset 18: origin, a point on +x, a point on the +xz plane."""
+    zeros = np.zeros((len(numbers), 3))
+    return {
+        "type": 18,
+        "cs_num": numbers,
+        "ref_cs_num": np.zeros(len(numbers), dtype=np.int64),
+        "cs_name": [f"point system {number}" for number in numbers],
+        "ref_o": zeros,
+        "x_point": frames[:, 0],
+        "xz_point": frames[:, 2],
+    }
+
+
+def _points(kind: int, nodes: list[int], positions: FloatArray, systems: npt.NDArray[np.int64]) -> dict[str, Any]:
+    zeros = np.zeros(len(nodes), dtype=np.int64)
+    numbers = {"node_nums": np.array(nodes), "def_cs": zeros, "disp_cs": systems, "color": zeros}
+    return {"type": kind, **numbers, "x": positions[:, 0], "y": positions[:, 1], "z": positions[:, 2]}
+
+
+def _lines(geometry: MeasuredGeometry, nodes: list[int]) -> list[dict[str, Any]]:
+    pieces = [
+        line[start : start + _LONGEST_LINE]
+        for line in geometry.lines
+        for start in range(0, len(line) - 1, _LONGEST_LINE - 1)  # the next piece begins where the last one ends
+    ]
+    return [
+        {
+            "type": 82,
+            "trace_num": number,
+            "color": 1,
+            "id": "NONE",
+            "nodes": np.array([nodes[point] for point in piece]),
+        }
+        for number, piece in enumerate(pieces, start=1)
+    ]
+
+
+def _shapes(modes: MeasuredModes, nodes: list[int], frames: FloatArray) -> list[dict[str, Any]]:
+    """Dataset 55 for each mode; real where all shapes are."""
+    assert modes.shapes is not None
+    assert modes.geometry is not None
+    lacking = np.isnan(modes.shapes)
+    partly = np.flatnonzero(lacking.any(axis=0) & ~lacking.all(axis=0))
+    if len(partly):
+        point = modes.geometry.labels[modes.geometry.points[partly[0]]]
+        raise MeasuredDataError(
+            f"a direction at point {point} was measured in some modes only, which a universal file cannot say; "
+            "write a table (CSV)"
+        )
+    real = not np.any(np.nan_to_num(modes.shapes).imag)
+    ratios = np.zeros(len(modes.frequencies)) if modes.damping_ratios is None else modes.damping_ratios
+    measured = sorted(set(modes.geometry.points.tolist()))
+    rows = {point: row for row, point in enumerate(measured)}
+    datasets = []
+    for number, (frequency, ratio, shape) in enumerate(
+        zip(modes.frequencies, ratios, np.nan_to_num(modes.shapes), strict=True), start=1
+    ):
+        motion = np.zeros((len(measured), 3), dtype=np.complex128)
+        for point, direction, value in zip(modes.geometry.points, modes.geometry.directions, shape, strict=True):
+            component, sign = _component(frames[point], direction)
+            motion[rows[point], component] = sign * value
+        columns = motion.real if real else motion
+        dataset = {
+            "type": 55,
+            "id1": f"mode {number}",
+            "data_ch": 2,
+            "spec_data_type": 8,
+            "load_case": 1,
+            "mode_n": number,
+            "node_nums": [nodes[point] for point in measured],
+            **{f"r{component + 1}": columns[:, component].copy() for component in range(3)},
+        }
+        if real:
+            dataset |= {"analysis_type": NORMAL, "freq": frequency / (2.0 * np.pi), "modal_damp_vis": ratio}
+        else:
+            pole = frequency * complex(-ratio, np.sqrt(1.0 - ratio**2))
+            dataset |= {"analysis_type": COMPLEX_FIRST, "eig": pole}
+        datasets.append(dataset)
+    return datasets
+
+
+def _component(frame: FloatArray, direction: FloatArray) -> tuple[int, int]:
+    """Which of a point's three directions this one is, and its sign."""
+    shares = frame @ direction
+    component = int(np.argmax(np.abs(shares)))
+    return component, 1 if shares[component] > 0.0 else -1
+
+
+def _functions(responses: MeasuredResponses, nodes: list[int], frames: FloatArray) -> list[bytes]:
+    """Dataset 58 in binary, double precision, each frequency written: no digit is lost."""
+    kind = next(number for number, motion in MOTIONS.items() if motion == responses.motion)
+    geometry = responses.geometry
+    blocks = []
+    for row, (point, direction) in enumerate(zip(geometry.points, geometry.directions, strict=True)):
+        component, sign = _component(frames[point], direction)
+        for column, reference in enumerate(responses.reference_points):
+            values = responses.values[row, column]
+            if np.any(np.isnan(values)):
+                continue
+            other, other_sign = _component(frames[reference], responses.reference_directions[column])
+            numbers = np.stack([responses.frequencies / (2.0 * np.pi), values.real, values.imag], axis=1)
+            content = numbers.astype("<f8").tobytes()
+            lines = [
+                f"{-1:6d}",
+                f"{58:6d}b{1:6d}{2:6d}{11:12d}{len(content):12d}{0:6d}{0:6d}{0:12d}{0:12d}",
+                *["NONE"] * 5,
+                f"{RESPONSE_FUNCTION:5d}{0:10d}{0:5d}{0:10d} {'NONE':<10}{nodes[point]:10d}{sign * (component + 1):4d}"
+                f" {'NONE':<10}{nodes[reference]:10d}{other_sign * (other + 1):4d}",
+                f"{6:10d}{len(values):10d}{0:10d}{0.0:13.5e}{0.0:13.5e}{0.0:13.5e}",
+                _axis(18, "Frequency", "Hz"),
+                _axis(kind, responses.motion, _UNIT_LABELS[responses.motion]),
+                _axis(FORCE, "force", "N"),
+                _axis(0, "NONE", "NONE"),
+            ]
+            blocks.append("".join(f"{line:<80}\n" for line in lines).encode("ascii") + content + b"    -1\n")
+    return blocks
+
+
+def _axis(kind: int, label: str, unit: str) -> str:
+    return f"{kind:10d}{0:5d}{0:5d}{0:5d} {label:<20} {unit:<20}"

@@ -1,0 +1,36 @@
+"""From a survey's file to pairs by shape: a housing's own modes, written as a test program would, and compared."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gearwhine.case import load_case
+from gearwhine.stages.housing import solve_housing
+from gearwhine.work import compare_case
+from housing.measured import MeasuredGeometry, MeasuredModes
+from housing.measured.survey_data import SurveyData
+from housing.measured.survey_file import write_survey
+
+COARSE = ("housing.box.mesh_size=30 mm", "housing.frequency_limit=4 kHz")
+
+
+def test_a_survey_in_a_file_is_paired_by_shape(tmp_path: Path) -> None:
+    """Modes 1, 2, 4 and 5 of the housing as measured 1 % lower: these are found, and mode 3 is named missing."""
+    solved = solve_housing(load_case("small-gearbox", COARSE).case)
+    positions, normals = solved.survey.positions, solved.survey.normals
+    count = len(positions)
+    geometry = MeasuredGeometry(tuple(str(number + 1) for number in range(count)), positions, np.arange(count), normals)
+    found = [0, 1, 3, 4]
+    shapes = solved.survey.normal_motion(solved.modes.shapes)[found]
+    modes = MeasuredModes(0.99 * solved.modes.frequencies[found], np.full(4, 0.01), shapes + 0j, geometry)
+    write_survey(tmp_path / "survey.uff", SurveyData(geometry=geometry, modes=modes))
+    case = load_case("small-gearbox", (*COARSE, f'measured={{file="{tmp_path}/survey.uff"}}')).case
+    out = tmp_path / "out"
+    document = compare_case(case, out, lambda message: None)
+    assert [pair["mode"] for pair in document["pairs"]] == [1, 2, 4, 5]
+    assert [pair["mac"] for pair in document["pairs"]] == pytest.approx([1.0] * 4, abs=1e-6)
+    assert [pair["error_percent"] for pair in document["pairs"]] == pytest.approx([100.0 / 0.99 - 100.0] * 4, rel=1e-3)
+    assert [mode["mode"] for mode in document["unpaired_model"]] == [3]
+    assert document["survey"]["worst_distance_m"] == pytest.approx(0.0, abs=1e-5)
+    assert {"mac.png", "comac.png", "comparison.png", "comparison.csv"} <= {path.name for path in out.iterdir()}

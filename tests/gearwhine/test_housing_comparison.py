@@ -1,0 +1,87 @@
+"""A solved housing against a test made of its own modes: the stage, its document, and what the screen says."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearwhine import screen
+from gearwhine.case import CaseError, load_case
+from gearwhine.output import finite, json_text
+from gearwhine.stages.comparison import compare_housing
+from gearwhine.stages.comparison_documents import comparison_document
+from gearwhine.stages.housing import SolvedHousing, pair_modes, solve_housing
+from housing.measured import MeasuredGeometry, MeasuredModes
+
+CASE = load_case("small-gearbox", ("housing.box.mesh_size=30 mm", "housing.frequency_limit=4 kHz")).case
+
+
+@pytest.fixture(scope="module")
+def solved() -> SolvedHousing:
+    return solve_housing(CASE)
+
+
+@pytest.fixture(scope="module")
+def twin(solved: SolvedHousing) -> tuple[MeasuredModes, np.ndarray]:
+    """All modes but the third and the last two, 2 % lower, the second of them found twice; and the model's shapes."""
+    shapes = solved.survey.normal_motion(solved.modes.shapes)
+    frequencies = solved.modes.frequencies
+    kept = [mode for mode in range(len(frequencies) - 2) if mode != 2]
+    count = len(solved.survey.positions)
+    geometry = MeasuredGeometry(
+        tuple(str(number + 1) for number in range(count)),
+        solved.survey.positions,
+        np.arange(count),
+        solved.survey.normals,
+    )
+    found = np.append(0.98 * frequencies[kept], 0.975 * frequencies[1])
+    test = np.vstack([shapes[kept], shapes[1] + 0.02 * shapes[0]]) * (1.0 + 2.0j)
+    order = np.argsort(found)
+    return MeasuredModes(found[order], None, test[order], geometry), shapes
+
+
+def test_the_twin_is_paired_by_shape(solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray]) -> None:
+    comparison = pair_modes(solved, *twin)
+    document = json.loads(json_text(finite(comparison_document(comparison, solved))))
+    count = len(twin[0].frequencies)
+    assert [pair["mode"] for pair in document["pairs"]] == [1, 2, *range(4, count + 1)]
+    errors = [pair["error_percent"] for pair in document["pairs"]]
+    assert errors == pytest.approx([100.0 / 0.98 - 100.0] * len(errors))
+    assert [pair["mac"] for pair in document["pairs"]] == pytest.approx([1.0] * len(errors))
+    assert [mode["mode"] for mode in document["unpaired_model"]] == [3]
+    assert [mode["measured_mode"] for mode in document["unpaired_measured"]] == [2]
+    (twice,) = document["duplicates"]
+    assert twice["modes"] == [2, 3]
+    assert document["gap"] is None
+    assert document["pairs"][0]["strength"] == pytest.approx(float(solved.strengths.acceleration[0]))
+    assert document["phase_collinearity"] == pytest.approx([1.0] * count)
+    assert np.array(document["mac"]).shape == (len(solved.modes.frequencies), count)
+
+
+def test_the_screen_says_what_is_missing(
+    solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray], capsys: pytest.CaptureFixture[str]
+) -> None:
+    screen.show_comparison(finite(comparison_document(pair_modes(solved, *twin), solved)))
+    out = capsys.readouterr().out
+    assert "confidence" in out
+    assert "Measured mode 2 (" in out
+    assert "Model modes in the measured band that no measured mode is: 3 (" in out
+    assert "Measured modes 2 and 3 may be one mode found twice (MAC 1.00)." in out
+    assert "coin toss" not in out
+
+
+def test_a_model_known_less_high_than_the_test_is_refused(
+    solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray]
+) -> None:
+    measured, shapes = twin
+    high = replace(measured, frequencies=1.2 * measured.frequencies)
+    with pytest.raises(CaseError, match="partners are looked for up to there"):
+        pair_modes(solved, high, shapes)
+
+
+def test_measured_frequencies_alone_are_paired_by_dominance(solved: SolvedHousing) -> None:
+    given = MeasuredModes(2.0 * np.pi * np.array(CASE.measured.frequencies))
+    comparison = pair_modes(solved, given)
+    assert comparison.shapes is None
+    assert comparison.pairs == compare_housing(CASE, solved).pairs

@@ -1,0 +1,490 @@
+"""Universal files: ours, pyuff's and a public one; in other units and frames; and damaged in every way."""
+
+import contextlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import pyuff
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from housing import HousingError, MeasuredDataError
+from housing.measured import (
+    MeasuredGeometry,
+    MeasuredModes,
+    MeasuredResponses,
+    SurveyData,
+    read_survey,
+    read_universal,
+    write_survey,
+    write_universal,
+)
+
+# Public files are read where they are at hand: the folder `data` of https://github.com/ladisk/pyuff (MIT).
+PUBLIC = Path(os.environ.get("GEARWHINE_PYUFF_DATA", "")) / "TestLab 161 164 18 15 82.uff"
+at_hand = pytest.mark.skipif(not PUBLIC.is_file(), reason="GEARWHINE_PYUFF_DATA names no folder with pyuff's files")
+SIX_DIGITS = 1e-5  # of E13.5, in which shapes and frequencies are written
+
+
+def survey(*, seed: int = 0, complex_shapes: bool = True, damping: bool = True) -> SurveyData:
+    """Eight points with one to three directions each, some of them askew; two modes and responses to two forces."""
+    rng = np.random.default_rng(seed)
+    frame = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    points = np.array([0, 0, 0, 1, 2, 3, 3, 4, 5, 6, 7])
+    directions = np.array([*np.eye(3), [0, 0, -1], [0, 1, 0], frame[0], frame[1], frame[2], *-np.eye(3)])
+    geometry = MeasuredGeometry(
+        tuple(str(number) for number in (11, 12, 13, 14, 15, 16, 17, 28)),
+        rng.normal(size=(8, 3)),
+        points,
+        directions,
+        ((0, 1, 2, 3, 0), (4, 5)),
+    )
+    shapes = rng.normal(size=(2, 11)) + (1j * rng.normal(size=(2, 11)) if complex_shapes else 0.0)
+    modes = MeasuredModes(
+        2 * np.pi * np.array([658.123, 1049.5]), np.array([0.01, 0.02]) if damping else None, shapes + 0j, geometry
+    )
+    values = rng.normal(size=(11, 2, 50)) + 1j * rng.normal(size=(11, 2, 50))
+    responses = MeasuredResponses(
+        geometry,
+        np.array([1, 3]),
+        np.array([[0, 0, -1.0], frame[0]]),
+        2 * np.pi * np.arange(1, 51) * 1.00019535,
+        values,
+        "acceleration",
+    )
+    return SurveyData(geometry, modes, responses)
+
+
+def motion(geometry: MeasuredGeometry, values: Any) -> dict[tuple[str, int], Any]:
+    """Motion of each point along the survey's axes, whatever directions say it, shape (..., 3)."""
+    found: dict[tuple[str, int], Any] = {}
+    for dof, (point, direction) in enumerate(zip(geometry.points, geometry.directions, strict=True)):
+        for axis in range(3):
+            key = (geometry.labels[point], axis)
+            found[key] = found.get(key, 0.0) + values[dof] * direction[axis]
+    return found
+
+
+def same_motion(one: dict[Any, Any], other: dict[Any, Any], tolerance: float) -> None:
+    assert set(one) == set(other)
+    for key, values in one.items():
+        np.testing.assert_allclose(other[key], values, atol=tolerance)
+
+
+@pytest.mark.parametrize("complex_shapes", [False, True])
+@pytest.mark.parametrize("points", [15, 2411])
+def test_a_round_trip_loses_nothing_but_digits(tmp_path: Path, points: Any, complex_shapes: bool) -> None:
+    path, given = tmp_path / "survey.uff", survey(complex_shapes=complex_shapes)
+    write_universal(path, given, points=points)
+    again = read_universal(path)
+    assert again.geometry is not None
+    assert again.geometry.labels == given.geometry.labels
+    assert again.geometry.lines == given.geometry.lines
+    digits = 1e-15 if points == 2411 else SIX_DIGITS
+    np.testing.assert_allclose(again.geometry.positions, given.geometry.positions, rtol=digits)
+    np.testing.assert_allclose(again.modes.frequencies, given.modes.frequencies, rtol=SIX_DIGITS)
+    np.testing.assert_allclose(again.modes.damping_ratios, given.modes.damping_ratios, rtol=1e-3)
+    for number in range(2):
+        same_motion(
+            motion(given.modes.geometry, given.modes.shapes[number]),
+            motion(again.modes.geometry, again.modes.shapes[number]),
+            2 * SIX_DIGITS * np.abs(given.modes.shapes).max(),
+        )
+
+
+def test_responses_keep_every_digit(tmp_path: Path) -> None:
+    path, given = tmp_path / "survey.uff", survey().responses
+    write_universal(path, SurveyData(given.geometry, None, given))
+    again = read_universal(path).responses
+    np.testing.assert_array_equal(again.values, given.values)
+    np.testing.assert_allclose(again.frequencies, given.frequencies, rtol=1e-15)
+    np.testing.assert_array_equal(again.reference_points, given.reference_points)
+    # Directions off the axes stand as systems of six digits.
+    np.testing.assert_allclose(again.reference_directions, given.reference_directions, atol=SIX_DIGITS)
+    np.testing.assert_allclose(again.geometry.directions, given.geometry.directions, atol=SIX_DIGITS)
+    assert again.motion == "acceleration"
+
+
+def test_the_length_of_the_binary_part_is_that_of_its_bytes(tmp_path: Path) -> None:
+    """Record 1 of dataset 58b, field 6: readers that trust it must find the end."""
+    path, given = tmp_path / "survey.uff", survey().responses
+    write_universal(path, SurveyData(given.geometry, None, given))
+    content = path.read_bytes()
+    start = content.index(b"    58b")
+    header, size = content[start : start + 12 * 81], int(content[start + 31 : start + 43])
+    assert size == 50 * 3 * 8
+    assert content[start + len(header) + size :].startswith(b"    -1\n")
+
+
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(seed=st.integers(0, 10_000), complex_shapes=st.booleans(), damping=st.booleans())
+def test_any_survey_comes_back(tmp_path: Path, seed: int, complex_shapes: bool, damping: bool) -> None:
+    path, given = tmp_path / f"{seed}.unv", survey(seed=seed, complex_shapes=complex_shapes, damping=damping)
+    write_survey(path, given)
+    again = read_survey(path)
+    for number in range(2):
+        same_motion(
+            motion(given.modes.geometry, given.modes.shapes[number]),
+            motion(again.modes.geometry, again.modes.shapes[number]),
+            2 * SIX_DIGITS * np.abs(given.modes.shapes).max(),
+        )
+    assert (again.modes.damping_ratios is None) == (not damping)
+
+
+def by_pyuff(path: Path, *datasets: dict[str, Any]) -> Path:
+    pyuff.UFF(str(path)).write_sets([dict(dataset) for dataset in datasets], "overwrite")
+    return path
+
+
+POINTS = {"type": 15, "node_nums": [1, 2, 3], "x": [0.0, 100.0, 0.0], "y": [0.0, 0.0, 200.0], "z": [5.0, 5.0, 5.0]}
+MILLIMETRES = {"type": 164, "units_code": 5, "length": 1000.0, "force": 1000.0, "temp": 1.0, "temp_offset": 273.15}
+SHAPE = {"type": 55, "analysis_type": 2, "data_ch": 2, "spec_data_type": 8, "load_case": 1, "mode_n": 1, "freq": 120.0}
+SHAPE |= {"node_nums": [1, 2, 3], "r1": np.zeros(3), "r2": np.array([1.0, 2.0, 3.0]), "r3": np.array([0.0, 0.5, 0.0])}
+FUNCTION = {"type": 58, "func_type": 4, "rsp_node": 2, "rsp_dir": 3, "ref_node": 1, "ref_dir": -2, "binary": 0}
+FUNCTION |= {"ordinate_spec_data_type": 12, "orddenom_spec_data_type": 13, "abscissa_spacing": 1}
+FUNCTION |= {"x": np.arange(1.0, 11.0), "data": np.arange(10) + 1j * np.arange(10, 20)}
+
+
+def test_a_file_by_pyuff_in_millimetres(tmp_path: Path) -> None:
+    path = by_pyuff(tmp_path / "survey.uff", MILLIMETRES, POINTS, SHAPE, FUNCTION)
+    found = read_universal(path)
+    np.testing.assert_allclose(found.geometry.positions[1], [0.1, 0.0, 0.005])
+    np.testing.assert_allclose(found.modes.frequencies, [2 * np.pi * 120.0])
+    assert found.modes.damping_ratios is None
+    # x stays at rest everywhere, so it was not measured; z moves at point 2 alone.
+    assert [found.geometry.labels[point] for point in found.geometry.points] == ["1", "2", "2", "3"]
+    np.testing.assert_array_equal(found.modes.shapes, [[1.0, 2.0, 0.5, 3.0]])
+    # mm/s² per mN is m/s² per N: the factor is F / L = 1.
+    np.testing.assert_allclose(found.responses.values[0, 0], FUNCTION["data"], rtol=1e-9)
+    np.testing.assert_array_equal(found.responses.reference_directions, [[0, -1, 0]])
+    np.testing.assert_array_equal(found.responses.geometry.directions, [[0, 0, 1]])
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # pyuff leaves its file open
+@pytest.mark.parametrize("spacing", [0, 1])
+@pytest.mark.parametrize("binary", [0, 1])
+def test_functions_of_any_form_read_alike(tmp_path: Path, binary: int, spacing: int) -> None:
+    path = by_pyuff(tmp_path / "f.uff", POINTS, FUNCTION | {"binary": binary, "abscissa_spacing": spacing})
+    found = read_universal(path).responses
+    np.testing.assert_allclose(found.values[0, 0], FUNCTION["data"], rtol=1e-9)
+    np.testing.assert_allclose(found.frequencies, 2 * np.pi * FUNCTION["x"], rtol=SIX_DIGITS)
+
+
+@pytest.mark.parametrize(("kind", "order"), [("<f8", 1), (">f8", 2), ("<f4", 1), (">f4", 2)])
+def test_binary_parts_of_either_byte_order_and_precision_are_read(tmp_path: Path, kind: str, order: int) -> None:
+    """A block laid by hand after the format's text: record 1 fields 3 and 4, record 7 field 1 (5 single, 6 double)."""
+    path = one_function(tmp_path / "kinds.uff")
+    expected = read_universal(path).responses
+    content = path.read_bytes()
+    start = content.index(b"    58b") + 12 * 81
+    numbers = np.frombuffer(content[start : start + 50 * 3 * 8], dtype="<f8").astype(kind).tobytes()
+    header = content[:start].replace(
+        b"    58b     1     2          11        1200", b"    58b%6d     2          11%12d" % (order, len(numbers))
+    )
+    if kind.endswith("4"):
+        header = header.replace(b"         6        50", b"         5        50")
+    path.write_bytes(header + numbers + content[start + 50 * 3 * 8 :])
+    found = read_universal(path).responses
+    digits = 1e-15 if kind.endswith("8") else 1e-7
+    np.testing.assert_allclose(found.values, expected.values, rtol=digits)
+    np.testing.assert_allclose(found.frequencies, expected.frequencies, rtol=digits)
+
+
+@pytest.mark.parametrize(
+    ("numerator", "denominator", "factor"), [("g", "N", 9.80665), ("m/s^2", "lbf", 1 / 4.4482216152605), ("", "", 1.0)]
+)
+def test_an_axis_that_names_its_unit_is_taken_in_it(
+    tmp_path: Path, numerator: str, denominator: str, factor: float
+) -> None:
+    labels = {"ordinate_axis_units_lab": numerator, "orddenom_axis_units_lab": denominator}
+    found = read_universal(by_pyuff(tmp_path / "f.uff", POINTS, FUNCTION | labels))
+    np.testing.assert_allclose(found.responses.values[0, 0], factor * FUNCTION["data"], rtol=1e-9)
+    assert any("as their axis says" in remark for remark in found.remarks) == (factor != 1.0)
+
+
+def test_a_complex_eigenvalue_gives_frequency_and_damping(tmp_path: Path) -> None:
+    """λ = ω (-ζ + i √(1 - ζ²)): of -30 ± 40i, ω = 50 rad/s and ζ = 0.6."""
+    shape = {key: value for key, value in SHAPE.items() if key != "freq"} | {"analysis_type": 3, "eig": -30 + 40j}
+    shape |= {"r1": np.zeros(3, dtype=complex), "r2": np.array([1j, 2.0, 3.0])}
+    found = read_universal(by_pyuff(tmp_path / "c.uff", POINTS, shape)).modes
+    np.testing.assert_allclose(found.frequencies, [50.0])
+    np.testing.assert_allclose(found.damping_ratios, [0.6])
+    np.testing.assert_allclose(found.shapes[0, 0], 1j)
+
+
+def test_directions_of_local_systems_are_resolved(tmp_path: Path) -> None:
+    """A cylindrical system about z through (1, 0, 0): at (1, 2, 0) outward is y, around is -x."""
+    system = {"type": 18, "cs_num": [4], "cs_type": [1], "ref_cs_num": [0], "ref_o": [[1.0, 0, 0]]}
+    system |= {"x_point": [[2.0, 0, 0]], "xz_point": [[1.0, 0, 1.0]]}
+    points = {"type": 15, "node_nums": [1], "def_cs": [4], "disp_cs": [4], "x": [2.0], "y": [90.0], "z": [0.0]}
+    shape = SHAPE | {"node_nums": [1], "r1": np.array([1.0]), "r2": np.array([2.0]), "r3": np.array([3.0])}
+    path = by_pyuff(tmp_path / "local.uff", system, points, shape)
+    found = read_universal(path)
+    np.testing.assert_allclose(found.geometry.positions, [[1.0, 2.0, 0.0]], atol=1e-12)
+    np.testing.assert_allclose(found.geometry.directions, [[0, 1, 0], [-1, 0, 0], [0, 0, 1]], atol=1e-12)
+    assert any("own frame" in remark for remark in found.remarks)
+    common = read_universal(path, shape_frame="global")
+    np.testing.assert_allclose(common.geometry.directions, np.eye(3))
+
+
+def test_a_spherical_system_and_one_within_another(tmp_path: Path) -> None:
+    """System 5 is turned by 90° about z within 4, which is shifted by (0, 0, 3)."""
+    system = {"type": 18, "cs_num": [4, 5], "cs_type": [0, 2], "ref_cs_num": [0, 4]}
+    system |= {"ref_o": [[0, 0, 3.0], [0, 0, 0]], "x_point": [[1.0, 0, 3.0], [0, 1.0, 0]]}
+    system |= {"xz_point": [[0, 0, 4.0], [0, 0, 1.0]]}
+    points = {"type": 15, "node_nums": [1], "def_cs": [5], "disp_cs": [5], "x": [2.0], "y": [0.0], "z": [90.0]}
+    shape = SHAPE | {"node_nums": [1], "r1": np.array([1.0]), "r2": np.array([2.0]), "r3": np.array([3.0])}
+    found = read_universal(by_pyuff(tmp_path / "local.uff", system, points, shape))
+    np.testing.assert_allclose(found.geometry.positions, [[0.0, 2.0, 3.0]], atol=1e-12)
+    np.testing.assert_allclose(found.geometry.directions, [[0, 1, 0], [-1, 0, 0], [0, 0, -1]], atol=1e-12)
+
+
+AS_BY_A_TEST_PROGRAM = """\
+    -1                                                                          {0}
+   151                                                                          {0}
+Gearbox{0}
+NONE{0}
+TEST PROGRAM{0}
+11-Oct-17 09:34:21{0}
+11-Oct-17 09:34:21{0}
+TEST PROGRAM{0}
+17-Oct-17 13:50:13 {0}
+    -1                                                                          {0}
+    -1{0}
+   164{0}
+         9USER_DEFINED{0}
+  1.00000000000000000D+03  1.00000000000000000D+00  1.00000000000000000D+00{0}
+ -2.73149999999999960D+02{0}
+    -1{0}
+    -1{0}
+    18{0}
+         1         0         0         8         1{0}
+SIDE{0}
+  1.00000e+02  0.00000e+00  0.00000e+00  1.00000e+02  1.00000e+00  0.00000e+00{0}
+  1.00000e+02  0.00000e+00  1.00000e+00{0}
+    -1{0}
+    -1{0}
+    15{0}
+       101         1         1         8  2.00000e+01  3.00000e+00  4.00000e+00{0}
+       102         0         0         8 -1.50000e+02  0.00000e+00  2.50000e+02{0}
+    -1{0}
+    -1{0}
+    82{0}
+         1         4         8{0}
+NONE{0}
+       101       102         0       101{0}
+    -1{0}
+    -1{0}
+    55{0}
+NONE{0}
+NONE{0}
+NONE{0}
+NONE{0}
+NONE{0}
+         1         3         2        12         5         3{0}
+         2         6         1         1{0}
+ -6.00000e+00  8.00000e+00  1.00000e+00  0.00000e+00  1.00000e+00  0.00000e+00{0}
+       101{0}
+  1.00000e+00  2.00000e+00  0.00000e+00  0.00000e+00 -3.00000e-01  0.00000e+00{0}
+       102{0}
+  0.00000e+00  0.00000e+00  5.00000e-01 -5.00000e-01  0.00000e+00  0.00000e+00{0}
+    -1{0}
+"""
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_a_file_as_test_programs_write_it(tmp_path: Path, ending: str) -> None:
+    """Padded markers, Fortran exponents, lines of either kind; a side whose x is along y and whose y is along -x."""
+    path = tmp_path / "program.unv"
+    path.write_bytes(AS_BY_A_TEST_PROGRAM.replace("\n", "").replace("{0}", ending).encode("ascii"))
+    found = read_universal(path)
+    np.testing.assert_allclose(found.geometry.positions, [[0.097, 0.02, 0.004], [-0.15, 0.0, 0.25]], atol=1e-12)
+    assert found.geometry.lines == ((0, 1),)
+    np.testing.assert_array_equal(found.geometry.points, [0, 0, 1])
+    np.testing.assert_allclose(found.geometry.directions, [[0, 1, 0], [0, 0, 1], [0, 1, 0]], atol=1e-12)
+    np.testing.assert_allclose(found.modes.shapes, [[1 + 2j, -0.3, 0.5 - 0.5j]])
+    np.testing.assert_allclose(found.modes.frequencies, [10.0])
+    np.testing.assert_allclose(found.modes.damping_ratios, [0.6])
+
+
+@at_hand
+def test_a_public_file_of_a_test_program_reads_as_its_text_says() -> None:
+    """pyuff's "TestLab 161 164 18 15 82.uff" (MIT): points by fixed columns, systems by their three points."""
+    found = read_universal(PUBLIC)
+    lines = PUBLIC.read_text(encoding="ascii").splitlines()
+    start = next(index for index, line in enumerate(lines) if line.strip() == "15") + 1
+    stop = next(index for index in range(start, len(lines)) if lines[index].strip() == "-1")
+    records = [line.split() for line in lines[start:stop]]
+    assert found.geometry.labels == tuple(record[0] for record in records)
+    systems = next(index for index, line in enumerate(lines) if line.strip() == "18") + 1
+    for record, position in zip(records, found.geometry.positions, strict=True):
+        number, local = int(record[1]), np.array([float(cell) for cell in record[4:7]])
+        if number == 0:
+            np.testing.assert_allclose(position, local)
+            continue
+        at = systems + 4 * (number - 1)
+        assert int(lines[at].split()[0]) == number
+        cells = np.array([float(cell) for cell in (lines[at + 2] + lines[at + 3]).split()]).reshape(3, 3)
+        x, xz = cells[1] - cells[0], cells[2] - cells[0]
+        z = xz - (xz @ x) * x / (x @ x)
+        axes = np.array([x / np.linalg.norm(x), np.cross(z, x) / np.linalg.norm(np.cross(z, x)), z / np.linalg.norm(z)])
+        np.testing.assert_allclose(position, cells[0] + local @ axes, atol=1e-9)
+    assert len(found.geometry.lines) >= 11
+
+
+@at_hand
+def test_the_public_file_written_by_us_and_by_pyuff_reads_alike(tmp_path: Path) -> None:
+    found = read_universal(PUBLIC)
+    write_universal(tmp_path / "ours.uff", found)
+    ours = read_universal(tmp_path / "ours.uff")
+    np.testing.assert_allclose(ours.geometry.positions, found.geometry.positions, rtol=1e-15)
+    sets = pyuff.UFF(str(PUBLIC)).read_sets()
+    for dataset in sets:
+        if dataset["type"] == 82:
+            dataset["nodes"] = dataset["nodes"].astype(int)
+        if dataset["type"] == 15:
+            for key in ("node_nums", "def_cs", "disp_cs", "color"):
+                dataset[key] = [int(value) for value in dataset[key]]
+    theirs = read_universal(by_pyuff(tmp_path / "theirs.uff", *[one for one in sets if one["type"] != 151]))
+    for other in (ours, theirs):
+        assert other.geometry.labels == found.geometry.labels
+        np.testing.assert_allclose(other.geometry.positions, found.geometry.positions, atol=1e-5)
+    assert ours.geometry.lines == found.geometry.lines
+
+
+def damaged(path: Path, change: Callable[[bytes], bytes]) -> Path:
+    path.write_bytes(change(path.read_bytes()))
+    return path
+
+
+def swap(content: bytes) -> bytes:
+    """Turn the bytes of the binary part around, and leave the header as it is."""
+    start = content.index(b"    58b")
+    start = start + 12 * 81
+    numbers = np.frombuffer(content[start : start + 50 * 3 * 8], dtype="<f8")
+    return content[:start] + numbers.astype(">f8").tobytes() + content[start + 50 * 3 * 8 :]
+
+
+def one_function(path: Path) -> Path:
+    given = survey().responses
+    geometry = MeasuredGeometry(
+        given.geometry.labels, given.geometry.positions, given.geometry.points[:1], given.geometry.directions[:1]
+    )
+    only = MeasuredResponses(geometry, np.array([1]), np.array([[0, 0, -1.0]]), given.frequencies, given.values[:1, :1])
+    write_universal(path, SurveyData(geometry, None, only))
+    return path
+
+
+def test_swapped_bytes_are_named(tmp_path: Path) -> None:
+    with pytest.raises(MeasuredDataError, match=r"swapped.*little-endian"):
+        read_universal(damaged(one_function(tmp_path / "swapped.uff"), swap))
+
+
+def test_bytes_of_no_meaning_are_named(tmp_path: Path) -> None:
+    def scramble(content: bytes) -> bytes:
+        start = content.index(b"    58b") + 12 * 81
+        rng = np.random.default_rng(0)
+        noise = bytes(rng.integers(128, 255, 50 * 3 * 8).astype(np.uint8))
+        return content[:start] + noise + content[start + 50 * 3 * 8 :]
+
+    with pytest.raises(MeasuredDataError, match=r"58, functions.*no meaning"):
+        read_universal(damaged(one_function(tmp_path / "noise.uff"), scramble))
+
+
+@pytest.mark.parametrize("part", [0.2, 0.5, 0.9, 0.97])
+def test_a_file_cut_short_is_refused_wherever_it_ends(tmp_path: Path, part: float) -> None:
+    path = tmp_path / "cut.uff"
+    write_universal(path, survey())
+    with pytest.raises(MeasuredDataError, match=r"cut short|cannot be read"):
+        read_universal(damaged(path, lambda content: content[: int(part * len(content))]))
+
+
+@pytest.mark.parametrize(("kind", "lines"), [("15", 1), ("55", 1), ("55", 3)])
+def test_a_dataset_that_lost_lines_is_named(tmp_path: Path, kind: str, lines: int) -> None:
+    path = by_pyuff(tmp_path / "lines.uff", POINTS, SHAPE)
+
+    def lose(content: bytes) -> bytes:
+        rows = content.split(b"\n")
+        start = next(index for index, row in enumerate(rows) if row.strip() == kind.encode())
+        stop = next(index for index in range(start, len(rows)) if rows[index].strip() == b"-1")
+        kept = rows[stop - lines][:30] if kind == "15" else b""
+        return b"\n".join([*rows[: stop - lines], *([kept] if kept else []), *rows[stop:]])
+
+    with pytest.raises(MeasuredDataError, match=rf"\({kind}, .*cut short"):
+        read_universal(damaged(path, lose))
+
+
+def test_a_function_of_fewer_values_than_it_says_is_named(tmp_path: Path) -> None:
+    path = by_pyuff(tmp_path / "few.uff", POINTS, FUNCTION)
+    with pytest.raises(MeasuredDataError, match=r"58, functions.*says 12 values and holds 10: cut short"):
+        read_universal(
+            damaged(path, lambda content: content.replace(b"        10         1  1.0", b"        12         1  1.0"))
+        )
+
+
+@pytest.mark.parametrize("content", [b"", b"not a universal file", b"\x00\xff" * 500, b"    -1\n    -1\n"])
+def test_nonsense_is_refused(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "nonsense.uff"
+    path.write_bytes(content)
+    with pytest.raises(MeasuredDataError, match=r"no universal file|has no number"):
+        read_universal(path)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_a_file_with_any_bytes_changed_is_read_or_refused_by_name(tmp_path: Path, data: st.DataObject) -> None:
+    path = tmp_path / "fuzz.uff"
+    write_universal(path, survey())
+    content = bytearray(path.read_bytes())
+    for _ in range(data.draw(st.integers(1, 4))):
+        content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
+    path.write_bytes(bytes(content))
+    with contextlib.suppress(HousingError):  # and not a stumble of pyuff or numpy
+        read_universal(path)
+
+
+def test_shapes_without_points_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(MeasuredDataError, match="holds shapes but no points"):
+        read_universal(by_pyuff(tmp_path / "shapes.uff", SHAPE))
+
+
+def test_unknown_nodes_are_named(tmp_path: Path) -> None:
+    with pytest.raises(MeasuredDataError, match="mode 1 names node 9, which is not among"):
+        read_universal(by_pyuff(tmp_path / "s.uff", POINTS, SHAPE | {"node_nums": [1, 2, 9]}))
+    with pytest.raises(MeasuredDataError, match="the function 9:3 by 1:-2 names node 9"):
+        read_universal(by_pyuff(tmp_path / "f.uff", POINTS, FUNCTION | {"rsp_node": 9}))
+    with pytest.raises(MeasuredDataError, match="coordinate system 7, which the file does not hold"):
+        read_universal(by_pyuff(tmp_path / "p.uff", POINTS | {"def_cs": [0, 7, 0]}))
+
+
+def test_units_not_stated_are_assumed_aloud_and_can_be_told(tmp_path: Path) -> None:
+    path = by_pyuff(tmp_path / "p.uff", POINTS, SHAPE)
+    assert any("taken in metres" in remark for remark in read_universal(path).remarks)
+    told = read_universal(path, unit="mm")
+    np.testing.assert_allclose(told.geometry.positions[2], [0.0, 0.2, 0.005])
+    stated = read_universal(by_pyuff(tmp_path / "q.uff", MILLIMETRES, POINTS, SHAPE), unit="in")
+    np.testing.assert_allclose(stated.geometry.positions[1, 0], 2.54)
+    assert any("not as the file's dataset 164 states" in remark for remark in stated.remarks)
+
+
+def test_what_cannot_be_written_is_refused_and_leaves_the_old_file(tmp_path: Path) -> None:
+    given = survey()
+    path = tmp_path / "survey.uff"
+    path.write_text("what was there", encoding="ascii")
+    labels = ("lid",) + given.geometry.labels[1:]
+    named = MeasuredGeometry(labels, given.geometry.positions, given.geometry.points, given.geometry.directions)
+    with pytest.raises(MeasuredDataError, match="'lid': a universal file knows points by whole numbers"):
+        write_universal(path, SurveyData(named))
+    with pytest.raises(MeasuredDataError, match="needs points"):
+        write_universal(path, SurveyData(modes=MeasuredModes(np.array([1.0]))))
+    holes = given.modes.shapes.copy()
+    holes[0, 3] = np.nan
+    modes = MeasuredModes(given.modes.frequencies, None, holes, given.geometry)
+    with pytest.raises(MeasuredDataError, match="point 12 was measured in some modes only"):
+        write_universal(path, SurveyData(given.geometry, modes))
+    assert path.read_text(encoding="ascii") == "what was there"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["survey.uff"]
