@@ -22,6 +22,14 @@ def _barycentric(points: FloatArray) -> FloatArray:
     return np.asarray(1.0 / apart.prod(axis=1))
 
 
+def _missing(places: FloatArray) -> FloatArray:
+    """Polynomials that vanish at the places: 1 and 0 at the ends, and 0 and 1."""
+    whole = np.polynomial.polynomial.polyfromroots(places)
+    first = np.polynomial.polynomial.polymul(whole, [1.0, -1.0]) / whole[0]
+    last = np.polynomial.polynomial.polymul(whole, [0.0, 1.0]) / whole.sum()
+    return np.ascontiguousarray([first, last])
+
+
 PLACES, WEIGHTS = _gauss()
 """Gauss-Legendre places and weights, ascending, shape (ORDER,) both."""
 
@@ -33,3 +41,18 @@ POINTS: FloatArray = np.concatenate([[0.0], PLACES, [1.0]])
 
 BARYCENTRIC: FloatArray = _barycentric(POINTS)
 """Weights of the barycentric formula on these points."""
+
+INSIDE = 1e-6
+"""Part of an element by which a look at its ends stands inside: events and switches are there themselves."""
+
+AT_ENDS: FloatArray = np.ascontiguousarray(np.vander([INSIDE, 1.0 - INSIDE], ORDER, increasing=True) @ MONOMIALS.T)
+"""What the values at the places make of the polynomial through them just inside both ends, shape (2, ORDER)."""
+
+MISSING: FloatArray = _missing(PLACES)
+"""Coefficients of what such a polynomial misses within if it misses 1 at the start or the end, (2, ORDER + 2)."""
+
+
+def weights_to(part: FloatArray) -> FloatArray:
+    """Weights at the places of an integral from 0 to ``part``, shapes (e,) and (e, ORDER); Gauss's own for 1."""
+    powers = np.arange(1, ORDER + 1)
+    return np.asarray((part[:, None] ** powers / powers) @ MONOMIALS.T)

@@ -1,0 +1,122 @@
+r"""The matrices of an element of time, compiled: exponentials, and their integrals with the polynomials of its places.
+
+Importing this module imports numba.
+"""
+
+import cmath
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from coupling.periodic.arrays import Reference, Steps
+from coupling.periodic.collocation import MISSING, MONOMIALS, ORDER, PLACES
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_MOMENTS = ORDER + 2
+_SERIES_WITHIN = 2.0  # of |z|: beyond, the recursion upwards loses no more than a digit or two
+
+
+@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+def moments(z: complex, out: ComplexArray) -> None:
+    """∫₀¹ e^{z(1-u)} uᵏ du for every k that ``out`` has room for."""
+    count = out.size
+    if abs(z) < _SERIES_WITHIN:
+        term = complex(1.0 / count)
+        total = term
+        for i in range(1, 40):
+            term *= z * (1.0 / (count + i))
+            total += term
+            if abs(term.real) + abs(term.imag) < 1e-17 * (abs(total.real) + abs(total.imag)):
+                break
+        out[count - 1] = total
+        for k in range(count - 1, 0, -1):
+            out[k - 1] = (1.0 + z * out[k]) * (1.0 / k)
+    else:
+        inverse = 1.0 / z
+        out[0] = (cmath.exp(z) - 1.0) * inverse
+        for k in range(1, count):
+            out[k] = (k * out[k - 1] - 1.0) * inverse
+
+
+@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+def end_matrices(
+    reference: Reference, h: float, part: float, decay: ComplexArray, source: FloatArray, integral: ComplexArray
+) -> None:
+    """From the amplitudes at the start of an element of size h to those at a part of it, and from its forces."""
+    c = reference.stiffness.size
+    for m in range(reference.eigenvalue.size):
+        z = reference.eigenvalue[m] * h * part
+        decay[m] = cmath.exp(z)
+        moments(z, integral[:ORDER])
+        for j in range(ORDER):
+            total, power = 0.0j, h * part
+            for k in range(ORDER):
+                total += integral[k] * (power * MONOMIALS[j, k])
+                power *= part
+            for b in range(c):
+                sent = total * reference.source[m, b]
+                source[j * c + b, 2 * m], source[j * c + b, 2 * m + 1] = sent.real, sent.imag
+
+
+@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+def fill_step(
+    reference: Reference, steps: Steps, slot: int, integral: ComplexArray, values: ComplexArray
+) -> None:
+    """Fill in what an element of a slot's size needs."""
+    c, h = reference.stiffness.size, steps.size[slot]
+    n = ORDER * c
+    for row in range(2 * n):
+        for column in range(n):
+            steps.flexibility[slot, row, column] = 0.0
+    end_matrices(reference, h, 1.0, steps.decay[slot], steps.source[slot], integral)
+    for m in range(reference.eigenvalue.size):
+        moments(reference.eigenvalue[m] * h, integral)
+        for end in range(2):
+            total = 0.0j
+            for k in range(_MOMENTS):
+                total += integral[k] * (h * MISSING[end, k])
+            for b in range(c):
+                sent = total * reference.source[m, b]
+                steps.missed[slot, end * c + b, 2 * m] = sent.real
+                steps.missed[slot, end * c + b, 2 * m + 1] = sent.imag
+        for i in range(ORDER):
+            place = PLACES[i]
+            z = reference.eigenvalue[m] * h * place
+            grown = cmath.exp(z)
+            for a in range(c):
+                # Re(d z) is the product of the rows Re d, -Im d with Re z, Im z.
+                seen = complex(reference.displacement[a, 2 * m], -reference.displacement[a, 2 * m + 1]) * grown
+                steps.felt[slot, 2 * m, i * c + a] = seen.real
+                steps.felt[slot, 2 * m + 1, i * c + a] = -seen.imag
+                seen = complex(reference.rate[a, 2 * m], -reference.rate[a, 2 * m + 1]) * grown
+                steps.felt[slot, 2 * m, n + i * c + a] = seen.real
+                steps.felt[slot, 2 * m + 1, n + i * c + a] = -seen.imag
+            moments(z, integral[:ORDER])
+            for j in range(ORDER):
+                values[j] = 0.0j
+                power = h * place
+                for k in range(ORDER):
+                    values[j] += integral[k] * (power * MONOMIALS[j, k])
+                    power *= place
+            if steps.inner_decay.shape[0] > 0:
+                steps.inner_decay[slot, i, m] = grown
+            for j in range(ORDER):
+                for b in range(c):
+                    sent = values[j] * reference.source[m, b]
+                    x, y = sent.real, sent.imag
+                    if x == 0.0 and y == 0.0:
+                        continue
+                    for a in range(c):
+                        steps.flexibility[slot, i * c + a, j * c + b] += (
+                            reference.displacement[a, 2 * m] * x + reference.displacement[a, 2 * m + 1] * y
+                        )
+                        steps.flexibility[slot, n + i * c + a, j * c + b] += (
+                            reference.rate[a, 2 * m] * x + reference.rate[a, 2 * m + 1] * y
+                        )
+                    if steps.inner_decay.shape[0] > 0:
+                        steps.inner_source[slot, i, j * c + b, 2 * m] = x
+                        steps.inner_source[slot, i, j * c + b, 2 * m + 1] = y
+    steps.filled[slot] = 1
