@@ -154,7 +154,7 @@ def march_blocks(
         system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
         outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
         initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
-    run = _Run(system, settings, outputs, turning)
+    run = march_run(system, settings, outputs, turning)
     state = after or run.start(initial)
     total = settings.samples
     for number in range(state.block, len(run.ends) - 1):
@@ -182,8 +182,18 @@ def _samples_until(settings: TransientSettings, end: float, first: int, total: i
     return min(max(upto - first, 0), total - first)
 
 
-class _Run:
-    """What stays the same through a march."""
+def march_run(
+    system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
+) -> "MarchRun":
+    """The march by the method that the settings ask for."""
+    from coupling.exact_march import ExactRun, march_method
+
+    kind = ExactRun if march_method(system, settings, turning) == "exact" else MarchRun
+    return kind(system, settings, outputs, turning)
+
+
+class MarchRun:
+    """What stays the same through a march: Newmark's, in steps."""
 
     def __init__(
         self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
@@ -206,10 +216,10 @@ class _Run:
         resting = replace(system, load=load)
         q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)
-        first = float(self._bounds(0)[1])
+        first = float(self.bounds(0)[1])
         turned, rates, _ = self.turning.at(1e-7 * first)
         stored = self._stored(q, v, float(turned[0]), float(rates[0]))
-        energy = self._held(q, v) + stored
+        energy = self.held(q, v) + stored
         return Checkpoint(
             block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(4),
             contact_totals=np.zeros((len(system.contacts), 4)), level=0, steps=0, rejected=0, unsettled=0, worst=0.0,
@@ -221,7 +231,7 @@ class _Run:
         from coupling.newmark import march
 
         settings, cache = self.settings, self.cache
-        bounds = self._bounds(number)
+        bounds = self.bounds(number)
         # An event may stand for the start of the record, when rounding alone holds the two apart.
         first_record = int(np.searchsorted(bounds, settings.record_from - same_time(self.base)))
         if bounds[0] > settings.record_from:
@@ -232,9 +242,7 @@ class _Run:
             self._march(march, state, cut(cache, self.turning, bounds[:1], 1.0), samples)
         # Forces too small to see: below this an acceleration is rounding, and its curvature means nothing.
         quiet = (1e-9 * float(np.linalg.norm(self.system.stiffness @ state.q) + self.pushing)) ** 2
-        bound = _RUNAWAY * (np.abs(state.q).max(initial=0.0) + self.reach)
-        bound += _RUNAWAY * float(np.linalg.norm(state.v)) * settings.duration if number == 0 else 0.0
-        bound = bound if bound > 0.0 else np.inf
+        bound = self.limit(number, state)
         clock = time.perf_counter() - before.seconds
         while position < len(bounds) - 1:
             last = min(position + _SEGMENTS_PER_CHUNK, len(bounds) - 1)
@@ -247,7 +255,7 @@ class _Run:
             trial, curvature, acceleration = self._march(march, state, segments, samples)
             steps = int(segments.steps.sum())
             if not np.isfinite(curvature) or not float(np.abs(trial.q).max(initial=0.0)) < bound:
-                raise TransientError(self._lost(float(bounds[position]), state))
+                raise TransientError(self.lost(float(bounds[position]), state))
             error = float(np.sqrt(curvature / (acceleration + quiet * steps + 1e-300))) / 12.0
             if error > settings.tolerance:
                 level = state.level + max(1, int(np.ceil(np.log2(error / settings.tolerance))))
@@ -259,7 +267,7 @@ class _Run:
                     )
                 state = replace(state, level=level, rejected=state.rejected + steps)
                 continue
-            energy = self._held(trial.q, trial.v) + trial.stored
+            energy = self.held(trial.q, trial.v) + trial.stored
             state = replace(
                 trial,
                 time=float(bounds[last]),
@@ -275,7 +283,13 @@ class _Run:
             progress(float(bounds[position] / settings.duration))
         return replace(state, block=number + 1, seconds=time.perf_counter() - clock)
 
-    def _bounds(self, number: int) -> FloatArray:
+    def limit(self, number: int, state: Checkpoint) -> float:
+        """What no coordinate of a machine that holds together passes in a block."""
+        bound = _RUNAWAY * (float(np.abs(state.q).max(initial=0.0)) + self.reach)
+        bound += _RUNAWAY * float(np.linalg.norm(state.v)) * self.settings.duration if number == 0 else 0.0
+        return bound if bound > 0.0 else np.inf
+
+    def bounds(self, number: int) -> FloatArray:
         ends = float(self.ends[number]), float(self.ends[number + 1])
         return boundaries(self.system, self.turning, *ends, self.base, (self.settings.record_from,))
 
@@ -289,7 +303,7 @@ class _Run:
         moved = replace(state, q=q, v=v, totals=totals, contact_totals=contacts, sample=sample, stored=stored)
         return replace(moved, unsettled=state.unsettled + unsettled), curvature, acceleration
 
-    def _held(self, q: FloatArray, v: FloatArray) -> float:
+    def held(self, q: FloatArray, v: FloatArray) -> float:
         """Energy of motion and of the springs that do not change [J]."""
         dynamics = self.arrays.dynamics
         energy = 0.5 * v @ v + 0.5 * q @ (dynamics.stiffness * q)
@@ -303,7 +317,7 @@ class _Run:
 
         return float(stored_energy(self.arrays.dynamics, self.arrays.contacts, q, v, turned, rate))
 
-    def _lost(self, begin: float, state: Checkpoint) -> str:
+    def lost(self, begin: float, state: Checkpoint) -> str:
         """What happened where the motion grows beyond bounds."""
         for contact, last in zip(self.system.contacts, state.contact_totals[:, 3], strict=True):
             if contact.drives and (begin - last) * abs(contact.rate) > _GONE:

@@ -55,14 +55,6 @@ _BEYOND = 0.06  # part of a size by which its motion is carried on past its end
 NO_BALANCE, NO_ROOM = 1, 2
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def fill_steps(reference: Reference, steps: Steps, work: Work) -> None:
-    """Fill in the sizes that occur."""
-    for slot in range(steps.ladder[0]):
-        if steps.filled[slot] == 0:
-            fill_step(reference, steps, slot, work.integral, work.values)
-
-
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
 def rung(reference: Reference, steps: Steps, length: float, work: Work) -> int:
     """The slot of the ladder's size that a length is nearest to, filled in."""
@@ -146,6 +138,8 @@ def march(
         while True:
             if slot < 0:
                 slot = rung(reference, steps, left, work)
+            elif steps.filled[slot] == 0:
+                fill_step(reference, steps, slot, work.integral, work.values)
             solved = solve_element(reference, contacts, steps, slot, time, z, work)
             h = steps.size[slot]
             # Of a size that occurs, the element is all of it.
@@ -238,6 +232,28 @@ def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> Floa
                     total -= reference.source[k, a] * integral[p] * (power * coefficient[p, a])
                 power *= u
             out[i, 2 * k], out[i, 2 * k + 1] = total.real, total.imag
+    return out
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def amplitudes_within(steps: Steps, trace: Trace) -> FloatArray:
+    """Amplitudes at the places of every element, shape (e s, 2 m)."""
+    count, c = trace.start.size, trace.excess.shape[2]
+    m = steps.inner_decay.shape[2]
+    out = np.empty((count * ORDER, 2 * m))
+    for element in range(count):
+        slot = trace.slot[element]
+        for i in range(ORDER):
+            row = element * ORDER + i
+            for k in range(m):
+                x, y = steps.inner_decay[slot, i, k].real, steps.inner_decay[slot, i, k].imag
+                out[row, 2 * k] = x * trace.state[element, 2 * k] - y * trace.state[element, 2 * k + 1]
+                out[row, 2 * k + 1] = x * trace.state[element, 2 * k + 1] + y * trace.state[element, 2 * k]
+            for j in range(ORDER):
+                for a in range(c):
+                    g = trace.excess[element, j, a]
+                    for k in range(2 * m):
+                        out[row, k] -= steps.inner_source[slot, i, j * c + a, k] * g
     return out
 
 

@@ -144,10 +144,12 @@ class LinearPart:
 
 def real_rows(rows: ComplexArray) -> FloatArray:
     """Rows d whose Re(d z) is wanted, as those that multiply Re z and Im z in turn, shape (k, 2 m)."""
-    return np.ascontiguousarray(np.stack([rows.real, -rows.imag], axis=-1).reshape(len(rows), -1))
+    return np.ascontiguousarray(np.stack([rows.real, -rows.imag], axis=-1).reshape(len(rows), 2 * rows.shape[1]))
 
 
-def linear_part(system: CoupledSystem, rate_unit: float, like: LinearPart | None = None) -> LinearPart:
+def linear_part(
+    system: CoupledSystem, rate_unit: float, like: LinearPart | None = None, *, repeats: bool = True
+) -> LinearPart:
     """Split a system into its linear reference and what its teeth add.
 
     Parameters
@@ -157,11 +159,14 @@ def linear_part(system: CoupledSystem, rate_unit: float, like: LinearPart | None
         See :class:`LinearPart`.
     like : LinearPart, optional
         Of the same machine at another speed: its eigenvectors serve again where its matrices are the same.
+    repeats : bool
+        Whether the motion is to repeat, and the loads on what nothing resists to balance. They have no part in
+        the reference in either case.
 
     Raises
     ------
     CouplingError
-        Where a load drives a motion that nothing resists.
+        Where the motion is to repeat and a load drives a motion that nothing resists.
     PeriodicError
         Where the reference has a load at an undamped natural frequency, or eigenvectors that do not separate.
     """
@@ -182,7 +187,7 @@ def linear_part(system: CoupledSystem, rate_unit: float, like: LinearPart | None
             force = (k_mean[k] + 1j * frequency * c_mean[k]) * amplitude * np.exp(1j * phase) * contact.direction
             harmonics[frequency] = harmonics.get(frequency, 0.0) + force
     constant = constant + np.asarray(harmonics.pop(0.0, np.zeros(system.size))).real
-    if np.any(np.abs(rigid.T @ constant) > _BALANCE * (np.abs(rigid.T) @ np.abs(constant))):
+    if repeats and np.any(np.abs(rigid.T @ constant) > _BALANCE * (np.abs(rigid.T) @ np.abs(constant))):
         raise CouplingError(
             "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
             "rotation, and no motion would repeat; check the torques in and out against the gear ratios"

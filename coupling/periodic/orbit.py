@@ -91,8 +91,6 @@ def coarsest_element(system: CoupledSystem, period: float) -> float:
 
 def cut_period(part: LinearPart, period: float, largest: float) -> Elements:
     """Elements no larger than a size [s]."""
-    from coupling.periodic.kernels import fill_steps
-
     bounds = event_times(part.system, period)
     lengths = np.diff(bounds)
     counts = np.maximum(np.ceil(lengths / largest - 1e-9), 1.0).astype(np.int64)
@@ -107,8 +105,6 @@ def cut_period(part: LinearPart, period: float, largest: float) -> Elements:
             values.append(float(size))
         slots += [sizes[key]] * int(count)
     steps = element_sizes(part, np.array(values), max(values))
-    reference = part.reference
-    fill_steps(reference, steps, element_work(reference.eigenvalue.size, ORDER, reference.stiffness.size))
     return Elements(np.concatenate(starts), np.repeat(lengths / counts, counts), np.array(slots, dtype=np.int64), steps)
 
 
