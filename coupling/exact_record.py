@@ -54,8 +54,12 @@ class Record:
         self._displacement = outputs.displacement @ part.displacement_rows, outputs.displacement @ part.rigid
         self._velocity = outputs.velocity @ part.velocity_rows, outputs.velocity @ part.rigid
         self._acceleration = outputs.acceleration @ moving, outputs.acceleration @ system.contact_directions
-        skew = system.stiffness - system.stiffness.T
-        self._skew = skew if np.abs(skew).max(initial=0.0) > 1e-12 * np.abs(system.stiffness).max(initial=0.0) else None
+        # Powers are taken in the principal directions of what damps: the squares of the rates there give the loss.
+        self._loss, directions = np.linalg.eigh(0.5 * (system.damping + system.damping.T))
+        self._principal = directions.T @ part.velocity_rows, directions.T @ part.rigid
+        self._pushing = directions.T @ self.load[:, 2 * modes :]
+        skew = directions.T @ (system.stiffness - system.stiffness.T) @ part.displacement_rows
+        self._skew = skew if np.abs(skew).max(initial=0.0) > 1e-12 * np.abs(moving).max(initial=0.0) else None
 
     def free_motion(self, state: Checkpoint) -> FreeMotion:
         """From a state on."""
@@ -109,12 +113,13 @@ class Record:
 
     def _powers(self, z: FloatArray, times: FloatArray, free: FreeMotion) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Of the loads, lost without the teeth's, and the kinetic energy, shape (t,) each."""
-        system, part = self.part.system, self.part
-        v = z @ part.velocity_rows.T + free.at(times)[1] @ part.rigid.T
-        lost = np.einsum("ti,ti->t", v @ system.damping, v)
+        v = z @ self._principal[0].T + free.at(times)[1] @ self._principal[1].T
+        square = v * v
+        lost = square @ self._loss
         if self._skew is not None:
-            lost += 0.5 * np.einsum("ti,ti->t", v @ self._skew, z @ part.displacement_rows.T)
-        return np.einsum("ti,ti->t", z @ self.load.T, v), lost, 0.5 * np.einsum("ti,ti->t", v, v)
+            lost += 0.5 * np.einsum("ti,ti->t", v, z @ self._skew.T)
+        given = np.einsum("ti,ti->t", z[:, -self._pushing.shape[1] :] @ self._pushing.T, v)
+        return given, lost, 0.5 * square.sum(axis=1)
 
     def _turning(self, trace: Trace, times: FloatArray) -> FloatArray:
         """Power of the turning teeth on the contacts [W], shape (e, s): ∂U/∂p p' - f e'."""

@@ -20,11 +20,11 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _NEWTON_STEPS = 40
-_HALVINGS = 50  # of a gap between two places, in the search of a switch
+_NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is found, and to which one is told of
 _FULL = 1.0 - 1e-14
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@njit(cache=True, nogil=True, error_model="numpy", _nrt=False, forceinline=True)
 def law(contacts: Contacts, a: int, time: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
     """The law of one contact, into a row."""
     take_law(contacts, a, time, delta, rate, laws, row)
@@ -67,7 +67,7 @@ def advance(
             end[i] -= source[slot, column, i] * g
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@njit(cache=True, nogil=True, error_model="numpy", _nrt=False, forceinline=True)
 def interpolated(values: FloatArray, a: int, u: float) -> float:
     """The polynomial through values (ORDER + 2, c) at the points, at u."""
     above, below = 0.0, 0.0
@@ -184,7 +184,9 @@ def first_switch(
                     break
                 continue
             low, high = before, u
-            for _ in range(_HALVINGS):
+            # Before the last place it is to be found again, with places that stand before it.
+            near = _NEAR if u > PLACES[ORDER - 1] else _ROUGHLY
+            while high - low > near:
                 middle = 0.5 * (low + high)
                 at = min(time + middle * h, stop)
                 law(contacts, a, at, interpolated(delta, a, middle), interpolated(rate, a, middle), laws, n + 2 * c)

@@ -16,14 +16,13 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _MOMENTS = ORDER + 2
-_SERIES_WITHIN = 2.0  # of |z|: beyond, the recursion upwards loses no more than a digit or two
+_SERIES_WITHIN = 0.7  # of |z|: beyond, the recursion upwards loses no more than two digits of the highest
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def moments(z: complex, out: ComplexArray) -> None:
-    """∫₀¹ e^{z(1-u)} uᵏ du for every k that ``out`` has room for."""
-    count = out.size
-    if abs(z) < _SERIES_WITHIN:
+def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
+    """∫₀¹ e^{z(1-u)} uᵏ du for k = 0 ... count - 1, e^z being known."""
+    if z.real * z.real + z.imag * z.imag < _SERIES_WITHIN**2:
         term = complex(1.0 / count)
         total = term
         for i in range(1, 40):
@@ -36,7 +35,7 @@ def moments(z: complex, out: ComplexArray) -> None:
             out[k - 1] = (1.0 + z * out[k]) * (1.0 / k)
     else:
         inverse = 1.0 / z
-        out[0] = (cmath.exp(z) - 1.0) * inverse
+        out[0] = (grown - 1.0) * inverse
         for k in range(1, count):
             out[k] = (k * out[k - 1] - 1.0) * inverse
 
@@ -50,7 +49,7 @@ def end_matrices(
     for m in range(reference.eigenvalue.size):
         z = reference.eigenvalue[m] * h * part
         decay[m] = cmath.exp(z)
-        moments(z, integral[:ORDER])
+        moments(z, decay[m], ORDER, integral)
         for j in range(ORDER):
             total, power = 0.0j, h * part
             for k in range(ORDER):
@@ -59,6 +58,39 @@ def end_matrices(
             for b in range(c):
                 sent = total * reference.source[m, b]
                 source[j * c + b, 2 * m], source[j * c + b, 2 * m + 1] = sent.real, sent.imag
+
+
+@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+def advance_to(
+    reference: Reference,
+    h: float,
+    part: float,
+    z: FloatArray,
+    excess: FloatArray,
+    end: FloatArray,
+    coefficient: FloatArray,
+    integral: ComplexArray,
+) -> None:
+    """Amplitudes at a part of an element of size h from those at its start and the excess forces at its places."""
+    c = reference.stiffness.size
+    power = h
+    for k in range(ORDER):
+        power *= part
+        for b in range(c):
+            coefficient[k, b] = 0.0
+            for j in range(ORDER):
+                coefficient[k, b] += power * MONOMIALS[j, k] * excess[j * c + b]
+    for m in range(reference.eigenvalue.size):
+        turned = reference.eigenvalue[m] * h * part
+        grown = cmath.exp(turned)
+        total = grown * complex(z[2 * m], z[2 * m + 1])
+        moments(turned, grown, ORDER, integral)
+        for b in range(c):
+            sent = 0.0j
+            for k in range(ORDER):
+                sent += integral[k] * coefficient[k, b]
+            total -= sent * reference.source[m, b]
+        end[2 * m], end[2 * m + 1] = total.real, total.imag
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
@@ -73,7 +105,7 @@ def fill_step(
             steps.flexibility[slot, row, column] = 0.0
     end_matrices(reference, h, 1.0, steps.decay[slot], steps.source[slot], integral)
     for m in range(reference.eigenvalue.size):
-        moments(reference.eigenvalue[m] * h, integral)
+        moments(reference.eigenvalue[m] * h, steps.decay[slot, m], _MOMENTS, integral)
         for end in range(2):
             total = 0.0j
             for k in range(_MOMENTS):
@@ -94,7 +126,7 @@ def fill_step(
                 seen = complex(reference.rate[a, 2 * m], -reference.rate[a, 2 * m + 1]) * grown
                 steps.felt[slot, 2 * m, n + i * c + a] = seen.real
                 steps.felt[slot, 2 * m + 1, n + i * c + a] = -seen.imag
-            moments(z, integral[:ORDER])
+            moments(z, grown, ORDER, integral)
             for j in range(ORDER):
                 values[j] = 0.0j
                 power = h * place

@@ -30,6 +30,7 @@ class Work(NamedTuple):
     cut_source: FloatArray  # (1, n, 2 m)
     integral: ComplexArray  # (s + 2,)
     values: ComplexArray  # (s,)
+    coefficient: FloatArray  # (s, c) of the excess as a power series
     columns: FloatArray  # (n, p) of disturbances
     moved: FloatArray  # (p,)
 
@@ -56,6 +57,7 @@ def element_work(m: int, s: int, c: int, p: int = 0) -> Work:
         cut_source=np.zeros((1, n, 2 * m)),
         integral=np.zeros(s + 2, dtype=np.complex128),
         values=np.zeros(s, dtype=np.complex128),
+        coefficient=np.zeros((s, c)),
         columns=np.zeros((n, p)),
         moved=np.zeros(p),
     )

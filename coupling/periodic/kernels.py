@@ -31,9 +31,8 @@ from numba import njit
 from coupling.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps, Trace
-from coupling.periodic.collocation import INSIDE, MONOMIALS, ORDER, PLACES
+from coupling.periodic.collocation import INSIDE, ORDER, PLACES
 from coupling.periodic.element import (
-    advance,
     branch,
     estimate,
     first_switch,
@@ -42,7 +41,7 @@ from coupling.periodic.element import (
     law,
     solve_element,
 )
-from coupling.periodic.element_matrices import end_matrices, fill_step, moments
+from coupling.periodic.element_matrices import advance_to, end_matrices, fill_step
 from coupling.periodic.element_work import Work
 from coupling.periodic.variations import cross, jump_at, vary
 
@@ -176,11 +175,11 @@ def march(
                 if columns.shape[1] > 0:
                     vary(steps, slot, steps.decay, steps.source, slot, columns, work)
             else:
-                end = 0 * slot  # 0, in a form that is no constant: a constant would compile all anew
-                end_matrices(reference, h, part, work.cut_decay[end], work.cut_source[end], work.integral)
                 if columns.shape[1] > 0:
+                    end = 0 * slot  # 0, in a form that is no constant: a constant would compile all anew
+                    end_matrices(reference, h, part, work.cut_decay[end], work.cut_source[end], work.integral)
                     vary(steps, slot, work.cut_decay, work.cut_source, end, columns, work)
-                advance(work.cut_decay, end, work.cut_source, z, work.excess, work.end)
+                advance_to(reference, h, part, z, work.excess, work.end, work.coefficient, work.integral)
             for i in range(z.size):
                 z[i] = work.end[i]
             if left - length <= 1e-12 * whole:
@@ -206,32 +205,15 @@ def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> Floa
     """Amplitudes at ascending times, shape (t, 2 m)."""
     c, m = reference.stiffness.size, reference.eigenvalue.size
     out = np.empty((times.size, 2 * m))
-    integral = np.empty(ORDER, dtype=np.complex128)
-    element, of = 0, -1
-    coefficient = np.zeros((ORDER, c))
+    integral, coefficient = np.empty(ORDER, dtype=np.complex128), np.empty((ORDER, c))
+    excess = trace.excess.reshape(trace.start.size, ORDER * c)
+    element = 0
     for i in range(times.size):
         while element < trace.start.size - 1 and times[i] >= trace.start[element + 1]:
             element += 1
         h = trace.size[element] / trace.part[element]
-        if of != element:
-            of = element
-            coefficient[:] = 0.0
-            for k in range(ORDER):
-                for a in range(c):
-                    for j in range(ORDER):
-                        coefficient[k, a] += MONOMIALS[j, k] * trace.excess[element, j, a]
         u = (times[i] - trace.start[element]) / h
-        for k in range(m):
-            z = reference.eigenvalue[k] * h * u
-            moments(z, integral)
-            grown = 1.0 + z * integral[0]
-            total = grown * complex(trace.state[element, 2 * k], trace.state[element, 2 * k + 1])
-            power = h * u
-            for p in range(ORDER):
-                for a in range(c):
-                    total -= reference.source[k, a] * integral[p] * (power * coefficient[p, a])
-                power *= u
-            out[i, 2 * k], out[i, 2 * k + 1] = total.real, total.imag
+        advance_to(reference, h, u, trace.state[element], excess[element], out[i], coefficient, integral)
     return out
 
 
