@@ -27,6 +27,7 @@ from coupling.component import Component, HousingComponent, RotorComponent, hous
 from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
+from coupling.exact_march import march_method
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.free_speed import free_speed
 from coupling.histories import Histories, histories, transient_outputs
@@ -136,6 +137,7 @@ __all__ = [
     "linear_matrices",
     "lines_at",
     "march_blocks",
+    "march_method",
     "mean_contact",
     "mesh_error_response",
     "modal_record",

@@ -45,8 +45,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _STRETCHES, _ELEMENTS = 256, 2048  # at most about so many between two looks at the error
-_SIZES = 64  # that have matrices of their own, besides the ladder's ...
-_OFTEN = 3  # ... where they occur so often in a chunk
+_SIZES = 64  # that have matrices of their own, besides the ladder's
 _DIGITS = 11  # to which elements of one size agree
 _FINEST_LEVEL = 24  # 4096 times finer than the coarsest element
 _ORDER_OF_ERROR = 6.0  # in which it falls at least, kinks in the laws' tables included
@@ -62,26 +61,31 @@ def march_method(system: CoupledSystem, settings: TransientSettings, turning: Tu
     TransientError
         Where the exact one is asked for and does not apply, with the reason.
     """
+    return "newmark" if exact_part(condensed(system).system, settings, turning) is None else "exact"
+
+
+def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Turning) -> LinearPart | None:
+    """The linear part that is marched exactly; None where Newmark's method marches.
+
+    Raises
+    ------
+    TransientError
+        As :func:`march_method`.
+    """
     if settings.method == "newmark":
-        return "newmark"
-    reason = obstacle(condensed(system).system, turning)
-    if reason is None:
-        return "exact"
-    if settings.method == "auto":
-        return "newmark"
-    raise TransientError(f"the exact march does not apply: {reason}; march by Newmark's method")
-
-
-def obstacle(system: CoupledSystem, turning: Turning) -> str | None:
-    """What keeps a system from the exact march; None where nothing does."""
+        return None
+    reason = ""
     if not turning.is_steady:
-        return "the speed varies, and with it the machine"
-    if system.timed_loads:
-        return "a load is a table over time"
-    try:
-        steady_part(system)
-    except PeriodicError as error:
-        return str(error)
+        reason = "the speed varies, and with it the machine"
+    elif system.timed_loads:
+        reason = "a load is a table over time"
+    else:
+        try:
+            return steady_part(system)
+        except PeriodicError as error:
+            reason = str(error)
+    if settings.method == "exact":
+        raise TransientError(f"the exact march does not apply: {reason}; march by Newmark's method")
     return None
 
 
@@ -96,11 +100,11 @@ class ExactRun(MarchRun):
     """What stays the same through an exact march."""
 
     def __init__(
-        self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
+        self, part: LinearPart, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
     ) -> None:
-        super().__init__(system, settings, outputs, turning)
+        super().__init__(part.system, settings, outputs, turning)
         self.base *= ORDER  # as many places as there would be steps
-        self.part = steady_part(system)
+        self.part = part
         self.record = Record(self.part, outputs, self.arrays.contacts)
         self._steps = element_sizes(self.part, np.zeros(_SIZES), self.base, inner=True)
         # Below this the motion is rounding of the reference's.
@@ -221,18 +225,15 @@ class _Sizes:
         self._steps, self._known = steps, dict[str, int]()
 
     def slots(self, lengths: FloatArray) -> IntArray:
-        """The slot of each length, -1 for none: sizes that occur often get one, while there is room."""
-        values, which, counts = np.unique(lengths, return_inverse=True, return_counts=True)
-        # What rounding alone holds apart is one size.
-        keys = [f"{value:.{_DIGITS}e}" for value in values]
-        often: dict[str, int] = {}
-        for key, count in zip(keys, counts, strict=True):
-            often[key] = often.get(key, 0) + int(count)
+        """The slot of each length, -1 for none: the first sizes get one, while there is room."""
+        values, which = np.unique(lengths, return_inverse=True)
         slots = np.full(len(values), -1, dtype=np.int64)
-        for i, key in enumerate(keys):
-            if key not in self._known and often[key] >= _OFTEN and len(self._known) < _SIZES:
+        for i, value in enumerate(values):
+            # What rounding alone holds apart is one size.
+            key = f"{value:.{_DIGITS}e}"
+            if key not in self._known and len(self._known) < _SIZES:
                 self._known[key] = len(self._known)
-                self._steps.size[self._known[key]] = values[i]
+                self._steps.size[self._known[key]] = value
                 self._steps.filled[self._known[key]] = 0
             slots[i] = self._known.get(key, -1)
         return slots[which]

@@ -186,10 +186,12 @@ def march_run(
     system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
 ) -> "MarchRun":
     """The march by the method that the settings ask for."""
-    from coupling.exact_march import ExactRun, march_method
+    from coupling.exact_march import ExactRun, exact_part
 
-    kind = ExactRun if march_method(system, settings, turning) == "exact" else MarchRun
-    return kind(system, settings, outputs, turning)
+    part = exact_part(system, settings, turning)
+    if part is not None:
+        return ExactRun(part, settings, outputs, turning)
+    return MarchRun(system, settings, outputs, turning)
 
 
 class MarchRun:

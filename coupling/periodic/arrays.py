@@ -71,11 +71,11 @@ class Trace(NamedTuple):
 
 def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
     """Room for some elements."""
-    places = (np.zeros((room, s, c)) for _ in range(5))
-    one, two, three = (np.zeros(room) for _ in range(3))
+    places = (np.empty((room, s, c)) for _ in range(5))
+    one, two, three = (np.empty(room) for _ in range(3))
     return Trace(
-        one, two, three, np.zeros(room, dtype=np.int64), np.zeros((room, 2 * m)), *places,
-        energy=np.zeros((room, 2)), apart=np.zeros((room, c)), error=np.zeros((room, 2)),
+        one, two, three, np.empty(room, dtype=np.int64), np.empty((room, 2 * m)), *places,
+        energy=np.empty((room, 2)), apart=np.empty((room, c)), error=np.empty((room, 2)),
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from numba import njit
 from coupling.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, TOUCHING, take_law
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
-from coupling.periodic.collocation import AT_ENDS, BARYCENTRIC, INSIDE, ORDER, PLACES, POINTS
+from coupling.periodic.collocation import AT_ENDS, BARYCENTRIC, INSIDE, MONOMIALS, ORDER, PLACES, POINTS
 from coupling.periodic.element_work import Work
 from coupling.small_systems import solve_in_place
 
@@ -201,27 +201,39 @@ def first_switch(
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def estimate(reference: Reference, steps: Steps, slot: int, z: FloatArray, modes: int, whole: bool, work: Work) -> None:
-    """What the polynomial of the excess misses at the ends, carried to the end: squares of error and amplitudes.
+def estimate(
+    reference: Reference, steps: Steps, slot: int, part: float, z: FloatArray, modes: int, work: Work
+) -> None:
+    """What the polynomial of the excess misses, carried to the end: squares of error and amplitudes.
 
-    Between the places it misses what vanishes there; of the rest of its shape both ends tell. Where the law's branch
-    ends before the element, the start alone does.
+    Between the places it misses what vanishes there; of the rest of its shape both ends tell. An element that ends at
+    a part of its size has the law's branch at its start alone for that; and besides what is missed over the whole, the
+    triangle between there and the end, which no cancellation takes away.
     """
     c = reference.stiffness.size
     n = ORDER * c
-    error = work.end_error
+    error, h = work.end_error, steps.size[slot]
     for i in range(2 * modes):
         error[i] = 0.0
     for a in range(c):
-        first, last = 0.0, 0.0
-        for j in range(ORDER):
-            first -= AT_ENDS[0, j] * work.excess[j * c + a]
-            last -= AT_ENDS[1, j] * work.excess[j * c + a]
         k, d = reference.stiffness[a], reference.damping[a]
-        first += work.laws[n + a, FORCE] - k * work.looked[0, a] - d * work.looked[1, a]
-        last += work.laws[n + c + a, FORCE] - k * work.looked[2, a] - d * work.looked[3, a]
-        if not whole:
+        first = work.laws[n + a, FORCE] - k * work.looked[0, a] - d * work.looked[1, a]
+        last = work.laws[n + c + a, FORCE] - k * work.looked[2, a] - d * work.looked[3, a]
+        for j in range(ORDER):
+            at_end = AT_ENDS[1, j]
+            if part != 1.0:
+                at_end = MONOMIALS[j, ORDER - 1]
+                for power in range(ORDER - 2, -1, -1):
+                    at_end = at_end * (part - INSIDE) + MONOMIALS[j, power]
+            first -= AT_ENDS[0, j] * work.excess[j * c + a]
+            last -= at_end * work.excess[j * c + a]
+        triangle = 0.5 * h * (1.0 - part) * last
+        if part != 1.0:
             last = -first
+        for m in range(modes):
+            source = reference.source[m, a]
+            error[2 * m] += triangle * source.real
+            error[2 * m + 1] += triangle * source.imag
         for i in range(2 * modes):
             error[i] += steps.missed[slot, a, i] * first + steps.missed[slot, c + a, i] * last
     wrong, size = 0.0, 0.0

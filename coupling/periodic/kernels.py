@@ -105,7 +105,7 @@ def write_element(
         work.looked[2, a], work.looked[3, a] = x, v
         trace.apart[count, a] = 1.0 if branch(reference, a, work.laws, n + a) == 0 else 0.0
     trace.energy[count, 1] = held_energy(work.laws, n + c, c)
-    estimate(reference, steps, slot, z, modes, part == 1.0, work)
+    estimate(reference, steps, slot, part, z, modes, work)
     trace.error[count, 0], trace.error[count, 1] = work.measure[0], work.measure[1]
 
 
