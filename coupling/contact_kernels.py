@@ -35,9 +35,7 @@ def deviation_of(clearance: FloatArray, errors: FloatArray, k: int, turned: floa
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def take_law(
-    contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray, row: int
-) -> None:
+def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
     """Fill in a row of the laws' table for a contact."""
     if delta <= contacts.first_touch[k]:
         laws[row, :] = 0.0

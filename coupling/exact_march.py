@@ -4,8 +4,8 @@ The machine with its teeth at their mean is linear and does not change in time, 
 modes by their exponentials, gyroscopic and damped as they are; harmonic loads and runout errors by the reference's own
 response; motions that nothing resists by uniform acceleration. What remains is what the teeth do beyond their mean, one
 force for each contact, and this alone is approximated: over an element of time by the polynomial through its values at
-Gauss places, see :mod:`coupling.periodic.kernels`, which this march shares with the search of periodic motions. Elements
-end at every tooth event, and where a law changes its branch by itself.
+Gauss places, see :mod:`coupling.periodic.kernels`; this march shares its elements with the search of periodic motions.
+They end at every tooth event, and where a law changes its branch by itself.
 
 The local error is what that polynomial misses. It has no defect at the places, so between them the defect has the shape
 of the polynomial that vanishes there, and two looks at the law just inside the element's ends give its size. Carried
@@ -145,7 +145,8 @@ class ExactRun(MarchRun):
             q, v = record.motion(end, free, done)
             error = float(np.sqrt(trace.error[:, 0].max() / (trace.error[:, 1].mean() + self._quiet)))
             if not (np.isfinite(error) and float(np.abs(q).max(initial=0.0)) < limit):
-                raise TransientError(self.lost(float(bounds[position]), state))
+                figures = record.contact_figures(state.contact_totals, trace)
+                raise TransientError(self.lost(float(bounds[position]), replace(state, contact_totals=figures), done))
             if error > settings.tolerance:
                 state = self._finer(state, float(bounds[position]), error, len(trace.start))
                 continue

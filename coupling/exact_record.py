@@ -108,7 +108,7 @@ class Record:
             0.0,
         ]
         totals[3] = max(state.totals[3], float(kinetic.max(initial=0.0)))
-        contact_totals = self._contacts(state, trace, weights)
+        contact_totals = self.contact_figures(state.contact_totals, trace)
         return replace(state, totals=totals, stored=float(held[-1]), contact_totals=contact_totals)
 
     def _powers(self, z: FloatArray, times: FloatArray, free: FreeMotion) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -132,14 +132,16 @@ class Record:
         return total
 
     @staticmethod
-    def _contacts(state: Checkpoint, trace: Trace, weights: FloatArray) -> FloatArray:
-        """Impulse, time apart, largest force and last touch, shape (c, 4)."""
-        figures = state.contact_totals.copy()
+    def contact_figures(before: FloatArray, trace: Trace) -> FloatArray:
+        """Impulse, time apart, largest force and last touch, shape (c, 4), with those of a trace."""
+        figures = before.copy()
+        weights = weights_to(trace.part) * (trace.size / trace.part)[:, None]
         figures[:, 0] += np.einsum("es,esc->c", weights, trace.force)
-        figures[:, 1] += trace.size @ trace.apart
+        # Flanks that touch without a force, where the damping would pull, count as apart; switches bound such elements.
+        touching = np.any(trace.force > 0.0, axis=1)
+        figures[:, 1] += trace.size @ ~touching
         peaks = trace.force.reshape(len(weights) * ORDER, len(figures))
         figures[:, 2] = np.maximum(figures[:, 2], peaks.max(axis=0, initial=0.0))
-        touching = trace.apart < 0.5
         ends = np.where(touching, (trace.start + trace.size)[:, None], 0.0)
         figures[:, 3] = np.where(touching.any(axis=0), ends.max(axis=0, initial=0.0), figures[:, 3])
         return figures

@@ -319,10 +319,11 @@ class MarchRun:
 
         return float(stored_energy(self.arrays.dynamics, self.arrays.contacts, q, v, turned, rate))
 
-    def lost(self, begin: float, state: Checkpoint) -> str:
-        """What happened where the motion grows beyond bounds."""
+    def lost(self, begin: float, state: Checkpoint, now: float | None = None) -> str:
+        """What happened where the motion grows beyond bounds, after a time and until now [s]."""
+        until = begin if now is None else now
         for contact, last in zip(self.system.contacts, state.contact_totals[:, 3], strict=True):
-            if contact.drives and (begin - last) * abs(contact.rate) > _GONE:
+            if contact.drives and (until - last) * abs(contact.rate) > _GONE:
                 return (
                     f"the teeth of {contact.name} came apart at t = {last:.6g} s and did not meet again: nothing "
                     "presses them together; look at the torques in and out, and whether the driver leads"

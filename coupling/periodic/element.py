@@ -201,9 +201,7 @@ def first_switch(
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def estimate(
-    reference: Reference, steps: Steps, slot: int, part: float, z: FloatArray, modes: int, work: Work
-) -> None:
+def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: FloatArray, modes: int, work: Work) -> None:
     """What the polynomial of the excess misses, carried to the end: squares of error and amplitudes.
 
     Between the places it misses what vanishes there; of the rest of its shape both ends tell. An element that ends at

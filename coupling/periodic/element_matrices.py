@@ -94,9 +94,7 @@ def advance_to(
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def fill_step(
-    reference: Reference, steps: Steps, slot: int, integral: ComplexArray, values: ComplexArray
-) -> None:
+def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexArray, values: ComplexArray) -> None:
     """Fill in what an element of a slot's size needs."""
     c, h = reference.stiffness.size, steps.size[slot]
     n = ORDER * c

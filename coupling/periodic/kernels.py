@@ -59,7 +59,7 @@ def rung(reference: Reference, steps: Steps, length: float, work: Work) -> int:
     """The slot of the ladder's size that a length is nearest to, filled in."""
     first, last = steps.ladder[0], steps.size.size - 1
     ratio = math.log(steps.size[first] / steps.size[first + 1])
-    slot = first + int(math.floor(math.log(steps.size[first] / length) / ratio + 0.5))
+    slot = first + round(math.log(steps.size[first] / length) / ratio)
     slot = min(max(slot, first), last)
     if steps.filled[slot] == 0:
         fill_step(reference, steps, slot, work.integral, work.values)

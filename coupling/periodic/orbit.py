@@ -1,6 +1,7 @@
 """One pass over the period: from a state at t = 0 to that at its end, with the monodromy on the way."""
 
 from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 

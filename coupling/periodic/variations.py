@@ -130,4 +130,3 @@ def jump_at(
     crossing = rate - (later - sooner) / (2.0 * inside)
     # The springs start from nothing; only the damping can step.
     return sign * damping * rate / crossing if crossing != 0.0 else 0.0
-

@@ -29,6 +29,8 @@ class SolvedTransient:
     Attributes
     ----------
     machine : coupling.Machine
+    method : str
+        By which it was marched, "newmark" or "exact".
     turning : coupling.Turning or None
         Speed over time; None where it is the nominal one all along.
     result : coupling.TransientResult
@@ -45,6 +47,7 @@ class SolvedTransient:
     """
 
     machine: room.Machine
+    method: str
     turning: room.Turning | None
     result: room.TransientResult
     histories: room.Histories
@@ -89,6 +92,7 @@ def solve_transient(
         sample_interval=period / per_revolution,
         largest_step=nominal / given.points_per_revolution,
         tolerance=given.tolerance,
+        method=given.method,
     )
     progress("compiling the time stepper (the first time takes longer)")
     result = room.simulate(
@@ -112,6 +116,7 @@ def solve_transient(
     interval = settings.sample_interval
     return SolvedTransient(
         machine=machine,
+        method=room.march_method(machine.system, settings, driven.turning or room.Turning.steady()),
         turning=driven.turning,
         result=result,
         histories=named,
@@ -162,6 +167,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     return {
         "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
         "run": _run_document(case, solved.turning),
+        "method": solved.method,
         "steps": result.steps,
         "rejected_steps": result.rejected,
         "smallest_step_s": result.smallest_step,

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -51,7 +52,9 @@ def tooth(
     return ContactConnector("teeth", direction, contact, 0.3, rate, np.array(errors, dtype=float).reshape(-1, 3))
 
 
-def body(contacts: Sequence[ContactConnector], load: FloatArray, harmonic: Sequence[HarmonicLoad] = ()) -> CoupledSystem:
+def body(
+    contacts: Sequence[ContactConnector], load: FloatArray, harmonic: Sequence[HarmonicLoad] = ()
+) -> CoupledSystem:
     """Four coordinates with gyroscopic terms and damping that is not proportional to the stiffness."""
     rng = np.random.default_rng(5)
     root, loss = rng.normal(size=(2, SIZE, SIZE))
@@ -93,7 +96,7 @@ def exponentials(system: CoupledSystem, start: FloatArray, duration: float) -> F
     n, loads = system.size, system.harmonic_loads
     times = np.unique(np.concatenate([[0.0, duration], *(c.event_times(0.0, duration) for c in system.contacts)]))
     state = np.concatenate([start, [1.0], np.tile([1.0, 0.0], len(loads))])
-    for begin, end in zip(times[:-1], times[1:], strict=True):
+    for begin, end in pairwise(times):
         stiffness, damping, load = system.stiffness.copy(), system.damping.copy(), system.load.copy()
         for contact in system.contacts:
             pairs = contact.contact.pairs(np.array([contact.phase + contact.rate * 0.5 * (begin + end)]))
@@ -152,15 +155,18 @@ def _velocities(system: CoupledSystem, start: FloatArray, time: float, step: flo
 
 def test_falls_by_the_order_of_gauss() -> None:
     """While the teeth stay closed the state errs by h to the 2 s = 10."""
-    system = body([tooth(arched(), 0.23)], 20.0 * DIRECTION)
+    whole = replace(tooth(arched(1.0), 0.25), phase=0.0)
+    system = body([whole], 20.0 * DIRECTION)
     start = (static_equilibrium(system), 0.05 * np.ones(SIZE))
     states = []
-    for step in (0.4, 0.2, 0.02):
-        result = simulate(system, replace(ends_after(20.0, step), tolerance=0.9), everything(SIZE), initial=start)
+    # Five places in an element: 4 and 8 elements a mesh period, and many.
+    for step in (0.2, 0.1, 0.02):
+        march = TransientSettings(20.02, 0.0, 20.0, step, 0.9, method="exact")
+        result = simulate(system, march, everything(SIZE), initial=start)
         assert result.contact_loss[0] == 0.0
         states.append(last_state(result))
     errors = [np.linalg.norm(state - states[-1]) for state in states[:-1]]
-    assert errors[0] > 1e-13
+    assert errors[0] > 1e-12
     assert np.log2(errors[0] / errors[1]) > 8.5
 
 
@@ -188,3 +194,105 @@ def test_lost_contact_and_backlash_against_another_integrator(back: float | None
 
     end = solve_ivp(rates, (0.0, duration), [3.0, 0.0], "DOP853", rtol=1e-11, atol=1e-12, max_step=0.01).y[:, -1]
     np.testing.assert_allclose(last_state(result), end, atol=3e-7)
+
+
+def two_masses(errors: Sequence[Sequence[float]] = ()) -> CoupledSystem:
+    """Two masses on springs that the teeth press together, with a runout, a ripple, and a back flank."""
+    zeros = np.zeros((2, 2))
+    masses = Component("masses", ("torsion", "torsion"), np.diag([0.2, 0.1]), 0.02 * np.eye(2), zeros)
+    direction = np.array([1.0, -1.0])
+    drive = tooth(arched(damping=0.05), 0.45, direction, errors)
+    back = replace(drive, name="back", direction=-direction, clearance=0.3, drives=False)
+    ripple = HarmonicLoad(0.7, np.array([0.3 + 0.1j, -0.2]))
+    return CoupledSystem((masses,), (0.0,), (), (drive, back), 0.5 * direction, (ripple,))
+
+
+RUNOUT = ((0.2, 0.3, 0.1), (0.1, 0.9, 1.0))
+SETTINGS = TransientSettings(60.0, 20.0, 0.05, 0.1, tolerance=1e-8, method="exact")
+
+
+def test_tells_what_newmark_tells() -> None:
+    """Histories, forces, contact loss and every part of the energy balance, the steps of the other being tiny."""
+    system = two_masses(RUNOUT)
+    # Samples off the events, where accelerations jump.
+    march = replace(SETTINGS, sample_interval=0.0507)
+    exact = simulate(system, march, everything(2))
+    steps = simulate(system, replace(march, method="newmark", tolerance=1.0, largest_step=1e-4), everything(2))
+    assert exact.steps < steps.steps / 100
+    assert 0.02 < exact.contact_loss[0] < 0.9
+    for what in ("displacement", "velocity", "acceleration", "compression", "force"):
+        found, expected = getattr(exact, what), getattr(steps, what)
+        np.testing.assert_allclose(found, expected, atol=2e-5 * np.abs(expected).max(), err_msg=what)
+    np.testing.assert_allclose(exact.mean_force, steps.mean_force, atol=1e-5)
+    np.testing.assert_allclose(exact.contact_loss, steps.contact_loss, atol=1e-4)
+    np.testing.assert_allclose(exact.peak_force, steps.peak_force, rtol=0.02)
+    for what in ("change", "loads", "lost", "teeth"):
+        scale = steps.energy.scale
+        assert getattr(exact.energy, what) == pytest.approx(getattr(steps.energy, what), abs=2e-5 * scale), what
+    assert exact.energy.error < 1e-5
+
+
+def test_the_error_measure_is_the_error() -> None:
+    """The state at the end is off by about the tolerance, and never by much more."""
+    system = two_masses(RUNOUT)
+    reference = simulate(system, replace(SETTINGS, tolerance=1e-11), everything(2)).displacement
+    measured = []
+    for tolerance in (1e-3, 1e-5, 1e-7):
+        result = simulate(system, replace(SETTINGS, tolerance=tolerance, largest_step=1.0), everything(2))
+        assert result.error <= tolerance
+        measured.append(np.abs(result.displacement - reference).max() / np.abs(reference).max())
+        assert measured[-1] < 20.0 * tolerance
+    assert measured[2] < 1e-3 * measured[0] + 1e-9
+
+
+@given(cut=st.integers(0, 2), phase=st.floats(0.0, 1.0), rate=st.floats(0.2, 0.9))
+@settings(max_examples=5, deadline=None)
+def test_goes_on_from_a_checkpoint_bit_for_bit(cut: int, phase: float, rate: float) -> None:
+    system = two_masses(((0.2, 0.3, phase),))
+    system = replace(system, contacts=tuple(replace(contact, rate=rate) for contact in system.contacts))
+    march = replace(SETTINGS, sample_interval=4e-4, tolerance=1e-6)
+    rows = TransientOutputs(np.eye(2)[:1], np.eye(2)[:1], np.eye(2)[:1])
+    whole = list(march_blocks(system, march, rows))
+    assert len(whole) > 3
+    rest = list(march_blocks(system, march, rows, after=whole[cut].after))
+    assert len(rest) == len(whole) - cut - 1
+    for one, other in zip(whole[cut + 1 :], rest, strict=True):
+        for what in ("displacement", "velocity", "acceleration", "compression", "force"):
+            np.testing.assert_array_equal(getattr(one, what), getattr(other, what), err_msg=what)
+        ours, theirs = one.after.as_arrays(), other.after.as_arrays()
+        for name in ours.keys() - {"seconds"}:
+            np.testing.assert_array_equal(ours[name], theirs[name], err_msg=name)
+
+
+def test_where_it_does_not_apply() -> None:
+    """A reason is given, or Newmark's method marches, bit for bit as if it had been asked for."""
+    system = two_masses()
+    rows = everything(2)
+    slowing = Turning(np.array([0.0, 60.0]), np.array([1.0, 0.5]))
+    with pytest.raises(TransientError, match="the speed varies"):
+        simulate(system, SETTINGS, rows, turning=slowing)
+    table = TimedLoad(np.array([0.0, 30.0]), np.array([0.0, 0.1]), np.array([1.0, 0.0]))
+    loaded = replace(system, timed_loads=(table,))
+    with pytest.raises(TransientError, match="table over time; march by Newmark's"):
+        simulate(loaded, SETTINGS, rows)
+    dragged = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.1), np.zeros((1, 1)))
+    with pytest.raises(TransientError, match="no stiffness but meets damping"):
+        simulate(CoupledSystem((dragged,), (0.0,), load=np.ones(1)), SETTINGS, everything(1))
+    coarse = replace(SETTINGS, tolerance=1e-3)
+    either = simulate(loaded, replace(coarse, method="auto"), rows)
+    newmark = simulate(loaded, replace(coarse, method="newmark"), rows)
+    np.testing.assert_array_equal(either.displacement, newmark.displacement)
+    assert march_method(loaded, replace(coarse, method="auto"), Turning.steady()) == "newmark"
+    assert march_method(system, replace(coarse, method="auto"), Turning.steady()) == "exact"
+    assert march_method(system, replace(coarse, method="newmark"), Turning.steady()) == "newmark"
+    with pytest.raises(CouplingError, match="expected one of newmark, exact, auto"):
+        replace(SETTINGS, method="fast")  # type: ignore[arg-type]
+
+
+def test_teeth_that_fly_apart_for_good_are_named() -> None:
+    system = replace(two_masses(), contacts=two_masses().contacts[:1], load=np.array([-4.0, 4.0]))
+    masses = replace(system.components[0], stiffness=np.zeros((2, 2)), damping=np.zeros((2, 2)))
+    thrown = replace(system, components=(masses,), harmonic_loads=())
+    start = (np.array([0.1, -0.1]), np.zeros(2))
+    with pytest.raises(TransientError, match=r"teeth came apart at t = .* did not meet again"):
+        simulate(thrown, replace(SETTINGS, duration=4000.0), everything(2), initial=start)
