@@ -124,7 +124,7 @@ class ExactRun(MarchRun):
         z = self.part.amplitudes_of(self.part.state(before.q, before.v, before.time), before.time)
         if number == before.block == 0 and before.steps == 0:
             # Compiled before the clock starts.
-            trace, _ = self._march(bounds[:1], np.zeros(0, dtype=np.int64), z, sizes)
+            trace, _ = self._elements(bounds[:1], np.zeros(0, dtype=np.int64), z, sizes)
             record.write(trace, free, np.zeros(0), samples, 0)
             record.add(before, trace, self._steps, free)
         clock = time.perf_counter() - before.seconds
@@ -140,7 +140,7 @@ class ExactRun(MarchRun):
                 fresh = np.column_stack([np.zeros_like(state.contact_totals[:, :3]), state.contact_totals[:, 3]])
                 state = replace(state, contact_totals=fresh)
             stretches, pieces = bounds[position : last + 1], pieces[: last - position]
-            trace, end = self._march(stretches, pieces, z, sizes)
+            trace, end = self._elements(stretches, pieces, z, sizes)
             done = float(bounds[last])
             q, v = record.motion(end, free, done)
             error = float(np.sqrt(trace.error[:, 0].max() / (trace.error[:, 1].mean() + self._quiet)))
@@ -179,7 +179,7 @@ class ExactRun(MarchRun):
         settings = self.settings
         return np.asarray(settings.record_from + settings.sample_interval * np.arange(settings.samples))
 
-    def _march(
+    def _elements(
         self, stretches: FloatArray, pieces: IntArray, z: FloatArray, sizes: "_Sizes"
     ) -> tuple[Trace, FloatArray]:
         """Through stretches of time, each cut into equal pieces: the trace, and the amplitudes at the end."""

@@ -7,13 +7,13 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from coupling.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, TOUCHING, take_law
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.collocation import AT_ENDS, BARYCENTRIC, INSIDE, MONOMIALS, ORDER, PLACES, POINTS
 from coupling.periodic.element_work import Work
+from coupling.periodic.uncounted import uncounted
 from coupling.small_systems import solve_in_place
 
 FloatArray = npt.NDArray[np.float64]
@@ -24,13 +24,13 @@ _NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is found,
 _FULL = 1.0 - 1e-14
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False, forceinline=True)
+@uncounted(forceinline=True)
 def law(contacts: Contacts, a: int, time: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
     """The law of one contact, into a row."""
     take_law(contacts, a, time, delta, rate, laws, row)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
     """Which smooth branch a law is on: the number of touching pairs, and what the damping does."""
     touching = int(laws[row, TOUCHING])
@@ -43,7 +43,7 @@ def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
     return 4 * touching + 3
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"}, _nrt=False)
+@uncounted(fastmath={"reassoc", "contract", "nsz"})
 def product(row: FloatArray, a: int, z: FloatArray) -> float:
     """A row of a matrix times the amplitudes."""
     total = 0.0
@@ -52,7 +52,7 @@ def product(row: FloatArray, a: int, z: FloatArray) -> float:
     return total
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def advance(
     decay: ComplexArray, slot: int, source: FloatArray, z: FloatArray, excess: FloatArray, end: FloatArray
 ) -> None:
@@ -67,7 +67,7 @@ def advance(
             end[i] -= source[slot, column, i] * g
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False, forceinline=True)
+@uncounted(forceinline=True)
 def interpolated(values: FloatArray, a: int, u: float) -> float:
     """The polynomial through values (ORDER + 2, c) at the points, at u."""
     above, below = 0.0, 0.0
@@ -81,7 +81,7 @@ def interpolated(values: FloatArray, a: int, u: float) -> float:
     return above / below
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def solve_element(
     reference: Reference, contacts: Contacts, steps: Steps, slot: int, time: float, z: FloatArray, work: Work
 ) -> bool:
@@ -150,7 +150,7 @@ def solve_element(
     return solved or best <= 1e-9 * scale
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def first_switch(
     reference: Reference, contacts: Contacts, time: float, h: float, stop: float, furthest: float, work: Work
 ) -> tuple[float, int]:
@@ -200,7 +200,7 @@ def first_switch(
     return first, which
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: FloatArray, modes: int, work: Work) -> None:
     """What the polynomial of the excess misses, carried to the end: squares of error and amplitudes.
 
@@ -241,7 +241,7 @@ def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: Floa
     work.measure[0], work.measure[1] = wrong, size
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def held_energy(laws: FloatArray, first: int, count: int) -> float:
     """In the teeth, by rows of the laws [J]."""
     total = 0.0

@@ -7,10 +7,10 @@ import cmath
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.collocation import MISSING, MONOMIALS, ORDER, PLACES
+from coupling.periodic.uncounted import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -19,7 +19,7 @@ _MOMENTS = ORDER + 2
 _SERIES_WITHIN = 0.7  # of |z|: beyond, the recursion upwards loses no more than two digits of the highest
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
     """∫₀¹ e^{z(1-u)} uᵏ du for k = 0 ... count - 1, e^z being known."""
     if z.real * z.real + z.imag * z.imag < _SERIES_WITHIN**2:
@@ -40,7 +40,7 @@ def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
             out[k] = (k * out[k - 1] - 1.0) * inverse
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def end_matrices(
     reference: Reference, h: float, part: float, decay: ComplexArray, source: FloatArray, integral: ComplexArray
 ) -> None:
@@ -60,7 +60,7 @@ def end_matrices(
                 source[j * c + b, 2 * m], source[j * c + b, 2 * m + 1] = sent.real, sent.imag
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def advance_to(
     reference: Reference,
     h: float,
@@ -93,7 +93,7 @@ def advance_to(
         end[2 * m], end[2 * m + 1] = total.real, total.imag
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexArray, values: ComplexArray) -> None:
     """Fill in what an element of a slot's size needs."""
     c, h = reference.stiffness.size, steps.size[slot]

@@ -43,6 +43,7 @@ from coupling.periodic.element import (
 )
 from coupling.periodic.element_matrices import advance_to, end_matrices, fill_step
 from coupling.periodic.element_work import Work
+from coupling.periodic.uncounted import uncounted
 from coupling.periodic.variations import cross, jump_at, vary
 
 FloatArray = npt.NDArray[np.float64]
@@ -54,19 +55,18 @@ _BEYOND = 0.06  # part of a size by which its motion is carried on past its end
 NO_BALANCE, NO_ROOM = 1, 2
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def rung(reference: Reference, steps: Steps, length: float, work: Work) -> int:
     """The slot of the ladder's size that a length is nearest to, filled in."""
     first, last = steps.ladder[0], steps.size.size - 1
     ratio = math.log(steps.size[first] / steps.size[first + 1])
-    slot = first + round(math.log(steps.size[first] / length) / ratio)
-    slot = min(max(slot, first), last)
+    slot = int(min(max(first + round(math.log(steps.size[first] / length) / ratio), first), last))
     if steps.filled[slot] == 0:
         fill_step(reference, steps, slot, work.integral, work.values)
     return slot
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def write_element(
     reference: Reference,
     contacts: Contacts,
@@ -109,7 +109,7 @@ def write_element(
     trace.error[count, 0], trace.error[count, 1] = work.measure[0], work.measure[1]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def march(
     reference: Reference,
     contacts: Contacts,

@@ -5,20 +5,20 @@ Importing this module imports numba. p disturbances are the columns of an array 
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from coupling.contact_kernels import DAMPING, FORCE, TOUCHING
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.element import law
 from coupling.periodic.element_work import Work
+from coupling.periodic.uncounted import uncounted
 from coupling.small_systems import solve_in_place
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def vary(
     steps: Steps, slot: int, decay: ComplexArray, source: FloatArray, end: int, columns: FloatArray, work: Work
 ) -> None:
@@ -53,7 +53,7 @@ def vary(
                 columns[i, k] -= x * right[row, k]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def cross(reference: Reference, a: int, jump: float, columns: FloatArray, moved: FloatArray) -> None:
     """Carry the disturbances over a moment at which the force of a contact steps: the sooner, the longer it acts."""
     count, p = columns.shape[0], columns.shape[1]
@@ -69,14 +69,14 @@ def cross(reference: Reference, a: int, jump: float, columns: FloatArray, moved:
             columns[2 * m + 1, k] -= y * moved[k]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def touches(contacts: Contacts, a: int, time: float, delta: float, laws: FloatArray, row: int) -> bool:
     """Whether any pair touches at a time and a compression."""
     law(contacts, a, time, delta, 0.0, laws, row)
     return bool(laws[row, TOUCHING] > 0.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def first_touch(
     reference: Reference, contacts: Contacts, a: int, time: float, near: float, laws: FloatArray, row: int
 ) -> float:
@@ -102,7 +102,7 @@ def first_touch(
     return high
 
 
-@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+@uncounted()
 def jump_at(
     reference: Reference,
     contacts: Contacts,
