@@ -6,8 +6,8 @@ Two equal shafts with the gear noise rig's 28 teeth on each, four bearings on th
 six elements, gears by its own energy method, and recalculates its mesh stiffness at every step. scipy gets the very
 system that we march, its right-hand side compiled, and each of its methods the tolerance at which it is fastest and
 errs no more than we do, by Newmark's method and by the exact march at several tolerances; the error is that of the
-whole state at the end of 40 mesh periods, against DOP853 with steps of 1/200 mesh period. Everything compiled is compiled
-before it is timed.
+whole state at the end of 40 mesh periods, against DOP853 with steps of 1/200 mesh period. Everything compiled is
+compiled before it is timed.
 """
 
 import contextlib

@@ -71,12 +71,22 @@ class Trace(NamedTuple):
 
 def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
     """Room for some elements."""
-    places = (np.empty((room, s, c)) for _ in range(5))
-    one, two, three = (np.empty(room) for _ in range(3))
+    places = (room, s, c)
     return Trace(
-        one, two, three, np.empty(room, dtype=np.int64), np.empty((room, 2 * m)), *places,
-        energy=np.empty((room, 2)), apart=np.empty((room, c)), error=np.empty((room, 2)),
-    )  # fmt: skip
+        start=np.empty(room),
+        size=np.empty(room),
+        part=np.empty(room),
+        slot=np.empty(room, dtype=np.int64),
+        state=np.empty((room, 2 * m)),
+        excess=np.empty(places),
+        compression=np.empty(places),
+        force=np.empty(places),
+        loss=np.empty(places),
+        turning=np.empty(places),
+        energy=np.empty((room, 2)),
+        apart=np.empty((room, c)),
+        error=np.empty((room, 2)),
+    )
 
 
 def first_elements(trace: Trace, count: int) -> Trace:

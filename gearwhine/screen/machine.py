@@ -30,7 +30,8 @@ def show_run(document: dict[str, Any]) -> None:
     if "steps" in document:
         console.print(
             f"Transient: {document['steps']} {_STEPS[document['method']]}, "
-            f"{document['steps_per_second']:.0f} a second; energy balance closes to {document['energy_error']:.1e}; {document['coordinates']} modal coordinates"
+            f"{document['steps_per_second']:.0f} a second; energy balance closes "
+            f"to {document['energy_error']:.1e}; {document['coordinates']} modal coordinates"
         )
     elif "system" in document:
         console.print(f"Coupled system: {counted(len(document['system']['modes']), 'mode')}")
