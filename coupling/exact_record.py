@@ -75,7 +75,7 @@ class Record:
 
     def write(self, trace: Trace, free: FreeMotion, times: FloatArray, samples: Samples, first: int) -> None:
         """Samples at ascending times of a trace, from a number on."""
-        from coupling.periodic.kernels import amplitudes_at, forces_at
+        from coupling.periodic.dense import amplitudes_at, forces_at
 
         reference = self.part.reference
         rows = slice(first - samples.offset, first - samples.offset + len(times))
@@ -91,7 +91,7 @@ class Record:
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion) -> Checkpoint:
         """The state with the work, the losses and the contacts' figures of a trace added."""
-        from coupling.periodic.kernels import amplitudes_within
+        from coupling.periodic.dense import amplitudes_within
 
         h = trace.size / trace.part
         weights = weights_to(trace.part) * h[:, None]

@@ -3,6 +3,8 @@
 Places and polynomials are in u, which runs from 0 to 1 over the element.
 """
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -10,11 +12,6 @@ FloatArray = npt.NDArray[np.float64]
 
 ORDER = 5
 """Places in an element; what an element ends with errs by its size to the power 2 ORDER + 1."""
-
-
-def _gauss() -> tuple[FloatArray, FloatArray]:
-    places, weights = np.polynomial.legendre.leggauss(ORDER)
-    return 0.5 * (1.0 + places), 0.5 * weights
 
 
 def _barycentric(points: FloatArray) -> FloatArray:
@@ -30,8 +27,8 @@ def _missing(places: FloatArray) -> FloatArray:
     return np.ascontiguousarray([first, last])
 
 
-PLACES, WEIGHTS = _gauss()
-"""Gauss-Legendre places and weights, ascending, shape (ORDER,) both."""
+PLACES: FloatArray = 0.5 * (1.0 + np.polynomial.legendre.leggauss(ORDER)[0])
+"""Gauss and Legendre's, ascending, shape (ORDER,)."""
 
 MONOMIALS: FloatArray = np.ascontiguousarray(np.linalg.inv(np.vander(PLACES, increasing=True)).T)
 """Coefficients of u⁰, u¹, ... of the polynomial that is 1 at place j and 0 at the others, shape (ORDER, ORDER)."""
@@ -50,6 +47,10 @@ AT_ENDS: FloatArray = np.ascontiguousarray(np.vander([INSIDE, 1.0 - INSIDE], ORD
 
 MISSING: FloatArray = _missing(PLACES)
 """Coefficients of what such a polynomial misses within if it misses 1 at the start or the end, (2, ORDER + 2)."""
+
+
+BINOMIAL: FloatArray = np.array([[float(math.comb(j, k)) for k in range(ORDER)] for j in range(ORDER)])
+"""Coefficients of (u + v)ʲ, shape (ORDER, ORDER)."""
 
 
 def weights_to(part: FloatArray) -> FloatArray:

@@ -26,7 +26,6 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from coupling.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
 from coupling.kernel_arrays import Contacts
@@ -198,54 +197,3 @@ def march(
             left -= length
             slot = -1
     return count, cuts, 0
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> FloatArray:
-    """Amplitudes at ascending times, shape (t, 2 m)."""
-    c, m = reference.stiffness.size, reference.eigenvalue.size
-    out = np.empty((times.size, 2 * m))
-    integral, coefficient = np.empty(ORDER, dtype=np.complex128), np.empty((ORDER, c))
-    excess = trace.excess.reshape(trace.start.size, ORDER * c)
-    element = 0
-    for i in range(times.size):
-        while element < trace.start.size - 1 and times[i] >= trace.start[element + 1]:
-            element += 1
-        h = trace.size[element] / trace.part[element]
-        u = (times[i] - trace.start[element]) / h
-        advance_to(reference, h, u, trace.state[element], excess[element], out[i], coefficient, integral)
-    return out
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def amplitudes_within(steps: Steps, trace: Trace) -> FloatArray:
-    """Amplitudes at the places of every element, shape (e s, 2 m)."""
-    count, c = trace.start.size, trace.excess.shape[2]
-    m = steps.inner_decay.shape[2]
-    out = np.empty((count * ORDER, 2 * m))
-    for element in range(count):
-        slot = trace.slot[element]
-        for i in range(ORDER):
-            row = element * ORDER + i
-            for k in range(m):
-                x, y = steps.inner_decay[slot, i, k].real, steps.inner_decay[slot, i, k].imag
-                out[row, 2 * k] = x * trace.state[element, 2 * k] - y * trace.state[element, 2 * k + 1]
-                out[row, 2 * k + 1] = x * trace.state[element, 2 * k + 1] + y * trace.state[element, 2 * k]
-            for j in range(ORDER):
-                for a in range(c):
-                    g = trace.excess[element, j, a]
-                    for k in range(2 * m):
-                        out[row, k] -= steps.inner_source[slot, i, j * c + a, k] * g
-    return out
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def forces_at(
-    contacts: Contacts, times: FloatArray, delta: FloatArray, rate: FloatArray, work: Work, out: FloatArray
-) -> None:
-    """The law's force at times, compressions and rates; all but the times of shape (t, c)."""
-    row = work.laws.shape[0] - 1
-    for i in range(times.size):
-        for a in range(contacts.phase.size):
-            law(contacts, a, times[i], delta[i, a], rate[i, a], work.laws, row)
-            out[i, a] = work.laws[row, FORCE]

@@ -154,12 +154,12 @@ class PeriodicResponse:
         return np.asarray(np.einsum("es,esc->c", weights, values) / self.period)
 
     def _amplitudes(self, times: FloatArray) -> FloatArray:
-        from coupling.periodic.kernels import amplitudes_at
+        from coupling.periodic.dense import amplitudes_at
 
         return np.asarray(amplitudes_at(self.part.reference, self.trace, times))
 
     def _contacts(self, times: FloatArray, amplitudes: FloatArray) -> tuple[FloatArray, FloatArray]:
-        from coupling.periodic.kernels import forces_at
+        from coupling.periodic.dense import forces_at
 
         reference = self.part.reference
         delta, rate = amplitudes @ reference.displacement.T, amplitudes @ reference.rate.T
