@@ -29,6 +29,7 @@ from coupling.connector import ContactConnector, LinearConnector, SpeedTable
 from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
 from coupling.decimation import Decimation, decimation
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
+from coupling.exact_march import march_method
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.free_speed import free_speed
 from coupling.histories import Histories, Recorded, histories, nothing_recorded, transient_outputs
@@ -144,6 +145,7 @@ __all__ = [
     "lines_at",
     "march_blocks",
     "march_key",
+    "march_method",
     "mean_contact",
     "mesh_error_response",
     "modal_record",

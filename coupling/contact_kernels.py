@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 _NEWTON_STEPS = 30
 
 # Columns of the laws' table: what the contact law gives, see coupling.gears.kernels.tooth_force.
-FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE = 0, 1, 2, 3, 4
+FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE, TOUCHING = 0, 1, 2, 3, 4, 5
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -35,10 +35,10 @@ def deviation_of(clearance: FloatArray, errors: FloatArray, k: int, turned: floa
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray) -> None:
-    """Fill in a contact's row of the laws' table."""
+def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
+    """Fill in a row of the laws' table for a contact."""
     if delta <= contacts.first_touch[k]:
-        laws[k, :] = 0.0
+        laws[row, :] = 0.0
         return
     law = tooth_force(
         contacts.phase[k] + contacts.rate[k] * turned,
@@ -54,8 +54,8 @@ def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: floa
         contacts.faces[k],
         contacts.face_depth[k],
     )
-    laws[k, FORCE], laws[k, TANGENT], laws[k, DAMPING] = law[0], law[1], law[2]
-    laws[k, ENERGY], laws[k, PHASE_SLOPE] = law[3], law[4]
+    laws[row, FORCE], laws[row, TANGENT], laws[row, DAMPING] = law[0], law[1], law[2]
+    laws[row, ENERGY], laws[row, PHASE_SLOPE], laws[row, TOUCHING] = law[3], law[4], law[5]
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -84,7 +84,7 @@ def settle(
     for _ in range(_NEWTON_STEPS):
         for k in range(c):
             rate[k] = free_rate[k] + per * (delta[k] - free[k])
-            take_law(contacts, k, turned, delta[k], rate[k], laws)
+            take_law(contacts, k, turned, delta[k], rate[k], laws, k)
         largest, scale = 0.0, 1e-300
         for k in range(c):
             residual[k, 0] = free[k] - delta[k]

@@ -210,7 +210,7 @@ def _prepared(
     turning: Turning | None,
     initial: tuple[FloatArray, FloatArray] | None,
     samples_per_block: int,
-) -> tuple["_Run", tuple[FloatArray, FloatArray] | None]:
+) -> tuple["MarchRun", tuple[FloatArray, FloatArray] | None]:
     """The march of the coordinates that are followed, and their initial state."""
     if samples_per_block < 1:
         raise CouplingError(f"blocks of {samples_per_block} samples; expected at least one")
@@ -219,7 +219,7 @@ def _prepared(
         system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
         outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
         initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
-    return _Run(system, settings, outputs, turning or Turning.steady(), samples_per_block), initial
+    return march_run(system, settings, outputs, turning or Turning.steady(), samples_per_block), initial
 
 
 def _samples_until(settings: TransientSettings, end: float, first: int, total: int) -> int:
@@ -228,8 +228,24 @@ def _samples_until(settings: TransientSettings, end: float, first: int, total: i
     return min(max(upto - first, 0), total - first)
 
 
-class _Run:
-    """What stays the same through a march."""
+def march_run(
+    system: CoupledSystem,
+    settings: TransientSettings,
+    outputs: TransientOutputs,
+    turning: Turning,
+    samples_per_block: int,
+) -> "MarchRun":
+    """The march by the method that the settings ask for."""
+    from coupling.exact_march import ExactRun, exact_part
+
+    part = exact_part(system, settings, turning)
+    if part is not None:
+        return ExactRun(part, settings, outputs, turning, samples_per_block)
+    return MarchRun(system, settings, outputs, turning, samples_per_block)
+
+
+class MarchRun:
+    """What stays the same through a march: Newmark's, in steps."""
 
     def __init__(
         self,
@@ -260,7 +276,7 @@ class _Run:
         first = float(self.bounds(0)[1])
         turned, rates, _ = self.turning.at(1e-7 * first)
         stored = self._stored(q, v, float(turned[0]), float(rates[0]))
-        energy = self._held(q, v) + stored
+        energy = self.held(q, v) + stored
         return Checkpoint(
             block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(4),
             contact_totals=np.zeros((len(system.contacts), 4)), level=0, steps=0, rejected=0, unsettled=0, worst=0.0,
@@ -283,9 +299,7 @@ class _Run:
             self._march(march, state, cut(cache, self.turning, bounds[:1], 1.0), samples)
         # Forces too small to see: below this an acceleration is rounding, and its curvature means nothing.
         quiet = (1e-9 * float(np.linalg.norm(self.system.stiffness @ state.q) + self.pushing)) ** 2
-        bound = _RUNAWAY * (np.abs(state.q).max(initial=0.0) + self.reach)
-        bound += _RUNAWAY * float(np.linalg.norm(state.v)) * settings.duration if number == 0 else 0.0
-        bound = bound if bound > 0.0 else np.inf
+        bound = self.limit(number, state)
         clock = time.perf_counter() - before.seconds
         while position < len(bounds) - 1:
             last = min(position + _SEGMENTS_PER_CHUNK, len(bounds) - 1)
@@ -298,7 +312,7 @@ class _Run:
             trial, curvature, acceleration = self._march(march, state, segments, samples)
             steps = int(segments.steps.sum())
             if not np.isfinite(curvature) or not float(np.abs(trial.q).max(initial=0.0)) < bound:
-                raise TransientError(self._lost(float(bounds[position]), state))
+                raise TransientError(self.lost(float(bounds[position]), state))
             error = float(np.sqrt(curvature / (acceleration + quiet * steps + 1e-300))) / 12.0
             if error > settings.tolerance:
                 level = state.level + max(1, int(np.ceil(np.log2(error / settings.tolerance))))
@@ -310,7 +324,7 @@ class _Run:
                     )
                 state = replace(state, level=level, rejected=state.rejected + steps)
                 continue
-            energy = self._held(trial.q, trial.v) + trial.stored
+            energy = self.held(trial.q, trial.v) + trial.stored
             state = replace(
                 trial,
                 time=float(bounds[last]),
@@ -325,6 +339,12 @@ class _Run:
             position = last
             progress(float(bounds[position] / settings.duration))
         return replace(state, block=number + 1, seconds=time.perf_counter() - clock)
+
+    def limit(self, number: int, state: Checkpoint) -> float:
+        """What no coordinate of a machine that holds together passes in a block."""
+        bound = _RUNAWAY * (float(np.abs(state.q).max(initial=0.0)) + self.reach)
+        bound += _RUNAWAY * float(np.linalg.norm(state.v)) * self.settings.duration if number == 0 else 0.0
+        return bound if bound > 0.0 else np.inf
 
     def bounds(self, number: int) -> FloatArray:
         """Where a block is cut into stretches [s]."""
@@ -341,7 +361,7 @@ class _Run:
         moved = replace(state, q=q, v=v, totals=totals, contact_totals=contacts, sample=sample, stored=stored)
         return replace(moved, unsettled=state.unsettled + unsettled), curvature, acceleration
 
-    def _held(self, q: FloatArray, v: FloatArray) -> float:
+    def held(self, q: FloatArray, v: FloatArray) -> float:
         """Energy of motion and of the springs that do not change [J]."""
         dynamics = self.arrays.dynamics
         energy = 0.5 * v @ v + 0.5 * q @ (dynamics.stiffness * q)
@@ -355,10 +375,11 @@ class _Run:
 
         return float(stored_energy(self.arrays.dynamics, self.arrays.contacts, q, v, turned, rate))
 
-    def _lost(self, begin: float, state: Checkpoint) -> str:
-        """What happened where the motion grows beyond bounds."""
+    def lost(self, begin: float, state: Checkpoint, now: float | None = None) -> str:
+        """What happened where the motion grows beyond bounds, after a time and until now [s]."""
+        until = begin if now is None else now
         for contact, last in zip(self.system.contacts, state.contact_totals[:, 3], strict=True):
-            if contact.drives and (begin - last) * abs(contact.rate) > _GONE:
+            if contact.drives and (until - last) * abs(contact.rate) > _GONE:
                 return (
                     f"the teeth of {contact.name} came apart at t = {last:.6g} s and did not meet again: nothing "
                     "presses them together; look at the torques in and out, and whether the driver leads"

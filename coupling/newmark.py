@@ -92,7 +92,7 @@ def march(
     tie_push, seen_by_ties, response = np.zeros(r), np.zeros(r), np.zeros(r)
     dq, dv, da, dq0, dv0 = np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c)
     delta, rate, delta_free, rate_free, slip = np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c)
-    laws, spare, jacobian, residual = np.zeros((c, 5)), np.zeros((c, 5)), np.zeros((c, c)), np.zeros((c, 1))
+    laws, spare, jacobian, residual = np.zeros((c, 6)), np.zeros((c, 6)), np.zeros((c, c)), np.zeros((c, 1))
     force_before, work = np.zeros(c), np.zeros(dynamics.gyroscopic.shape[2])
     powers, powers_before = np.zeros(3), np.zeros(3)
     curvature, acceleration, unsettled = 0.0, 0.0, 0
@@ -124,7 +124,7 @@ def march(
         for k in range(c):
             gone, slip[k] = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
             delta[k], rate[k] = dq[k] - gone, dv[k] - slip[k]
-            take_law(contacts, k, turned, delta[k], rate[k], laws)
+            take_law(contacts, k, turned, delta[k], rate[k], laws, k)
         fresh = _stored(changing, stiffness, tq, laws)
         totals[2] += fresh - stored
         stored = fresh
@@ -316,7 +316,7 @@ def stored_energy(
 ) -> float:
     """Energy in the teeth, and in the ties where they change with the speed [J], at a state."""
     r, c = dynamics.ties.shape[0], contacts.phase.size
-    stiffness, damping, laws = np.zeros((r, r)), np.zeros((r, r)), np.zeros((c, 5))
+    stiffness, damping, laws = np.zeros((r, r)), np.zeros((r, r)), np.zeros((c, 6))
     tie_matrices(dynamics, speed, stiffness, damping)
     changing = dynamics.tie_rates.size > 1
     tq, dq, dv = np.zeros(r), np.zeros(c), np.zeros(c)
@@ -325,7 +325,7 @@ def stored_energy(
     project(contacts.direction, v, dv)
     for k in range(c):
         gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
-        take_law(contacts, k, turned, dq[k] - gone, dv[k] - slip, laws)
+        take_law(contacts, k, turned, dq[k] - gone, dv[k] - slip, laws, k)
     return _stored(changing, stiffness, tq, laws)
 
 
@@ -466,7 +466,7 @@ def _sample(
             for k in range(contacts.phase.size):
                 gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
                 samples.compression[row, k] -= gone
-                take_law(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws)
+                take_law(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws, k)
                 samples.force[row, k] = laws[k, FORCE]
         for i in range(n):
             x[i] = (1.0 - s) * a[i] + s * a1[i]

@@ -47,7 +47,7 @@ class KernelArrays(NamedTuple):
 def kernel_arrays(system: CoupledSystem, outputs: _Rows, beta: float, gamma: float) -> KernelArrays:
     """Lay out the system and the rows to record."""
     rows = (np.ascontiguousarray(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
-    return KernelArrays(_dynamics(system, beta, gamma), _contacts(system), Outputs(*rows))
+    return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), Outputs(*rows))
 
 
 def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: int, count: int) -> Samples:
@@ -201,7 +201,8 @@ def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, Float
     )
 
 
-def _contacts(system: CoupledSystem) -> Contacts:
+def contact_arrays(system: CoupledSystem) -> Contacts:
+    """The tooth contacts, laid out for the kernels."""
     c = len(system.contacts)
     arguments = [contact.contact.kernel_arguments for contact in system.contacts]
     harmonics = max((len(contact.errors) for contact in system.contacts), default=0)

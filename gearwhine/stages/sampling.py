@@ -105,6 +105,7 @@ def sampling(
         sample_interval=period / per_revolution,
         largest_step=nominal / given.points_per_revolution,
         tolerance=given.tolerance,
+        method=given.method,
     )
     if 8 * signals * settings.samples <= largest:
         decimation = room.decimation(1, 0.25)

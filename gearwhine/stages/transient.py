@@ -34,6 +34,8 @@ class SolvedTransient:
     Attributes
     ----------
     machine : coupling.Machine
+    method : str
+        By which it was marched, "newmark" or "exact".
     turning : coupling.Turning or None
         Speed over time; None where it is the nominal one all along.
     result : coupling.TransientFigures
@@ -50,6 +52,7 @@ class SolvedTransient:
     """
 
     machine: room.Machine
+    method: str
     turning: room.Turning | None
     result: room.TransientFigures
     record: MarchRecord
@@ -149,7 +152,8 @@ def solve_transient(
     figures = room.transient_figures(chosen.settings, record.end)
     stretch = record.last_stretch()
     of_sensors, of_meshes = record_spectra(record, stretch.histories, limit)
-    return SolvedTransient(machine, turning, figures, record, stretch, of_sensors, of_meshes, limit)
+    method = room.march_method(machine.system, chosen.settings, turning or room.Turning.steady())
+    return SolvedTransient(machine, method, turning, figures, record, stretch, of_sensors, of_meshes, limit)
 
 
 def _in_space(case: Case, housing: SolvedHousing | HousingInMachine | None, named: room.Histories) -> room.Histories:
@@ -218,6 +222,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     return {
         "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
         "run": _run_document(case, solved.turning),
+        "method": solved.method,
         "steps": result.steps,
         "rejected_steps": result.rejected,
         "smallest_step_s": result.smallest_step,
