@@ -46,7 +46,7 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
         preload=preload,
         first_row=np.array(first_row, dtype=np.int64),
         kind=np.array([row[0] for row in rows], dtype=np.int64),
-        count=np.array([row[1] for row in rows], dtype=np.int64),
+        elements=np.array([row[1] for row in rows], dtype=np.int64),
         shape=shape,
         cage=np.array([row[3] for row in rows], dtype=np.float64).reshape(-1, 2),
         slices=slices,

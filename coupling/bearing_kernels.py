@@ -134,7 +134,7 @@ def _gap(shape: FloatArray, q: FloatArray, force: FloatArray, tangent: FloatArra
     tangent[0, 1] += (steep - flat) * n_x * n_y
     tangent[1, 0] += (steep - flat) * n_x * n_y
     tangent[1, 1] += steep * n_y * n_y + flat * n_x * n_x
-    return push * deep / (exponent + 1.0)
+    return float(push * deep / (exponent + 1.0))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -154,7 +154,7 @@ def bearing_force(
     tangent[:] = 0.0
     energy, slope = 0.0, 0.0
     for row in range(bearings.first_row[number], bearings.first_row[number + 1]):
-        kind, count, shape = bearings.kind[row], bearings.count[row], bearings.shape[row]
+        kind, count, shape = bearings.kind[row], bearings.elements[row], bearings.shape[row]
         angle = bearings.cage[row, 0] + bearings.cage[row, 1] * turned
         if kind == BALLS:
             added, turning = _balls(shape, count, angle, q, force, tangent)

@@ -1,8 +1,8 @@
 """The plain arrays that the time-stepping kernels take, by name.
 
-n coordinates, c contacts, r ties, h harmonic loads; :mod:`coupling.step` fills them from a coupled system. What is known
-by its deflections alone is seen along k directions: those of the contacts, then those of b nonlinear bearings, e in
-all, then two for each contact with friction.
+n coordinates, c contacts, r ties, h harmonic loads; :mod:`coupling.step` fills them from a coupled system. Laws that
+are not linear act along k directions: those of the contacts, then those of b nonlinear bearings, e in all, then two
+for each contact with friction.
 """
 
 from typing import NamedTuple
@@ -93,7 +93,7 @@ class Bearings(NamedTuple):
     preload: FloatArray  # (b,) of a spring along z [N]
     first_row: IntArray  # (b + 1,)
     kind: IntArray  # (w,) BALLS, ROLLERS or GAP
-    count: IntArray  # (w,) rolling elements
+    elements: IntArray  # (w,) how many of them
     shape: FloatArray  # (w, 7) what they are like, by their kind
     cage: FloatArray  # (w, 2) azimuth of the first element and its rate by the turned time
     slices: FloatArray  # (w, slices, 2) of rollers: place and gap

@@ -28,7 +28,7 @@ _PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two sp
 class MountedBearing:
     """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None.
 
-    With a ``law`` of its own motion follows that in place of the bearing's stiffness, which remains for linear analyses.
+    With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take.
     """
 
     bearing: Bearing

@@ -54,7 +54,8 @@ class Checkpoint:
     stored : float
         Energy in the teeth, and in the ties where they change with the speed [J].
     totals : ndarray, shape (5,)
-        Work of the loads, energy lost, work of what turns, the largest kinetic energy, and the heat of friction [J].
+        Work of the loads, energy lost, work of what turns, the largest kinetic energy, and what friction took from
+        the nominal rotation [J].
     contact_totals : ndarray, shape (c, 4)
         Impulse [N s], time apart [s], largest force [N] since the record began, and time of the last touch [s].
     level : int

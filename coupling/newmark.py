@@ -14,9 +14,9 @@ the few forces f of teeth and nonlinear bearings remain unknown: their deflectio
     δ = δ* - β h² H f(δ, δ'),    δ' = δ'* - γ h H f(δ, δ'),
 
 δ* and δ'* being those without them, are found by Newton's method on a system as small as their number. Friction acts
-along directions of its own, columns of D whose deflections no law asks for. What ties and contacts see of the motion, Uᵀq and Dᵀq, is carried along by the same recurrence as q. With
-β = 1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear
-system.
+along directions of its own, columns of D whose deflections no law asks for. What ties and laws see of the motion, Uᵀq
+and Dᵀq, is carried along by the same recurrence as q. With β = 1/4, γ = 1/2 the step is of second order,
+unconditionally stable, and keeps the energy of an undamped linear system.
 """
 
 import math
@@ -74,11 +74,11 @@ def march(
     next_sample : int
         Number of the first sample not yet written.
     stored : float
-        Energy just before the first segment in the teeth, in what nonlinear bearings differ from linear ones, and in the
-        ties where they change with the speed [J].
+        Energy just before the first segment in the teeth, in what nonlinear bearings hold beside linear ones, and in
+        the ties where they change with the speed [J].
     totals : ndarray, shape (5,)
         Work of the loads, energy lost to damping, work of what turns on contacts, bearings and ties (added to), the
-        largest kinetic energy, and the heat of friction (added to) [J].
+        largest kinetic energy, and what friction takes from the nominal rotation (added to) [J].
     contact_totals : ndarray, shape (c, 4)
         For each contact ∫ force dt [N s], time apart [s] (both added to), the largest force [N], and when the flanks
         last touched [s].
@@ -366,7 +366,7 @@ def stored_energy(
         gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
         dq[k], dv[k] = dq[k] - gone, dv[k] - slip
     take_forces(contacts, bearings, turned, dq, dv, laws, push, drag, tangents, held)
-    return _stored(changing, stiffness, tq, laws) + held[0]
+    return float(_stored(changing, stiffness, tq, laws) + held[0])
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -456,18 +456,18 @@ def _powers(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _friction_power(contacts: Contacts, speed: float, dv: FloatArray, push: FloatArray, out: FloatArray) -> None:
-    """Power that friction turns to heat [W], into out[3]; what it takes of that from the coordinates, from out[2].
+    """Power that friction takes from the nominal rotation, into out[3], and gives to the coordinates, into out[2] [W].
 
-    The heat is f (W s' + w'), the flanks sliding by W s' in the nominal rotation and by w' beside it. Whatever turns the
-    machine gives the former at once: only the latter shows in the energy of the coordinates.
+    The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. The former,
+    Σ μ F_j |w_j| and never negative, comes from whatever turns the machine. The latter is small, and shakes the
+    coordinates as often as it brakes them.
     """
     out[3] = 0.0
     for k in range(contacts.phase.size):
         row = contacts.friction_row[k]
         if row >= 0:
-            taken = push[row] * dv[row] + push[row + 1] * dv[row + 1]
-            out[2] -= taken
-            out[3] += taken + (push[row] * contacts.sliding[k, 0] + push[row + 1] * contacts.sliding[k, 1]) * speed
+            out[2] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
+            out[3] += (push[row] * contacts.sliding[k, 0] + push[row + 1] * contacts.sliding[k, 1]) * speed
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

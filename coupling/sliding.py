@@ -5,10 +5,10 @@ moves across the line of action, the flanks of a pair at the position x along th
 
     w = t (u_k - u_i)' + s (ξ_k θ_k' + ξ_i θ_i'),        ξ_k = ξ_k0 + x p_b,    ξ_i = ξ_i0 - x p_b,
 
-linear in x: w = (a + x b)ᵀ q' beside the nominal rotation's W_a + x W_b. Virtual work makes -μ F sgn(w) (a + x b) of the
-friction on the coordinates: ± the force on both gears, and the moments ξ_k and ξ_i times it on their shafts. The sign
-is that of the nominal rotation, which turns at the pitch point; what vibration adds to it would turn the force some
-microseconds earlier or later.
+linear in x: w = (a + x b)ᵀ q' beside the nominal rotation's W_a + x W_b. By virtual work friction does
+-μ F sgn(w) (a + x b) to the coordinates: ± the force on both gears, and the moments ξ_k and ξ_i times it on their
+shafts. The sign is that of the nominal rotation, which turns at the pitch point; what vibration adds to it would turn
+the force some microseconds earlier or later.
 
 The torque that friction takes from a train of gears comes out of what turns it. Speeds are prescribed, so what the
 friction would do to motions that nothing resists, the train's turning as a whole, is given back to them at once, as an

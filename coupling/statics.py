@@ -19,8 +19,8 @@ _HALVINGS = 12  # of a step that leads away from balance
 def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     """Coordinates at rest under the constant load, teeth and rolling elements standing where they are at a time.
 
-    Newton's method on K q + Σ d f(dᵀ q) = F, with the friction of teeth that slide as they turn. Motions that no spring resists, such as gears that roll together,
-    must carry no load; they stay at zero.
+    Newton's method on K q + Σ d f(dᵀ q) = F, with the friction of teeth that slide as they turn. Motions that no spring
+    resists, such as gears that roll together, must carry no load; they stay at zero.
 
     Returns
     -------
@@ -71,8 +71,8 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
                 break
         q, residual, tangent = q + 0.5**halving * step, trial, slope
     raise TransientError(
-        f"no static equilibrium after {_STEPS} Newton steps; the torque may be too small to close the mesh, or bearings "
-        "leave a shaft loose"
+        f"no static equilibrium of teeth and bearings after {_STEPS} Newton steps; the torque may be too small to "
+        "close the mesh, or the play of a bearing leave its shaft loose"
     )
 
 
@@ -96,9 +96,9 @@ def _out_of_balance(
         tangent = tangent + np.outer(rise, contact.direction)
     for bearing in system.nonlinear:
         deflection = bearing.directions.T @ q
-        force, slope = _bearing(bearing, deflection, time)
-        residual = residual - bearing.directions @ (force - bearing.stiffness @ deflection)
-        tangent = tangent + bearing.directions @ (slope - bearing.stiffness) @ bearing.directions.T
+        own, stiffness = _bearing(bearing, deflection, time)
+        residual = residual - bearing.directions @ (own - bearing.stiffness @ deflection)
+        tangent = tangent + bearing.directions @ (stiffness - bearing.stiffness) @ bearing.directions.T
     return residual, tangent
 
 

@@ -36,8 +36,8 @@ class EnergyBalance:
     scale : float
         The largest of these, of the swing of the energy held, and of the kinetic energy at any step.
     friction : float
-        What friction between the teeth turned to heat. Nearly all of it comes straight from what turns the machine; the
-        rest is in ``teeth``.
+        What friction between the teeth took from the nominal rotation, never negative: nearly all of it turned to heat,
+        the rest came to the coordinates and is in ``teeth``. No part of the balance.
     """
 
     change: float

@@ -84,8 +84,8 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
     if not system.is_smooth:
         what = "nonlinear bearings" if system.nonlinear else "friction between its teeth"
         raise PeriodicError(
-            f"the periodic response does not know {what}; expected a system without: leave them out, or march it through "
-            "time until it settles"
+            f"the periodic response does not know {what}; expected a system without: leave that out, or march it "
+            "through time until it settles"
         )
     length = common_period(system, period)
     followed = _followed(system)
