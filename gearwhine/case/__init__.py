@@ -86,6 +86,7 @@ from gearwhine.case.shafts import (
     RadialDamping,
     RadialStiffness,
     RollingStiffness,
+    StopStiffness,
 )
 from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
 from gearwhine.case.torques import Run, TorqueHistory, TorqueLine, TorqueRipple
@@ -155,6 +156,7 @@ __all__ = [
     "SpeedRange",
     "Springs",
     "StiffnessMap",
+    "StopStiffness",
     "Support",
     "Sweep",
     "SweptKey",

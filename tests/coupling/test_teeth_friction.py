@@ -33,10 +33,10 @@ from coupling import (
     transient_outputs,
 )
 from coupling.gears import (
+    ConstantStiffness,
     Gear,
     GearError,
     GearPairGeometry,
-    Iso6336Stiffness,
     PotentialEnergyStiffness,
     SlidingFriction,
     TipRelief,
@@ -176,8 +176,8 @@ def small_system(damping: float = 0.0) -> CoupledSystem:
     """Four coordinates on a contact that the load presses, its pairs rubbing: a tangent far from symmetric."""
     matrix = np.random.default_rng(7).normal(size=(SIZE, SIZE))
     zeros = np.zeros((SIZE, SIZE))
-    part = Component("body", ("rotor",) * SIZE, matrix @ matrix.T + 0.3 * np.eye(SIZE), 0.02 * np.eye(SIZE), zeros)
-    law = ToothContact(1.6, piecewise.quadratic(1.0, 2.0, 1.0, 1.6), piecewise.constant(0.0, 1.6), damping)
+    part = Component("body", ("rotor",) * SIZE, matrix @ matrix.T + 0.3 * np.eye(SIZE), 0.25 * np.eye(SIZE), zeros)
+    law = ToothContact(1.6, piecewise.quadratic(0.4, 1.2, 0.4, 1.6), piecewise.constant(0.0, 1.6), damping)
     sliding = Sliding(SMALL, RUBBING, np.array([-0.87, 1.0]))
     contact = ContactConnector("contact", DIRECTION, law, 0.0, RATE, np.empty((0, 3)), sliding=sliding)
     return CoupledSystem((part,), (0.0,), contacts=(contact,), load=3.0 * DIRECTION)
@@ -223,7 +223,7 @@ def test_steps_are_of_second_order_through_the_pitch_points(damping: float) -> N
     expected = reference(system, np.concatenate(start), end)
     rows, errors = np.eye(SIZE), []
     for step in (0.04, 0.02, 0.01):
-        chosen = TransientSettings(end * (1.0 + 1e-6), 0.0, end, step, tolerance=1.0)
+        chosen = TransientSettings(end * (1.0 + 1e-3), 0.0, end / 2, step, tolerance=1.0)
         result = simulate(system, chosen, TransientOutputs(rows, rows, rows), initial=start)
         assert result.contact_loss[0] == 0.0
         assert result.energy.error < 1e-3 * step / 0.04
@@ -231,7 +231,7 @@ def test_steps_are_of_second_order_through_the_pitch_points(damping: float) -> N
         errors.append(float(np.linalg.norm(last - expected) / np.linalg.norm(expected)))
     assert errors[1] < 0.28 * errors[0]
     assert errors[2] < 0.28 * errors[1]
-    assert errors[2] < 1e-4
+    assert errors[2] < 5e-4
 
 
 # ------------------------------------------------------------------------------------------------- the whole machine
@@ -291,9 +291,7 @@ def test_impossible_frictions_are_refused() -> None:
     for coefficient in (-0.01, 0.51, np.nan):
         with pytest.raises(GearError, match="friction coefficient"):
             sliding_friction(PAIR, CONTACT, coefficient)
-    whole = tooth_contact(PAIR, Iso6336Stiffness())
-    if whole.contact_ratio != CONTACT.contact_ratio:
-        with pytest.raises(GearError, match="place of each pair"):
-            sliding_friction(PAIR, whole, 0.05)
+    with pytest.raises(GearError, match="place of each pair"):
+        sliding_friction(PAIR, tooth_contact(PAIR, ConstantStiffness(2e8)), 0.05)
     with pytest.raises(PeriodicError, match="friction"):
         periodic_response(small_system())
