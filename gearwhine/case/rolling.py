@@ -24,7 +24,7 @@ class BearingLoad(Table):
 
 
 class Stop(Table):
-    """A ring around the shaft: beyond its radial `gap` [m] it takes `force` [N] at a `depth` [m], by some `exponent`."""
+    """A ring around the shaft: beyond its radial `gap` [m] it takes `force` [N] at a `depth` [m], by an `exponent`."""
 
     force: Annotated[float, Quantity(units.FORCE, above=0.0)]
     depth: PositiveLength
