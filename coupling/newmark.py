@@ -25,7 +25,17 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from coupling.contact_kernels import DAMPING, ENERGY, FORCE, PHASE_SLOPE, deviation_of, settle, take_forces, take_law
+from coupling.contact_kernels import (
+    DAMPING,
+    ENERGY,
+    FORCE,
+    PHASE_SLOPE,
+    deviation_of,
+    settle,
+    settle_all,
+    take_forces,
+    take_law,
+)
 from coupling.kernel_arrays import (
     BY_TIME,
     BY_UNBALANCE,
@@ -40,6 +50,7 @@ from coupling.kernel_arrays import (
 from coupling.step_kernels import add_gyroscopic, apply_base, build_step, project, tie_matrices
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 # Contacts are evaluated this part of a segment inside its ends, so that a pair that enters or leaves exactly
 # there counts on one side only.
@@ -181,7 +192,8 @@ def march(
             laws,
             powers_before,
         )
-        _friction_power(contacts, speed, dv, push, powers_before)
+        if directions > u:
+            _friction_power(contacts.friction_row, contacts.sliding, speed, dv, push, powers_before)
         powers_before[2] += held[1] * speed
         for k in range(c):
             force_before[k] = laws[k, FORCE]
@@ -251,25 +263,44 @@ def march(
                     rate_free[k] = dv0[k] + moved * da[k] - slip[k]
                 for k in range(c, u):
                     delta_free[k] = dq0[k] + displaced * da[k]
-                if not settle(
-                    contacts,
-                    bearings,
-                    turned,
-                    delta_free,
-                    rate_free,
-                    matrices.flexibility[slot],
-                    displaced,
-                    moved,
-                    delta,
-                    rate,
-                    laws,
-                    push,
-                    drag,
-                    tangents,
-                    held,
-                    jacobian,
-                    residual,
-                ):
+                if directions == c:
+                    settled = settle(
+                        contacts,
+                        turned,
+                        delta_free,
+                        rate_free,
+                        matrices.flexibility[slot],
+                        displaced,
+                        moved,
+                        delta,
+                        rate,
+                        laws,
+                        jacobian,
+                        residual,
+                    )
+                    for k in range(c):
+                        push[k] = laws[k, FORCE]
+                else:
+                    settled = settle_all(
+                        contacts,
+                        bearings,
+                        turned,
+                        delta_free,
+                        rate_free,
+                        matrices.flexibility[slot],
+                        displaced,
+                        moved,
+                        delta,
+                        rate,
+                        laws,
+                        push,
+                        drag,
+                        tangents,
+                        held,
+                        jacobian,
+                        residual,
+                    )
+                if not settled:
                     unsettled += 1
                 for k in range(directions):
                     force = push[k]
@@ -321,7 +352,8 @@ def march(
                 laws,
                 powers,
             )
-            _friction_power(contacts, speed, dv, push, powers)
+            if directions > u:
+                _friction_power(contacts.friction_row, contacts.sliding, speed, dv, push, powers)
             powers[2] += held[1] * speed
             totals[4] += 0.5 * h * (powers_before[3] + powers[3])
             powers_before[3] = powers[3]
@@ -455,7 +487,9 @@ def _powers(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _friction_power(contacts: Contacts, speed: float, dv: FloatArray, push: FloatArray, out: FloatArray) -> None:
+def _friction_power(
+    friction_row: IntArray, sliding: FloatArray, speed: float, dv: FloatArray, push: FloatArray, out: FloatArray
+) -> None:
     """Power that friction takes from the nominal rotation, into out[3], and gives to the coordinates, into out[2] [W].
 
     The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. The former,
@@ -463,11 +497,11 @@ def _friction_power(contacts: Contacts, speed: float, dv: FloatArray, push: Floa
     coordinates as often as it brakes them.
     """
     out[3] = 0.0
-    for k in range(contacts.phase.size):
-        row = contacts.friction_row[k]
+    for k in range(friction_row.size):
+        row = friction_row[k]
         if row >= 0:
             out[2] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
-            out[3] += (push[row] * contacts.sliding[k, 0] + push[row + 1] * contacts.sliding[k, 1]) * speed
+            out[3] += (push[row] * sliding[k, 0] + push[row + 1] * sliding[k, 1]) * speed
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
