@@ -9,8 +9,9 @@ line of action by
 (speeds w by their amounts), which turns at the pitch point. Coulomb's friction on the pair's normal force
 ``F_j / cos(beta_b)``, F_j in the transverse plane, is ``mu F_j / cos(beta_b) sgn(w(s_j))``; see
 :mod:`coupling.gears.friction_kernels` for the sum over the pairs. On a helical face, whose contact line spans
-``s - h <= x <= s + h``, the load is taken as even over what of it lies on the path; where it is less towards the ends of the path, as on most
-faces, this overstates the loss (:func:`coupling.gears.mesh_friction` follows every slice, for a load that stands still).
+``s - h <= x <= s + h``, the load is taken as even over what of it lies on the path. Most faces carry less towards the
+ends of the path, so this overstates the loss; :func:`coupling.gears.mesh_friction` follows every slice, for a load that
+stands still.
 """
 
 from __future__ import annotations
