@@ -5,6 +5,7 @@ What the room offers:
 - :func:`housing_component`, :func:`rotor_component` -- components in mass-normalised coordinates.
 - :func:`couple` with :class:`MountedBearing`, :class:`GearMesh` and the loads of :mod:`coupling.loads` -- the
   :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
+- :class:`RollingLaw`, :class:`GapLaw` -- bearings with laws of their own, beside the linear ones of their tangents.
 - :func:`coupled_modes` -- complex natural modes about the mean contact, or that of an instant (:func:`contact_at`),
   with energies by component, bearing and gear mesh; :func:`stability` -- which grow, and what feeds them.
 - :func:`system_campbell` -- these over speed, with the crossings of shaft and mesh orders.
@@ -22,10 +23,11 @@ numba is imported only when one of :func:`simulate`, :func:`static_equilibrium` 
 """
 
 from coupling.base_motion import BaseHarmonic, BaseHistory, BaseMotion
+from coupling.bearing_law import BearingLaw, GapLaw, RollingLaw
 from coupling.boundaries import SAMPLES_PER_BLOCK
 from coupling.campbell import SystemCampbell, SystemCrossing, system_campbell
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
-from coupling.connector import ContactConnector, LinearConnector, SpeedTable
+from coupling.connector import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
 from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
 from coupling.decimation import Decimation, decimation
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
@@ -77,6 +79,7 @@ __all__ = [
     "BaseHarmonic",
     "BaseHistory",
     "BaseMotion",
+    "BearingLaw",
     "Block",
     "BowReactions",
     "Checkpoint",
@@ -91,6 +94,7 @@ __all__ = [
     "EnergyBalance",
     "ExcitationLine",
     "FrequencyResponse",
+    "GapLaw",
     "GearMesh",
     "GrowingMode",
     "HarmonicLoad",
@@ -105,14 +109,17 @@ __all__ = [
     "ModesError",
     "MountedBearing",
     "MountedGear",
+    "NonlinearConnector",
     "Part",
     "Peak",
     "PeriodicError",
     "PeriodicResponse",
     "Recorded",
     "ResponseCurve",
+    "RollingLaw",
     "RotorComponent",
     "SignalParts",
+    "Sliding",
     "Spectrum",
     "SpeedTable",
     "Stability",

@@ -78,6 +78,8 @@ def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Turn
         reason = "the speed varies, and with it the machine"
     elif system.timed_loads:
         reason = "a load is a table over time"
+    elif not system.is_smooth:
+        reason = "it knows no nonlinear bearings" if system.nonlinear else "it knows no friction between the teeth"
     else:
         try:
             return steady_part(system)

@@ -106,6 +106,7 @@ class Record:
             np.sum(weights * (lost + trace.loss.sum(axis=2))),
             np.sum(weights * turning) + np.sum(trace.energy[:, 0] - held[:-1]),
             0.0,
+            0.0,
         ]
         totals[3] = max(state.totals[3], float(kinetic.max(initial=0.0)))
         contact_totals = self.contact_figures(state.contact_totals, trace)

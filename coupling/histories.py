@@ -7,7 +7,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector import LinearConnector
+from coupling.bearing_arrays import bearing_arrays
+from coupling.connector import LinearConnector, NonlinearConnector
 from coupling.machine import Machine, MountedGear
 from coupling.settings import TransientOutputs
 from coupling.system import embed
@@ -134,13 +135,18 @@ def histories(machine: Machine, result: Recorded, turning: Turning | None = None
     """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
-    rates = (turning or Turning.steady()).at(result.times)[1]
+    turned, rates, _ = (turning or Turning.steady()).at(result.times)
+    nonlinear = {connector.name: connector for connector in machine.system.nonlinear}
     forces = {}
     column = 0
     for connector in _bearings(machine):
         columns = slice(column, column + connector.directions.shape[1])
         column = columns.stop
         forces[connector.name] = _force(connector, deflections[:, columns], result.velocity[:, columns], rates)
+        if connector.name in nonlinear:
+            forces[connector.name] += _beside_linear(
+                connector, nonlinear[connector.name], deflections[:, columns], turned
+            )
     names = [] if machine.housing is None else list(machine.housing.sensors)
     contacts = [contact.name for contact in machine.system.contacts]
     return Histories(
@@ -161,6 +167,20 @@ def _gears(machine: Machine) -> list[MountedGear]:
 
 def _bearings(machine: Machine) -> tuple[LinearConnector, ...]:
     return machine.system.linear[: len(machine.bearings)]
+
+
+def _beside_linear(
+    linear: LinearConnector, connector: NonlinearConnector, deflection: FloatArray, turned: FloatArray
+) -> FloatArray:
+    """What a nonlinear bearing adds to the linear one of its tangent, shape (s, d)."""
+    from coupling.bearing_kernels import bearing_history
+
+    # Directions in which nothing can move are no part of it.
+    moving = np.flatnonzero(np.any(linear.directions != 0.0, axis=0))
+    force = np.zeros_like(deflection)
+    own = np.ascontiguousarray(deflection[:, moving])
+    force[:, moving] = bearing_history(bearing_arrays([connector]), 0, turned, own) - own @ connector.stiffness.T
+    return force
 
 
 def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatArray, rates: FloatArray) -> FloatArray:

@@ -54,8 +54,9 @@ class Checkpoint:
         State of the coordinates that are followed.
     stored : float
         Energy in the teeth, and in the ties where they change with the speed [J].
-    totals : ndarray, shape (4,)
-        Work of the loads, energy lost, work of what turns, and the largest kinetic energy [J].
+    totals : ndarray, shape (5,)
+        Work of the loads, energy lost, work of what turns, the largest kinetic energy, and what friction took from
+        the nominal rotation [J].
     contact_totals : ndarray, shape (c, 4)
         Impulse [N s], time apart [s], largest force [N] since the record began, and time of the last touch [s].
     level : int
@@ -278,7 +279,7 @@ class MarchRun:
         stored = self._stored(q, v, float(turned[0]), float(rates[0]))
         energy = self.held(q, v) + stored
         return Checkpoint(
-            block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(4),
+            block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(5),
             contact_totals=np.zeros((len(system.contacts), 4)), level=0, steps=0, rejected=0, unsettled=0, worst=0.0,
             smallest=self.base, start_energy=energy, energy=energy, highest=energy, lowest=energy, seconds=0.0,
         )  # fmt: skip
@@ -354,7 +355,10 @@ class MarchRun:
     def _march(self, kernel: Any, state: Checkpoint, segments: Any, samples: Any) -> tuple[Checkpoint, float, float]:
         """The kernel on copies of what it changes."""
         q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))
-        head = (q, v, self.arrays.dynamics, self.arrays.contacts, self.cache.matrices, segments, self.arrays.outputs)
+        arrays = self.arrays
+        head = (
+            q, v, arrays.dynamics, arrays.contacts, arrays.bearings, self.cache.matrices, segments, arrays.outputs,
+        )  # fmt: skip
         sample, stored, curvature, acceleration, unsettled = kernel(
             *head, samples, state.sample, state.stored, totals, contacts
         )
@@ -373,7 +377,7 @@ class MarchRun:
     def _stored(self, q: FloatArray, v: FloatArray, turned: float, rate: float) -> float:
         from coupling.newmark import stored_energy
 
-        return float(stored_energy(self.arrays.dynamics, self.arrays.contacts, q, v, turned, rate))
+        return float(stored_energy(*self.arrays[:3], q, v, turned, rate))
 
     def lost(self, begin: float, state: Checkpoint, now: float | None = None) -> str:
         """What happened where the motion grows beyond bounds, after a time and until now [s]."""

@@ -5,10 +5,12 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from coupling.bearing_arrays import bearing_arrays
 from coupling.kernel_arrays import (
     BY_TIME,
     BY_TURNING,
     BY_UNBALANCE,
+    Bearings,
     Contacts,
     Dynamics,
     Outputs,
@@ -41,13 +43,15 @@ class KernelArrays(NamedTuple):
 
     dynamics: Dynamics
     contacts: Contacts
+    bearings: Bearings
     outputs: Outputs
 
 
 def kernel_arrays(system: CoupledSystem, outputs: _Rows, beta: float, gamma: float) -> KernelArrays:
     """Lay out the system and the rows to record."""
     rows = (np.ascontiguousarray(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
-    return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), Outputs(*rows))
+    bearings = bearing_arrays(system.nonlinear)
+    return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))
 
 
 def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: int, count: int) -> Samples:
@@ -119,7 +123,7 @@ def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> 
 
 def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
     r, n = arrays.dynamics.ties.shape
-    c = arrays.contacts.phase.size
+    k = len(arrays.contacts.direction)
     g, b = arrays.dynamics.gyroscopic.shape[:2]
     return StepMatrices(
         size=np.zeros(m),
@@ -130,9 +134,9 @@ def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
         ties=np.zeros((m, r, n)),
         between=np.zeros((m, r, r)),
         link=np.zeros((m, r, r)),
-        contact=np.zeros((m, c, n)),
-        contact_ties=np.zeros((m, c, r)),
-        flexibility=np.zeros((m, c, c)),
+        contact=np.zeros((m, k, n)),
+        contact_ties=np.zeros((m, k, r)),
+        flexibility=np.zeros((m, k, k)),
     )
 
 
@@ -215,8 +219,17 @@ def contact_arrays(system: CoupledSystem) -> Contacts:
         lowest = (gaps[..., 0] + np.minimum(gaps[..., 1:], 0.0).sum(axis=-1)).min()
         first_touch[k] = lowest + argument[6][:, 0].min(initial=0.0)
     entering = [argument[6] for argument in arguments]
+    rows = [system.contact_directions.T, *(connector.directions.T for connector in system.nonlinear)]
+    friction_row, friction, sliding = np.full(c, -1, dtype=np.int64), np.zeros((c, 4)), np.zeros((c, 2))
+    for k, contact in enumerate(system.contacts):
+        if contact.sliding is not None:
+            law, sliding[k] = contact.sliding.friction, contact.sliding.nominal
+            sense = float(np.sign(sliding[k, 1]))
+            friction[k] = sense * law.coefficient, law.pitch_point, law.half_line, law.path_end
+            friction_row[k] = sum(map(len, rows))
+            rows.append(contact.sliding.directions.T)
     return Contacts(
-        direction=np.ascontiguousarray(system.contact_directions.T),
+        direction=np.ascontiguousarray(np.concatenate(rows)),
         reach=np.array([argument[:3] for argument in arguments], dtype=np.float64).reshape(c, 3),
         curves=_padded([argument[3] for argument in arguments], 3),
         damping=np.array([argument[4] for argument in arguments], dtype=np.float64),
@@ -230,6 +243,9 @@ def contact_arrays(system: CoupledSystem) -> Contacts:
         face_depth=np.array([argument[8] for argument in arguments], dtype=np.float64),
         pairs=np.array([len(pairs) for pairs in entering], dtype=np.int64),
         first_touch=first_touch,
+        friction_row=friction_row,
+        friction=friction,
+        sliding=sliding,
     )
 
 

@@ -77,7 +77,18 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
     """Make a system ready: its period, its linear part, the teeth.
 
     Of ``like``, the same machine at another speed, is taken what has not changed.
+
+    Raises
+    ------
+    PeriodicError
+        Where the system has laws that the search does not know.
     """
+    if not system.is_smooth:
+        what = "nonlinear bearings" if system.nonlinear else "friction between its teeth"
+        raise PeriodicError(
+            f"the periodic response does not know {what}; expected a system without: leave that out, or march it "
+            "through time until it settles"
+        )
     length = common_period(system, period)
     followed = _followed(system)
     part = linear_part(followed.system, 2.0 * np.pi / length, None if like is None else like.part)

@@ -87,6 +87,7 @@ from gearwhine.case.shafts import (
     RadialDamping,
     RadialStiffness,
     RollingStiffness,
+    StopStiffness,
 )
 from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
 from gearwhine.case.torques import Run, TorqueHistory, TorqueLine, TorqueRipple
@@ -158,6 +159,7 @@ __all__ = [
     "SpeedRange",
     "Springs",
     "StiffnessMap",
+    "StopStiffness",
     "Support",
     "Sweep",
     "SweptKey",

@@ -233,6 +233,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
             "loads": result.energy.loads,
             "lost": result.energy.lost,
             "teeth": result.energy.teeth,
+            "friction": result.energy.friction,
         },
         "coordinates": solved.machine.system.size,
         "trusted_below_hz": solved.trusted_limit,
