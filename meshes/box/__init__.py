@@ -3,6 +3,7 @@
 from meshes.box.geometry import BoxGeometry, BoxMisfitError
 from meshes.box.meshing import mesh_box
 from meshes.box.misfit import Misfit
+from meshes.box.morph import BoxMorph, MorphError
 from meshes.box.parts import Bolt, Bore, Boss, Cover, CoverBolts, Feet, Fillets, Flange, Rib, WallThickness
 
 __all__ = [
@@ -11,12 +12,14 @@ __all__ = [
     "Boss",
     "BoxGeometry",
     "BoxMisfitError",
+    "BoxMorph",
     "Cover",
     "CoverBolts",
     "Feet",
     "Fillets",
     "Flange",
     "Misfit",
+    "MorphError",
     "Rib",
     "WallThickness",
     "mesh_box",
