@@ -19,6 +19,7 @@ from housing.updating.surrogate import ModalState, Surrogate
 FloatArray = npt.NDArray[np.float64]
 
 _STEPS = 8  # of Gauss and Newton from each start
+_WORTH = 1e-3  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
 _PROBE = 1e-3  # step in z for the slope of the gap
 _SCALE = 50.0  # residuals per unit of ln ω gap, the inverse of what the misfit calls soft
@@ -107,8 +108,10 @@ def search(
     while len(steps) < effort.solves and trust >= effort.least_trust and misfit.value > effort.enough:
         region = _region(design.coordinates, bounds, trust)
         point, promised = search_surrogate(surrogate, target, region, effort.starts, generator)
-        if promised > misfit.value - 1e-3 * abs(misfit.value):
-            break
+        if promised > misfit.value - _WORTH * abs(misfit.value):
+            # Nothing here is better: perhaps so close by that other starts find it, in a smaller region.
+            trust *= 0.5
+            continue
         trial = solve(point, design)
         found = measure(target, trial.state, trial.coordinates)
         accepted = found.value < misfit.value
