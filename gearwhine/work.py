@@ -271,6 +271,20 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
     return _kept(document | housing_documents.origin_document(housing), case, folder, housing=housing)
 
 
+def update_case(
+    case: Case, folder: Path, progress: Progress, *, null: int = 0, held_back: bool = False
+) -> dict[str, Any]:
+    """The housing's numbers fitted to its measured modes, with the updated case as a file."""
+    from gearwhine.stages import update_documents, updating
+
+    solved = updating.update_housing(case, progress, null=null, held_back=held_back)
+
+    def write(place: Path) -> None:
+        (place / "updated.toml").write_text(update_documents.updated_case(case, solved), encoding="utf-8")
+
+    return _kept(update_documents.update_document(case, solved), case, folder, write)
+
+
 def render_case(
     case: Case,
     folder: Path,

@@ -15,7 +15,7 @@ _PURPOSES = {
     "operation": "a speed such as speed = '5500 rpm'",
     "transient": "a length of run such as revolutions = 40",
     "sweep": "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }",
-    "update": "what is fitted, such as [[update.parameter]] name = 'top', keys = ['housing.box.wall.top'], range = [...]",
+    "update": "what is fitted, such as [[update.parameter]] name = 'top', keys = ['housing.box.wall.top']",
     "measured": "frequencies such as ['658 Hz', '1049 Hz']",
 }
 

@@ -100,9 +100,10 @@ class ModelModes(Table):
 class Update(Table):
     """`[update]`: the parameters, how well frequencies were measured, and what else the model has to meet.
 
-    `frequency_noise` is the relative standard deviation of a measured frequency together with what a perfect model would
-    still miss. The search is made with elements of `mesh_size` (None: the box's own) and the box's own decide. `gap` is the
-    least gap of dominance, `modes` how many are taken along, `solves` how many designs are solved at most.
+    `frequency_noise` is the relative standard deviation of a measured frequency together with what a perfect model
+    would still miss. The search is made with elements of `mesh_size` (None: the box's own) and the box's own decide.
+    `gap` is the least gap of dominance, `modes` how many are taken along, `solves` how many designs are solved at
+    most.
     """
 
     parameter: tuple[UpdateParameter, ...] = Field(min_length=1, max_length=200)

@@ -7,6 +7,7 @@ from gearwhine.screen.machine import show_run
 from gearwhine.screen.rotors import show_rotors
 from gearwhine.screen.sweep import show_sweep
 from gearwhine.screen.system import show_system
+from gearwhine.screen.updating import show_update
 
 __all__ = [
     "show_check",
@@ -21,4 +22,5 @@ __all__ = [
     "show_run",
     "show_sweep",
     "show_system",
+    "show_update",
 ]

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 import housing as room
-from gearwhine.case import Case
+from gearwhine.case import Case, CaseError
 from gearwhine.case.box_shape import box_geometry
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_attachments, build_supports
@@ -18,7 +18,7 @@ from gearwhine.stages.regions import materials_of
 from gearwhine.stages.update_keys import FittedCase
 from housing.material import element_constants
 from housing.updating import ModalState, ModelRate, Parameter, Surrogate, modal_rates, values_at
-from meshes import BoxGeometry, BoxMorph, Mesh, MorphError, mesh_quality
+from meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, MorphError, mesh_quality
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -66,13 +66,16 @@ class HousingDesigns:
 
         Raises
         ------
-        gearwhine.case.CaseError, housing.HousingError
+        housing.HousingError
             Where the values make no sound housing.
         """
-        case = self.case_at(coordinates)
-        mesh = None if near is None else _followed(near, case)
-        if mesh is None:
-            mesh = build_mesh(case)
+        try:
+            case = self.case_at(coordinates)
+            mesh = None if near is None else _followed(near, case)
+            if mesh is None:
+                mesh = build_mesh(case)
+        except (CaseError, GeometryError) as error:
+            raise room.HousingError(str(error)) from error
         parted, material, materials = materials_of(case, mesh)
         matrices = attach_all(case, mesh, room.assemble(parted, material, materials, threads=self.threads))
         fixed = room.fixed_freedoms(mesh, build_supports(case))
@@ -80,7 +83,11 @@ class HousingDesigns:
         given = case.housing
         assert given is not None
         ports = [room.seat_matrix(mesh, room.Seat(seat.name, seat.center)) for seat in given.seat]
-        seats = np.stack([solved.project(port)[:, :2] for port in ports], axis=1) if ports else np.empty((len(solved.frequencies), 0, 2))
+        seats = (
+            np.stack([solved.project(port)[:, :2] for port in ports], axis=1)
+            if ports
+            else np.empty((len(solved.frequencies), 0, 2))
+        )
         bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
         skin = room.survey_grid(mesh, bounds).normal_motion(solved.shapes)
         measured = None if self.measured is None else solved.project(self.measured(mesh))

@@ -73,7 +73,7 @@ class FittedCase:
         document = self.document
         for number, value in zip(self.numbers, values, strict=True):
             for place, entry in number.entries(value):
-                document = _with(document, place, entry)
+                document = with_entry(document, place, entry)
         return document
 
 
@@ -157,11 +157,11 @@ def _places(document: object, steps: Sequence[str], place: Location = ()) -> Ite
             yield from _places(document, rest, (*place, number))
 
 
-def _with(document: Any, place: Location, value: Any) -> Any:
+def with_entry(document: Any, place: Location, value: Any) -> Any:
     """Tables and lists with one entry replaced; what is not on the way to it is shared."""
     if not place:
         return value
     step, *rest = place
     copy = document.copy()
-    copy[step] = _with(document[step], tuple(rest), value)
+    copy[step] = with_entry(document[step], tuple(rest), value)
     return copy

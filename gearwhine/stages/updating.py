@@ -1,7 +1,8 @@
 """Updating a case's housing: its `[update]` numbers fitted to the measured modes, and what the fit is worth.
 
-The search is made on a mesh of its own, coarse enough for many solves. The box's own mesh decides: the difference that it
-makes to each paired mode is taken into the target, and the search goes on until the finer mesh's misfit no longer falls.
+The search is made on a mesh of its own, coarse enough for many solves. The box's own mesh decides: the difference that
+it makes to each paired mode is taken into the target, and the search goes on until the finer mesh's misfit no longer
+falls.
 """
 
 import time
@@ -110,7 +111,9 @@ def update_housing(
     assert given is not None
     assert case.housing is not None
     if not case.housing.seat:
-        raise CaseError([Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")])
+        raise CaseError(
+            [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
+        )
     begin = time.perf_counter()
     fine = HousingDesigns(fitted_case(case), given.modes, threads=threads)
     coarse = replace(fine, case=fitted_case(case, given.mesh_size))
@@ -197,7 +200,9 @@ def _corrected(
         progress("solving on the housing's own mesh")
         after = fine.solve(found.design.coordinates)
         misfit = measure(replace(target, bias=None), after.state, after.coordinates)
-        progress(f"on its own mesh: rms {misfit.rms_percent:.2f} %, max {misfit.max_percent:.2f} %, gap {misfit.gap:.2f}")
+        progress(
+            f"on its own mesh: rms {misfit.rms_percent:.2f} %, max {misfit.max_percent:.2f} %, gap {misfit.gap:.2f}"
+        )
         coarse = measure(replace(target, bias=None), found.design.state, found.design.coordinates)
         bias = misfit.errors - coarse.errors
         corrected = replace(target, bias=np.where(np.isfinite(bias), bias, 0.0))

@@ -1,11 +1,13 @@
 """Updating: named parameters of a housing's model fitted to its measured modes, and what the fit is worth.
 
-- :class:`Parameter` -- a number of the model with its range and prior; :class:`ModelRate`, :func:`modal_rates` -- what it
+- :class:`Parameter` -- a number of the model with its range and prior; :class:`ModelRate`, :func:`modal_rates` -- what
+it
   does to the modes, exactly; :class:`Surrogate` -- the modes of a design's neighbours.
 - :class:`Target`, :func:`measure` -- what was measured and how far a design is from it (:class:`Misfit`).
 - :func:`search` -- the fit, by true solves (:data:`Solve`) of :class:`Design`; :func:`posterior` -- what the data say
   beside the prior (:class:`Posterior`).
-- :func:`hold_back`, :func:`null_fits` -- what the fit is worth: modes left out and predicted, random frequencies fitted.
+- :func:`hold_back`, :func:`null_fits` -- what the fit is worth: modes left out and predicted, random frequencies
+fitted.
 """
 
 from housing.updating.misfit import UNPAIRED, Misfit, ModeCount, Target, measure

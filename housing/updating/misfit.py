@@ -2,10 +2,10 @@
 
     J = Σ_i (ln ω_i - ln ω_i,measured)² / σ_i² + |z|² + penalties,
 
-twice the negative logarithm of the posterior density where frequencies carry independent relative errors σ_i and the prior
-of the coordinates z is the unit normal one (Mottershead and Friswell 1993; Beck and Katafygiotis 1998). Penalties keep out
-what a good sum would hide: a choice of dominant modes that is a coin toss, measures that choose differently, and a number
-of modes that is not the one known.
+twice the negative logarithm of the posterior density where frequencies carry independent relative errors σ_i and the
+prior of the coordinates z is the unit normal one (Mottershead and Friswell 1993; Beck and Katafygiotis 1998).
+Penalties keep out what a good sum would hide: a choice of dominant modes that is a coin toss, measures that choose
+differently, and a number of modes that is not the one known.
 
 Modes are paired as they are when model and measurement are compared: the dominant ones in order of frequency, or where
 shapes were measured by the assignment of greatest MAC.
@@ -169,7 +169,9 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
     """
     assert target.shapes is not None
     if state.measured is None or state.measured.shape[1] != target.shapes.shape[1]:
-        raise HousingError(f"shapes measured at {target.shapes.shape[1]} degrees of freedom, of which the model has none")
+        raise HousingError(
+            f"shapes measured at {target.shapes.shape[1]} degrees of freedom, of which the model has none"
+        )
     table = _mac(target.shapes, state.measured)
     rows, columns = linear_sum_assignment(-table)
     pairs, values = np.full(len(table), UNPAIRED), np.zeros(len(table))

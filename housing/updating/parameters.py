@@ -1,8 +1,8 @@
 """Parameters of a model that are fitted, each with a range and a prior.
 
 A fit works in coordinates z in which the prior is a unit normal distribution: z = ln(p / nominal) / ln(1 + spread /
-nominal) for what is positive by its range, as thicknesses, stiffnesses and densities are, and z = (p - nominal) / spread
-for anything else. So one step means as much for a spring as for a wall, and a thickness cannot become negative.
+nominal) for what is positive by its range, as thicknesses, stiffnesses and densities are, and z = (p - nominal) /
+spread for anything else. So one step means as much for a spring as for a wall, and a thickness cannot become negative.
 """
 
 from collections.abc import Sequence
@@ -44,11 +44,12 @@ class Parameter:
 
     def __post_init__(self) -> None:
         if not -np.inf < self.low < self.high < np.inf:
-            raise HousingError(f"parameter {self.name!r}: range {self.low:g} to {self.high:g}: expected an ascending one")
-        if not self.low <= self.nominal <= self.high:
             raise HousingError(
-                f"parameter {self.name!r}: nominal {self.nominal:g} lies outside its range {self.low:g} to {self.high:g}"
+                f"parameter {self.name!r}: range {self.low:g} to {self.high:g}: expected an ascending one"
             )
+        if not self.low <= self.nominal <= self.high:
+            within = f"{self.low:g} to {self.high:g}"
+            raise HousingError(f"parameter {self.name!r}: nominal {self.nominal:g}: expected one within {within}")
         if not 0.0 < self.spread < np.inf:
             raise HousingError(f"parameter {self.name!r}: spread {self.spread:g}: expected one above 0")
 

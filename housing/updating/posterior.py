@@ -6,8 +6,8 @@ About the design of least misfit, with S the slopes of ln ω of the paired modes
 
 A is the data's information, the unit matrix that of the prior and C the posterior covariance of z (Gauss's
 approximation; Beck and Katafygiotis 1998). An eigenvector of A is a combination of parameters of which the data know as
-much as its eigenvalue says, in units of what was known before: below one, the prior knows more. The ends of the ranges are
-left out of account, so that what lies against one is less uncertain than stated.
+much as its eigenvalue says, in units of what was known before: below one, the prior knows more. The ends of the ranges
+are left out of account, so that what lies against one is less uncertain than stated.
 """
 
 from collections.abc import Sequence

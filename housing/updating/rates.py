@@ -7,8 +7,8 @@ by div V, so that for two modes φ_a, φ_b of the stress σ = λ tr ε I + 2 μ 
     dK_ab = ∫ σ(φ_a) : T_b + σ(φ_b) : T_a dV,      T_b = ½ div V ∇φ_b - ∇φ_b ∇V,
     dM_ab = ∫ ρ φ_a · φ_b div V dV,
 
-(the velocity form of shape sensitivities: Haug, Choi and Komkov 1986, chapter 3). Taken with the elements' own quadrature
-these are the exact derivatives of the assembled matrices, not approximations of them.
+(the velocity form of shape sensitivities: Haug, Choi and Komkov 1986, chapter 3). Taken with the elements' own
+quadrature these are the exact derivatives of the assembled matrices, not approximations of them.
 """
 
 from collections.abc import Iterator, Sequence
@@ -66,9 +66,7 @@ class ModalRates:
     def eigenvalues(self, frequencies: FloatArray) -> FloatArray:
         """dλ = φᵀ (dK - λ dM) φ of single modes [rad²/s²], shape (n_parameters, n_modes)."""
         diagonal = np.arange(len(frequencies))
-        return np.asarray(
-            self.stiffness[:, diagonal, diagonal] - frequencies**2 * self.mass[:, diagonal, diagonal]
-        )
+        return np.asarray(self.stiffness[:, diagonal, diagonal] - frequencies**2 * self.mass[:, diagonal, diagonal])
 
     def mixtures(self, frequencies: FloatArray) -> FloatArray:
         """How fast each mode takes on the others, dφ_b = Σ_a φ_a c_ab, shape (n_parameters, n_modes, n_modes).
@@ -107,7 +105,9 @@ def modal_rates(mesh: Mesh, constants: FloatArray, shapes: FloatArray, rates: Se
     n = len(shapes)
     for rate in rates:
         if rate.velocity is not None and rate.velocity.shape != mesh.points.shape:
-            raise HousingError(f"velocity of shape {rate.velocity.shape}: expected that of the nodes {mesh.points.shape}")
+            raise HousingError(
+                f"velocity of shape {rate.velocity.shape}: expected that of the nodes {mesh.points.shape}"
+            )
         if rate.constants is not None and rate.constants.shape != constants.shape:
             raise HousingError(f"constants' rates of shape {rate.constants.shape}: expected {constants.shape}")
     stiffness, mass = np.zeros((len(rates), n, n)), np.zeros((len(rates), n, n))

@@ -1,7 +1,7 @@
 """The search: a surrogate within a region of trust, a true solve, and only true decreases are accepted.
 
-Within the region the surrogate is searched from many starts by Gauss-Newton steps on whatever modes are paired there; the
-best of them is solved for in truth. Where that lessens the misfit it is the next design, else the region shrinks.
+Within the region the surrogate is searched from many starts by Gauss-Newton steps on whatever modes are paired there;
+the best of them is solved for in truth. Where that lessens the misfit it is the next design, else the region shrinks.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
+from housing.errors import HousingError
 from housing.updating.misfit import UNPAIRED, Misfit, Target, measure
 from housing.updating.parameters import Parameter, coordinate_bounds
 from housing.updating.surrogate import ModalState, Surrogate
@@ -19,7 +20,7 @@ from housing.updating.surrogate import ModalState, Surrogate
 FloatArray = npt.NDArray[np.float64]
 
 _STEPS = 8  # of Gauss and Newton from each start
-_WORTH = 1e-3  # part of the misfit that a promise must save to be worth a solve
+_WORTH = 1e-2  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
 _PROBE = 1e-3  # step in z for the slope of the gap
 _SCALE = 50.0  # residuals per unit of ln ω gap, the inverse of what the misfit calls soft
@@ -41,7 +42,9 @@ class Design(Protocol):
 
 
 Solve = Callable[[FloatArray, Design | None], Design]
-"""Solves a design at coordinates z; the second is a neighbour whose mesh it may start from."""
+"""Solves a design at coordinates z; the second is a neighbour whose mesh it may start from.
+
+Raises :class:`housing.HousingError` where there is no sound model."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +115,13 @@ def search(
             # Nothing here is better: perhaps so close by that other starts find it, in a smaller region.
             trust *= 0.5
             continue
-        trial = solve(point, design)
+        try:
+            trial = solve(point, design)
+        except HousingError as error:
+            progress(f"solve {len(steps) + 1}: no sound housing there ({error})")
+            steps.append(Step(promised, np.inf, False, trust, np.inf))
+            trust *= 0.5
+            continue
         found = measure(target, trial.state, trial.coordinates)
         accepted = found.value < misfit.value
         steps.append(Step(promised, found.value, accepted, trust, found.rms_percent))

@@ -5,9 +5,9 @@ Frozen modes stall where two of them cross or exchange their dominance. The surr
 
     H(d) = diag(ln λ) + Σ_j d_j Λ^-½ [Φᵀ dK_j Φ - ½ (Λ Φᵀ dM_j Φ + Φᵀ dM_j Φ Λ)] Λ^-½,
 
-whose eigenvalues are ln λ at the neighbour and whose eigenvectors C make its shapes Φ (I - ½ Σ_j d_j Φᵀ dM_j Φ) C. It is
-exact to first order, shapes but for what the modes above those at hand would add, and of the logarithm: a frequency that
-goes with a power of a parameter goes exactly so where that parameter's coordinate is its logarithm.
+whose eigenvalues are ln λ at the neighbour and whose eigenvectors C make its shapes Φ (I - ½ Σ_j d_j Φᵀ dM_j Φ) C. It
+is exact to first order, shapes but for what the modes above those at hand would add, and of the logarithm: a frequency
+that goes with a power of a parameter goes exactly so where that parameter's coordinate is its logarithm.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,7 @@
 """What a fit is worth: modes held back from it, and the same search made on frequencies that no one measured.
 
-Many parameters fit few frequencies, so that a small error proves little. A mode that took no part in the fit tests it; and
-where random frequencies are fitted as well as the measured ones, the fit alone says nothing of the housing.
+Many parameters fit few frequencies, so that a small error proves little. A mode that took no part in the fit tests it;
+and where random frequencies are fitted as well as the measured ones, the fit alone says nothing of the housing.
 """
 
 from collections.abc import Callable, Sequence
@@ -133,12 +133,14 @@ def null_fits(
         start = min(starts, key=lambda design: measure(null, design.state, design.coordinates).value)
         found = search(solve, null, parameters, start, replace(effort, seed=effort.seed + number))
         fits.append(_null_fit(drawn, found))
-        progress(f"random set {number + 1} of {count}: rms {fits[-1].rms_percent:.2f} %, max {fits[-1].max_percent:.2f} %")
+        progress(
+            f"random set {number + 1} of {count}: rms {fits[-1].rms_percent:.2f} %, max {fits[-1].max_percent:.2f} %"
+        )
     return fits
 
 
 def random_frequencies(measured: FloatArray, generator: np.random.Generator) -> FloatArray:
-    """As many frequencies, uniform between the first and the last measured one, none closer than a survey tells apart."""
+    """As many frequencies, uniform between the first and the last measured one, none too close for a survey."""
     low, high = float(measured[0]), float(measured[-1])
     while True:
         drawn = np.sort(generator.uniform(low, high, len(measured)))
@@ -148,6 +150,4 @@ def random_frequencies(measured: FloatArray, generator: np.random.Generator) -> 
 
 def _null_fit(frequencies: FloatArray, found: Found) -> NullFit:
     misfit: Misfit = found.misfit
-    return NullFit(
-        frequencies, misfit.rms_percent, misfit.max_percent, misfit.gap, misfit.measures_agree, misfit.value
-    )
+    return NullFit(frequencies, misfit.rms_percent, misfit.max_percent, misfit.gap, misfit.measures_agree, misfit.value)

@@ -214,7 +214,9 @@ def _with_middles(mesh: Mesh, moved: FloatArray) -> FloatArray:
 
 def _carried(places: FloatArray, before: _Cylinder, after: _Cylinder) -> FloatArray:
     """How far points of a cylinder move in x and y with it."""
-    return np.asarray(after.center - before.center + (after.radius / before.radius - 1.0) * (places[:, :2] - before.center))
+    return np.asarray(
+        after.center - before.center + (after.radius / before.radius - 1.0) * (places[:, :2] - before.center)
+    )
 
 
 def _on_cylinders(
