@@ -146,7 +146,7 @@ def update_housing(
         few = replace(effort, solves=_FEW)
         fits = null_fits(coarse.solve, target, coarse.parameters, _thinned(known), few, null, progress=progress)
         seconds["null"] = time.perf_counter() - begin
-    own = replace(target, bias=None)
+    own = target_of(case)
     return SolvedUpdate(
         fitted=fine.case,
         before=before,
@@ -195,17 +195,21 @@ def _corrected(
     progress("solving the housing as it stands on its own mesh")
     before = fine.solve(fine.start)
     best: tuple[float, HousingDesign, Found, Target] | None = None
-    steps = found.steps
+    own, steps = target, found.steps
     for _ in range(_ROUNDS):
         progress("solving on the housing's own mesh")
         after = fine.solve(found.design.coordinates)
-        misfit = measure(replace(target, bias=None), after.state, after.coordinates)
+        misfit = measure(own, after.state, after.coordinates)
         progress(
             f"on its own mesh: rms {misfit.rms_percent:.2f} %, max {misfit.max_percent:.2f} %, gap {misfit.gap:.2f}"
         )
-        coarse = measure(replace(target, bias=None), found.design.state, found.design.coordinates)
+        coarse = measure(own, found.design.state, found.design.coordinates)
         bias = misfit.errors - coarse.errors
-        corrected = replace(target, bias=np.where(np.isfinite(bias), bias, 0.0))
+        corrected = replace(
+            target,
+            bias=np.where(np.isfinite(bias), bias, 0.0),
+            gap=own.gap + (max(coarse.gap - misfit.gap, 0.0) if own.gap else 0.0),
+        )
         here = replace(found, misfit=measure(corrected, found.design.state, found.design.coordinates))
         if best is not None and misfit.value > best[0] * (1.0 - _REFINED):
             if misfit.value < best[0]:

@@ -10,7 +10,7 @@ it
 fitted.
 """
 
-from housing.updating.misfit import UNPAIRED, Misfit, ModeCount, Target, measure
+from housing.updating.misfit import UNPAIRED, Misfit, ModeCount, Target, measure, residuals
 from housing.updating.parameters import Parameter, coordinate_bounds, values_at
 from housing.updating.posterior import Posterior, posterior
 from housing.updating.rates import ModalRates, ModelRate, modal_rates
@@ -44,6 +44,7 @@ __all__ = [
     "null_fits",
     "posterior",
     "random_frequencies",
+    "residuals",
     "search",
     "search_surrogate",
     "values_at",

@@ -1,9 +1,10 @@
 """How far a design's modes are from those measured, as one number that a search can lessen.
 
-    J = Σ_i (ln ω_i - ln ω_i,measured)² / σ_i² + |z|² + penalties,
+    J = Σ_i (ln ω_i - ln ω_i,measured)² / σ_i² + Σ_i n (1 - MAC_i) / s² + |z|² + penalties,
 
-twice the negative logarithm of the posterior density where frequencies carry independent relative errors σ_i and the
-prior of the coordinates z is the unit normal one (Mottershead and Friswell 1993; Beck and Katafygiotis 1998).
+twice the negative logarithm of the posterior density where frequencies carry independent relative errors σ_i, the n
+motions of a measured shape errors of s times their root-mean-square, and the prior of the coordinates z is the unit
+normal one (Mottershead and Friswell 1993; Beck and Katafygiotis 1998).
 Penalties keep out what a good sum would hide: a choice of dominant modes that is a coin toss, measures that choose
 differently, and a number of modes that is not the one known.
 
@@ -18,7 +19,7 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from housing.errors import HousingError
-from housing.updating.surrogate import ModalState
+from housing.updating.surrogate import ModalState, Neighbour
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -57,6 +58,9 @@ class Target:
         Where dominant modes are looked for [rad/s].
     shapes : ndarray, shape (n, n_dofs), optional
         Measured shapes, of any scale.
+    shape_noise : float
+        Standard deviation of each of their motions, as a part of the shape's root-mean-square; infinite where shapes
+        are to decide the pairs and nothing else.
     gap : float
         Least gap ln(strength of the last chosen / first left out); not asked for where shapes were measured.
     count : ModeCount, optional
@@ -73,6 +77,7 @@ class Target:
     noise: FloatArray
     band: tuple[float, float]
     shapes: FloatArray | None = None
+    shape_noise: float = np.inf
     gap: float = 0.0
     count: ModeCount | None = None
     bias: FloatArray | None = None
@@ -148,7 +153,9 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray) -> Misfi
         penalty += (max(target.gap - gap, 0.0) / _GAP_SCALE) ** 2 + (0.0 if agree else _DISAGREEMENT)
     else:
         pairs, mac = pair_by_shape(target, state)
+        told = (pairs != UNPAIRED) & np.isfinite(target.noise)
         penalty += _LOOSE * np.count_nonzero(pairs == UNPAIRED)
+        penalty += target.shapes.shape[1] / target.shape_noise**2 * float((1.0 - mac[told]).sum())
     count = 0
     if target.count is not None:
         count = int(np.count_nonzero(state.frequencies < target.count.limit))
@@ -184,3 +191,32 @@ def _mac(measured: FloatArray, model: FloatArray) -> FloatArray:
     """|aᵀ b|² / (aᵀ a bᵀ b), shape (n_measured, n_model)."""
     norms = np.outer((measured**2).sum(axis=1), (model**2).sum(axis=1))
     return np.asarray((measured @ model.T) ** 2 / np.where(norms > 0.0, norms, 1.0))
+
+
+def residuals(target: Target, misfit: Misfit, near: Neighbour) -> tuple[FloatArray, FloatArray]:
+    """What a neighbour misses in units of the noise, and how that changes with the coordinates.
+
+    Returns
+    -------
+    residuals : ndarray, shape (n_residuals,)
+        (ln ω - ln ω_measured) / σ of the paired modes, then what of each unit shape √n ψ / s lies across the model's.
+    slopes : ndarray, shape (n_residuals, n_parameters)
+    """
+    told = (misfit.pairs != UNPAIRED) & np.isfinite(target.noise)
+    modes = misfit.pairs[told]
+    missed = [misfit.errors[told] / target.noise[told]]
+    rows = [near.slopes[:, modes].T / target.noise[told, None]]
+    if target.shapes is not None and np.isfinite(target.shape_noise) and near.state.measured is not None:
+        scale = np.sqrt(target.shapes.shape[1]) / target.shape_noise
+        model, turning = near.state.measured[modes], near.measured_slopes(modes)
+        length = np.linalg.norm(model, axis=1)[:, None]
+        own = model / length
+        turning = (turning - np.einsum("pmd,md->pm", turning, own)[..., None] * own) / length
+        shapes = target.shapes[told]
+        unit = shapes / np.linalg.norm(shapes, axis=1)[:, None]
+        along = (unit * own).sum(axis=1)[:, None]
+        missed.append(scale * (along * own - unit).ravel())
+        # d(ψ·v v) = (ψ·dv) v + (ψ·v) dv, with v the model's unit shape.
+        change = np.einsum("pmd,md->pm", turning, unit)[..., None] * own + along * turning
+        rows.append(scale * change.reshape(len(change), -1).T)
+    return np.concatenate(missed), np.concatenate(rows)

@@ -66,11 +66,13 @@ class Parameter:
 
     def value(self, coordinate: float) -> float:
         """The value at z, within the range."""
+        low, high = self.bounds
+        inside = min(max(coordinate, low), high)
         if self.is_positive:
-            free = self.nominal * float(np.exp(coordinate * self._log_spread))
+            value = self.nominal * float(np.exp(inside * self._log_spread))
         else:
-            free = self.nominal + coordinate * self.spread
-        return min(max(free, self.low), self.high)
+            value = self.nominal + inside * self.spread
+        return min(max(value, self.low), self.high)  # the bounds' own rounding aside
 
     def deviation(self, coordinate: float, step: float) -> float:
         """How much the value changes for a small step in z, to first order."""

@@ -1,8 +1,8 @@
 """What the data say of the parameters beside the prior: uncertainty, and what they cannot tell apart.
 
-About the design of least misfit, with S the slopes of ln ω of the paired modes by the coordinates z and σ their noise,
+About the design of least misfit, with S the slopes by the coordinates z of what it misses in units of the noise,
 
-    A = Sᵀ diag(σ⁻²) S,      C = (I + A)⁻¹,
+    A = Sᵀ S,      C = (I + A)⁻¹,
 
 A is the data's information, the unit matrix that of the prior and C the posterior covariance of z (Gauss's
 approximation; Beck and Katafygiotis 1998). An eigenvector of A is a combination of parameters of which the data know as
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from housing.updating.misfit import UNPAIRED, Misfit, Target
+from housing.updating.misfit import Misfit, Target, residuals
 from housing.updating.parameters import Parameter
 from housing.updating.surrogate import Neighbour
 
@@ -106,8 +106,7 @@ def posterior(target: Target, misfit: Misfit, coordinates: FloatArray, near: Nei
     near : Neighbour
         The design's own modes with their slopes.
     """
-    told = (misfit.pairs != UNPAIRED) & np.isfinite(target.noise)
-    slopes = near.slopes.T[misfit.pairs[told]] / target.noise[told, None]
+    slopes = residuals(target, misfit, near)[1]
     information = slopes.T @ slopes
     values, vectors = np.linalg.eigh(information)
     covariance = (vectors / (1.0 + values)) @ vectors.T

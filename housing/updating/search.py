@@ -13,14 +13,14 @@ import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
 from housing.errors import HousingError
-from housing.updating.misfit import UNPAIRED, Misfit, Target, measure
+from housing.updating.misfit import UNPAIRED, Misfit, Target, measure, residuals
 from housing.updating.parameters import Parameter, coordinate_bounds
 from housing.updating.surrogate import ModalState, Surrogate
 
 FloatArray = npt.NDArray[np.float64]
 
 _STEPS = 8  # of Gauss and Newton from each start
-_WORTH = 1e-2  # part of the misfit that a promise must save to be worth a solve
+_WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
 _PROBE = 1e-3  # step in z for the slope of the gap
 _SCALE = 50.0  # residuals per unit of ln ω gap, the inverse of what the misfit calls soft
@@ -162,9 +162,8 @@ def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: Fl
     for _ in range(_STEPS):
         if (misfit.pairs == UNPAIRED).all():
             break
-        paired = (misfit.pairs != UNPAIRED) & np.isfinite(target.noise)
-        rows = [near.slopes[:, misfit.pairs[paired]].T / target.noise[paired, None], np.eye(len(point))]
-        right = [-misfit.errors[paired] / target.noise[paired], -point]
+        missed, slopes = residuals(target, misfit, near)
+        rows, right = [slopes, np.eye(len(point))], [-missed, -point]
         if misfit.gap < target.gap:
             rows.append(_SCALE * _gap_slope(surrogate, target, point, misfit)[None])
             right.append(np.array([_SCALE * (target.gap - misfit.gap)]))

@@ -20,7 +20,9 @@ from housing.dominance import Dominance, dominance
 from housing.updating.rates import ModalRates
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
+_TOGETHER = 1e-9  # difference of ln λ below which two modes are one
 _RIGID = 1e-6  # part of the highest eigenvalue at hand below which a mode is rigid and left out
 
 
@@ -60,10 +62,36 @@ class Neighbour:
     state : ModalState
     slopes : ndarray, shape (n_parameters, n_modes)
         d ln ω of each mode by each coordinate.
+    surrogate : Surrogate
+        Whose neighbour it is.
+    step : ndarray, shape (n_parameters,)
+        From there to here.
+    mixture : ndarray, shape (n_modes, n_modes)
+        C, the eigenvectors of H.
     """
 
     state: ModalState
     slopes: FloatArray
+    surrogate: "Surrogate"
+    step: FloatArray
+    mixture: FloatArray
+
+    def measured_slopes(self, modes: IntArray) -> FloatArray:
+        """Rates of some modes' motions where shapes were measured, shape (n_parameters, n_modes, n_dofs) [1/√kg].
+
+        The eigenvectors of H turn by dC = C R, R_ab = (Cᵀ H_j C)_ab / (μ_b - μ_a) for the coordinate j, with
+        μ = ln λ, and the mass adds -½ Φᵀ dM_j Φ C.
+        """
+        surrogate, mixture = self.surrogate, self.mixture
+        assert surrogate.state.measured is not None
+        logarithms = 2.0 * np.log(self.state.frequencies)
+        apart = logarithms[modes] - logarithms[:, None]
+        # Modes of one frequency have no shapes of their own, and those of each do not turn into themselves.
+        inverse = np.divide(1.0, apart, out=np.zeros_like(apart), where=np.abs(apart) > _TOGETHER)
+        turned = mixture @ ((mixture.T @ (surrogate.rates @ mixture[:, modes])) * inverse)
+        whole = turned - 0.5 * np.tensordot(self.step, surrogate.mass, axes=1) @ turned
+        whole -= 0.5 * surrogate.mass @ mixture[:, modes]
+        return np.asarray(whole.transpose(0, 2, 1) @ surrogate.state.measured)
 
 
 @dataclass(frozen=True)
@@ -117,4 +145,4 @@ class Surrogate:
             skin=carried.T @ state.skin,
             measured=None if state.measured is None else carried.T @ state.measured,
         )
-        return Neighbour(moved, slopes)
+        return Neighbour(moved, slopes, self, step, mixture)

@@ -153,7 +153,7 @@ class BoxMorph:
         for _, nodes, _ in self._round:
             if axis < 2:
                 held[nodes] = True
-        return held[self._vertices]
+        return np.asarray(held[self._vertices])
 
     def _give(self, given: FloatArray, nodes: IntArray, axis: int, shift: FloatArray) -> None:
         before = given[nodes, axis]
