@@ -40,6 +40,7 @@ _HERTZ = 2.0 * np.pi
 _ROUNDS = 4  # of correcting the target by the finer mesh
 _REFINED = 0.05  # trust region of a search that goes on after such a correction
 _FEW = 10  # solves of each such search, and of each random set
+_STARTS = 16  # on the surrogate, where the search is made over and over
 
 
 @dataclass(frozen=True)
@@ -133,17 +134,16 @@ def update_housing(
     before, after, found, target = _corrected(fine, found, target, start, solve, effort, progress)
     seconds["correction"] = time.perf_counter() - begin
     tuned = found.design
-    assert isinstance(tuned, HousingDesign)
     spread = posterior(target, found.misfit, tuned.coordinates, tuned.surrogate().at(tuned.coordinates))
     rows: list[HeldBack] = []
     fits: list[NullFit] = []
     if held_back:
         begin = time.perf_counter()
-        rows = hold_back(coarse.solve, target, coarse.parameters, start, effort, progress)
+        rows = hold_back(coarse.solve, target, coarse.parameters, start, replace(effort, starts=_STARTS), progress)
         seconds["held_back"] = time.perf_counter() - begin
     if null:
         begin = time.perf_counter()
-        few = replace(effort, solves=_FEW)
+        few = replace(effort, solves=_FEW, starts=_STARTS)
         fits = null_fits(coarse.solve, target, coarse.parameters, _thinned(known), few, null, progress=progress)
         seconds["null"] = time.perf_counter() - begin
     own = target_of(case)
@@ -181,20 +181,19 @@ def target_of(case: Case) -> Target:
 
 def _corrected(
     fine: HousingDesigns,
-    found: Found,
+    found: Found[HousingDesign],
     target: Target,
     start: HousingDesign,
-    solve: Solve,
+    solve: Solve[HousingDesign],
     effort: Effort,
     progress: Progress,
-) -> tuple[HousingDesign, HousingDesign, Found, Target]:
+) -> tuple[HousingDesign, HousingDesign, Found[HousingDesign], Target]:
     """The start and the best design on the finer mesh, the search that led there, and its corrected target."""
     if start.designs.case.document == fine.case.document:
-        assert isinstance(found.design, HousingDesign)
         return start, found.design, found, target
     progress("solving the housing as it stands on its own mesh")
     before = fine.solve(fine.start)
-    best: tuple[float, HousingDesign, Found, Target] | None = None
+    best: tuple[float, HousingDesign, Found[HousingDesign], Target] | None = None
     own, steps = target, found.steps
     for _ in range(_ROUNDS):
         progress("solving on the housing's own mesh")

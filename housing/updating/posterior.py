@@ -52,7 +52,7 @@ class Posterior:
     @property
     def deviations(self) -> FloatArray:
         """Standard deviation of each coordinate, shape (n,); 1 is what the prior had."""
-        return np.sqrt(np.diag(self.covariance))
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
 
     @property
     def correlations(self) -> FloatArray:
@@ -79,7 +79,7 @@ class Posterior:
 
     def frequency_deviations(self) -> FloatArray:
         """Relative standard deviation of each model frequency that the parameters leave, shape (n_modes,)."""
-        return np.sqrt(np.einsum("mi,ij,mj->m", self.slopes, self.covariance, self.slopes))
+        return np.asarray(np.sqrt(np.einsum("mi,ij,mj->m", self.slopes, self.covariance, self.slopes)))
 
     def distance(self, coordinates: FloatArray) -> float:
         """Squared distance of other coordinates in units of the posterior: χ² of n degrees of freedom."""

@@ -6,7 +6,7 @@ the best of them is solved for in truth. Where that lessens the misfit it is the
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -41,7 +41,9 @@ class Design(Protocol):
         """Its neighbourhood."""
 
 
-Solve = Callable[[FloatArray, Design | None], Design]
+D = TypeVar("D", bound=Design)
+
+Solve = Callable[[FloatArray, D | None], D]
 """Solves a design at coordinates z; the second is a neighbour whose mesh it may start from.
 
 Raises :class:`housing.HousingError` where there is no sound model."""
@@ -86,22 +88,22 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Found:
+class Found(Generic[D]):
     """Where a search has ended."""
 
-    design: Design
+    design: D
     misfit: Misfit
     steps: tuple[Step, ...]
 
 
 def search(
-    solve: Solve,
+    solve: Solve[D],
     target: Target,
     parameters: Sequence[Parameter],
-    start: Design,
+    start: D,
     effort: Effort = Effort(),
     progress: Callable[[str], None] = lambda message: None,
-) -> Found:
+) -> Found[D]:
     """Fit the parameters, from a design that has been solved."""
     bounds = coordinate_bounds(parameters)
     generator = np.random.default_rng(effort.seed)

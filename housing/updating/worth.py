@@ -13,7 +13,7 @@ import numpy.typing as npt
 from housing.updating.misfit import Misfit, Target, measure
 from housing.updating.parameters import Parameter
 from housing.updating.posterior import posterior
-from housing.updating.search import Design, Effort, Found, Solve, search
+from housing.updating.search import D, Effort, Solve, search
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -72,10 +72,10 @@ class NullFit:
 
 
 def hold_back(
-    solve: Solve,
+    solve: Solve[D],
     target: Target,
     parameters: Sequence[Parameter],
-    start: Design,
+    start: D,
     effort: Effort,
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[HeldBack]:
@@ -111,10 +111,10 @@ def hold_back(
 
 
 def null_fits(
-    solve: Solve,
+    solve: Solve[D],
     target: Target,
     parameters: Sequence[Parameter],
-    starts: Sequence[Design],
+    starts: Sequence[D],
     effort: Effort,
     count: int,
     seed: int = 0,
@@ -132,7 +132,7 @@ def null_fits(
         null = replace(target, frequencies=drawn, bias=None)
         start = min(starts, key=lambda design: measure(null, design.state, design.coordinates).value)
         found = search(solve, null, parameters, start, replace(effort, seed=effort.seed + number))
-        fits.append(_null_fit(drawn, found))
+        fits.append(_null_fit(drawn, found.misfit))
         progress(
             f"random set {number + 1} of {count}: rms {fits[-1].rms_percent:.2f} %, max {fits[-1].max_percent:.2f} %"
         )
@@ -148,6 +148,5 @@ def random_frequencies(measured: FloatArray, generator: np.random.Generator) -> 
             return np.asarray(drawn)
 
 
-def _null_fit(frequencies: FloatArray, found: Found) -> NullFit:
-    misfit: Misfit = found.misfit
+def _null_fit(frequencies: FloatArray, misfit: Misfit) -> NullFit:
     return NullFit(frequencies, misfit.rms_percent, misfit.max_percent, misfit.gap, misfit.measures_agree, misfit.value)
