@@ -27,8 +27,10 @@ IntArray = npt.NDArray[np.int64]
 UNPAIRED = -1
 """Stands for the partner of a measured mode that has none."""
 
+GAP_SCALE = 0.02
+"""How soft the least gap is: so much below it costs as much as an error of one σ."""
+
 _LEAST_MAC = 0.5  # below it two shapes are no pair
-_GAP_SCALE = 0.02  # how soft the least gap is
 _DISAGREEMENT = 9.0  # what three measures that choose differently cost: as much as an error of three σ
 _PER_MODE = 4.0  # what each mode too many or too few costs, times its square
 _HOPELESS = 1e6  # J of a design with too few modes to pair
@@ -150,7 +152,7 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray) -> Misfi
             lacking = _HOPELESS * (n - len(pairs))
             return Misfit(lacking + penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, False, 0)
         gap, agree = strengths.gap(n, target.band), strengths.measures_agree(n, target.band)
-        penalty += (max(target.gap - gap, 0.0) / _GAP_SCALE) ** 2 + (0.0 if agree else _DISAGREEMENT)
+        penalty += (max(target.gap - gap, 0.0) / GAP_SCALE) ** 2 + (0.0 if agree else _DISAGREEMENT)
     else:
         pairs, mac = pair_by_shape(target, state)
         told = (pairs != UNPAIRED) & np.isfinite(target.noise)

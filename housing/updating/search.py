@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
 from housing.errors import HousingError
-from housing.updating.misfit import UNPAIRED, Misfit, Target, measure, residuals
+from housing.updating.misfit import GAP_SCALE, UNPAIRED, Misfit, Target, measure, residuals
 from housing.updating.parameters import Parameter, coordinate_bounds
 from housing.updating.surrogate import ModalState, Surrogate
 
@@ -23,7 +23,6 @@ _STEPS = 8  # of Gauss and Newton from each start
 _WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
 _PROBE = 1e-3  # step in z for the slope of the gap
-_SCALE = 50.0  # residuals per unit of ln ω gap, the inverse of what the misfit calls soft
 
 
 class Design(Protocol):
@@ -41,9 +40,9 @@ class Design(Protocol):
         """Its neighbourhood."""
 
 
-D = TypeVar("D", bound=Design)
+AnyDesign = TypeVar("AnyDesign", bound=Design)
 
-Solve = Callable[[FloatArray, D | None], D]
+Solve = Callable[[FloatArray, AnyDesign | None], AnyDesign]
 """Solves a design at coordinates z; the second is a neighbour whose mesh it may start from.
 
 Raises :class:`housing.HousingError` where there is no sound model."""
@@ -88,23 +87,40 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Found(Generic[D]):
+class Found(Generic[AnyDesign]):
     """Where a search has ended."""
 
-    design: D
+    design: AnyDesign
     misfit: Misfit
     steps: tuple[Step, ...]
 
 
 def search(
-    solve: Solve[D],
+    solve: Solve[AnyDesign],
     target: Target,
     parameters: Sequence[Parameter],
-    start: D,
+    start: AnyDesign,
     effort: Effort = Effort(),
     progress: Callable[[str], None] = lambda message: None,
-) -> Found[D]:
-    """Fit the parameters, from a design that has been solved."""
+) -> Found[AnyDesign]:
+    """Fit the parameters, from a design that has been solved.
+
+    Parameters
+    ----------
+    solve : callable
+        See :data:`Solve`.
+    target : Target
+    parameters : sequence of Parameter
+    start : Design
+    effort : Effort
+    progress : callable
+        Told in words what was found.
+
+    Returns
+    -------
+    Found
+        The best of all designs solved, the start among them.
+    """
     bounds = coordinate_bounds(parameters)
     generator = np.random.default_rng(effort.seed)
     design, misfit = start, measure(target, start.state, start.coordinates)
@@ -167,8 +183,8 @@ def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: Fl
         missed, slopes = residuals(target, misfit, near)
         rows, right = [slopes, np.eye(len(point))], [-missed, -point]
         if misfit.gap < target.gap:
-            rows.append(_SCALE * _gap_slope(surrogate, target, point, misfit)[None])
-            right.append(np.array([_SCALE * (target.gap - misfit.gap)]))
+            rows.append(_gap_slope(surrogate, target, point, misfit)[None] / GAP_SCALE)
+            right.append(np.array([(target.gap - misfit.gap) / GAP_SCALE]))
         room = np.stack([low - point, high - point]) + np.array([[-1e-12], [1e-12]])
         step = lsq_linear(np.vstack(rows), np.concatenate(right), bounds=room).x
         for part in _SHORTENED:

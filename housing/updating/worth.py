@@ -13,7 +13,7 @@ import numpy.typing as npt
 from housing.updating.misfit import Misfit, Target, measure
 from housing.updating.parameters import Parameter
 from housing.updating.posterior import posterior
-from housing.updating.search import D, Effort, Solve, search
+from housing.updating.search import AnyDesign, Effort, Solve, search
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -72,10 +72,10 @@ class NullFit:
 
 
 def hold_back(
-    solve: Solve[D],
+    solve: Solve[AnyDesign],
     target: Target,
     parameters: Sequence[Parameter],
-    start: D,
+    start: AnyDesign,
     effort: Effort,
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[HeldBack]:
@@ -111,10 +111,10 @@ def hold_back(
 
 
 def null_fits(
-    solve: Solve[D],
+    solve: Solve[AnyDesign],
     target: Target,
     parameters: Sequence[Parameter],
-    starts: Sequence[D],
+    starts: Sequence[AnyDesign],
     effort: Effort,
     count: int,
     seed: int = 0,

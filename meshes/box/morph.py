@@ -9,7 +9,7 @@ and follows through the solid as a harmonic field: ∇²u_i = 0, with u_i given 
 on the cylinders. Middle nodes stay where they are between the ends of their edges, those of cylinders on the cylinder.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -17,37 +17,13 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from meshes.box import layout
 from meshes.box.geometry import BoxGeometry
-from meshes.box.layout import Block
+from meshes.box.placed_faces import MorphError, carried, check_faces, cylinders_of, on_cylinders, parts_of, planes_of
 from meshes.elements import FloatArray, IntArray, facet_centers, facet_normals
 from meshes.errors import GeometryError
 from meshes.mesh import Mesh
 
 _FACING = 1.0 - 1e-6  # cosine from which a facet is normal to an axis
-
-
-class MorphError(GeometryError):
-    """A mesh cannot follow its geometry: what is asked for wants another mesh, made anew."""
-
-
-@dataclass(frozen=True)
-class _Plane:
-    """A rectangle normal to an axis: its place and its extent."""
-
-    axis: int
-    at: float
-    low: FloatArray
-    high: FloatArray
-
-
-@dataclass(frozen=True)
-class _Cylinder:
-    """A cylinder along z: axis in x and y, radius, span in z."""
-
-    center: FloatArray
-    radius: float
-    span: tuple[float, float]
 
 
 class BoxMorph:
@@ -67,16 +43,16 @@ class BoxMorph:
     """
 
     def __init__(self, mesh: Mesh, geometry: BoxGeometry) -> None:
-        _check_faces(geometry)
+        check_faces(geometry)
         self._mesh, self._geometry = mesh, geometry
         slack = 1e-6 * max(geometry.size)
         boundary = mesh.boundary
         corners = np.concatenate([block.corners for block in boundary])
         everything = np.concatenate([block.nodes for block in boundary])
         places = mesh.points[corners]
-        round_, self._on_cylinder = _on_cylinders(places, _cylinders(geometry), slack)
+        round_, self._on_cylinder = on_cylinders(places, cylinders_of(geometry), slack)
         normals, centers = facet_normals(mesh.points, boundary), facet_centers(mesh.points, boundary)
-        planes = _planes(geometry)
+        planes = planes_of(geometry)
         self._on_plane: list[tuple[int, int, IntArray]] = []  # axis, number of the plane, its nodes
         claimed = round_.copy()
         for number, plane in enumerate(planes):
@@ -109,10 +85,10 @@ class BoxMorph:
         MorphError
             Where the other geometry has other parts, or parts that share a face in one do not in the other.
         """
-        _check_faces(geometry)
-        planes, others = _planes(self._geometry), _planes(geometry)
-        cylinders, turned = _cylinders(self._geometry), _cylinders(geometry)
-        if _parts(geometry) != _parts(self._geometry):
+        check_faces(geometry)
+        planes, others = planes_of(self._geometry), planes_of(geometry)
+        cylinders, turned = cylinders_of(self._geometry), cylinders_of(geometry)
+        if parts_of(geometry) != parts_of(self._geometry):
             raise MorphError("the box has other parts than its mesh: mesh it anew")
         points = self._mesh.points
         moved = np.zeros_like(points)
@@ -122,12 +98,12 @@ class BoxMorph:
             self._give(given, nodes, axis, np.full(len(nodes), shift))
         for number, nodes, _ in self._round:
             for axis in range(2):
-                self._give(given, nodes, axis, _carried(points[nodes], cylinders[number], turned[number])[:, axis])
+                self._give(given, nodes, axis, carried(points[nodes], cylinders[number], turned[number])[:, axis])
         for axis, harmonic in enumerate(self._harmonic):
             moved[self._vertices, axis] = harmonic.extended(given[self._vertices, axis])
         moved = _with_middles(self._mesh, moved)
         for number, _, nodes in self._round:
-            moved[nodes, :2] = _carried(points[nodes], cylinders[number], turned[number])
+            moved[nodes, :2] = carried(points[nodes], cylinders[number], turned[number])
         return moved
 
     def moved(self, geometry: BoxGeometry) -> Mesh:
@@ -210,80 +186,3 @@ def _with_middles(mesh: Mesh, moved: FloatArray) -> FloatArray:
                 nodes = block.nodes
                 moved[nodes[:, corners + local]] = (moved[nodes[:, first]] + moved[nodes[:, second]]) / 2
     return moved
-
-
-def _carried(places: FloatArray, before: _Cylinder, after: _Cylinder) -> FloatArray:
-    """How far points of a cylinder move in x and y with it."""
-    return np.asarray(
-        after.center - before.center + (after.radius / before.radius - 1.0) * (places[:, :2] - before.center)
-    )
-
-
-def _on_cylinders(
-    places: FloatArray, cylinders: list[_Cylinder], slack: float
-) -> tuple[npt.NDArray[np.bool_], list[tuple[int, npt.NDArray[np.bool_]]]]:
-    """Which facets, by their corners, lie on a cylinder; and on which."""
-    upright = np.ptp(places[:, :, 2], axis=1) > 1e2 * slack  # the end faces' facets have all corners at one height
-    any_, members = np.zeros(len(places), dtype=bool), []
-    for number, cylinder in enumerate(cylinders):
-        radius = np.linalg.norm(places[:, :, :2] - cylinder.center, axis=2)
-        inside = (places[:, :, 2] > cylinder.span[0] - slack) & (places[:, :, 2] < cylinder.span[1] + slack)
-        member = upright & (np.abs(radius - cylinder.radius) < slack).all(axis=1) & inside.all(axis=1)
-        if member.any():
-            members.append((number, member))
-            any_ |= member
-    return any_, members
-
-
-def _check_faces(box: BoxGeometry) -> None:
-    if box.fillets.inside or box.fillets.outside:
-        raise MorphError("a box with rounded edges: its mesh is not moved, its dimensions cannot be fitted")
-    if box.bolts or (box.feet is not None and box.feet.bolt_patch is not None):
-        raise MorphError("a box with circles of bolts: its mesh is not moved, its dimensions cannot be fitted")
-
-
-def _parts(box: BoxGeometry) -> tuple[object, ...]:
-    """What two geometries must share for one to be the other's mesh, moved."""
-    bores = tuple((bore.name, box.end_wall(bore), bore.boss is None) for bore in box.bores)
-    ribs = tuple((rib.face, rib.along, rib.side, rib.start is None, rib.end is None) for rib in box.ribs)
-    cover = None if box.cover is None else (box.cover.face, box.cover.flange is None, box.cover.bonded)
-    return bores, ribs, cover, box.feet is None
-
-
-def _blocks(box: BoxGeometry) -> list[Block]:
-    blocks = [layout.outer_block(box), layout.cavity_block(box), *layout.foot_blocks(box)]
-    blocks += [layout.rib_block(box, rib) for rib in box.ribs]
-    if box.cover is not None:
-        blocks += [layout.plate_block(box, box.cover), layout.opening_block(box, box.cover)]
-        flange = layout.flange_block(box, box.cover)
-        blocks += [] if flange is None else [flange]
-    return blocks
-
-
-def _planes(box: BoxGeometry) -> list[_Plane]:
-    planes = []
-    for block in _blocks(box):
-        low, high = np.array(block.low), np.array(block.high)
-        for axis in range(3):
-            for at in (low[axis], high[axis]):
-                near, far = low.copy(), high.copy()
-                near[axis] = far[axis] = at
-                planes.append(_Plane(axis, float(at), near, far))
-    for bore in box.bores:
-        if bore.boss is not None:
-            start, end = box.bore_span(bore)
-            at = start if box.end_wall(bore) == "back" else end
-            x, y, _ = bore.center
-            r = bore.boss.diameter / 2
-            planes.append(_Plane(2, at, np.array([x - r, y - r, at]), np.array([x + r, y + r, at])))
-    return planes
-
-
-def _cylinders(box: BoxGeometry) -> list[_Cylinder]:
-    cylinders = []
-    for bore in box.bores:
-        center, span = np.array(bore.center[:2]), box.bore_span(bore)
-        cylinders.append(_Cylinder(center, bore.diameter / 2, span))
-        if bore.boss is not None:
-            cylinders.append(_Cylinder(center, bore.boss.diameter / 2, span))
-    return cylinders
