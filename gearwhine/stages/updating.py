@@ -218,6 +218,8 @@ def _corrected(
         few = replace(effort, solves=_FEW, trust=_REFINED)
         found = search(solve, target, start.designs.parameters, found.design, few, progress)
         steps += found.steps
+        if found.design is here.design:
+            break
     assert best is not None
     return before, best[1], replace(best[2], steps=steps), best[3]
 
