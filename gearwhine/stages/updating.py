@@ -40,6 +40,7 @@ _HERTZ = 2.0 * np.pi
 _ROUNDS = 4  # of correcting the target by the finer mesh
 _REFINED = 0.05  # trust region of a search that goes on after such a correction
 _FEW = 10  # solves of each such search, and of each random set
+_MARGIN = 1.0 / 3.0  # of the least gap, for the two measures beside the one that decides
 _STARTS = 16  # on the surrogate, where the search is made over and over
 
 
@@ -175,6 +176,7 @@ def target_of(case: Case) -> Target:
         noise=np.full(len(measured), case.update.frequency_noise),
         band=dominance_band(measured),
         gap=case.update.gap,
+        margin=_MARGIN * case.update.gap,
         count=None if known is None else ModeCount(_HERTZ * known.below, known.least, known.most),
     )
 
@@ -200,7 +202,8 @@ def _corrected(
         after = fine.solve(found.design.coordinates)
         misfit = measure(own, after.state, after.coordinates)
         progress(
-            f"on its own mesh: rms {misfit.rms_percent:.2f} %, max {misfit.max_percent:.2f} %, gap {misfit.gap:.2f}"
+            f"on its own mesh: rms {misfit.rms_percent:.2f} %, max {misfit.max_percent:.2f} %, gap {misfit.gap:.2f}, "
+            f"margin {misfit.margin:.2f}"
         )
         coarse = measure(own, found.design.state, found.design.coordinates)
         bias = misfit.errors - coarse.errors
@@ -208,6 +211,7 @@ def _corrected(
             target,
             bias=np.where(np.isfinite(bias), bias, 0.0),
             gap=own.gap + (max(coarse.gap - misfit.gap, 0.0) if own.gap else 0.0),
+            margin=own.margin + (max(coarse.margin - misfit.margin, 0.0) if own.gap else 0.0),
         )
         here = replace(found, misfit=measure(corrected, found.design.state, found.design.coordinates))
         if best is not None and misfit.value > best[0] * (1.0 - _REFINED):

@@ -31,7 +31,6 @@ GAP_SCALE = 0.02
 """How soft the least gap is: so much below it costs as much as an error of one σ."""
 
 _LEAST_MAC = 0.5  # below it two shapes are no pair
-_DISAGREEMENT = 9.0  # what three measures that choose differently cost: as much as an error of three σ
 _PER_MODE = 4.0  # what each mode too many or too few costs, times its square
 _HOPELESS = 1e6  # J of a design with too few modes to pair
 _LOOSE = 25.0  # J of each measured mode that finds no partner: as much as an error of five σ
@@ -65,6 +64,8 @@ class Target:
         are to decide the pairs and nothing else.
     gap : float
         Least gap ln(strength of the last chosen / first left out); not asked for where shapes were measured.
+    margin : float
+        Least gap of the other two measures between the modes chosen and those left out; below 0 they choose others.
     count : ModeCount, optional
     bias : ndarray, shape (n,), optional
         ln of (a finer mesh's frequencies / this mesh's), which the fit takes for constant.
@@ -81,6 +82,7 @@ class Target:
     shapes: FloatArray | None = None
     shape_noise: float = np.inf
     gap: float = 0.0
+    margin: float = 0.0
     count: ModeCount | None = None
     bias: FloatArray | None = None
 
@@ -114,7 +116,8 @@ class Misfit:
         ln(model / measured) on this mesh, its bias taken into account; NaN where unpaired.
     gap : float
         Infinite where shapes decide.
-    measures_agree : bool
+    margin : float
+        The least gap of the other two measures of dominance for the same choice; likewise.
     count : int
         Modes below the limit of :class:`ModeCount`; 0 where none is given.
     mac : ndarray, shape (n,), or None
@@ -125,9 +128,18 @@ class Misfit:
     pairs: IntArray
     errors: FloatArray
     gap: float
-    measures_agree: bool
+    margin: float
     count: int
     mac: FloatArray | None = None
+
+    @property
+    def measures_agree(self) -> bool:
+        """Whether all three measures of dominance choose the same modes."""
+        return self.margin > 0.0
+
+    def clearance(self, target: Target) -> float:
+        """By how much the choice of modes is clearer than asked for; negative where it is not clear enough."""
+        return min(self.gap - target.gap, self.margin - target.margin)
 
     @property
     def rms_percent(self) -> float:
@@ -144,15 +156,15 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray) -> Misfi
     """Pair the modes of a design with the measured ones and sum up what they miss."""
     n = len(target.frequencies)
     penalty = float(coordinates @ coordinates)
-    mac, gap, agree = None, float("inf"), True
+    mac, gap, margin = None, float("inf"), float("inf")
     if target.shapes is None:
         strengths = state.dominance
         pairs = strengths.strongest(n, target.band)
         if len(pairs) < n:
             lacking = _HOPELESS * (n - len(pairs))
-            return Misfit(lacking + penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, False, 0)
-        gap, agree = strengths.gap(n, target.band), strengths.measures_agree(n, target.band)
-        penalty += (max(target.gap - gap, 0.0) / GAP_SCALE) ** 2 + (0.0 if agree else _DISAGREEMENT)
+            return Misfit(lacking + penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, 0.0, 0)
+        gap, margin = strengths.gap(n, target.band), strengths.margin(n, target.band)
+        penalty += (max(target.gap - gap, target.margin - margin, 0.0) / GAP_SCALE) ** 2
     else:
         pairs, mac = pair_by_shape(target, state)
         told = (pairs != UNPAIRED) & np.isfinite(target.noise)
@@ -165,7 +177,7 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray) -> Misfi
         penalty += _PER_MODE * outside**2
     errors = np.where(pairs == UNPAIRED, np.nan, np.log(state.frequencies[pairs]) - target.logarithms)
     value = float(np.nansum((errors / target.noise) ** 2)) + penalty
-    return Misfit(value, pairs, errors, gap, agree, count, mac)
+    return Misfit(value, pairs, errors, gap, margin, count, mac)
 
 
 def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArray]:

@@ -22,7 +22,7 @@ FloatArray = npt.NDArray[np.float64]
 _STEPS = 8  # of Gauss and Newton from each start
 _WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
-_PROBE = 1e-3  # step in z for the slope of the gap
+_PROBE = 1e-3  # step in z for the slope of the clearance
 
 
 class Design(Protocol):
@@ -147,7 +147,8 @@ def search(
         progress(
             f"solve {len(steps)}: misfit {found.value:.4g} ({'better' if accepted else 'no better'} than "
             f"{misfit.value:.4g}, {promised:.4g} promised), rms {found.rms_percent:.2f} %, "
-            f"max {found.max_percent:.2f} %, gap {found.gap:.2f}, {found.count} modes, trust {trust:.3f}"
+            f"max {found.max_percent:.2f} %, gap {found.gap:.2f}, margin {found.margin:.2f}, {found.count} modes, "
+            f"trust {trust:.3f}"
         )
         if accepted:
             design, misfit, surrogate = trial, found, trial.surrogate()
@@ -182,9 +183,10 @@ def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: Fl
             break
         missed, slopes = residuals(target, misfit, near)
         rows, right = [slopes, np.eye(len(point))], [-missed, -point]
-        if misfit.gap < target.gap:
-            rows.append(_gap_slope(surrogate, target, point, misfit)[None] / GAP_SCALE)
-            right.append(np.array([(target.gap - misfit.gap) / GAP_SCALE]))
+        lacking = -misfit.clearance(target)
+        if lacking > 0.0:
+            rows.append(_clearance_slope(surrogate, target, point, misfit)[None] / GAP_SCALE)
+            right.append(np.array([lacking / GAP_SCALE]))
         room = np.stack([low - point, high - point]) + np.array([[-1e-12], [1e-12]])
         step = lsq_linear(np.vstack(rows), np.concatenate(right), bounds=room).x
         for part in _SHORTENED:
@@ -202,13 +204,13 @@ def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: Fl
     return point, misfit.value
 
 
-def _gap_slope(surrogate: Surrogate, target: Target, point: FloatArray, misfit: Misfit) -> FloatArray:
+def _clearance_slope(surrogate: Surrogate, target: Target, point: FloatArray, misfit: Misfit) -> FloatArray:
     slope = np.empty(len(point))
     for number in range(len(point)):
         beside = point.copy()
         beside[number] += _PROBE
-        gap = measure(target, surrogate.at(beside).state, beside).gap
-        slope[number] = (gap - misfit.gap) / _PROBE
+        clearance = measure(target, surrogate.at(beside).state, beside).clearance(target)
+        slope[number] = (clearance - misfit.clearance(target)) / _PROBE
     return np.clip(slope, -10.0, 10.0)  # beside an exchange of 8th and 9th the gap has a kink
 
 
