@@ -206,10 +206,12 @@ def _corrected(
             f"margin {misfit.margin:.2f}"
         )
         coarse = measure(own, found.design.state, found.design.coordinates)
-        bias = misfit.errors - coarse.errors
+        # Of the modes that the search has paired, by their number: the finer mesh may pair others, which is the gap's
+        # and the margin's matter and no error of discretisation.
+        told = np.maximum(coarse.pairs, 0)
         corrected = replace(
             target,
-            bias=np.where(np.isfinite(bias), bias, 0.0),
+            bias=np.log(after.state.frequencies[told] / found.design.state.frequencies[told]),
             gap=own.gap + (max(coarse.gap - misfit.gap, 0.0) if own.gap else 0.0),
             margin=own.margin + (max(coarse.margin - misfit.margin, 0.0) if own.gap else 0.0),
         )
