@@ -308,6 +308,35 @@ def survey(
 
 
 @app.command
+def update(
+    case: CaseName,
+    *,
+    null: Annotated[
+        int,
+        Parameter(
+            help="Also fit so many random sets of frequencies: how often the fit would be as good of nothing.",
+            validator=Number(gte=0),
+        ),
+    ] = 0,
+    held_back: Annotated[
+        bool,
+        Parameter(
+            name=["--held-back"], negative=(), help="Also fit without each measured mode in turn, and predict that one."
+        ),
+    ] = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """Fit the numbers of [update] to the measured modes; writes updated.toml to OUT (default: ./<case>-results)."""
+    from gearwhine.screen import show_update
+    from gearwhine.work import update_case
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return update_case(given, _folder(case, common), progress, null=null, held_back=held_back)
+
+    _on_case(case, common, work, show_update)
+
+
+@app.command
 def render(
     case: CaseName,
     *,
@@ -363,10 +392,7 @@ def _later(command: str, what: str) -> Callable[..., None]:
     return refuse
 
 
-for _name, _what in (
-    ("update", "fits named parameters to measured modes"),
-    ("report", "the results folder as one HTML page"),
-):
+for _name, _what in (("report", "the results folder as one HTML page"),):
     app.command(_later(_name, _what), name=_name)
 
 

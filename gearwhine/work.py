@@ -346,6 +346,20 @@ def survey_case(
     return _kept(document, case, folder, lambda place: survey_plan.write_plan(place, planned), housing)
 
 
+def update_case(
+    case: Case, folder: Path, progress: Progress, *, null: int = 0, held_back: bool = False
+) -> dict[str, Any]:
+    """The housing's numbers fitted to its measured modes, with the updated case as a file."""
+    from gearwhine.stages import update_documents, updating
+
+    solved = updating.update_housing(case, progress, null=null, held_back=held_back)
+
+    def write(place: Path) -> None:
+        (place / "updated.toml").write_text(update_documents.updated_case(case, solved), encoding="utf-8")
+
+    return _kept(update_documents.update_document(case, solved), case, folder, write)
+
+
 def render_case(
     case: Case,
     folder: Path,

@@ -8,6 +8,7 @@ from gearwhine.screen.rotors import show_rotors
 from gearwhine.screen.steady import show_steady
 from gearwhine.screen.sweep import show_sweep
 from gearwhine.screen.system import show_system
+from gearwhine.screen.updating import show_update
 
 __all__ = [
     "show_check",
@@ -24,4 +25,5 @@ __all__ = [
     "show_survey",
     "show_sweep",
     "show_system",
+    "show_update",
 ]
