@@ -14,6 +14,7 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.designs import HousingDesign, HousingDesigns
+from gearwhine.stages.measured import read_measured
 from gearwhine.stages.update_keys import FittedCase, fitted_case
 from housing.correlation import dominance_band
 from housing.updating import (
@@ -167,9 +168,8 @@ def update_housing(
 
 def target_of(case: Case) -> Target:
     """What a case's housing is to meet."""
-    assert case.measured is not None
     assert case.update is not None
-    measured = _HERTZ * np.array(case.measured.frequencies)
+    measured = read_measured(case).frequencies
     known = case.update.model_modes
     return Target(
         frequencies=measured,
