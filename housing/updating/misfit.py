@@ -65,7 +65,8 @@ class Target:
     gap : float
         Least gap ln(strength of the last chosen / first left out); not asked for where shapes were measured.
     margin : float
-        Least gap of the other two measures between the modes chosen and those left out; below 0 they choose others.
+        Least gap of the other two measures between the modes chosen and those left out, below 0 where they choose
+        others; not asked for by default.
     count : ModeCount, optional
     bias : ndarray, shape (n,), optional
         ln of (a finer mesh's frequencies / this mesh's), which the fit takes for constant.
@@ -82,7 +83,7 @@ class Target:
     shapes: FloatArray | None = None
     shape_noise: float = np.inf
     gap: float = 0.0
-    margin: float = 0.0
+    margin: float = -np.inf
     count: ModeCount | None = None
     bias: FloatArray | None = None
 
@@ -199,6 +200,14 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
     values[rows] = table[rows, columns]
     pairs[rows] = np.where(values[rows] >= _LEAST_MAC, columns, UNPAIRED)
     return pairs, values
+
+
+def counterparts(modes: IntArray, state: ModalState, other: ModalState) -> IntArray:
+    """The other design's modes that move seats and skin as some of one's modes do, whatever their order there."""
+    motions = [np.hstack([of.seats.reshape(len(of.seats), -1), of.skin]) for of in (state, other)]
+    rows, columns = linear_sum_assignment(-_mac(motions[0][modes], motions[1]))
+    assert (rows == np.arange(len(modes))).all()
+    return np.asarray(columns)
 
 
 def _mac(measured: FloatArray, model: FloatArray) -> FloatArray:
