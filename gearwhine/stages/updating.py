@@ -28,6 +28,7 @@ from housing.updating import (
     Solve,
     Step,
     Target,
+    counterparts,
     hold_back,
     measure,
     null_fits,
@@ -176,7 +177,7 @@ def target_of(case: Case) -> Target:
         noise=np.full(len(measured), case.update.frequency_noise),
         band=dominance_band(measured),
         gap=case.update.gap,
-        margin=_MARGIN * case.update.gap,
+        margin=_MARGIN * case.update.gap if case.update.gap else -np.inf,
         count=None if known is None else ModeCount(_HERTZ * known.below, known.least, known.most),
     )
 
@@ -206,12 +207,13 @@ def _corrected(
             f"margin {misfit.margin:.2f}"
         )
         coarse = measure(own, found.design.state, found.design.coordinates)
-        # Of the modes that the search has paired, by their number: the finer mesh may pair others, which is the gap's
-        # and the margin's matter and no error of discretisation.
+        # Of the very modes that the search has paired: the finer mesh may pair others, which is the gap's and the
+        # margin's matter and no error of discretisation.
         told = np.maximum(coarse.pairs, 0)
+        same = counterparts(told, found.design.state, after.state)
         corrected = replace(
             target,
-            bias=np.log(after.state.frequencies[told] / found.design.state.frequencies[told]),
+            bias=np.log(after.state.frequencies[same] / found.design.state.frequencies[told]),
             gap=own.gap + (max(coarse.gap - misfit.gap, 0.0) if own.gap else 0.0),
             margin=own.margin + (max(coarse.margin - misfit.margin, 0.0) if own.gap else 0.0),
         )

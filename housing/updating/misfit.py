@@ -31,7 +31,7 @@ GAP_SCALE = 0.02
 """How soft the least gap is: so much below it costs as much as an error of one σ."""
 
 _LEAST_MAC = 0.5  # below it two shapes are no pair
-_PER_MODE = 4.0  # what each mode too many or too few costs, times its square
+_COUNT_SCALE = 0.01  # how soft the number of modes is: in ln ω of the mode that has to lie beyond the limit or below
 _HOPELESS = 1e6  # J of a design with too few modes to pair
 _LOOSE = 25.0  # J of each measured mode that finds no partner: as much as an error of five σ
 
@@ -65,7 +65,8 @@ class Target:
     gap : float
         Least gap ln(strength of the last chosen / first left out); not asked for where shapes were measured.
     margin : float
-        Least gap of the other two measures between the modes chosen and those left out; below 0 they choose others.
+        Least gap of the other two measures between the modes chosen and those left out, below 0 where they choose
+        others; not asked for by default.
     count : ModeCount, optional
     bias : ndarray, shape (n,), optional
         ln of (a finer mesh's frequencies / this mesh's), which the fit takes for constant.
@@ -82,7 +83,7 @@ class Target:
     shapes: FloatArray | None = None
     shape_noise: float = np.inf
     gap: float = 0.0
-    margin: float = 0.0
+    margin: float = -np.inf
     count: ModeCount | None = None
     bias: FloatArray | None = None
 
@@ -173,11 +174,27 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray) -> Misfi
     count = 0
     if target.count is not None:
         count = int(np.count_nonzero(state.frequencies < target.count.limit))
-        outside = max(count - target.count.most, target.count.least - count, 0)
-        penalty += _PER_MODE * outside**2
+        _, beyond = strays(target.count, state)
+        penalty += float(beyond @ beyond)
     errors = np.where(pairs == UNPAIRED, np.nan, np.log(state.frequencies[pairs]) - target.logarithms)
     value = float(np.nansum((errors / target.noise) ** 2)) + penalty
     return Misfit(value, pairs, errors, gap, margin, count, mac)
+
+
+def strays(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
+    """The modes that make the number wrong: those that should lie on the other side of the limit.
+
+    Returns
+    -------
+    modes : ndarray of int, shape (n,)
+    beyond : ndarray, shape (n,)
+        How far each is on the wrong side, in units of what is soft: positive above the limit, negative below.
+    """
+    wrong = np.zeros(len(state.frequencies), dtype=bool)
+    wrong[: known.least] = state.frequencies[: known.least] > known.limit
+    wrong[known.most :] = state.frequencies[known.most :] < known.limit
+    modes = np.flatnonzero(wrong)
+    return modes, np.log(state.frequencies[modes] / known.limit) / _COUNT_SCALE
 
 
 def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArray]:
@@ -201,14 +218,27 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
     return pairs, values
 
 
+def counterparts(modes: IntArray, state: ModalState, other: ModalState) -> IntArray:
+    """The other design's modes that move seats and skin as some of one's modes do, whatever their order there."""
+    motions = [np.hstack([of.seats.reshape(len(of.seats), -1), of.skin]) for of in (state, other)]
+    rows, columns = linear_sum_assignment(-_mac(motions[0][modes], motions[1]))
+    assert (rows == np.arange(len(modes))).all()
+    return np.asarray(columns)
+
+
 def _mac(measured: FloatArray, model: FloatArray) -> FloatArray:
     """|aᵀ b|² / (aᵀ a bᵀ b), shape (n_measured, n_model)."""
     norms = np.outer((measured**2).sum(axis=1), (model**2).sum(axis=1))
     return np.asarray((measured @ model.T) ** 2 / np.where(norms > 0.0, norms, 1.0))
 
 
-def residuals(target: Target, misfit: Misfit, near: Neighbour) -> tuple[FloatArray, FloatArray]:
+def residuals(
+    target: Target, misfit: Misfit, near: Neighbour, *, penalties: bool = False
+) -> tuple[FloatArray, FloatArray]:
     """What a neighbour misses in units of the noise, and how that changes with the coordinates.
+
+    With ``penalties`` also how far modes lie on the wrong side of the limit of the number known: a search takes that
+    along, but it is no measurement.
 
     Returns
     -------
@@ -220,6 +250,10 @@ def residuals(target: Target, misfit: Misfit, near: Neighbour) -> tuple[FloatArr
     modes = misfit.pairs[told]
     missed = [misfit.errors[told] / target.noise[told]]
     rows = [near.slopes[:, modes].T / target.noise[told, None]]
+    if target.count is not None and penalties:
+        lost, beyond = strays(target.count, near.state)
+        missed.append(beyond)
+        rows.append(near.slopes[:, lost].T / _COUNT_SCALE)
     if target.shapes is not None and np.isfinite(target.shape_noise) and near.state.measured is not None:
         scale = np.sqrt(target.shapes.shape[1]) / target.shape_noise
         model, turning = near.state.measured[modes], near.measured_slopes(modes)

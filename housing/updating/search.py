@@ -181,7 +181,7 @@ def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: Fl
     for _ in range(_STEPS):
         if (misfit.pairs == UNPAIRED).all():
             break
-        missed, slopes = residuals(target, misfit, near)
+        missed, slopes = residuals(target, misfit, near, penalties=True)
         rows, right = [slopes, np.eye(len(point))], [-missed, -point]
         lacking = -misfit.clearance(target)
         if lacking > 0.0:

@@ -46,7 +46,7 @@ surface = "foot-2"
 fixed = ["x", "y", "z"]
 
 [update]
-mesh_size = "48 mm"
+mesh_size = "42 mm"
 modes = 24
 gap = 0.0
 frequency_noise = 0.002

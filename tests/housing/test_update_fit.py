@@ -111,9 +111,11 @@ def test_a_gap_too_small_measures_that_disagree_and_a_wrong_count_cost() -> None
     gap = 2.0 * np.log(2.0 / 1.0)  # seats and skin both go with the strength
     assert measure(two, state, z).gap == pytest.approx(gap)
     assert measure(replace(two, gap=gap + 0.02), state, z).value == pytest.approx(1.0)
-    counted = replace(target_at(OWN), count=ModeCount(250.0, 4, 5))
-    assert measure(counted, state, z).count == 2
-    assert measure(counted, state, z).value == pytest.approx(16.0)
+    few, many = (replace(target_at(OWN), count=ModeCount(250.0, *known)) for known in ((3, 5), (0, 1)))
+    assert measure(few, state, z).count == 2
+    assert measure(few, state, z).value == pytest.approx((np.log(300.0 / 250.0) / 0.01) ** 2)
+    assert measure(many, state, z).value == pytest.approx((np.log(200.0 / 250.0) / 0.01) ** 2)
+    assert measure(replace(few, count=ModeCount(250.0, 2, 2)), state, z).value == pytest.approx(0.0, abs=1e-12)
     # Near-equal strengths at far frequencies: velocity, strength over frequency, chooses another mode.
     even = Oscillators(z, strengths=(3.0, 2.0, 2.01)).state
     assert not measure(two, even, z).measures_agree
