@@ -380,20 +380,13 @@ def examples(
         _hand_over(copy_example(name, common.output or Path()), common, show_files)
 
 
-def _later(command: str, what: str) -> Callable[..., None]:
-    def refuse(case: CaseName, *, common: Common = _DEFAULTS) -> None:
-        from gearwhine.case import CaseError, Problem
-        from gearwhine.case.problems import UNSAID
+@app.command
+def report(case: CaseName, *, common: Common = _DEFAULTS) -> None:
+    """The results folder OUT (default: ./<case>-results) as one HTML page, report.html in it."""
+    from gearwhine.screen import show_files
+    from gearwhine.work import report_case
 
-        del case, common
-        raise CaseError([Problem(command, UNSAID, f"another command: '{command}' ({what}) comes with a later version")])
-
-    refuse.__doc__ = f"{what[0].upper()}{what[1:]} (comes with a later version)."
-    return refuse
-
-
-for _name, _what in (("report", "the results folder as one HTML page"),):
-    app.command(_later(_name, _what), name=_name)
+    _on_case(case, common, lambda given, progress: report_case(_folder(case, common)), show_files)
 
 
 def run_command(arguments: list[str]) -> int:

@@ -388,6 +388,16 @@ def render_case(
     return {"folder": str(folder), "files": files, **housing_documents.origin_document(housing)}
 
 
+def report_case(folder: Path) -> dict[str, Any]:
+    """The results in a folder as one HTML page."""
+    from gearwhine.report import report_page
+
+    page = report_page(folder)
+    with staging(folder) as place:
+        (place / "report.html").write_text(page, encoding="utf-8")
+    return {"folder": str(folder), "files": ["report.html"]}
+
+
 def list_examples() -> dict[str, Any]:
     """The bundled cases and their titles."""
     return {"examples": [{"name": name, "title": title} for name, title in bundled_cases().items()]}

@@ -1,0 +1,6 @@
+"""The results folder as one HTML page that needs nothing else: figures, tables and pictures that a run left there."""
+
+from gearwhine.report.page import report_page
+from gearwhine.report.sections import Column, Section, Table, sections_of
+
+__all__ = ["Column", "Section", "Table", "report_page", "sections_of"]

@@ -1,0 +1,117 @@
+"""The report: every section of a run's summary, pictures inside, text escaped, and nothing where there is nothing."""
+
+import base64
+import json
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from gearwhine.case import CaseError
+from gearwhine.report import report_page, sections_of
+
+VOID = {"meta", "img"}
+PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR42mNk+A8AAQUBAScY42YAAAAASUVORK5CYII=")
+RUN = {
+    "title": "Gears & <b>bold</b> claims",
+    "housing": {
+        "modes": [{"number": 1, "frequency_hz": 657.891, "damping_ratio": 0.01, "strength": 0.123}],
+        "certificate": {"found": 1, "limit_hz": 3200.0, "expected": 1, "complete": True, "max_residual": 2e-12},
+        "mesh": {"elements": 10, "dofs": 300},
+        "mass_kg": 12.5,
+    },
+    "compare": {
+        "pairs": [{"measured_hz": 658.0, "model_hz": 684.0, "error_percent": 3.951, "mode": 1}],
+        "pairing": "dominance in order of frequency",
+        "rms_error_percent": 3.951,
+        "max_error_percent": 3.951,
+        "gap": 0.12,
+        "measures_agree": False,
+    },
+    "steps": 1000,
+    "speed_rpm": 5500.0,
+    "coordinates": 50,
+    "energy_error": 1e-6,
+    "sensors": [{"name": "<script>alert(1)</script>", "peaks": [{"frequency_hz": 2566.7, "amplitude_m_per_s2": 1.5}]}],
+    "gear_pairs": [
+        {"driver": "a", "driven": "b", "mean_force_n": 1718.0, "peak_force_n": 1745.0, "contact_loss_fraction": 0.25}
+    ],
+}
+
+
+class Balanced(HTMLParser):
+    """Fails on a tag that is closed by another; collects texts, tags and where pictures come from."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: set[str] = set()
+        self.text = ""
+        self.sources: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.add(tag)
+        self.sources += [value or "" for name, value in attrs if name in ("src", "href")]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text += f"{data}\n"
+
+
+def read(folder: Path) -> Balanced:
+    parser = Balanced()
+    parser.feed(report_page(folder))
+    parser.close()
+    assert parser.open == []
+    return parser
+
+
+def test_a_run_is_told_whole_and_escaped(tmp_path: Path) -> None:
+    (tmp_path / "summary.json").write_text(json.dumps(RUN), encoding="utf-8")
+    (tmp_path / "case.toml").write_text('title = "</pre><script>"', encoding="utf-8")
+    for name in ("spectrum.png", "modes.png", "own.png"):
+        (tmp_path / name).write_bytes(PIXEL)
+    page = read(tmp_path)
+    assert "script" not in page.tags
+    for told in (
+        "Gears & <b>bold</b> claims",
+        "657.89",
+        "+3.95",
+        "1718",
+        "25.00",
+        "<script>alert(1)</script>",
+        "2566.7",
+    ):
+        assert told in page.text
+    # Nothing is fetched from anywhere.
+    assert len(page.sources) == 3
+    assert all(source.startswith("data:image/png;base64,") for source in page.sources)
+    assert base64.b64decode(page.sources[0].partition(",")[2]) == PIXEL
+    assert "measures do not agree" in page.text
+    assert "Further pictures" in page.text
+
+
+def test_sections_follow_what_the_document_holds() -> None:
+    assert [section.title for section in sections_of(RUN)] == ["Housing modes", "Measured and modelled", "Motion"]
+    assert sections_of({"title": "nothing"}) == ()
+    modes = RUN["housing"]
+    assert [section.title for section in sections_of(modes)] == ["Housing modes"]  # type: ignore[arg-type]
+
+
+def test_columns_without_values_are_left_out() -> None:
+    (table,) = sections_of(RUN)[1].tables
+    columns, rows = table.filled()
+    assert "MAC" not in [column.heading for column in columns]
+    assert rows == [["658.0", "684.0", "+3.95", "1"]]
+
+
+@pytest.mark.parametrize("content", [None, "{", "[1]"])
+def test_a_folder_without_results_is_refused(tmp_path: Path, content: str | None) -> None:
+    if content is not None:
+        (tmp_path / "summary.json").write_text(content, encoding="utf-8")
+    with pytest.raises(CaseError, match="a results folder with"):
+        report_page(tmp_path)
