@@ -113,8 +113,10 @@ def _write_gif(frames: Sequence[Image], path: Path) -> None:
     """One palette for all frames, from three of them: no colour flickers, and only what moves is stored anew."""
     from PIL import Image as Pillow
 
-    sample = Pillow.fromarray(np.concatenate(frames[:: len(frames) // 3], axis=0))
-    palette = sample.quantize(colors=256, method=Pillow.Quantize.MEDIANCUT)
+    # Each colour counts once, however much of it there is: most of a frame is white.
+    pixels = np.concatenate([frame.reshape(-1, 3) for frame in frames[:: len(frames) // 3]])
+    palette = Pillow.fromarray(np.unique(pixels, axis=0)[None]).quantize(colors=255, method=Pillow.Quantize.MEDIANCUT)
+    palette.putpalette([255, 255, 255, *(palette.getpalette() or [])[: 3 * 255]])
     images = [Pillow.fromarray(frame).quantize(palette=palette, dither=Pillow.Dither.NONE) for frame in frames]
     images[0].save(path, format="GIF", save_all=True, append_images=images[1:], duration=_FRAME, loop=0, optimize=False)
 

@@ -32,6 +32,8 @@ STRIP = 34
 _COLOURS = "viridis"
 _INK = "#202428"
 _FINER = 1.5  # times larger than shown are pictures drawn
+_LOWER = 0.06  # how far below the middle the housing stands, as a part of half the height: captions are above it
+_FULL, _GROWTH = 1000.0, 0.6  # letters have their full size at this width [pixels], and grow slower than the picture
 _SHARP = 30.0  # angle between faces from which an edge is drawn as one [degrees]
 
 
@@ -129,9 +131,10 @@ class Scene:
             show_scalar_bar=False,
         )
         plotter.add_mesh(outline, color="#707070", line_width=self._finer)
-        letters = (10, 7) if tile else (15, 10)
+        grown = self._finer * (self._size[0] / _FULL) ** _GROWTH
+        letters = 15.0 * grown, 10.0 * grown
         self._title, self._note = (
-            plotter.add_text(" ", position=(0.03, up), viewport=True, font_size=round(self._finer * size), color=_INK)
+            plotter.add_text(" ", position=(0.03, up), viewport=True, font_size=round(size), color=_INK)
             for up, size in zip((0.97, 0.915), letters, strict=True)
         )
         for text in (self._title, self._note):
@@ -145,8 +148,8 @@ class Scene:
             color=_INK,
             n_labels=5,
             fmt="%.3g",
-            title_font_size=round(18 * self._finer),
-            label_font_size=round(18 * self._finer),
+            title_font_size=round(18.0 * grown),
+            label_font_size=round(18.0 * grown),
             position_x=0.885,
             position_y=0.22,
             width=0.06,
@@ -158,7 +161,8 @@ class Scene:
         self._plotter.view_vector(_VIEWS[view], viewup=(0.0, 1.0, 0.0))
         self._plotter.enable_parallel_projection()
         self._plotter.reset_camera(bounds=_frame(bounds))
-        self._plotter.camera.zoom(1.25)
+        self._plotter.camera.zoom(1.2)
+        self._plotter.camera.SetWindowCenter(0.0, _LOWER)
 
 
 def check_view(view: str) -> None:
