@@ -19,6 +19,7 @@ Image = npt.NDArray[np.uint8]
 
 _FRAMES = 24  # of one period; even, so that half of them mirror the others where all moves in one phase
 _FRAME = 80  # how long each is shown [ms]
+_PAPER = 240  # all three colours of a pixel above it: the background and its soft edges
 _PERIODS = 4  # of an MP4, which players show once; a GIF goes round
 
 
@@ -115,6 +116,7 @@ def _write_gif(frames: Sequence[Image], path: Path) -> None:
 
     # Each colour counts once, however much of it there is: most of a frame is white.
     pixels = np.concatenate([frame.reshape(-1, 3) for frame in frames[:: len(frames) // 3]])
+    pixels = pixels[(pixels < _PAPER).any(axis=1)]  # what is nearly white becomes so
     palette = Pillow.fromarray(np.unique(pixels, axis=0)[None]).quantize(colors=255, method=Pillow.Quantize.MEDIANCUT)
     palette.putpalette([255, 255, 255, *(palette.getpalette() or [])[: 3 * 255]])
     images = [Pillow.fromarray(frame).quantize(palette=palette, dither=Pillow.Dither.NONE) for frame in frames]

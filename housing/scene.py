@@ -141,6 +141,8 @@ class Scene:
             text.prop.justification_vertical = "top"
         if tile:
             return
+        # The bar has its part of the width, and so must its letters.
+        letter = round(max(9.0, 18.0 * self._size[0] / _FULL) * self._finer)
         plotter.add_scalar_bar(
             title=quantity.replace(" ", "\n", 1) + "\n",
             mapper=self._actor.mapper,
@@ -148,8 +150,8 @@ class Scene:
             color=_INK,
             n_labels=5,
             fmt="%.3g",
-            title_font_size=round(18.0 * grown),
-            label_font_size=round(18.0 * grown),
+            title_font_size=letter,
+            label_font_size=letter,
             position_x=0.885,
             position_y=0.22,
             width=0.06,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-CASE = ("small-gearbox", "--set", "housing.box.mesh_size=40 mm", "--set", "housing.frequency_limit=2 kHz", "-q")
+CASE = ("small-gearbox", "--set", "housing.box.mesh_size=40 mm", "--set", "housing.frequency_limit=2.2 kHz", "-q")
 
 
 @pytest.fixture

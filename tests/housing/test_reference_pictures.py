@@ -1,7 +1,7 @@
 """Pictures of a free block's modes against references that were looked at, with a tolerance that a wrong mode fails.
 
-The block's mesh is laid by hand and its modes lie apart, so that neither mesher nor solver changes the pictures. They
-are compared as means over squares of six pixels: another rasteriser's edges and letters differ by less than a mode does.
+The block has a mesh laid by hand and modes that lie apart, so that neither mesher nor solver changes a picture. They
+are compared as means over squares of six pixels: another rasteriser's edges and letters differ less than modes do.
 After a change of style, copy the new pictures from the folder that a failed test names, once they have been looked at.
 """
 
