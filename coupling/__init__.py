@@ -5,6 +5,7 @@ What the room offers:
 - :func:`housing_component`, :func:`rotor_component` -- components in mass-normalised coordinates.
 - :func:`couple` with :class:`MountedBearing`, :class:`GearMesh` and the loads of :mod:`coupling.loads` -- the
   :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
+- :class:`RollingLaw`, :class:`GapLaw` -- bearings with laws of their own, beside the linear ones of their tangents.
 - :func:`coupled_modes` -- complex natural modes about the mean contact, or that of an instant (:func:`contact_at`),
   with energies by component, bearing and gear mesh; :func:`stability` -- which grow, and what feeds them.
 - :func:`system_campbell` -- these over speed, with the crossings of shaft and mesh orders.
@@ -22,17 +23,21 @@ numba is imported only when one of :func:`simulate`, :func:`static_equilibrium` 
 """
 
 from coupling.base_motion import BaseHarmonic, BaseHistory, BaseMotion
+from coupling.bearing_law import BearingLaw, GapLaw, RollingLaw
+from coupling.boundaries import SAMPLES_PER_BLOCK
 from coupling.campbell import SystemCampbell, SystemCrossing, system_campbell
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
-from coupling.connector import ContactConnector, LinearConnector, SpeedTable
+from coupling.connector import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
 from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
+from coupling.decimation import Decimation, decimation
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
+from coupling.exact_march import march_method
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.free_speed import free_speed
-from coupling.histories import Histories, histories, transient_outputs
+from coupling.histories import Histories, Recorded, histories, nothing_recorded, transient_outputs
 from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
 from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, couple
-from coupling.marching import Block, Checkpoint, march_blocks
+from coupling.marching import Block, Checkpoint, march_blocks, march_key, sample_times
 from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_rows, with_modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
 from coupling.periodic import PeriodicResponse, ResponseCurve, periodic_response, response_curve
@@ -45,6 +50,7 @@ from coupling.spectrum import (
     Spectrum,
     Window,
     amplitude_spectrum,
+    averaged_spectrum,
     lines_at,
     signal_parts,
     spectrum_peaks,
@@ -56,7 +62,6 @@ from coupling.transient import (
     EnergyBalance,
     TransientFigures,
     TransientResult,
-    sample_times,
     simulate,
     transient_figures,
 )
@@ -69,10 +74,12 @@ from coupling.transmissibility import (
 from coupling.turning import Turning
 
 __all__ = [
+    "SAMPLES_PER_BLOCK",
     "AnyTorque",
     "BaseHarmonic",
     "BaseHistory",
     "BaseMotion",
+    "BearingLaw",
     "Block",
     "BowReactions",
     "Checkpoint",
@@ -82,10 +89,12 @@ __all__ = [
     "CoupledModes",
     "CoupledSystem",
     "CouplingError",
+    "Decimation",
     "Drive",
     "EnergyBalance",
     "ExcitationLine",
     "FrequencyResponse",
+    "GapLaw",
     "GearMesh",
     "GrowingMode",
     "HarmonicLoad",
@@ -100,13 +109,17 @@ __all__ = [
     "ModesError",
     "MountedBearing",
     "MountedGear",
+    "NonlinearConnector",
     "Part",
     "Peak",
     "PeriodicError",
     "PeriodicResponse",
+    "Recorded",
     "ResponseCurve",
+    "RollingLaw",
     "RotorComponent",
     "SignalParts",
+    "Sliding",
     "Spectrum",
     "SpeedTable",
     "Stability",
@@ -126,9 +139,11 @@ __all__ = [
     "Unbalance",
     "Window",
     "amplitude_spectrum",
+    "averaged_spectrum",
     "contact_at",
     "couple",
     "coupled_modes",
+    "decimation",
     "excitation_lines",
     "free_speed",
     "histories",
@@ -136,10 +151,13 @@ __all__ = [
     "linear_matrices",
     "lines_at",
     "march_blocks",
+    "march_key",
+    "march_method",
     "mean_contact",
     "mesh_error_response",
     "modal_record",
     "modal_rows",
+    "nothing_recorded",
     "periodic_response",
     "receptance",
     "resonance_grid",

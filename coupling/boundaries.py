@@ -16,7 +16,7 @@ _POINTS_PER_PERIOD = 6  # of the highest coordinate; what moves much gets more, 
 _STEPS_PER_SEGMENT = 64  # where no event cuts the time
 _SPEED_GAIN = 2e-4  # change of speed, as a part of the nominal one, within which a stretch's matrices stay the same
 _SAME_TIME = 1e-6  # part of the coarsest step within which two events are one
-_SAMPLES_PER_BLOCK = 32768
+SAMPLES_PER_BLOCK = 32768
 _STEPS_PER_BLOCK = 1 << 20
 _MOST_BLOCKS = 1 << 24
 
@@ -33,15 +33,15 @@ def same_time(step: float) -> float:
     return _SAME_TIME * step
 
 
-def block_ends(duration: float, interval: float, step: float) -> FloatArray:
-    """Ends of stretches that hold a limited number of samples and steps, from 0 to the duration [s].
+def block_ends(duration: float, interval: float, step: float, samples: int = SAMPLES_PER_BLOCK) -> FloatArray:
+    """Ends of stretches that hold a limited number of samples and coarsest steps, from 0 to the duration [s].
 
     Raises
     ------
     TransientError
         Where there would be more of them than any run can take.
     """
-    count = np.ceil(max(duration / (interval * _SAMPLES_PER_BLOCK), duration / (step * _STEPS_PER_BLOCK), 1.0))
+    count = np.ceil(max(duration / (interval * samples), duration / (step * _STEPS_PER_BLOCK), 1.0))
     if not count < _MOST_BLOCKS:
         raise TransientError(f"{duration:g} s at steps of {step:.2g} s and samples every {interval:.2g} s have no end")
     return np.asarray(duration * np.arange(int(count) + 1) / int(count))

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.component import Component
-from coupling.connector import LinearConnector
+from coupling.connector import ContactConnector, LinearConnector
 from coupling.low_rank import common_span
 from coupling.system import CoupledSystem
 
@@ -70,11 +70,12 @@ def condensed(system: CoupledSystem) -> Condensed:
         components=tuple(_part(component, among) for component, among in _members(system, kept)),
         speeds=system.speeds,
         linear=(LinearConnector("ties", directions, tie_stiffness, tie_damping),),
-        contacts=tuple(replace(contact, direction=contact.direction @ recovery) for contact in system.contacts),
+        contacts=tuple(_reduced(contact, recovery) for contact in system.contacts),
         load=system.load @ recovery,
         harmonic_loads=tuple(replace(one, amplitude=one.amplitude @ recovery) for one in system.harmonic_loads),
         timed_loads=tuple(replace(one, direction=one.direction @ recovery) for one in system.timed_loads),
         swing=system.swing @ recovery,
+        nonlinear=tuple(replace(one, directions=recovery.T @ one.directions) for one in system.nonlinear),
     )
     return Condensed(less, left, recovery)
 
@@ -85,6 +86,13 @@ def _members(system: CoupledSystem, kept: npt.NDArray[np.bool_]) -> Iterator[tup
     for component in system.components:
         yield component, np.flatnonzero(kept[start : start + component.size])
         start += component.size
+
+
+def _reduced(contact: ContactConnector, recovery: FloatArray) -> ContactConnector:
+    sliding = contact.sliding
+    if sliding is not None:
+        sliding = replace(sliding, directions=recovery.T @ sliding.directions)
+    return replace(contact, direction=contact.direction @ recovery, sliding=sliding)
 
 
 def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
@@ -106,12 +114,13 @@ def highest_frequency(system: CoupledSystem) -> float:
 
 
 def _stiff(system: CoupledSystem) -> npt.NDArray[np.bool_]:
-    """Residual coordinates beyond the highest frequency of the others, unless a load or a contact acts on them."""
+    """Residual coordinates beyond the highest frequency of the others, unless a load or a law acts on them."""
     loaded = system.load != 0.0
     loaded |= system.swing != 0.0
     for load in [*(one.amplitude for one in system.harmonic_loads), *(one.direction for one in system.timed_loads)]:
         loaded = loaded | (load != 0.0)
-    for direction in system.contact_directions.T:
-        loaded = loaded | (direction != 0.0)
+    sliding = [contact.sliding.directions for contact in system.contacts if contact.sliding is not None]
+    for directions in (system.contact_directions, *sliding, *(one.directions for one in system.nonlinear)):
+        loaded = loaded | np.any(directions != 0.0, axis=1)
     beyond = np.diag(system.stiffness) > highest_frequency(system) ** 2
     return np.asarray(~system.resolved & beyond & ~loaded)

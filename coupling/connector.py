@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from coupling.bearing_law import BearingLaw
 from coupling.errors import CouplingError
-from coupling.gears import ToothContact
+from coupling.gears import SlidingFriction, ToothContact
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -76,6 +77,61 @@ class SpeedTable:
 
 
 @dataclass(frozen=True)
+class NonlinearConnector:
+    """A connector whose law is a bearing's own, in place of the linear one of its tangent.
+
+    The linear connector of the same bearing stays among the system's, so that linear analyses see the tangent K about
+    the bearing's mean load; this one adds f(δ) - K δ to it.
+
+    Attributes
+    ----------
+    name : str
+    directions : ndarray, shape (n, d)
+        D.
+    axes : ndarray of int, shape (d,)
+        Which of x, y, z and the rotations about x and y each of them is, 0 to 4.
+    law : BearingLaw
+    stiffness : ndarray, shape (d, d)
+        K [N/m], symmetric.
+    speed : float
+        Signed speed of the shaft [rad/s], with which rolling elements go round.
+    """
+
+    name: str
+    directions: FloatArray
+    axes: npt.NDArray[np.int64]
+    law: BearingLaw
+    stiffness: FloatArray
+    speed: float
+
+    def __post_init__(self) -> None:
+        d = self.directions.shape[1]
+        if self.axes.shape != (d,) or self.stiffness.shape != (d, d):
+            raise CouplingError(
+                f"{self.name}: {self.axes.shape} axes and a stiffness of shape {self.stiffness.shape}; "
+                f"expected ({d},) and ({d}, {d})"
+            )
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """How the flanks of a tooth contact slide, see :mod:`coupling.sliding`.
+
+    Attributes
+    ----------
+    friction : SlidingFriction
+    directions : ndarray, shape (n, 2)
+        a and b: a pair at the position x along its path slides by (a + x b)ᵀ q' beside the nominal rotation.
+    nominal : ndarray, shape (2,)
+        W_a [m/s] and W_b [m/s per base pitch]: it slides by W_a + x W_b in the nominal rotation.
+    """
+
+    friction: SlidingFriction
+    directions: FloatArray
+    nominal: FloatArray
+
+
+@dataclass(frozen=True)
 class ContactConnector:
     """A connector whose law is a tooth contact: one line of action of a gear pair.
 
@@ -98,6 +154,8 @@ class ContactConnector:
         Gap to close before the flanks touch [m]: 0 for the drive flanks, the backlash for the back flanks.
     drives : bool
         Whether the mean load presses these flanks together.
+    sliding : Sliding or None
+        Friction, which adds μ Σ ± F_j (a + x_j b) to what the pairs' forces F_j do along d; None for none.
     """
 
     name: str
@@ -108,13 +166,16 @@ class ContactConnector:
     errors: FloatArray
     clearance: float = 0.0
     drives: bool = True
+    sliding: Sliding | None = None
 
     def event_times(self, start: float, end: float) -> FloatArray:
         """Times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
 
-        The force may jump at the former; at the latter its rate and the power of the turning teeth do.
+        The force may jump at the former; at the latter its rate and the power of the turning teeth do. With friction
+        also those at which a pair passes the pitch point.
         """
-        marks = np.unique([*self.contact.event_phases, *self.contact.corner_phases])
+        turns = () if self.sliding is None else self.sliding.friction.event_phases
+        marks = np.unique([*self.contact.event_phases, *self.contact.corner_phases, *turns])
         if self.rate == 0.0 or not marks.size:
             return np.empty(0)
         first, last = sorted((self.phase + self.rate * start, self.phase + self.rate * end))

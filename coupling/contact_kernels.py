@@ -9,8 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from coupling.bearing_kernels import take_bearings
+from coupling.gears.friction_kernels import friction_shares
 from coupling.gears.kernels import tooth_force
-from coupling.kernel_arrays import Contacts
+from coupling.kernel_arrays import Bearings, Contacts
 from coupling.small_systems import solve_in_place
 
 FloatArray = npt.NDArray[np.float64]
@@ -18,7 +20,7 @@ FloatArray = npt.NDArray[np.float64]
 _NEWTON_STEPS = 30
 
 # Columns of the laws' table: what the contact law gives, see coupling.gears.kernels.tooth_force.
-FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE = 0, 1, 2, 3, 4
+FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE, TOUCHING = 0, 1, 2, 3, 4, 5
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -35,10 +37,10 @@ def deviation_of(clearance: FloatArray, errors: FloatArray, k: int, turned: floa
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray) -> None:
-    """Fill in a contact's row of the laws' table."""
+def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
+    """Fill in a row of the laws' table for a contact."""
     if delta <= contacts.first_touch[k]:
-        laws[k, :] = 0.0
+        laws[row, :] = 0.0
         return
     law = tooth_force(
         contacts.phase[k] + contacts.rate[k] * turned,
@@ -54,8 +56,8 @@ def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: floa
         contacts.faces[k],
         contacts.face_depth[k],
     )
-    laws[k, FORCE], laws[k, TANGENT], laws[k, DAMPING] = law[0], law[1], law[2]
-    laws[k, ENERGY], laws[k, PHASE_SLOPE] = law[3], law[4]
+    laws[row, FORCE], laws[row, TANGENT], laws[row, DAMPING] = law[0], law[1], law[2]
+    laws[row, ENERGY], laws[row, PHASE_SLOPE], laws[row, TOUCHING] = law[3], law[4], law[5]
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -75,6 +77,7 @@ def settle(
 ) -> bool:
     """Contact forces from the compressions and rates without contact, by Newton's method on the compressions.
 
+    Of teeth alone: :func:`settle_all` takes friction and bearings too, and what it is given costs time at every call.
     Fills in compressions, rates and laws. The law is piecewise linear but for wide faces, so the method ends after a
     few steps with the right set of touching pairs.
     """
@@ -84,7 +87,7 @@ def settle(
     for _ in range(_NEWTON_STEPS):
         for k in range(c):
             rate[k] = free_rate[k] + per * (delta[k] - free[k])
-            take_law(contacts, k, turned, delta[k], rate[k], laws)
+            take_law(contacts, k, turned, delta[k], rate[k], laws, k)
         largest, scale = 0.0, 1e-300
         for k in range(c):
             residual[k, 0] = free[k] - delta[k]
@@ -101,5 +104,129 @@ def settle(
             jacobian[k, k] += 1.0
         solve_in_place(jacobian, residual)
         for k in range(c):
+            delta[k] += residual[k, 0]
+    return False
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def take_friction(
+    contacts: Contacts, k: int, turned: float, delta: float, laws: FloatArray, force: FloatArray, drag: FloatArray
+) -> None:
+    """Fill in the two forces of a contact's friction, and their slopes by compression and by rate (4,)."""
+    row = contacts.friction_row[k]
+    a, b, a_slope, b_slope = 0.0, 0.0, 0.0, 0.0
+    if laws[k, FORCE] > 0.0:
+        a, b, a_slope, b_slope = friction_shares(
+            contacts.phase[k] + contacts.rate[k] * turned,
+            delta,
+            contacts.reach[k, 0],
+            contacts.reach[k, 1],
+            contacts.reach[k, 2],
+            contacts.curves[k],
+            contacts.entering[k, : contacts.pairs[k]],
+            contacts.faces[k],
+            contacts.face_depth[k],
+            contacts.friction[k, 1],
+            contacts.friction[k, 2],
+            contacts.friction[k, 3],
+        )
+    pressed = contacts.friction[k, 0] * laws[k, FORCE]
+    stiff, viscous = contacts.friction[k, 0] * laws[k, TANGENT], contacts.friction[k, 0] * laws[k, DAMPING]
+    force[row], force[row + 1] = pressed * a, pressed * b
+    drag[0], drag[1] = stiff * a + pressed * a_slope, stiff * b + pressed * b_slope
+    drag[2], drag[3] = viscous * a, viscous * b
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def take_forces(
+    contacts: Contacts,
+    bearings: Bearings,
+    turned: float,
+    delta: FloatArray,
+    rate: FloatArray,
+    laws: FloatArray,
+    force: FloatArray,
+    drag: FloatArray,
+    tangents: FloatArray,
+    held: FloatArray,
+) -> None:
+    """All laws at some deflections: teeth, their friction, bearings.
+
+    Fills in the laws' table, the force along every direction (k,), the friction's slopes (c, 4), the bearings' tangents
+    (b, 5, 5), and what energy the bearings hold (2,).
+    """
+    for k in range(contacts.phase.size):
+        take_law(contacts, k, turned, delta[k], rate[k], laws, k)
+        force[k] = laws[k, FORCE]
+        if contacts.friction_row[k] >= 0:
+            take_friction(contacts, k, turned, delta[k], laws, force, drag[k])
+    if bearings.axis.size > 0:
+        take_bearings(bearings, contacts.phase.size, turned, delta, force, tangents, held)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def settle_all(
+    contacts: Contacts,
+    bearings: Bearings,
+    turned: float,
+    free: FloatArray,
+    free_rate: FloatArray,
+    flexibility: FloatArray,
+    by_displacement: float,
+    by_velocity: float,
+    delta: FloatArray,
+    rate: FloatArray,
+    laws: FloatArray,
+    force: FloatArray,
+    drag: FloatArray,
+    tangents: FloatArray,
+    held: FloatArray,
+    jacobian: FloatArray,
+    residual: FloatArray,
+) -> bool:
+    """Forces from the deflections and rates without them, by Newton's method on the deflections.
+
+    Fills in deflections, rates, laws and forces. The teeth's law is piecewise linear but for wide faces, so the method
+    ends after a few steps with the right set of touching pairs. Bearings begin with the forces that they had.
+    """
+    c, u, directions = contacts.phase.size, free.size, force.size
+    per = by_velocity / by_displacement
+    delta[:] = free
+    for k in range(c, u):
+        for j in range(directions):
+            delta[k] -= by_displacement * flexibility[k, j] * force[j]
+    for _ in range(_NEWTON_STEPS):
+        for k in range(c):
+            rate[k] = free_rate[k] + per * (delta[k] - free[k])
+        take_forces(contacts, bearings, turned, delta, rate, laws, force, drag, tangents, held)
+        largest, scale = 0.0, 1e-300
+        for k in range(u):
+            residual[k, 0] = free[k] - delta[k]
+            for j in range(directions):
+                residual[k, 0] -= by_displacement * flexibility[k, j] * force[j]
+            scale = max(scale, abs(free[k]) + abs(delta[k]))
+            largest = max(largest, abs(residual[k, 0]))
+        if largest <= 1e-13 * scale:
+            return True
+        for k in range(u):
+            for j in range(c):
+                stiff = laws[j, TANGENT] + laws[j, DAMPING] * per
+                jacobian[k, j] = by_displacement * flexibility[k, j] * stiff
+                row = contacts.friction_row[j]
+                if row >= 0:
+                    jacobian[k, j] += by_displacement * (
+                        flexibility[k, row] * (drag[j, 0] + drag[j, 2] * per)
+                        + flexibility[k, row + 1] * (drag[j, 1] + drag[j, 3] * per)
+                    )
+            for number in range(bearings.preload.size):
+                first, end = bearings.first[number], bearings.first[number + 1]
+                for j in range(first, end):
+                    value = 0.0
+                    for i in range(first, end):
+                        value += flexibility[k, c + i] * tangents[number, i - first, j - first]
+                    jacobian[k, c + j] = by_displacement * value
+            jacobian[k, k] += 1.0
+        solve_in_place(jacobian, residual)
+        for k in range(u):
             delta[k] += residual[k, 0]
     return False

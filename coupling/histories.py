@@ -1,12 +1,14 @@
 """What a transient or a periodic response tells, under the names of sensors, gears, bearings and gear pairs."""
 
-from dataclasses import dataclass
-from typing import Protocol
+import math
+from dataclasses import dataclass, fields
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector import LinearConnector
+from coupling.bearing_arrays import bearing_arrays
+from coupling.connector import LinearConnector, NonlinearConnector
 from coupling.machine import Machine, MountedGear
 from coupling.settings import TransientOutputs
 from coupling.system import embed
@@ -64,6 +66,29 @@ class Histories:
         """Force of each shaft on its bearing along x and y [N], shape (s, 2) each."""
         return {name: force[:, :2] for name, force in self.tie_force.items()}
 
+    @property
+    def columns(self) -> FloatArray:
+        """Every signal beside the others, shape (s, k)."""
+        count = len(self.times)
+        signals = [signal for name in _GROUPS for signal in getattr(self, name).values()]
+        parts = [signal.reshape(count, math.prod(signal.shape[1:])) for signal in signals]
+        return np.concatenate([np.empty((count, 0)), *parts], axis=1)
+
+    def with_columns(self, times: FloatArray, columns: FloatArray) -> "Histories":
+        """Other samples of the same signals, from what :attr:`columns` gives."""
+        groups: list[dict[str, FloatArray]] = []
+        column = 0
+        for name in _GROUPS:
+            groups.append({})
+            for signal, old in getattr(self, name).items():
+                width = math.prod(old.shape[1:])
+                groups[-1][signal] = columns[:, column : column + width].reshape(len(times), *old.shape[1:])
+                column += width
+        return Histories(times, *groups)
+
+
+_GROUPS = tuple(field.name for field in fields(Histories) if field.name != "times")
+
 
 def transient_outputs(machine: Machine) -> TransientOutputs:
     """The rows to record so that :func:`histories` can name them."""
@@ -87,6 +112,22 @@ def transient_outputs(machine: Machine) -> TransientOutputs:
     )
 
 
+class _Nothing(NamedTuple):
+    times: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    compression: FloatArray
+    force: FloatArray
+
+
+def nothing_recorded(machine: Machine, outputs: TransientOutputs) -> Recorded:
+    """What a transient with these outputs records before its first sample: names what comes, and how wide it is."""
+    contacts = len(machine.system.contacts)
+    widths = *(len(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)), contacts, contacts
+    return _Nothing(np.zeros(0), *(np.zeros((0, width)) for width in widths))
+
+
 def histories(machine: Machine, result: Recorded, turning: Turning | None = None) -> Histories:
     """Name what a transient or a periodic response with :func:`transient_outputs` recorded.
 
@@ -94,13 +135,18 @@ def histories(machine: Machine, result: Recorded, turning: Turning | None = None
     """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
-    rates = (turning or Turning.steady()).at(result.times)[1]
+    turned, rates, _ = (turning or Turning.steady()).at(result.times)
+    nonlinear = {connector.name: connector for connector in machine.system.nonlinear}
     forces = {}
     column = 0
     for connector in _bearings(machine):
         columns = slice(column, column + connector.directions.shape[1])
         column = columns.stop
         forces[connector.name] = _force(connector, deflections[:, columns], result.velocity[:, columns], rates)
+        if connector.name in nonlinear:
+            forces[connector.name] += _beside_linear(
+                connector, nonlinear[connector.name], deflections[:, columns], turned
+            )
     names = [] if machine.housing is None else list(machine.housing.sensors)
     contacts = [contact.name for contact in machine.system.contacts]
     return Histories(
@@ -121,6 +167,20 @@ def _gears(machine: Machine) -> list[MountedGear]:
 
 def _bearings(machine: Machine) -> tuple[LinearConnector, ...]:
     return machine.system.linear[: len(machine.bearings)]
+
+
+def _beside_linear(
+    linear: LinearConnector, connector: NonlinearConnector, deflection: FloatArray, turned: FloatArray
+) -> FloatArray:
+    """What a nonlinear bearing adds to the linear one of its tangent, shape (s, d)."""
+    from coupling.bearing_kernels import bearing_history
+
+    # Directions in which nothing can move are no part of it.
+    moving = np.flatnonzero(np.any(linear.directions != 0.0, axis=0))
+    force = np.zeros_like(deflection)
+    own = np.ascontiguousarray(deflection[:, moving])
+    force[:, moving] = bearing_history(bearing_arrays([connector]), 0, turned, own) - own @ connector.stiffness.T
+    return force
 
 
 def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatArray, rates: FloatArray) -> FloatArray:

@@ -1,6 +1,8 @@
 """The plain arrays that the time-stepping kernels take, by name.
 
-n coordinates, c contacts, r ties, h harmonic loads; :mod:`coupling.step` fills them from a coupled system.
+n coordinates, c contacts, r ties, h harmonic loads; :mod:`coupling.step` fills them from a coupled system. Laws that
+are not linear act along k directions: those of the contacts, then those of b nonlinear bearings, e in all, then two
+for each contact with friction.
 """
 
 from typing import NamedTuple
@@ -12,6 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 BY_TIME, BY_TURNING, BY_UNBALANCE = 0, 1, 2
+BALLS, ROLLERS, GAP = 0, 1, 2
 
 
 class Dynamics(NamedTuple):
@@ -53,15 +56,15 @@ class StepMatrices(NamedTuple):
     ties: FloatArray  # (m, r, n) (B U)ᵀ, B the inverse without ties
     between: FloatArray  # (m, r, r) Uᵀ B U
     link: FloatArray  # (m, r, r) (I + E Uᵀ B U)⁻¹ E, E = γ h C_t + β h² K_t
-    contact: FloatArray  # (m, c, n) Wᵀ = (S⁻¹ D)ᵀ
-    contact_ties: FloatArray  # (m, c, r) (Uᵀ W)ᵀ
-    flexibility: FloatArray  # (m, c, c) Dᵀ W
+    contact: FloatArray  # (m, k, n) Wᵀ = (S⁻¹ D)ᵀ
+    contact_ties: FloatArray  # (m, k, r) (Uᵀ W)ᵀ
+    flexibility: FloatArray  # (m, k, k) Dᵀ W
 
 
 class Contacts(NamedTuple):
     """The tooth contacts, padded to common lengths."""
 
-    direction: FloatArray  # (c, n) Dᵀ
+    direction: FloatArray  # (k, n) Dᵀ, those of bearings and friction included
     reach: FloatArray  # (c, 3): first and last position of a pair [base pitches], rows of the curves per base pitch
     curves: FloatArray  # (c, kinds of pairs, pieces + 1, 11): `coupling.gears.law_table`
     damping: FloatArray  # (c,)
@@ -75,6 +78,25 @@ class Contacts(NamedTuple):
     face_depth: FloatArray  # (c,) 0 where it does not
     pairs: IntArray  # (c,) pairs of teeth in a hunting period; 0 where all are alike
     first_touch: FloatArray  # (c,) compression below which no pair can touch [m]
+    friction_row: IntArray  # (c,) first of the two directions along which friction acts; -1: none
+    friction: FloatArray  # (c, 4) coefficient with the sense of sliding; pitch point, half line and end of the path
+    sliding: FloatArray  # (c, 2) W_a and W_b: how the nominal rotation slides
+
+
+class Bearings(NamedTuple):
+    """The bearings whose laws are not linear, their rows of rolling elements one after another (w)."""
+
+    axis: IntArray  # (e,) which of x, y, z and the rotations about x and y a direction is
+    first: IntArray  # (b + 1,) first direction of each
+    linear: FloatArray  # (b, 5, 5) stiffness that the ties hold already, its leading part
+    fixed: FloatArray  # (b, 5) displacement along axes that are no directions
+    preload: FloatArray  # (b,) of a spring along z [N]
+    first_row: IntArray  # (b + 1,)
+    kind: IntArray  # (w,) BALLS, ROLLERS or GAP
+    elements: IntArray  # (w,) how many of them
+    shape: FloatArray  # (w, 7) what they are like, by their kind
+    cage: FloatArray  # (w, 2) azimuth of the first element and its rate by the turned time
+    slices: FloatArray  # (w, slices, 2) of rollers: place and gap
 
 
 class Segments(NamedTuple):

@@ -8,12 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.base_motion import BaseMotion, base_loads, gravity_load
+from coupling.bearing_law import BearingLaw, RollingLaw
 from coupling.component import Component, HousingComponent, RotorComponent, pedestal_component
-from coupling.connector import ContactConnector, LinearConnector, SpeedTable
+from coupling.connector import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
 from coupling.errors import CouplingError
 from coupling.gear_phases import mesh_phases
-from coupling.gears import GearPairGeometry, ToothContact
+from coupling.gears import GearPairGeometry, ToothContact, sliding_friction
 from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance
+from coupling.sliding import held_at_speed, sliding_flanks
 from coupling.system import CoupledSystem, embed
 from rotors import Bearing
 
@@ -24,11 +26,15 @@ _PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two sp
 
 @dataclass(frozen=True)
 class MountedBearing:
-    """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None."""
+    """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None.
+
+    With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take.
+    """
 
     bearing: Bearing
     rotor: str
     seat: str | None
+    law: BearingLaw | None = None
 
 
 @dataclass(frozen=True)
@@ -52,6 +58,8 @@ class GearMesh:
     contact : ToothContact
     backlash : float, optional
         Gap between the back flanks along their line of action [m]; None where they can never meet.
+    friction : float
+        Coefficient of friction between the teeth, from 0 to 0.5.
     """
 
     driver: MountedGear
@@ -59,6 +67,7 @@ class GearMesh:
     geometry: GearPairGeometry
     contact: ToothContact
     backlash: float | None = None
+    friction: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -191,7 +200,7 @@ def couple(
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
     parts = LoadedParts(components, speeds)
 
-    linear = []
+    linear, nonlinear = [], []
     for mounted in bearings:
         which, rotor = parts.rotor(mounted.rotor)
         at = mounted.bearing.at
@@ -200,6 +209,9 @@ def couple(
         # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
         held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
         held = np.union1d(held, [0, 1])
+        if isinstance(mounted.law, RollingLaw):
+            # Its tangent may vanish where its force does not stay zero.
+            held = np.arange(5)
         if table is not None:
             ever = np.any(table.stiffness != 0.0, axis=(0, 2)) | np.any(table.damping != 0.0, axis=(0, 2))
             held = np.union1d(held, np.flatnonzero(ever))
@@ -213,6 +225,19 @@ def couple(
             foot = next(part for part in pedestals if part.name == law.name)
             relative[:2] -= [embed(components, number[foot.name], row) for row in foot.motion]
         among = np.ix_(held, held)
+        if mounted.law is not None:
+            stiffness = law.spatial_stiffness
+            moving = held[np.any(relative[held] != 0.0, axis=1)]
+            nonlinear.append(
+                NonlinearConnector(
+                    law.name,
+                    relative[moving].T,
+                    moving,
+                    mounted.law,
+                    stiffness[np.ix_(moving, moving)],
+                    speeds[mounted.rotor],
+                )
+            )
         if table is not None:
             table = SpeedTable(
                 table.rates, *(part[:, held[:, None], held] for part in (table.stiffness, table.damping))
@@ -236,13 +261,22 @@ def couple(
         rate = abs(speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
         direction, errors = _flank(components, mesh, parts, speeds, sense)
         name = f"{mesh.driver.name} -> {mesh.driven.name}"
-        drive.append(ContactConnector(name, direction, mesh.contact, phase, rate, errors))
+        sliding = _sliding(components, mesh, parts, speeds, sense)
+        drive.append(ContactConnector(name, direction, mesh.contact, phase, rate, errors, sliding=sliding))
         if mesh.backlash is not None:
             direction, errors = _flank(components, mesh, parts, speeds, -sense)
             law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset - phase
             back.append(
                 ContactConnector(
-                    f"{name}, back", direction, law_of_back, offset, -rate, errors, mesh.backlash, drives=False
+                    f"{name}, back",
+                    direction,
+                    law_of_back,
+                    offset,
+                    -rate,
+                    errors,
+                    mesh.backlash,
+                    drives=False,
+                    sliding=_sliding(components, mesh, parts, speeds, -sense),
                 )
             )
 
@@ -275,13 +309,14 @@ def couple(
         harmonic_loads=tuple(loads.harmonic),
         timed_loads=tuple(loads.timed),
         swing=parts.swing([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives),
+        nonlinear=tuple(nonlinear),
     )
     return Machine(
         tuple(rotors),
         housing,
         tuple(bearings),
         tuple(meshes),
-        system,
+        held_at_speed(system),
         tuple(unbalances),
         tuple(bows),
         tuple(torques),
@@ -311,6 +346,25 @@ def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> S
     laws = [bearing.at_speed(float(rate) * speed) for rate in at]
     return SpeedTable(
         at, np.array([law.spatial_stiffness for law in laws]), np.array([law.spatial_damping for law in laws])
+    )
+
+
+def _sliding(
+    components: Sequence[Component], mesh: GearMesh, parts: LoadedParts, speeds: dict[str, float], sense: int
+) -> Sliding | None:
+    """How one side of the teeth slides; None without friction, or where the gears stand still and do not slide."""
+    gears = (mesh.driver, mesh.driven)
+    if mesh.friction == 0.0 or speeds[mesh.driver.rotor] == 0.0:
+        return None
+    return sliding_flanks(
+        components,
+        parts,
+        [(gear.rotor, gear.at) for gear in gears],
+        mesh.geometry,
+        sliding_friction(mesh.geometry, mesh.contact, mesh.friction),
+        mesh.geometry.line_of_action_angle(_centre_line_angle(mesh), sense),
+        sense,
+        [speeds[gear.rotor] for gear in gears],
     )
 
 

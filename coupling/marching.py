@@ -20,9 +20,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling.boundaries import block_ends, boundaries, coarsest_step, same_time
+from coupling.boundaries import SAMPLES_PER_BLOCK, block_ends, boundaries, coarsest_step, same_time
 from coupling.condensation import condensed
-from coupling.errors import TransientError
+from coupling.errors import CouplingError, TransientError
+from coupling.fingerprint import fingerprint
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.statics import coasting_velocity, static_equilibrium
 from coupling.step import KernelArrays, StepCache, cut, empty_samples, kernel_arrays
@@ -53,8 +54,9 @@ class Checkpoint:
         State of the coordinates that are followed.
     stored : float
         Energy in the teeth, and in the ties where they change with the speed [J].
-    totals : ndarray, shape (4,)
-        Work of the loads, energy lost, work of what turns, and the largest kinetic energy [J].
+    totals : ndarray, shape (5,)
+        Work of the loads, energy lost, work of what turns, the largest kinetic energy, and what friction took from
+        the nominal rotation [J].
     contact_totals : ndarray, shape (c, 4)
         Impulse [N s], time apart [s], largest force [N] since the record began, and time of the last touch [s].
     level : int
@@ -110,6 +112,8 @@ class Block:
     ----------
     first : int
         Number of its first sample.
+    times : ndarray, shape (s,)
+        [s].
     displacement, velocity, acceleration : ndarray, shapes (s, k)
         The rows asked for.
     compression, force : ndarray, shape (s, c)
@@ -120,6 +124,7 @@ class Block:
     """
 
     first: int
+    times: FloatArray
     displacement: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
@@ -137,6 +142,7 @@ def march_blocks(
     turning: Turning | None = None,
     initial: tuple[FloatArray, FloatArray] | None = None,
     after: Checkpoint | None = None,
+    samples_per_block: int = SAMPLES_PER_BLOCK,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> Iterator[Block]:
     """March the coupled system through time and hand its record over block by block.
@@ -144,17 +150,13 @@ def march_blocks(
     Parameters
     ----------
     after : Checkpoint, optional
-        Go on from here: the same system, settings, outputs and turning as those that led to it.
+        Go on from here: the march must be the one that led to it, see :func:`march_key`.
+    samples_per_block : int
+        About how many a block holds. Time is cut where blocks end, so the last digits of a result depend on it.
 
     Other parameters and errors are those of :func:`coupling.simulate`.
     """
-    turning = turning or Turning.steady()
-    followed = condensed(system)
-    if followed.system is not system:
-        system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
-        outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
-        initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
-    run = _Run(system, settings, outputs, turning)
+    run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
     state = after or run.start(initial)
     total = settings.samples
     for number in range(state.block, len(run.ends) - 1):
@@ -166,6 +168,7 @@ def march_blocks(
         written = slice(state.sample - first)
         yield Block(
             first=first,
+            times=sample_times(settings, first, state.sample - first),
             displacement=samples.displacement[written],
             velocity=samples.velocity[written],
             acceleration=samples.acceleration[written],
@@ -176,23 +179,88 @@ def march_blocks(
         )
 
 
+def march_key(
+    system: CoupledSystem,
+    settings: TransientSettings,
+    outputs: TransientOutputs,
+    *,
+    turning: Turning | None = None,
+    initial: tuple[FloatArray, FloatArray] | None = None,
+    samples_per_block: int = SAMPLES_PER_BLOCK,
+) -> str:
+    """A digest of all that decides how a march goes, so that two with the same key go alike, bit for bit.
+
+    It knows nothing of the code and of the processor: whoever keeps checkpoints must note these as well.
+    """
+    run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
+    start = run.start(initial).as_arrays()
+    return fingerprint(settings, run.turning, run.arrays, run.base, run.ends, run.reach, run.bounds(0), start)
+
+
+def sample_times(settings: TransientSettings, first: int, count: int) -> FloatArray:
+    """Times of some samples [s]."""
+    return np.asarray(
+        settings.record_from + settings.sample_interval * np.arange(first, first + count, dtype=np.float64)
+    )
+
+
+def _prepared(
+    system: CoupledSystem,
+    settings: TransientSettings,
+    outputs: TransientOutputs,
+    turning: Turning | None,
+    initial: tuple[FloatArray, FloatArray] | None,
+    samples_per_block: int,
+) -> tuple["MarchRun", tuple[FloatArray, FloatArray] | None]:
+    """The march of the coordinates that are followed, and their initial state."""
+    if samples_per_block < 1:
+        raise CouplingError(f"blocks of {samples_per_block} samples; expected at least one")
+    followed = condensed(system)
+    if followed.system is not system:
+        system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
+        outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
+        initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
+    return march_run(system, settings, outputs, turning or Turning.steady(), samples_per_block), initial
+
+
 def _samples_until(settings: TransientSettings, end: float, first: int, total: int) -> int:
     """Room for the samples up to the end of a block: rounding may let one more or less fall into it."""
     upto = int(np.ceil((end - settings.record_from) / settings.sample_interval)) + 2
     return min(max(upto - first, 0), total - first)
 
 
-class _Run:
-    """What stays the same through a march."""
+def march_run(
+    system: CoupledSystem,
+    settings: TransientSettings,
+    outputs: TransientOutputs,
+    turning: Turning,
+    samples_per_block: int,
+) -> "MarchRun":
+    """The march by the method that the settings ask for."""
+    from coupling.exact_march import ExactRun, exact_part
+
+    part = exact_part(system, settings, turning)
+    if part is not None:
+        return ExactRun(part, settings, outputs, turning, samples_per_block)
+    return MarchRun(system, settings, outputs, turning, samples_per_block)
+
+
+class MarchRun:
+    """What stays the same through a march: Newmark's, in steps."""
 
     def __init__(
-        self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
+        self,
+        system: CoupledSystem,
+        settings: TransientSettings,
+        outputs: TransientOutputs,
+        turning: Turning,
+        samples_per_block: int,
     ) -> None:
         self.system, self.settings, self.turning = system, settings, turning
         self.arrays: KernelArrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)
         self.cache = StepCache(self.arrays, turning)
         self.base = coarsest_step(system, turning, settings.largest_step)
-        self.ends = block_ends(settings.duration, settings.sample_interval, self.base)
+        self.ends = block_ends(settings.duration, settings.sample_interval, self.base, samples_per_block)
         pushing = sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
         self.pushing = np.linalg.norm(system.load) + np.linalg.norm(pushing)
         # Nothing that stays together moves so much further than its loads press it.
@@ -206,12 +274,12 @@ class _Run:
         resting = replace(system, load=load)
         q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)
-        first = float(self._bounds(0)[1])
+        first = float(self.bounds(0)[1])
         turned, rates, _ = self.turning.at(1e-7 * first)
         stored = self._stored(q, v, float(turned[0]), float(rates[0]))
-        energy = self._held(q, v) + stored
+        energy = self.held(q, v) + stored
         return Checkpoint(
-            block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(4),
+            block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(5),
             contact_totals=np.zeros((len(system.contacts), 4)), level=0, steps=0, rejected=0, unsettled=0, worst=0.0,
             smallest=self.base, start_energy=energy, energy=energy, highest=energy, lowest=energy, seconds=0.0,
         )  # fmt: skip
@@ -221,7 +289,7 @@ class _Run:
         from coupling.newmark import march
 
         settings, cache = self.settings, self.cache
-        bounds = self._bounds(number)
+        bounds = self.bounds(number)
         # An event may stand for the start of the record, when rounding alone holds the two apart.
         first_record = int(np.searchsorted(bounds, settings.record_from - same_time(self.base)))
         if bounds[0] > settings.record_from:
@@ -232,9 +300,7 @@ class _Run:
             self._march(march, state, cut(cache, self.turning, bounds[:1], 1.0), samples)
         # Forces too small to see: below this an acceleration is rounding, and its curvature means nothing.
         quiet = (1e-9 * float(np.linalg.norm(self.system.stiffness @ state.q) + self.pushing)) ** 2
-        bound = _RUNAWAY * (np.abs(state.q).max(initial=0.0) + self.reach)
-        bound += _RUNAWAY * float(np.linalg.norm(state.v)) * settings.duration if number == 0 else 0.0
-        bound = bound if bound > 0.0 else np.inf
+        bound = self.limit(number, state)
         clock = time.perf_counter() - before.seconds
         while position < len(bounds) - 1:
             last = min(position + _SEGMENTS_PER_CHUNK, len(bounds) - 1)
@@ -247,7 +313,7 @@ class _Run:
             trial, curvature, acceleration = self._march(march, state, segments, samples)
             steps = int(segments.steps.sum())
             if not np.isfinite(curvature) or not float(np.abs(trial.q).max(initial=0.0)) < bound:
-                raise TransientError(self._lost(float(bounds[position]), state))
+                raise TransientError(self.lost(float(bounds[position]), state))
             error = float(np.sqrt(curvature / (acceleration + quiet * steps + 1e-300))) / 12.0
             if error > settings.tolerance:
                 level = state.level + max(1, int(np.ceil(np.log2(error / settings.tolerance))))
@@ -259,7 +325,7 @@ class _Run:
                     )
                 state = replace(state, level=level, rejected=state.rejected + steps)
                 continue
-            energy = self._held(trial.q, trial.v) + trial.stored
+            energy = self.held(trial.q, trial.v) + trial.stored
             state = replace(
                 trial,
                 time=float(bounds[last]),
@@ -275,21 +341,31 @@ class _Run:
             progress(float(bounds[position] / settings.duration))
         return replace(state, block=number + 1, seconds=time.perf_counter() - clock)
 
-    def _bounds(self, number: int) -> FloatArray:
+    def limit(self, number: int, state: Checkpoint) -> float:
+        """What no coordinate of a machine that holds together passes in a block."""
+        bound = _RUNAWAY * (float(np.abs(state.q).max(initial=0.0)) + self.reach)
+        bound += _RUNAWAY * float(np.linalg.norm(state.v)) * self.settings.duration if number == 0 else 0.0
+        return bound if bound > 0.0 else np.inf
+
+    def bounds(self, number: int) -> FloatArray:
+        """Where a block is cut into stretches [s]."""
         ends = float(self.ends[number]), float(self.ends[number + 1])
         return boundaries(self.system, self.turning, *ends, self.base, (self.settings.record_from,))
 
     def _march(self, kernel: Any, state: Checkpoint, segments: Any, samples: Any) -> tuple[Checkpoint, float, float]:
         """The kernel on copies of what it changes."""
         q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))
-        head = (q, v, self.arrays.dynamics, self.arrays.contacts, self.cache.matrices, segments, self.arrays.outputs)
+        arrays = self.arrays
+        head = (
+            q, v, arrays.dynamics, arrays.contacts, arrays.bearings, self.cache.matrices, segments, arrays.outputs,
+        )  # fmt: skip
         sample, stored, curvature, acceleration, unsettled = kernel(
             *head, samples, state.sample, state.stored, totals, contacts
         )
         moved = replace(state, q=q, v=v, totals=totals, contact_totals=contacts, sample=sample, stored=stored)
         return replace(moved, unsettled=state.unsettled + unsettled), curvature, acceleration
 
-    def _held(self, q: FloatArray, v: FloatArray) -> float:
+    def held(self, q: FloatArray, v: FloatArray) -> float:
         """Energy of motion and of the springs that do not change [J]."""
         dynamics = self.arrays.dynamics
         energy = 0.5 * v @ v + 0.5 * q @ (dynamics.stiffness * q)
@@ -301,12 +377,13 @@ class _Run:
     def _stored(self, q: FloatArray, v: FloatArray, turned: float, rate: float) -> float:
         from coupling.newmark import stored_energy
 
-        return float(stored_energy(self.arrays.dynamics, self.arrays.contacts, q, v, turned, rate))
+        return float(stored_energy(*self.arrays[:3], q, v, turned, rate))
 
-    def _lost(self, begin: float, state: Checkpoint) -> str:
-        """What happened where the motion grows beyond bounds."""
+    def lost(self, begin: float, state: Checkpoint, now: float | None = None) -> str:
+        """What happened where the motion grows beyond bounds, after a time and until now [s]."""
+        until = begin if now is None else now
         for contact, last in zip(self.system.contacts, state.contact_totals[:, 3], strict=True):
-            if contact.drives and (begin - last) * abs(contact.rate) > _GONE:
+            if contact.drives and (until - last) * abs(contact.rate) > _GONE:
                 return (
                     f"the teeth of {contact.name} came apart at t = {last:.6g} s and did not meet again: nothing "
                     "presses them together; look at the torques in and out, and whether the driver leads"

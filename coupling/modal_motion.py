@@ -85,8 +85,21 @@ class ModalRecord:
     coordinates: dict[str, FloatArray]
     housing_acceleration: FloatArray
 
+    @property
+    def columns(self) -> FloatArray:
+        """Every signal beside the others, shape (s, k)."""
+        moved = [coordinate[:, None] for coordinate in self.coordinates.values()]
+        return np.concatenate([*moved, self.housing_acceleration], axis=1)
 
-def with_modal_rows(machine: Machine, outputs: TransientOutputs, count: int = 0) -> TransientOutputs:
+    def with_columns(self, columns: FloatArray) -> "ModalRecord":
+        """Other samples of the same signals, from what :attr:`columns` gives."""
+        coordinates = {name: columns[:, i] for i, name in enumerate(self.coordinates)}
+        return ModalRecord(coordinates, columns[:, len(coordinates) :])
+
+
+def with_modal_rows(
+    machine: Machine, outputs: TransientOutputs, count: int = 0, *, housing: bool = True
+) -> TransientOutputs:
     """Outputs and, after them, the accelerations of the housing's modes, and the first modal coordinates of each part.
 
     Parameters
@@ -95,21 +108,23 @@ def with_modal_rows(machine: Machine, outputs: TransientOutputs, count: int = 0)
     outputs : TransientOutputs
     count : int
         How many of each kind of a rotor's modes, and of the housing's, are to have their displacement recorded.
+    housing : bool
+        Whether the accelerations of the housing's modes are.
     """
-    housing = _housing_rows(machine)
+    accelerations = _housing_rows(machine)[: None if housing else 0]
     rows = np.array(list(_coordinate_rows(machine, count).values())).reshape(-1, machine.system.size)
     return replace(
         outputs,
         displacement=np.concatenate([outputs.displacement, rows]),
-        acceleration=np.concatenate([outputs.acceleration, housing]),
+        acceleration=np.concatenate([outputs.acceleration, accelerations]),
     )
 
 
-def modal_record(machine: Machine, result: Recorded, count: int = 0) -> ModalRecord:
+def modal_record(machine: Machine, result: Recorded, count: int = 0, *, housing: bool = True) -> ModalRecord:
     """Name what a transient with :func:`with_modal_rows` recorded after its other outputs."""
     names = list(_coordinate_rows(machine, count))
     moved = result.displacement[:, result.displacement.shape[1] - len(names) :]
-    first = result.acceleration.shape[1] - len(_housing_rows(machine))
+    first = result.acceleration.shape[1] - (len(_housing_rows(machine)) if housing else 0)
     return ModalRecord({name: moved[:, i] for i, name in enumerate(names)}, result.acceleration[:, first:])
 
 

@@ -9,14 +9,14 @@ One step of size h from (q, v, a), with the mass the identity and the contacts' 
     q₁ = q* + β h² a₁,                        v₁ = v* + γ h a₁,
 
 S as in :mod:`coupling.step_kernels`, where K and C are diagonal but for the ties U. With W = S⁻¹ D and H = Dᵀ W only
-the few contact forces f remain unknown: their compressions
+the few forces f of teeth and nonlinear bearings remain unknown: their deflections
 
     δ = δ* - β h² H f(δ, δ'),    δ' = δ'* - γ h H f(δ, δ'),
 
-δ* and δ'* being those without contact, are found by Newton's method on a system as small as the number of
-contacts. What ties and contacts see of the motion, Uᵀq and Dᵀq, is carried along by the same recurrence as q. With
-β = 1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear
-system.
+δ* and δ'* being those without them, are found by Newton's method on a system as small as their number. Friction acts
+along directions of its own, columns of D whose deflections no law asks for. What ties and laws see of the motion, Uᵀq
+and Dᵀq, is carried along by the same recurrence as q. With β = 1/4, γ = 1/2 the step is of second order,
+unconditionally stable, and keeps the energy of an undamped linear system.
 """
 
 import math
@@ -25,11 +25,32 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from coupling.contact_kernels import DAMPING, ENERGY, FORCE, PHASE_SLOPE, deviation_of, settle, take_law
-from coupling.kernel_arrays import BY_TIME, BY_UNBALANCE, Contacts, Dynamics, Outputs, Samples, Segments, StepMatrices
+from coupling.contact_kernels import (
+    DAMPING,
+    ENERGY,
+    FORCE,
+    PHASE_SLOPE,
+    deviation_of,
+    settle,
+    settle_all,
+    take_forces,
+    take_law,
+)
+from coupling.kernel_arrays import (
+    BY_TIME,
+    BY_UNBALANCE,
+    Bearings,
+    Contacts,
+    Dynamics,
+    Outputs,
+    Samples,
+    Segments,
+    StepMatrices,
+)
 from coupling.step_kernels import add_gyroscopic, apply_base, build_step, project, tie_matrices
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 # Contacts are evaluated this part of a segment inside its ends, so that a pair that enters or leaves exactly
 # there counts on one side only.
@@ -45,6 +66,7 @@ def march(
     v: FloatArray,
     dynamics: Dynamics,
     contacts: Contacts,
+    bearings: Bearings,
     matrices: StepMatrices,
     segments: Segments,
     outputs: Outputs,
@@ -63,10 +85,11 @@ def march(
     next_sample : int
         Number of the first sample not yet written.
     stored : float
-        Energy just before the first segment in the teeth, and in the ties where they change with the speed [J].
-    totals : ndarray, shape (4,)
-        Work of the loads, energy lost to damping, work of what turns on the contacts and ties (added to), and the
-        largest kinetic energy [J].
+        Energy just before the first segment in the teeth, in what nonlinear bearings hold beside linear ones, and in
+        the ties where they change with the speed [J].
+    totals : ndarray, shape (5,)
+        Work of the loads, energy lost to damping, work of what turns on contacts, bearings and ties (added to), the
+        largest kinetic energy, and what friction takes from the nominal rotation (added to) [J].
     contact_totals : ndarray, shape (c, 4)
         For each contact ∫ force dt [N s], time apart [s] (both added to), the largest force [N], and when the flanks
         last touched [s].
@@ -84,17 +107,21 @@ def march(
         Steps whose contact forces Newton's method left unsettled.
     """
     r, n = dynamics.ties.shape
-    c = contacts.phase.size
+    c, directions = contacts.phase.size, contacts.direction.shape[0]
+    u = c + bearings.axis.size
     a, before, free, pushed = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     q0, v0, load, x, y = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    # What the ties see of q, v and a, and what the contacts do.
+    # What the ties see of q, v and a, and what the laws do.
     tq, tv, ta, tq0, tv0 = np.zeros(r), np.zeros(r), np.zeros(r), np.zeros(r), np.zeros(r)
     tie_push, seen_by_ties, response = np.zeros(r), np.zeros(r), np.zeros(r)
-    dq, dv, da, dq0, dv0 = np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c)
-    delta, rate, delta_free, rate_free, slip = np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c), np.zeros(c)
-    laws, spare, jacobian, residual = np.zeros((c, 5)), np.zeros((c, 5)), np.zeros((c, c)), np.zeros((c, 1))
+    dq, dv, da, dq0 = np.zeros(directions), np.zeros(directions), np.zeros(directions), np.zeros(directions)
+    dv0, push = np.zeros(directions), np.zeros(directions)
+    delta, rate, delta_free, rate_free, slip = np.zeros(u), np.zeros(c), np.zeros(u), np.zeros(c), np.zeros(c)
+    laws, spare, jacobian, residual = np.zeros((c, 6)), np.zeros((c, 6)), np.zeros((u, u)), np.zeros((u, 1))
+    drag, tangents, held = np.zeros((c, 4)), np.zeros((bearings.preload.size, 5, 5)), np.zeros(2)
+    teeth = contacts.direction[:c]
     force_before, work = np.zeros(c), np.zeros(dynamics.gyroscopic.shape[2])
-    powers, powers_before = np.zeros(3), np.zeros(3)
+    powers, powers_before = np.zeros(4), np.zeros(4)
     curvature, acceleration, unsettled = 0.0, 0.0, 0
     beta, gamma = dynamics.beta, dynamics.gamma
     # Taken out of their tuples here: a tuple that changes hands has each of its arrays counted, in and out.
@@ -124,8 +151,10 @@ def march(
         for k in range(c):
             gone, slip[k] = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
             delta[k], rate[k] = dq[k] - gone, dv[k] - slip[k]
-            take_law(contacts, k, turned, delta[k], rate[k], laws)
-        fresh = _stored(changing, stiffness, tq, laws)
+        for k in range(c, u):
+            delta[k] = dq[k]
+        take_forces(contacts, bearings, turned, delta, rate, laws, push, drag, tangents, held)
+        fresh = _stored(changing, stiffness, tq, laws) + held[0]
         totals[2] += fresh - stored
         stored = fresh
         _load_at(dynamics, t0, turned0, speed0, swing, load)
@@ -143,8 +172,8 @@ def march(
         for i in range(n):
             for j in range(r):
                 a[i] -= dynamics.ties[j, i] * tie_push[j]
-            for k in range(c):
-                a[i] -= contacts.direction[k, i] * laws[k, FORCE]
+            for k in range(directions):
+                a[i] -= contacts.direction[k, i] * push[k]
         project(dynamics.ties, a, ta)
         project(contacts.direction, a, da)
         _powers(
@@ -163,6 +192,9 @@ def march(
             laws,
             powers_before,
         )
+        if directions > u:
+            _friction_power(contacts.friction_row, contacts.sliding, speed, dv, push, powers_before)
+        powers_before[2] += held[1] * speed
         for k in range(c):
             force_before[k] = laws[k, FORCE]
 
@@ -182,7 +214,7 @@ def march(
             for j in range(r):
                 tq0[j] = tq[j] + h * tv[j] + old * ta[j]
                 tv0[j] = tv[j] + new * ta[j]
-            for k in range(c):
+            for k in range(directions):
                 dq0[k] = dq[k] + h * dv[k] + old * da[k]
                 dv0[k] = dv[k] + new * da[k]
             if swing != 0.0:
@@ -219,7 +251,7 @@ def march(
                     seen_by_ties[k] -= between[k, j] * value
 
             displaced, moved = beta * h * h, gamma * h
-            if c > 0:
+            if u > 0:
                 # The last look at the teeth is just inside the segment.
                 if step == count - 1:
                     speed = speed0 + swing * (after - inside)
@@ -229,34 +261,60 @@ def march(
                     gone, slip[k] = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
                     delta_free[k] = dq0[k] + displaced * da[k] - gone
                     rate_free[k] = dv0[k] + moved * da[k] - slip[k]
-                if not settle(
-                    contacts,
-                    turned,
-                    delta_free,
-                    rate_free,
-                    matrices.flexibility[slot],
-                    displaced,
-                    moved,
-                    delta,
-                    rate,
-                    laws,
-                    jacobian,
-                    residual,
-                ):
+                for k in range(c, u):
+                    delta_free[k] = dq0[k] + displaced * da[k]
+                if directions == c:
+                    settled = settle(
+                        contacts,
+                        turned,
+                        delta_free,
+                        rate_free,
+                        matrices.flexibility[slot],
+                        displaced,
+                        moved,
+                        delta,
+                        rate,
+                        laws,
+                        jacobian,
+                        residual,
+                    )
+                    for k in range(c):
+                        push[k] = laws[k, FORCE]
+                else:
+                    settled = settle_all(
+                        contacts,
+                        bearings,
+                        turned,
+                        delta_free,
+                        rate_free,
+                        matrices.flexibility[slot],
+                        displaced,
+                        moved,
+                        delta,
+                        rate,
+                        laws,
+                        push,
+                        drag,
+                        tangents,
+                        held,
+                        jacobian,
+                        residual,
+                    )
+                if not settled:
                     unsettled += 1
-                for k in range(c):
-                    force = laws[k, FORCE]
+                for k in range(directions):
+                    force = push[k]
                     if force != 0.0:
                         for i in range(n):
                             free[i] -= matrices.contact[slot, k, i] * force
                         for j in range(r):
                             seen_by_ties[j] -= matrices.contact_ties[slot, k, j] * force
-                        for j in range(c):
+                        for j in range(directions):
                             da[j] -= matrices.flexibility[slot, j, k] * force
 
             if samples.first + next_sample * samples.interval <= t + h:
                 next_sample = _sample(
-                contacts, outputs, samples, next_sample, t, h, turned_before, speed_before, swing,
+                contacts, teeth, outputs, samples, next_sample, t, h, turned_before, speed_before, swing,
                 q, v, a, q0, v0, free, displaced, moved, x, y, spare, delta_free,
             )  # fmt: skip
             kinetic = 0.0
@@ -272,12 +330,12 @@ def march(
             for j in range(r):
                 ta[j] = seen_by_ties[j]
                 tq[j], tv[j] = tq0[j] + displaced * ta[j], tv0[j] + moved * ta[j]
-            for k in range(c):
+            for k in range(directions):
                 dq[k], dv[k] = dq0[k] + displaced * da[k], dv0[k] + moved * da[k]
 
             if swing != 0.0:
                 add_gyroscopic(gyroscopic, first, size, -swing, q, load, work)
-            stored = _stored(changing, stiffness, tq, laws)
+            stored = _stored(changing, stiffness, tq, laws) + held[0]
             _powers(
                 dynamics.damping,
                 contacts.rate,
@@ -294,6 +352,11 @@ def march(
                 laws,
                 powers,
             )
+            if directions > u:
+                _friction_power(contacts.friction_row, contacts.sliding, speed, dv, push, powers)
+            powers[2] += held[1] * speed
+            totals[4] += 0.5 * h * (powers_before[3] + powers[3])
+            powers_before[3] = powers[3]
             for k in range(3):
                 totals[k] += 0.5 * h * (powers_before[k] + powers[k])
                 powers_before[k] = powers[k]
@@ -312,21 +375,30 @@ def march(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def stored_energy(
-    dynamics: Dynamics, contacts: Contacts, q: FloatArray, v: FloatArray, turned: float, speed: float
+    dynamics: Dynamics,
+    contacts: Contacts,
+    bearings: Bearings,
+    q: FloatArray,
+    v: FloatArray,
+    turned: float,
+    speed: float,
 ) -> float:
-    """Energy in the teeth, and in the ties where they change with the speed [J], at a state."""
-    r, c = dynamics.ties.shape[0], contacts.phase.size
-    stiffness, damping, laws = np.zeros((r, r)), np.zeros((r, r)), np.zeros((c, 5))
+    """Energy that :func:`march` calls stored [J], at a state."""
+    r, c, directions = dynamics.ties.shape[0], contacts.phase.size, contacts.direction.shape[0]
+    stiffness, damping, laws = np.zeros((r, r)), np.zeros((r, r)), np.zeros((c, 6))
+    push, drag, tangents = np.zeros(directions), np.zeros((c, 4)), np.zeros((bearings.preload.size, 5, 5))
+    held = np.zeros(2)
     tie_matrices(dynamics, speed, stiffness, damping)
     changing = dynamics.tie_rates.size > 1
-    tq, dq, dv = np.zeros(r), np.zeros(c), np.zeros(c)
+    tq, dq, dv = np.zeros(r), np.zeros(directions), np.zeros(directions)
     project(dynamics.ties, q, tq)
     project(contacts.direction, q, dq)
     project(contacts.direction, v, dv)
     for k in range(c):
         gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
-        take_law(contacts, k, turned, dq[k] - gone, dv[k] - slip, laws)
-    return _stored(changing, stiffness, tq, laws)
+        dq[k], dv[k] = dq[k] - gone, dv[k] - slip
+    take_forces(contacts, bearings, turned, dq, dv, laws, push, drag, tangents, held)
+    return float(_stored(changing, stiffness, tq, laws) + held[0])
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -415,8 +487,27 @@ def _powers(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _friction_power(
+    friction_row: IntArray, sliding: FloatArray, speed: float, dv: FloatArray, push: FloatArray, out: FloatArray
+) -> None:
+    """Power that friction takes from the nominal rotation, into out[3], and gives to the coordinates, into out[2] [W].
+
+    The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. The former,
+    Σ μ F_j |w_j| and never negative, comes from whatever turns the machine. The latter is small, and shakes the
+    coordinates as often as it brakes them.
+    """
+    out[3] = 0.0
+    for k in range(friction_row.size):
+        row = friction_row[k]
+        if row >= 0:
+            out[2] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
+            out[3] += (push[row] * sliding[k, 0] + push[row + 1] * sliding[k, 1]) * speed
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _sample(
     contacts: Contacts,
+    teeth: FloatArray,
     outputs: Outputs,
     samples: Samples,
     number: int,
@@ -461,12 +552,12 @@ def _sample(
             after = s * h
             speed = speed0 + swing * after
             turned = turned0 + after * (speed0 + 0.5 * swing * after)
-            project(contacts.direction, x, samples.compression[row])
-            project(contacts.direction, y, work)
+            project(teeth, x, samples.compression[row])
+            project(teeth, y, work)
             for k in range(contacts.phase.size):
                 gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
                 samples.compression[row, k] -= gone
-                take_law(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws)
+                take_law(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws, k)
                 samples.force[row, k] = laws[k, FORCE]
         for i in range(n):
             x[i] = (1.0 - s) * a[i] + s * a1[i]

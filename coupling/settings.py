@@ -1,6 +1,7 @@
 """How far and how finely to march, and what to record."""
 
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -8,6 +9,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 
 FloatArray = npt.NDArray[np.float64]
+Method = Literal["newmark", "exact", "auto"]
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,9 @@ class TransientSettings:
         Of the error measure above.
     beta, gamma : float
         Newmark's parameters; 1/4 and 1/2 are the only pair that neither gains nor loses energy.
+    method : "newmark", "exact" or "auto"
+        Newmark's steps; the exact march of :mod:`coupling.exact_march` in elements of time, for constant speeds and
+        loads without tables over time; or the exact one where it applies, else Newmark's.
     """
 
     duration: float
@@ -37,6 +42,7 @@ class TransientSettings:
     tolerance: float = 1e-4
     beta: float = 0.25
     gamma: float = 0.5
+    method: Method = "newmark"
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.record_from < self.duration < np.inf:
@@ -45,6 +51,8 @@ class TransientSettings:
             value = getattr(self, what)
             if not 0.0 < value < np.inf:
                 raise CouplingError(f"{what} of {value}; expected a positive number")
+        if self.method not in get_args(Method):
+            raise CouplingError(f"a method {self.method!r}; expected one of {', '.join(get_args(Method))}")
 
     @property
     def samples(self) -> int:

@@ -5,6 +5,7 @@ level of that rms value, see :mod:`coupling.signature.levels`. The mean, the d.c
 at 0 Hz.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -30,12 +31,15 @@ class Spectrum:
     phase : ndarray, shape (..., m)
         Of the cosine, at the start of the record [rad].
     window : {"uniform", "hann"}
+    averages : int
+        Stretches of the record over whose lines the mean was taken, see :func:`averaged_spectrum`.
     """
 
     frequencies: FloatArray
     amplitude: FloatArray
     phase: FloatArray
     window: Window
+    averages: int = 1
 
     @property
     def lines(self) -> ComplexArray:
@@ -70,6 +74,41 @@ def amplitude_spectrum(signal: FloatArray, interval: float, window: Window = "un
         Uniform for a record of whole periods, whose lines are then exact; Hann otherwise, scaled so that a sine
         keeps its height. The mean is taken off before Hann's window and given back at 0 Hz.
     """
+    lines = _lines(signal, window)
+    return Spectrum(_frequencies(signal.shape[-1], interval), np.abs(lines), np.angle(lines), window)
+
+
+def averaged_spectrum(stretches: Iterable[FloatArray], interval: float, window: Window = "uniform") -> Spectrum:
+    """Lines of a record that is too long for memory, averaged over stretches of it.
+
+    Amplitudes are root mean squares of the stretches' own, so that power adds up whatever the phases; the mean is the
+    mean of the means. Phases are those of the mean of the complex lines: they mean something where the motion repeats
+    with the stretch.
+
+    Parameters
+    ----------
+    stretches : iterable of ndarray, shape (..., s)
+        At least one, all of the same shape.
+    interval, window
+        As for :func:`amplitude_spectrum`, of which this is the mean.
+    """
+    count = samples = 0
+    together, power = np.zeros(0, dtype=np.complex128), np.zeros(0)
+    for stretch in stretches:
+        lines = _lines(stretch, window)
+        together, power = (lines, np.abs(lines) ** 2) if not count else (together + lines, power + np.abs(lines) ** 2)
+        count, samples = count + 1, stretch.shape[-1]
+    amplitude, together = np.sqrt(power / count), together / count
+    amplitude[..., 0] = np.abs(together[..., 0])
+    return Spectrum(_frequencies(samples, interval), amplitude, np.angle(together), window, count)
+
+
+def _frequencies(count: int, interval: float) -> FloatArray:
+    return np.asarray(np.fft.rfftfreq(count, interval), dtype=np.float64)
+
+
+def _lines(signal: FloatArray, window: Window) -> npt.NDArray[np.complex128]:
+    """Complex one-sided lines; their magnitude is the peak amplitude, and the line at 0 Hz the mean."""
     count = signal.shape[-1]
     mean = signal.mean(axis=-1, keepdims=True)
     weights = window_weights(count, window)
@@ -77,8 +116,7 @@ def amplitude_spectrum(signal: FloatArray, interval: float, window: Window = "un
     if count % 2 == 0:
         lines[..., -1] *= 0.5  # the line at half the sampling rate stands alone
     lines[..., 0] = mean[..., 0]
-    frequencies = np.asarray(np.fft.rfftfreq(count, interval), dtype=np.float64)
-    return Spectrum(frequencies, np.abs(lines), np.angle(lines), window)
+    return np.asarray(lines)
 
 
 def window_weights(count: int, window: Window) -> FloatArray:

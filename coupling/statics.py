@@ -3,7 +3,8 @@
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector import ContactConnector
+from coupling.bearing_arrays import bearing_arrays
+from coupling.connector import ContactConnector, NonlinearConnector
 from coupling.errors import CouplingError, TransientError
 from coupling.system import CoupledSystem
 
@@ -12,13 +13,14 @@ FloatArray = npt.NDArray[np.float64]
 _RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
 _PUSHED = 1e-9  # part of a load below which its share in a motion is rounding
 _STEPS = 60
+_HALVINGS = 12  # of a step that leads away from balance
 
 
 def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
-    """Coordinates at rest under the constant load, the teeth standing where they are at a time.
+    """Coordinates at rest under the constant load, teeth and rolling elements standing where they are at a time.
 
-    Newton's method on K q + Σ d f(dᵀ q) = F. Motions that no spring resists, such as gears that roll together,
-    must carry no load; they stay at zero.
+    Newton's method on K q + Σ d f(dᵀ q) = F, with the friction of teeth that slide as they turn. Motions that no spring
+    resists, such as gears that roll together, must carry no load; they stay at zero.
 
     Returns
     -------
@@ -29,11 +31,9 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     CouplingError
         Where the load drives a motion that nothing resists: the torques do not balance.
     TransientError
-        Where the teeth find no equilibrium.
+        Where teeth or bearings find no equilibrium.
     """
-    from coupling.gears.kernels import tooth_force
-
-    rigid, stiffest = _unresisted(system)
+    rigid, stiffest = unresisted_motions(system)
     if rigid.size:
         driven = rigid.T @ system.load
         # Beside a load that balances in itself, and beside the rounding of what a motion is.
@@ -52,25 +52,85 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
         if contact.drives:
             first_touch = float(contact.contact.pairs(_phase(contact, time)).deviation.min())
             closing += contact.contact.mean_stiffness * (first_touch + _error(contact, time)) * contact.direction
+    for bearing in system.nonlinear:
+        # Bearings begin where their mean load puts them, for with play they would begin in it, held by nothing.
+        about, _ = _bearing(bearing, bearing.law.reference[bearing.axes], time)
+        closing += bearing.directions @ (bearing.stiffness @ bearing.law.reference[bearing.axes] - about)
     q: FloatArray = np.asarray(
         np.linalg.solve(system.mean_stiffness() + penalty, system.load + closing), dtype=np.float64
     )
     pressing = float(np.linalg.norm(system.load) + np.linalg.norm(closing)) or 1e-300
+    residual, tangent = _out_of_balance(system, penalty, q, time)
     for _ in range(_STEPS):
-        residual = system.load - system.stiffness @ q - penalty @ q
-        tangent = system.stiffness + penalty
-        for contact in system.contacts:
-            compression = float(contact.direction @ q) - _error(contact, time) - contact.clearance
-            law = contact.contact.kernel_arguments
-            force, slope = tooth_force(_phase(contact, time), compression, 0.0, *law)[:2]
-            residual = residual - force * contact.direction
-            tangent = tangent + slope * np.outer(contact.direction, contact.direction)
         if np.linalg.norm(residual) <= 1e-10 * pressing:
             return q
-        q = q + np.linalg.lstsq(tangent, residual, rcond=1e-15)[0]
+        step = np.linalg.lstsq(tangent, residual, rcond=1e-15)[0]
+        for halving in range(_HALVINGS if system.nonlinear else 1):
+            trial, slope = _out_of_balance(system, penalty, q + 0.5**halving * step, time)
+            if np.linalg.norm(trial) < np.linalg.norm(residual):
+                break
+        q, residual, tangent = q + 0.5**halving * step, trial, slope
     raise TransientError(
-        f"no static equilibrium of the teeth after {_STEPS} Newton steps; the torque may be too small to close the mesh"
+        f"no static equilibrium of teeth and bearings after {_STEPS} Newton steps; the torque may be too small to "
+        "close the mesh, or the play of a bearing leave its shaft loose"
     )
+
+
+def _out_of_balance(
+    system: CoupledSystem, penalty: FloatArray, q: FloatArray, time: float
+) -> tuple[FloatArray, FloatArray]:
+    """F - K q - Σ d f(dᵀ q), shape (n,), and the tangent of what is taken from F, shape (n, n)."""
+    from coupling.gears.kernels import tooth_force
+
+    residual = system.load - system.stiffness @ q - penalty @ q
+    tangent = system.stiffness + penalty
+    for contact in system.contacts:
+        compression = float(contact.direction @ q) - _error(contact, time) - contact.clearance
+        law = contact.contact.kernel_arguments
+        force, slope = tooth_force(_phase(contact, time), compression, 0.0, *law)[:2]
+        push, rise = force * contact.direction, slope * contact.direction
+        if contact.sliding is not None:
+            rubbing, rising = friction_push(contact, _phase(contact, time), compression, force, slope)
+            push, rise = push + rubbing, rise + rising
+        residual = residual - push
+        tangent = tangent + np.outer(rise, contact.direction)
+    for bearing in system.nonlinear:
+        deflection = bearing.directions.T @ q
+        own, stiffness = _bearing(bearing, deflection, time)
+        residual = residual - bearing.directions @ (own - bearing.stiffness @ deflection)
+        tangent = tangent + bearing.directions @ (stiffness - bearing.stiffness) @ bearing.directions.T
+    return residual, tangent
+
+
+def friction_push(
+    contact: ContactConnector, phase: float, compression: float, force: float, slope: float
+) -> tuple[FloatArray, FloatArray]:
+    """What the friction of a contact takes from the coordinates, and its slope by the compression, shapes (n,).
+
+    ``force`` and ``slope`` are those of the contact.
+    """
+    from coupling.gears.friction_kernels import friction_shares
+
+    assert contact.sliding is not None
+    if force <= 0.0:
+        return np.zeros_like(contact.direction), np.zeros_like(contact.direction)
+    friction = contact.sliding.friction
+    start, end, parts, table, _, _, entering, faces, face_depth = contact.contact.kernel_arguments
+    place = friction.pitch_point, friction.half_line, friction.path_end
+    law = start, end, parts, table, entering, faces, face_depth
+    a, b, a_slope, b_slope = friction_shares(phase, compression, *law, *place)
+    turned = friction.coefficient * float(np.sign(contact.sliding.nominal[1])) * contact.sliding.directions
+    return turned @ [force * a, force * b], turned @ [slope * a + force * a_slope, slope * b + force * b_slope]
+
+
+def _bearing(connector: NonlinearConnector, deflection: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
+    """Force and tangent of a nonlinear bearing at its deflections, over its directions."""
+    from coupling.bearing_kernels import bearing_force
+
+    q, force, tangent = connector.law.reference.copy(), np.zeros(5), np.zeros((5, 5))
+    q[connector.axes] = deflection
+    bearing_force(bearing_arrays([connector]), 0, time, q, force, tangent)
+    return force[connector.axes], tangent[np.ix_(connector.axes, connector.axes)]
 
 
 def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
@@ -85,15 +145,18 @@ def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
         frequency = load.frequency if load.follows == "time" else load.frequency * rate
         if frequency == 0.0:
             continue
-        rigid = _unresisted(system)[0] if rigid is None else rigid
+        rigid = unresisted_motions(system)[0] if rigid is None else rigid
         pushed = rigid.T @ load.amplitude
         if np.abs(pushed).max(initial=0.0) > _PUSHED * np.linalg.norm(load.amplitude):
             velocity += rigid @ (pushed / (1j * frequency)).real
     return velocity
 
 
-def _unresisted(system: CoupledSystem) -> tuple[FloatArray, float]:
-    """Orthonormal motions that no spring resists, in columns, and the largest stiffness [1/s²]."""
+def unresisted_motions(system: CoupledSystem) -> tuple[FloatArray, float]:
+    """Orthonormal motions that no spring resists, in columns, and the largest stiffness [1/s²].
+
+    Teeth and nonlinear bearings count with their linear stiffness.
+    """
     values, vectors = np.linalg.eigh(0.5 * (system.mean_stiffness() + system.mean_stiffness().T))
     return vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)], float(values[-1])
 

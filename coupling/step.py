@@ -5,10 +5,12 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from coupling.bearing_arrays import bearing_arrays
 from coupling.kernel_arrays import (
     BY_TIME,
     BY_TURNING,
     BY_UNBALANCE,
+    Bearings,
     Contacts,
     Dynamics,
     Outputs,
@@ -41,13 +43,15 @@ class KernelArrays(NamedTuple):
 
     dynamics: Dynamics
     contacts: Contacts
+    bearings: Bearings
     outputs: Outputs
 
 
 def kernel_arrays(system: CoupledSystem, outputs: _Rows, beta: float, gamma: float) -> KernelArrays:
     """Lay out the system and the rows to record."""
     rows = (np.ascontiguousarray(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
-    return KernelArrays(_dynamics(system, beta, gamma), _contacts(system), Outputs(*rows))
+    bearings = bearing_arrays(system.nonlinear)
+    return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))
 
 
 def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: int, count: int) -> Samples:
@@ -69,15 +73,24 @@ class StepCache:
     """The matrices of every step size met so far; see :mod:`coupling.step_kernels` for what they are.
 
     At steady speed few sizes occur: the stretches between events repeat with the mesh period. Sizes that agree to nine
-    digits are one. Where the speed varies no size occurs twice, and the kernel builds each in slot 0.
+    digits are one. Where the speed varies no size occurs twice, and the kernel builds each in slot 0. Mesh periods that
+    have no common multiple make ever new sizes: beyond a limit all are forgotten, which changes no result, as a size
+    met again is built anew just as it was.
     """
 
     _ROOM = 8
+    _MOST_BYTES = 32 << 20
 
     def __init__(self, arrays: KernelArrays, turning: Turning) -> None:
         self._arrays, self._steady, self._rate = arrays, turning.is_steady, float(turning.rates[0])
         self._kinds: dict[float, int] = {}
         self.matrices = _room_for_steps(arrays, self._ROOM)
+
+    def make_room(self, count: int) -> None:
+        """Forget all sizes where so many new ones might not find room; their numbers hold until then."""
+        most = self._MOST_BYTES // sum(array[:1].nbytes for array in self.matrices)
+        if len(self._kinds) + count > max(most, 2 * count):
+            self._kinds.clear()
 
     def kind(self, size: float) -> int:
         """The number of a step size [s]."""
@@ -102,6 +115,7 @@ def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> 
     """Stretches between bounds, each cut into at least two equal steps no longer than ``step`` [s]."""
     start, end = bounds[:-1], bounds[1:]
     counts = np.maximum(np.ceil((end - start) / step - 1e-9), 2).astype(np.int64)
+    cache.make_room(len(counts))
     kinds = np.array([cache.kind(float(size)) for size in (end - start) / counts], dtype=np.int64)
     turned = np.column_stack(turning.at(start)).reshape(-1, 3)
     return Segments(np.ascontiguousarray(start), np.ascontiguousarray(end), counts, kinds, turned)
@@ -109,7 +123,7 @@ def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> 
 
 def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
     r, n = arrays.dynamics.ties.shape
-    c = arrays.contacts.phase.size
+    k = len(arrays.contacts.direction)
     g, b = arrays.dynamics.gyroscopic.shape[:2]
     return StepMatrices(
         size=np.zeros(m),
@@ -120,9 +134,9 @@ def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
         ties=np.zeros((m, r, n)),
         between=np.zeros((m, r, r)),
         link=np.zeros((m, r, r)),
-        contact=np.zeros((m, c, n)),
-        contact_ties=np.zeros((m, c, r)),
-        flexibility=np.zeros((m, c, c)),
+        contact=np.zeros((m, k, n)),
+        contact_ties=np.zeros((m, k, r)),
+        flexibility=np.zeros((m, k, k)),
     )
 
 
@@ -191,7 +205,8 @@ def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, Float
     )
 
 
-def _contacts(system: CoupledSystem) -> Contacts:
+def contact_arrays(system: CoupledSystem) -> Contacts:
+    """The tooth contacts, laid out for the kernels."""
     c = len(system.contacts)
     arguments = [contact.contact.kernel_arguments for contact in system.contacts]
     harmonics = max((len(contact.errors) for contact in system.contacts), default=0)
@@ -204,8 +219,17 @@ def _contacts(system: CoupledSystem) -> Contacts:
         lowest = (gaps[..., 0] + np.minimum(gaps[..., 1:], 0.0).sum(axis=-1)).min()
         first_touch[k] = lowest + argument[6][:, 0].min(initial=0.0)
     entering = [argument[6] for argument in arguments]
+    rows = [system.contact_directions.T, *(connector.directions.T for connector in system.nonlinear)]
+    friction_row, friction, sliding = np.full(c, -1, dtype=np.int64), np.zeros((c, 4)), np.zeros((c, 2))
+    for k, contact in enumerate(system.contacts):
+        if contact.sliding is not None:
+            law, sliding[k] = contact.sliding.friction, contact.sliding.nominal
+            sense = float(np.sign(sliding[k, 1]))
+            friction[k] = sense * law.coefficient, law.pitch_point, law.half_line, law.path_end
+            friction_row[k] = sum(map(len, rows))
+            rows.append(contact.sliding.directions.T)
     return Contacts(
-        direction=np.ascontiguousarray(system.contact_directions.T),
+        direction=np.ascontiguousarray(np.concatenate(rows)),
         reach=np.array([argument[:3] for argument in arguments], dtype=np.float64).reshape(c, 3),
         curves=_padded([argument[3] for argument in arguments], 3),
         damping=np.array([argument[4] for argument in arguments], dtype=np.float64),
@@ -219,6 +243,9 @@ def _contacts(system: CoupledSystem) -> Contacts:
         face_depth=np.array([argument[8] for argument in arguments], dtype=np.float64),
         pairs=np.array([len(pairs) for pairs in entering], dtype=np.int64),
         first_touch=first_touch,
+        friction_row=friction_row,
+        friction=friction,
+        sliding=sliding,
     )
 
 

@@ -113,7 +113,7 @@ def build_step(
 ) -> None:
     """Fill a slot for steps of size h at a speed s' and an angular acceleration s''."""
     r, n = dynamics.ties.shape
-    c = contacts.phase.size
+    c = contacts.direction.shape[0]
     by_velocity, by_displacement = dynamics.gamma * h, dynamics.beta * h * h
     matrices.size[slot] = h
     for i in range(n):

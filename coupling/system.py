@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.component import Component
-from coupling.connector import ContactConnector, LinearConnector
+from coupling.connector import ContactConnector, LinearConnector, NonlinearConnector
 from coupling.errors import CouplingError
 
 FloatArray = npt.NDArray[np.float64]
@@ -67,8 +67,8 @@ class TimedLoad:
 class CoupledSystem:
     """All components, connectors and loads in one set of coordinates.
 
-    The equation of motion is q'' + C q' + K q + Σ d f(δ, δ', t) = F + Σ Re(F_w e^{iwt}) with the tooth contacts
-    in the sum, everything linear in C and K.
+    The equation of motion is q'' + C q' + K q + Σ d f(δ, δ', t) = F + Σ Re(F_w e^{iwt}) with the tooth contacts, and
+    what nonlinear bearings differ from linear ones, in the sum; everything linear in C and K.
 
     Attributes
     ----------
@@ -85,6 +85,7 @@ class CoupledSystem:
     swing : ndarray, shape (n,)
         Load of an angular acceleration s'' = 1/s of the nominal speeds: the shafts' own inertia, and the torque that
         the drive adds to overcome it; zero by default.
+    nonlinear : tuple of NonlinearConnector
     """
 
     components: tuple[Component, ...]
@@ -95,6 +96,7 @@ class CoupledSystem:
     harmonic_loads: tuple[HarmonicLoad, ...] = ()
     timed_loads: tuple[TimedLoad, ...] = ()
     swing: FloatArray = field(default_factory=lambda: np.zeros(0))
+    nonlinear: tuple[NonlinearConnector, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.speeds) != len(self.components):
@@ -171,6 +173,11 @@ class CoupledSystem:
     def contact_directions(self) -> FloatArray:
         """Directions of the tooth contacts, shape (n, n_contacts)."""
         return np.array([contact.direction for contact in self.contacts]).reshape(-1, self.size).T
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether neither friction nor a bearing's own law is in it: the tooth contacts are all that is not linear."""
+        return not self.nonlinear and all(contact.sliding is None for contact in self.contacts)
 
     def mean_stiffness(self) -> FloatArray:
         """K with every drive flank at its mean mesh stiffness [1/s²], shape (n, n)."""

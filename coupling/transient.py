@@ -31,9 +31,13 @@ class EnergyBalance:
     lost : float
         To damping.
     teeth : float
-        Work of the turning teeth on the contacts: their stiffness and shape change under load.
+        Work of what turns: the stiffness and shape of the contacts change under load, rolling elements go round, and
+        what slides rubs on the coordinates.
     scale : float
         The largest of these, of the swing of the energy held, and of the kinetic energy at any step.
+    friction : float
+        What friction between the teeth took from the nominal rotation, never negative: nearly all of it turned to heat,
+        the rest came to the coordinates and is in ``teeth``. No part of the balance.
     """
 
     change: float
@@ -41,6 +45,7 @@ class EnergyBalance:
     lost: float
     teeth: float
     scale: float
+    friction: float = 0.0
 
     @property
     def error(self) -> float:
@@ -142,19 +147,12 @@ def simulate(
     figures = transient_figures(settings, blocks[-1].after)
     return TransientResult(
         **vars(figures),
-        times=sample_times(settings, 0, sum(len(block.force) for block in blocks)),
+        times=_joined(blocks, "times"),
         displacement=_joined(blocks, "displacement"),
         velocity=_joined(blocks, "velocity"),
         acceleration=_joined(blocks, "acceleration"),
         compression=_joined(blocks, "compression"),
         force=_joined(blocks, "force"),
-    )
-
-
-def sample_times(settings: TransientSettings, first: int, count: int) -> FloatArray:
-    """Times of some samples [s]."""
-    return np.asarray(
-        settings.record_from + settings.sample_interval * np.arange(first, first + count, dtype=np.float64)
     )
 
 
@@ -194,6 +192,7 @@ def _joined(blocks: list[Block], what: str) -> FloatArray:
 
 
 def _balance(change: float, totals: FloatArray, held: float) -> EnergyBalance:
-    loads, lost, teeth, motion = (float(value) for value in totals)
+    loads, lost, teeth, motion, friction = (float(value) for value in totals)
     # Free vibration swaps its energy between motion and springs without any of it coming or going.
-    return EnergyBalance(change, loads, lost, teeth, scale=max(abs(loads), abs(lost), abs(teeth), held, motion))
+    scale = max(abs(loads), abs(lost), abs(teeth), held, motion)
+    return EnergyBalance(change, loads, lost, teeth, scale, friction)

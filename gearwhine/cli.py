@@ -57,12 +57,23 @@ _DEFAULTS = Common()
 Fresh = Annotated[
     bool, Parameter(name="--fresh", negative=(), help="Solve the housing's modes also where OUT keeps them unchanged.")
 ]
+FreshRun = Annotated[
+    bool,
+    Parameter(
+        name="--fresh",
+        negative=(),
+        help="Begin anew also where OUT keeps the housing's modes, or a transient that was interrupted.",
+    ),
+]
 CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a bundled case.")]
 
 
 @app.command
-def run(case: CaseName, *, fresh: Fresh = False, common: Common = _DEFAULTS) -> None:
-    """Everything the case asks for, start to end; results go to OUT (default: ./<case>-results)."""
+def run(case: CaseName, *, fresh: FreshRun = False, common: Common = _DEFAULTS) -> None:
+    """Everything the case asks for, start to end; results go to OUT (default: ./<case>-results).
+
+    A run that was interrupted or killed goes on from its last checkpoint when the same case is run into OUT again.
+    """
     from gearwhine.screen import show_run
     from gearwhine.work import run_case
 
@@ -186,6 +197,41 @@ def system(
 
 
 @app.command
+def steady(
+    case: CaseName,
+    *,
+    curve: Annotated[
+        bool,
+        Parameter(
+            name=["--curve"],
+            negative=(),
+            help="Also follow the motion over speed, through folds: over the range of the case's [sweep], else from "
+            "half the speed of operation to half again.",
+        ),
+    ] = False,
+    down: Annotated[
+        bool, Parameter(name=["--down"], negative=(), help="Follow it from the highest speed downwards.")
+    ] = False,
+    points: Annotated[
+        int, Parameter(help="Points of the curve where it runs straight.", validator=Number(gte=2, lte=2000))
+    ] = 100,
+    fresh: Fresh = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """The motion that repeats with the excitation, without marching to it; whether it is stable, and over speed."""
+    from gearwhine.screen import show_steady
+    from gearwhine.work import steady_case
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        over_speed = curve or down
+        return steady_case(
+            given, common.output, progress, over_speed=over_speed, downwards=down, points=points, fresh=fresh
+        )
+
+    _on_case(case, common, work, show_steady)
+
+
+@app.command
 def sweep(
     case: CaseName,
     *,
@@ -259,6 +305,35 @@ def survey(
         return survey_case(given, sensors, modes, _folder(case, common), progress, fresh=fresh)
 
     _on_case(case, common, work, show_survey)
+
+
+@app.command
+def update(
+    case: CaseName,
+    *,
+    null: Annotated[
+        int,
+        Parameter(
+            help="Also fit so many random sets of frequencies: how often the fit would be as good of nothing.",
+            validator=Number(gte=0),
+        ),
+    ] = 0,
+    held_back: Annotated[
+        bool,
+        Parameter(
+            name=["--held-back"], negative=(), help="Also fit without each measured mode in turn, and predict that one."
+        ),
+    ] = False,
+    common: Common = _DEFAULTS,
+) -> None:
+    """Fit the numbers of [update] to the measured modes; writes updated.toml to OUT (default: ./<case>-results)."""
+    from gearwhine.screen import show_update
+    from gearwhine.work import update_case
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return update_case(given, _folder(case, common), progress, null=null, held_back=held_back)
+
+    _on_case(case, common, work, show_update)
 
 
 @app.command
@@ -342,10 +417,7 @@ def _later(command: str, what: str) -> Callable[..., None]:
     return refuse
 
 
-for _name, _what in (
-    ("update", "fits named parameters to measured modes"),
-    ("report", "the results folder as one HTML page"),
-):
+for _name, _what in (("report", "the results folder as one HTML page"),):
     app.command(_later(_name, _what), name=_name)
 
 
@@ -366,8 +438,10 @@ def _run_command(arguments: list[str]) -> int:
     except CycloptsError as error:
         sys.stderr.write(f"gearwhine: {error}\nTry 'gearwhine --help'.\n")
         return 2
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         sys.stderr.write("gearwhine: interrupted; the output folder holds no half-written file\n")
+        for note in getattr(stop, "__notes__", ()):
+            sys.stderr.write(f"gearwhine: {note}\n")
         return 130
     except BrokenPipeError:
         return 1

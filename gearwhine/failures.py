@@ -17,7 +17,7 @@ def explain(error: Exception) -> tuple[int, str | None]:
 
     Wrong input is 2. A missing system library, or a result that failed its own proof, is 1 with its advice.
     """
-    from coupling.errors import CouplingError, ModesError, TransientError
+    from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
     from coupling.gears.errors import ContactAccuracyError, GearError
     from gearwhine.case import CaseError
     from housing.errors import (
@@ -50,6 +50,7 @@ def explain(error: Exception) -> tuple[int, str | None]:
         MesherUnavailableError,
         PartlyFailedError,
         ModesError,
+        PeriodicError,
         ReductionError,
         RendererUnavailableError,
         TransientError,

@@ -6,6 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
+_OFTEN = 30.0  # seconds after which long work is told of again
+_WORTH_SAYING = 5.0  # seconds
+
 
 class Progress(Protocol):
     """Told in words what happens now, and how much of it is done (0 to 1) where that is known.
@@ -63,22 +66,38 @@ def _live() -> Iterator[Progress]:
 
 def _lines() -> Progress:
     start = time.perf_counter()
-    last, told = "", 0
+    last, told, said = "", 0, start
+    begun = (start, 0.0)
 
     def progress(message: str, fraction: float | None = None) -> None:
-        nonlocal last, told
+        nonlocal last, told, said, begun
         tenths = 0 if fraction is None else int(10 * fraction)
+        now = time.perf_counter()
         news = message != last and _work(message) == _work(last)
         if message != last:
+            if not news:
+                # Work that goes on from where it was left does not begin at 0.
+                begun = (now, fraction or 0.0)
             last, told = message, 0
-        elif tenths <= told or tenths % 5:
+        elif (tenths <= told or tenths % 5) and (fraction is None or now - said < _OFTEN):
             return
-        told = tenths
-        part = "" if not tenths or news else f" {10 * tenths} %"
+        told, said = tenths, now
+        part = ""
+        if fraction is not None and fraction >= 0.005 and not news:
+            part = f" {100 * fraction:.0f} %{_time_left(begun, now, fraction)}"
         sys.stderr.write(f"[{time.perf_counter() - start:6.1f} s] {message}{part}\n")
         sys.stderr.flush()
 
     return progress
+
+
+def _time_left(begun: tuple[float, float], now: float, fraction: float) -> str:
+    """How much longer it takes at the pace so far, where that is long enough to be worth saying."""
+    passed, done = now - begun[0], fraction - begun[1]
+    if done <= 0.0 or (left := passed * (1.0 - fraction) / done) < _WORTH_SAYING:
+        return ""
+    minutes, seconds = divmod(round(left), 60)
+    return f", {minutes // 60}:{minutes % 60:02d}:{seconds:02d} left"
 
 
 def _work(message: str) -> str:

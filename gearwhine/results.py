@@ -15,9 +15,12 @@ from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.rotors import SolvedRotor
 from gearwhine.stages.signature import SolvedSignature
+from gearwhine.stages.steady import SolvedSteady
 from gearwhine.stages.system import SolvedSystem
 from gearwhine.stages.transient import SolvedTransient
+from gearwhine.steady_results import write_steady
 from gearwhine.system_results import write_system
+from gearwhine.transient_results import append_histories, write_transient
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,6 +36,7 @@ def write(
     system: SolvedSystem | None,
     transient: SolvedTransient | None,
     signature: SolvedSignature | None = None,
+    steady: SolvedSteady | None = None,
 ) -> None:
     """Write what was solved; the rest is left out."""
     variables: Variables = {}
@@ -46,9 +50,11 @@ def write(
     if system is not None:
         write_system(system, variables, coordinates)
     if transient is not None:
-        _transient(transient, variables, coordinates)
+        write_transient(transient, variables, coordinates)
     if transient is not None and signature is not None:
         write_signature(transient, signature, variables, coordinates)
+    if steady is not None:
+        write_steady(steady, variables, coordinates)
     if case.operation is not None:
         coordinates["speed"] = ((), case.operation.speed * 60.0 / _HERTZ, _unit("rpm", "speed of the first driver"))
     attributes = {
@@ -59,6 +65,8 @@ def write(
     }
     dataset = xr.Dataset(variables, coordinates, attributes)
     dataset.to_netcdf(path, engine="h5netcdf")
+    if transient is not None:
+        append_histories(path, transient)
 
 
 def write_shapes(path: Path, housing: SolvedHousing) -> None:
@@ -103,61 +111,3 @@ def _housing(solved: SolvedHousing, variables: Variables, coordinates: Variables
         survey.reshape(len(numbers), -1, 3),
         _unit("kg-0.5", "mass-normalised mode shapes at the survey points"),
     )
-
-
-def _transient(solved: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
-    """Histories in single precision, seven digits, since there are many; spectra in double."""
-    named = solved.histories
-    coordinates["time"] = ("time", named.times, _unit("s", "time from static equilibrium"))
-    if named.sensor_acceleration:
-        coordinates["sensor"] = ("sensor", list(named.sensor_acceleration), {})
-        variables["sensor_acceleration"] = (
-            ("sensor", "time"),
-            np.array(list(named.sensor_acceleration.values()), dtype=np.float32),
-            _unit("m/s2", "acceleration along the sensor"),
-        )
-    if named.bearing_force:
-        coordinates["bearing"] = ("bearing", list(named.bearing_force), {})
-        coordinates["axis"] = ("axis", ["x", "y"], {})
-        variables["bearing_force"] = (
-            ("bearing", "time", "axis"),
-            np.array(list(named.bearing_force.values()), dtype=np.float32),
-            _unit("N", "force of the shaft on its bearing"),
-        )
-    if named.mesh_force:
-        coordinates["contact"] = ("contact", list(named.mesh_force), {})
-        for name, values, unit, what in (
-            ("mesh_force", named.mesh_force, "N", "gear-mesh force along the line of action"),
-            ("mesh_compression", named.mesh_compression, "m", "compression of the mesh along the line of action"),
-        ):
-            variables[name] = (
-                ("contact", "time"),
-                np.array(list(values.values()), dtype=np.float32),
-                _unit(unit, what),
-            )
-        coordinates["gear"] = ("gear", list(named.gear_motion), {})
-        motion = np.array(list(named.gear_motion.values()), dtype=np.float32)
-        variables["gear_displacement"] = (
-            ("gear", "time", "axis"),
-            motion[:, :, :2],
-            _unit("m", "motion of the gear's centre"),
-        )
-        variables["gear_rotation"] = (
-            ("gear", "time"),
-            motion[:, :, 2],
-            _unit("rad", "rotation of the gear beside the steady one"),
-        )
-        coordinates.setdefault("axis", ("axis", ["x", "y"], {}))
-    for name, spectra, dimension, unit, what in (
-        ("sensor_spectrum", solved.sensor_spectra, "sensor", "m/s2", "peak amplitude of acceleration"),
-        ("mesh_force_spectrum", solved.force_spectra, "contact", "N", "peak amplitude of the gear-mesh force"),
-    ):
-        if not spectra:
-            continue
-        first = next(iter(spectra.values()))
-        coordinates["frequency"] = ("frequency", first.frequencies, _unit("Hz", "frequency"))
-        amplitude = np.array([spectrum.amplitude for spectrum in spectra.values()])
-        phase = np.array([spectrum.phase for spectrum in spectra.values()])
-        attributes = _unit(unit, what) | {"window": first.window}
-        variables[name] = ((dimension, "frequency"), amplitude, attributes)
-        variables[f"{name}_phase"] = ((dimension, "frequency"), phase, _unit("rad", f"phase of {what[18:]}"))

@@ -8,6 +8,7 @@ import coupling as room
 from gearwhine.rotor_results import Variables
 from gearwhine.stages.signature import SolvedSignature
 from gearwhine.stages.transient import SolvedTransient
+from gearwhine.transient_results import MODAL_COORDINATE
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,20 +34,15 @@ def write_signature(
 
 
 def _coordinates(transient: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
-    named, times = transient.modal.coordinates, transient.histories.times
-    values = np.array(list(named.values()))
-    spectra = [*transient.sensor_spectra.values(), *transient.force_spectra.values()]
-    window: room.Window = spectra[0].window if spectra else "uniform"
-    spectrum = room.amplitude_spectrum(values, float(times[1] - times[0]), window)
+    named = transient.modal.coordinates
+    spectrum = transient.record.spectrum(np.array(list(named.values())), transient.trusted_limit)
     coordinates["modal_coordinate"] = ("modal_coordinate", list(named), {})
     coordinates["frequency"] = ("frequency", spectrum.frequencies, _unit("Hz", "frequency"))
-    unit = "m kg0.5"
-    what = "modal coordinate by unit modal mass; of torsion by unit modal inertia [rad kg0.5 m]"
-    variables["modal_displacement"] = (("modal_coordinate", "time"), values.astype(np.float32), _unit(unit, what))
     variables["modal_displacement_spectrum"] = (
         ("modal_coordinate", "frequency"),
         spectrum.amplitude,
-        _unit(unit, f"peak amplitude of the {what}; its d.c. part at 0 Hz") | {"window": window},
+        _unit("m kg0.5", f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz")
+        | {"window": spectrum.window},
     )
 
 

@@ -2,6 +2,8 @@
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +20,7 @@ from gearwhine.case import (
 )
 from gearwhine.comparison_files import write_comparison
 from gearwhine.drawings import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
+from gearwhine.march_files import kept_march
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
 from gearwhine.stages import comparison as comparison_stage
@@ -38,6 +41,7 @@ from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import measured as measured_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import signature as signature_stage
+from gearwhine.stages import steady as steady_stage
 from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
@@ -48,7 +52,16 @@ if TYPE_CHECKING:
 
 
 def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
-    """Everything that the case asks for, and the results folder."""
+    """Everything that the case asks for, and the results folder.
+
+    What is marched of the transient is kept in the folder until the results are written: a run that dies goes on from
+    there when it is started again. ``fresh`` starts anew.
+    """
+    with ExitStack() as until_written:
+        return _run_case(case, folder, progress, until_written, fresh=fresh)
+
+
+def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitStack, *, fresh: bool) -> dict[str, Any]:
     from gearwhine import figures, results
     from housing.renderer import find_renderer
 
@@ -92,13 +105,22 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
         document["system"] = system_document(case, system, housing)
         timed("system", begin)
         if case.transient is not None:
+            if housing is not None and not housing.source_holds:
+                # Now, not with the results: who goes on with a long march need not solve them again.
+                with staging(folder) as place:
+                    keep_modes(place, housing)
+                housing = replace(housing, source=folder / MODES_FILE, source_holds=True)
             begin = time.perf_counter()
             transient = transient_stage.solve_transient(
-                case, machine, mesh_frequencies(case), progress, housing=housing
+                case,
+                machine,
+                mesh_frequencies(case),
+                progress,
+                housing=housing,
+                keep=lambda key: until_written.enter_context(kept_march(folder, key, fresh=fresh)),
             )
             document |= transient_stage.transient_document(case, transient)
-            # Lines have names, and parts that add up, where speeds are steady and the ground is at rest.
-            if transient.turning is None and case.operation.base is None:
+            if transient_stage.is_traced(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
                 signature_stage.add_signature(document, transient, signature)
@@ -232,6 +254,33 @@ def system_case(
     return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
 
 
+def steady_case(
+    case: Case,
+    folder: Path | None,
+    progress: Progress,
+    *,
+    over_speed: bool = False,
+    downwards: bool = False,
+    points: int = 100,
+    fresh: bool = False,
+) -> dict[str, Any]:
+    """The motion that repeats at the speed of operation, and its branch over speed; with a folder, also as pictures."""
+    housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
+    solved = steady_stage.solve_steady(
+        case, machine, housing, progress, over_speed=over_speed, downwards=downwards, points=points
+    )
+    document = steady_stage.steady_document(case, solved)
+
+    def write(place: Path) -> None:
+        from gearwhine import figures, results
+
+        progress("writing results")
+        results.write(place / "results.nc", case, housing, (), (), None, None, steady=solved)
+        figures.draw_steady(place, case, solved)
+
+    return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
+
+
 def sweep_case(
     case: Case,
     source: tuple[str, Sequence[str]],
@@ -295,6 +344,20 @@ def survey_case(
     planned = survey_plan.plan_housing(case, housing, sensors, modes)
     document = survey_plan.plan_document(planned, housing) | housing_documents.origin_document(housing)
     return _kept(document, case, folder, lambda place: survey_plan.write_plan(place, planned), housing)
+
+
+def update_case(
+    case: Case, folder: Path, progress: Progress, *, null: int = 0, held_back: bool = False
+) -> dict[str, Any]:
+    """The housing's numbers fitted to its measured modes, with the updated case as a file."""
+    from gearwhine.stages import update_documents, updating
+
+    solved = updating.update_housing(case, progress, null=null, held_back=held_back)
+
+    def write(place: Path) -> None:
+        (place / "updated.toml").write_text(update_documents.updated_case(case, solved), encoding="utf-8")
+
+    return _kept(update_documents.update_document(case, solved), case, folder, write)
 
 
 def render_case(

@@ -126,7 +126,7 @@ def _chunks(mesh: Mesh, size: int | None) -> Iterator[_Chunk]:
     first = 0
     for block in mesh.blocks:
         step = size or max(1, _WORKING_SET // (3 * block.of.n_nodes) ** 2)
-        straight = _straight(mesh.points, block)
+        straight = straight_elements(mesh.points, block)
         for affine in (True, False):
             members = np.flatnonzero(straight == affine)
             for start in range(0, len(members), step):
@@ -135,7 +135,7 @@ def _chunks(mesh: Mesh, size: int | None) -> Iterator[_Chunk]:
         first += len(block)
 
 
-def _straight(points: FloatArray, block: ElementBlock) -> npt.NDArray[np.bool_]:
+def straight_elements(points: FloatArray, block: ElementBlock) -> npt.NDArray[np.bool_]:
     """Which elements are affine tetrahedra: those whose edges' nodes, where they have some, lie half way."""
     if block.of.corners != "tetra":
         return np.zeros(len(block), dtype=bool)
@@ -145,6 +145,14 @@ def _straight(points: FloatArray, block: ElementBlock) -> npt.NDArray[np.bool_]:
     barycentric = np.column_stack([1.0 - reference.sum(axis=1), reference])
     off = np.abs(places[:, 4:] - barycentric @ places[:, :4]).max(axis=(1, 2))
     return np.asarray(off <= _BENT * np.ptp(places[:, :4], axis=1).max(axis=1))
+
+
+def stiffness_degree(kind: ElementKind, *, affine: bool) -> int:
+    """The degree to which the stiffness of elements of a kind is integrated; see :func:`assemble`."""
+    if kind.corners != "tetra":
+        return 2 * kind.order
+    # Bent ones have the next rule whose weights are all positive: that of degree 4 has a negative one.
+    return 2 * (kind.order - 1) if affine else 2 * kind.order + 1
 
 
 def _in_order(
@@ -177,11 +185,7 @@ def _node_graph(mesh: Mesh) -> sparse.csr_array:
 def _contribution(mesh: Mesh, chunk: _Chunk, constants: FloatArray, pattern: sparse.csr_array) -> _Contribution:
     kind, nodes = chunk.kind, chunk.nodes
     first, second = np.triu_indices(kind.n_nodes)
-    degree = 2 * kind.order
-    if kind.corners == "tetra":
-        # Bent ones have the next rule whose weights are all positive: that of degree 4 has a negative one.
-        degree = 2 * (kind.order - 1) if chunk.affine else 2 * kind.order + 1
-    products = _gradient_products(mesh, kind, nodes, first, second, degree)
+    products = _gradient_products(mesh, kind, nodes, first, second, stiffness_degree(kind, affine=chunk.affine))
     lam, mu, density = constants[:, chunk.elements, None]
     trace = mu * (products[:, 0] + products[:, 4] + products[:, 8])
     stiffness = np.empty((9, *trace.shape))

@@ -52,6 +52,20 @@ class Dominance:
         ranked = np.sort(self.acceleration[inside])[::-1]
         return float(np.log(ranked[count - 1] / ranked[count])) if len(ranked) > count else float("inf")
 
+    def margin(self, count: int, band: tuple[float, float]) -> float:
+        """The least gap of the other two measures between the modes chosen by acceleration and those left out.
+
+        ln(weakest chosen / strongest left out), the less of velocity and absolute; negative where one of them would
+        choose other modes, infinite where there are no others.
+        """
+        inside = np.flatnonzero((self.frequencies >= band[0]) & (self.frequencies <= band[1]))
+        chosen = self.strongest(count, band)
+        left = np.setdiff1d(inside, chosen)
+        if not len(left):
+            return float("inf")
+        measures = (self.velocity, self.absolute)
+        return min(float(np.log(measure[chosen].min() / measure[left].max())) for measure in measures)
+
     def measures_agree(self, count: int, band: tuple[float, float]) -> bool:
         """Whether all three measures choose the same modes."""
         chosen = self.strongest(count, band)

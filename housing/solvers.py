@@ -109,7 +109,8 @@ class _PardisoFactor:
         # The lower triangle by columns is the upper one by rows, which is what PARDISO reads.
         self._upper = matrix.lower.T.tocsr()
         self._library = pypardiso.PyPardisoSolver(mtype=_PARDISO_INDEFINITE)
-        self._library.set_num_threads(threads)
+        # pypardiso has no word for it; the library's own counts for whoever uses it in this process.
+        self._library.libmkl.MKL_Set_Num_Threads(threads)
         for report in (_FILL, _POSITIVE, _NEGATIVE):
             self._library.iparm[report - 1] = -1  # asks for it
         self._call(_PARDISO_FACTOR, np.zeros(matrix.shape[0]))

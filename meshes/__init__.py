@@ -5,7 +5,7 @@ What the room offers:
 - :class:`Mesh` -- nodes, blocks of solid elements (:class:`ElementBlock`) and named regions, in metres.
 - :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet`, :class:`Rib`,
   :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
-  dimensions; :func:`mesh_box` meshes it with gmsh.
+  dimensions; :func:`mesh_box` meshes it with gmsh, :class:`BoxMorph` moves that mesh to other dimensions.
 - :func:`mesh_cad` -- the solids of a STEP, IGES or BREP file, as a :class:`CadMesh`.
 - :func:`expected_elements`, :func:`check_mesh_size` -- how many elements a size makes, and whether they can be solved.
 - :func:`box_facets`, :func:`circle_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`,
@@ -27,12 +27,14 @@ from meshes.box import (
     Boss,
     BoxGeometry,
     BoxMisfitError,
+    BoxMorph,
     Cover,
     CoverBolts,
     Feet,
     Fillets,
     Flange,
     Misfit,
+    MorphError,
     Rib,
     WallThickness,
     mesh_box,
@@ -69,6 +71,7 @@ __all__ = [
     "Boss",
     "BoxGeometry",
     "BoxMisfitError",
+    "BoxMorph",
     "CadMesh",
     "Cover",
     "CoverBolts",
@@ -85,6 +88,7 @@ __all__ = [
     "MeshSizeError",
     "MesherUnavailableError",
     "Misfit",
+    "MorphError",
     "Rib",
     "WallThickness",
     "WaveCarrier",

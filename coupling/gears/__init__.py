@@ -70,6 +70,7 @@ from coupling.gears.pressure import (
 )
 from coupling.gears.profile import tooth_outline
 from coupling.gears.runout import runout_error
+from coupling.gears.sliding import SlidingFriction, sliding_friction
 from coupling.gears.static import (
     StaticMesh,
     mesh_period_phases,
@@ -138,6 +139,7 @@ __all__ = [
     "ReliefOptimum",
     "RootRelief",
     "RootSection",
+    "SlidingFriction",
     "Spall",
     "SpanMeasurement",
     "SquareStiffness",
@@ -196,6 +198,7 @@ __all__ = [
     "require_tip_thickness",
     "runout_error",
     "shifted_to",
+    "sliding_friction",
     "span_measurement",
     "specific_sliding",
     "static_transmission_error",

@@ -8,11 +8,13 @@ driver's flank moves, on the driver
     Q = sum_j mu F_j sgn(w_i xi_i - w_k xi_k),        M_k = sum_j mu F_j sgn(...) xi_k,
 
 on the driven gear -Q and, against its turning, ``sum_j mu F_j sgn(...) xi_i``; the power lost is
-``sum_j mu F_j |w_k xi_k - w_i xi_i|``. The loads are those without friction.
+``sum_j mu F_j |w_k xi_k - w_i xi_i|``. The loads are those without friction, F_j the normal ones: those in the
+transverse plane over cos(beta_b), the flanks of helical gears sliding in that plane too.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,7 +85,8 @@ def mesh_friction(
     driver = geometry.driver_roll_angle(positions) * geometry.driver.base_radius
     driven = geometry.driven_roll_angle(positions) * geometry.driven.base_radius
     sliding = driven / geometry.ratio - driver  # over the driver's speed
-    friction = coefficient * forces * np.sign(sliding)
+    normal = forces / math.cos(geometry.driver.base_helix_angle)
+    friction = coefficient * normal * np.sign(sliding)
     lost = np.asarray((friction * sliding).sum(axis=(1, 2)))
     put_in = mesh.force * geometry.driver.base_radius
     mean = period_mean(mesh.phases, lost)

@@ -1,6 +1,7 @@
-"""The plain arrays that the kernels of the periodic response take, by name.
+"""The plain arrays that the kernels of the periodic response and of the exact march take, by name.
 
-m eigenvalues, c contacts, s places in an element, h harmonics, k sizes of elements.
+Amplitudes are kept as 2 m real numbers, real and imaginary parts in turn. c contacts, s places in an element, h
+harmonics, k sizes of elements.
 """
 
 from typing import NamedTuple
@@ -14,59 +15,77 @@ IntArray = npt.NDArray[np.int64]
 
 
 class Reference(NamedTuple):
-    """The linear machine with its teeth at their mean, as the contacts see it."""
+    """The linear machine with its teeth at their mean, as the contacts see it.
 
-    eigenvalue: ComplexArray  # (m,) λ
+    What drives it rides along: after the amplitudes of its modes come those of its own response to the loads, an
+    amplitude e^{iwt} for each harmonic and a constant 1, which no contact changes.
+    """
+
+    eigenvalue: ComplexArray  # (m,) λ; iw; 0
     source: ComplexArray  # (m, c) what a force of each contact adds to each amplitude's rate, taken off
-    displacement: ComplexArray  # (c, m) compression of each contact: the real part of the sum
-    rate: ComplexArray  # (c, m) its rate
+    displacement: FloatArray  # (c, 2 m) compression of each contact: its product with the amplitudes
+    rate: FloatArray  # (c, 2 m) its rate
     stiffness: FloatArray  # (c,) of the reference, k̄
     damping: FloatArray  # (c,) of the reference, c̄
-    mean: FloatArray  # (c,) compression in the reference's own response: mean ...
-    frequency: FloatArray  # (h,) ... and at these circular frequencies ...
-    phasor: ComplexArray  # (c, h) ... with these amplitudes
-    phase: FloatArray  # (c,) mesh phase at t = 0
-    mesh_rate: FloatArray  # (c,) mesh periods a second
     full_damping: FloatArray  # (c,) the law's damping where it has faded in
     scale: FloatArray  # (c,) a compression that is not small
 
 
 class Steps(NamedTuple):
-    """What an element of each size needs; the last two places are for sizes that switches ask for."""
+    """What an element of each size needs.
+
+    First the sizes that occur, then a ladder, each a part smaller than the one before, so that every other length is
+    nearly one of them; these are filled in when first needed. Rows of compressions and rates: place by place, contact
+    by contact.
+    """
 
     size: FloatArray  # (k,)
+    filled: IntArray  # (k,) whether
+    ladder: IntArray  # (1,) where it begins
     decay: ComplexArray  # (k, m) exp(λ h)
-    displacement: ComplexArray  # (k, s, c, m) compressions at the places from the amplitudes at the start
-    rate: ComplexArray  # (k, s, c, m)
-    flexibility: FloatArray  # (k, s c, s c) compressions at the places from the forces there, taken off
-    rate_flexibility: FloatArray  # (k, s c, s c)
-    source: ComplexArray  # (k, m, s c) amplitudes at the end from the forces, taken off
+    felt: FloatArray  # (k, 2 m, 2 s c) compressions at the places from the amplitudes at the start; rates
+    flexibility: FloatArray  # (k, 2 s c, s c) compressions at the places from the forces there, taken off; rates
+    source: FloatArray  # (k, s c, 2 m) amplitudes at the end from the forces, taken off
+    missed: FloatArray  # (k, 2 c, 2 m) and from what their polynomial misses at the start and at the end
+    inner_decay: ComplexArray  # (k, s, m) exp(λ h u) at the places; of no sizes where it is not asked for ...
+    inner_source: FloatArray  # (k, s, s c, 2 m) ... nor amplitudes there from the forces, taken off
 
 
 class Trace(NamedTuple):
-    """The motion over a period, element by element; e of them have room."""
+    """The motion, element by element; e of them have room."""
 
     start: FloatArray  # (e,)
-    size: FloatArray  # (e,)
-    state: ComplexArray  # (e, m) amplitudes at the start
+    size: FloatArray  # (e,) from the start to the next one's
+    part: FloatArray  # (e,) this as a part of the size that the places are of
+    slot: IntArray  # (e,) of that size
+    state: FloatArray  # (e, 2 m) amplitudes at the start
     excess: FloatArray  # (e, s, c) forces beyond the reference's
     compression: FloatArray  # (e, s, c)
-    rate: FloatArray  # (e, s, c)
     force: FloatArray  # (e, s, c)
+    loss: FloatArray  # (e, s, c) power that the contacts' damping takes [W]
+    turning: FloatArray  # (e, s, c) change of the teeth's energy with the phase [J per mesh period]
+    energy: FloatArray  # (e, 2) held in the teeth just after the start and just before the end [J]
     apart: FloatArray  # (e, c) 1 where the flanks are apart
+    error: FloatArray  # (e, 2) square of what the amplitudes of the modes err by at the end; square of their own size
 
 
 def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
     """Room for some elements."""
+    places = (room, s, c)
     return Trace(
-        start=np.zeros(room),
-        size=np.zeros(room),
-        state=np.zeros((room, m), dtype=np.complex128),
-        excess=np.zeros((room, s, c)),
-        compression=np.zeros((room, s, c)),
-        rate=np.zeros((room, s, c)),
-        force=np.zeros((room, s, c)),
-        apart=np.zeros((room, c)),
+        start=np.empty(room),
+        size=np.empty(room),
+        part=np.empty(room),
+        slot=np.empty(room, dtype=np.int64),
+        state=np.empty((room, 2 * m)),
+        excess=np.empty(places),
+        compression=np.empty(places),
+        force=np.empty(places),
+        loss=np.empty(places),
+        turning=np.empty(places),
+        energy=np.empty((room, 2)),
+        apart=np.empty((room, c)),
+        error=np.empty((room, 2)),
     )
 
 
@@ -75,14 +94,19 @@ def first_elements(trace: Trace, count: int) -> Trace:
     return Trace._make(rows[:count].copy() for rows in trace)
 
 
-def empty_steps(k: int, m: int, s: int, c: int) -> Steps:
-    """Room for some sizes of elements."""
+def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner: bool) -> Steps:
+    """Room for some sizes of elements, of which the ladder begins at a number."""
+    k, n = len(sizes), s * c
+    within = k if inner else 0
     return Steps(
-        size=np.zeros(k),
+        size=sizes,
+        filled=np.zeros(k, dtype=np.int64),
+        ladder=np.array([ladder], dtype=np.int64),
         decay=np.zeros((k, m), dtype=np.complex128),
-        displacement=np.zeros((k, s, c, m), dtype=np.complex128),
-        rate=np.zeros((k, s, c, m), dtype=np.complex128),
-        flexibility=np.zeros((k, s * c, s * c)),
-        rate_flexibility=np.zeros((k, s * c, s * c)),
-        source=np.zeros((k, m, s * c), dtype=np.complex128),
+        felt=np.zeros((k, 2 * m, 2 * n)),
+        flexibility=np.zeros((k, 2 * n, n)),
+        source=np.zeros((k, n, 2 * m)),
+        missed=np.zeros((k, 2 * c, 2 * m)),
+        inner_decay=np.zeros((within, s, m), dtype=np.complex128),
+        inner_source=np.zeros((within, s, n, 2 * m)),
     )

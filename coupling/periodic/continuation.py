@@ -113,7 +113,7 @@ class _Branch:
             lift = _lift(ready)
             elements = ready.elements(self.level)
             start = lift.T @ state - _own(ready)
-            found = one_pass(ready.part, ready.laws, elements, start)
+            found = one_pass(ready.part, ready.contacts, elements, start)
             closure = lift @ found.closure
             if by_speed is None:
                 by_speed = self._by_speed(ready, state, speed, closure)
@@ -144,7 +144,7 @@ class _Branch:
         other = self.ready(speed + change, ready)
         lift = _lift(other)
         start = lift.T @ state - _own(other)
-        there = one_pass(other.part, other.laws, other.elements(self.level), start, varied=False)
+        there = one_pass(other.part, other.contacts, other.elements(self.level), start, varied=False)
         return np.asarray((lift @ there.closure - closure) / change)
 
     def _proved(
@@ -158,7 +158,7 @@ class _Branch:
         corrections: int,
     ) -> _Point | None:
         """A corrected point, where elements half as large agree; else finer ones from here on."""
-        finer = one_pass(ready.part, ready.laws, ready.elements(self.level + 1), found.start, varied=False)
+        finer = one_pass(ready.part, ready.contacts, ready.elements(self.level + 1), found.start, varied=False)
         error = float(np.linalg.norm(finer.end - found.end)) / ready.scale(found.start)
         if error > self.tolerance:
             self.level += 1

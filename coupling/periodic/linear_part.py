@@ -87,6 +87,29 @@ class LinearPart:
         half = len(state) // 2
         return q + self.basis @ state[:half], v + self.rate_unit * (self.basis @ state[half:])
 
+    def amplitudes_of(self, state: FloatArray, time: float = 0.0) -> FloatArray:
+        """A state as the kernels march it, with what rides along, shape (2 M,)."""
+        reference = self.reference
+        own = np.exp(reference.eigenvalue[len(self.eigenvalues) :] * time)
+        return np.concatenate([self.left @ state, own]).view(np.float64)
+
+    @cached_property
+    def displacement_rows(self) -> FloatArray:
+        """All coordinates from the amplitudes, what rides along included, shape (n, 2 M)."""
+        return self._rows(self.basis @ self.right[: self.states // 2], self.amplitudes.T, self.mean)
+
+    @cached_property
+    def velocity_rows(self) -> FloatArray:
+        """Their rates from the amplitudes, shape (n, 2 M)."""
+        moving = self.rate_unit * (self.basis @ self.right[self.states // 2 :])
+        return self._rows(moving, (1j * self.frequencies[:, None] * self.amplitudes).T, np.zeros_like(self.mean))
+
+    def _rows(self, modes: ComplexArray, harmonics: ComplexArray, mean: FloatArray) -> FloatArray:
+        # Runout errors ride along too, and move nothing themselves.
+        count = len(self.reference.eigenvalue) - modes.shape[1] - harmonics.shape[1] - 1
+        none = np.zeros((len(mean), count))
+        return real_rows(np.concatenate([modes, harmonics, none, mean[:, None]], axis=1))
+
     @cached_property
     def reference(self) -> Reference:
         """What the contacts see of it."""
@@ -102,24 +125,31 @@ class LinearPart:
         mean = self.mean @ self.system.contact_directions - [contact.clearance for contact in contacts]
         stiffness = _reference_values(self.system, [contact.contact.mean_stiffness for contact in contacts])
         phasor = np.array(phasors, dtype=np.complex128).reshape(len(contacts), len(frequencies))
+        turning = 1j * np.array(frequencies)
+        own = np.zeros((len(frequencies) + 1, len(contacts)))
+        still = np.zeros((len(contacts), 1))
+        displacement = [directions.T @ self.right[:half], phasor, mean[:, None]]
+        rate = [self.rate_unit * (directions.T @ self.right[half:]), turning * phasor, still]
         return Reference(
-            eigenvalue=self.eigenvalues,
-            source=np.ascontiguousarray(self.left[:, half:] @ directions / self.rate_unit),
-            displacement=np.ascontiguousarray(directions.T @ self.right[:half]),
-            rate=np.ascontiguousarray(self.rate_unit * (directions.T @ self.right[half:])),
+            eigenvalue=np.concatenate([self.eigenvalues, turning, [0.0]]),
+            source=np.concatenate([self.left[:, half:] @ directions / self.rate_unit, own]),
+            displacement=real_rows(np.concatenate(displacement, axis=1)),
+            rate=real_rows(np.concatenate(rate, axis=1)),
             stiffness=stiffness,
             damping=_reference_values(self.system, [contact.contact.damping for contact in contacts]),
-            mean=np.asarray(mean, dtype=np.float64),
-            frequency=np.array(frequencies, dtype=np.float64),
-            phasor=phasor,
-            phase=np.array([contact.phase for contact in contacts], dtype=np.float64),
-            mesh_rate=np.array([contact.rate for contact in contacts], dtype=np.float64),
             full_damping=np.array([contact.contact.damping for contact in contacts], dtype=np.float64),
             scale=np.abs(mean) + np.abs(phasor).sum(axis=1) + 1e-300,
         )
 
 
-def linear_part(system: CoupledSystem, rate_unit: float, like: LinearPart | None = None) -> LinearPart:
+def real_rows(rows: ComplexArray) -> FloatArray:
+    """Rows d whose Re(d z) is wanted, as those that multiply Re z and Im z in turn, shape (k, 2 m)."""
+    return np.ascontiguousarray(np.stack([rows.real, -rows.imag], axis=-1).reshape(len(rows), 2 * rows.shape[1]))
+
+
+def linear_part(
+    system: CoupledSystem, rate_unit: float, like: LinearPart | None = None, *, repeats: bool = True
+) -> LinearPart:
     """Split a system into its linear reference and what its teeth add.
 
     Parameters
@@ -129,11 +159,14 @@ def linear_part(system: CoupledSystem, rate_unit: float, like: LinearPart | None
         See :class:`LinearPart`.
     like : LinearPart, optional
         Of the same machine at another speed: its eigenvectors serve again where its matrices are the same.
+    repeats : bool
+        Whether the motion is to repeat, and the loads on what nothing resists to balance. They have no part in
+        the reference in either case.
 
     Raises
     ------
     CouplingError
-        Where a load drives a motion that nothing resists.
+        Where the motion is to repeat and a load drives a motion that nothing resists.
     PeriodicError
         Where the reference has a load at an undamped natural frequency, or eigenvectors that do not separate.
     """
@@ -154,7 +187,7 @@ def linear_part(system: CoupledSystem, rate_unit: float, like: LinearPart | None
             force = (k_mean[k] + 1j * frequency * c_mean[k]) * amplitude * np.exp(1j * phase) * contact.direction
             harmonics[frequency] = harmonics.get(frequency, 0.0) + force
     constant = constant + np.asarray(harmonics.pop(0.0, np.zeros(system.size))).real
-    if np.any(np.abs(rigid.T @ constant) > _BALANCE * (np.abs(rigid.T) @ np.abs(constant))):
+    if repeats and np.any(np.abs(rigid.T @ constant) > _BALANCE * (np.abs(rigid.T) @ np.abs(constant))):
         raise CouplingError(
             "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
             "rotation, and no motion would repeat; check the torques in and out against the gear ratios"

@@ -1,15 +1,16 @@
 """One pass over the period: from a state at t = 0 to that at its end, with the monodromy on the way."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import PeriodicError
+from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Steps, Trace, empty_steps, empty_trace, first_elements
 from coupling.periodic.collocation import ORDER
-from coupling.periodic.linear_part import LinearPart
+from coupling.periodic.element_work import element_work
+from coupling.periodic.linear_part import LinearPart, real_rows
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -18,7 +19,8 @@ _ROOM_FOR_CUTS = 400
 _PER_CYCLE = 4  # coarsest elements in a mesh period or in the shortest cycle of a load
 _SAME_TIME = 1e-9  # part of the period within which two events are one
 _SAME_SIZE = 11  # digits to which elements of one size agree
-_LAWS = (4, 16, 64)  # numbers of contacts that kernels are compiled for
+_LADDER = 1.1  # between the sizes of its rungs ...
+_RUNGS = 100  # ... so down to a ten-thousandth of the largest
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +31,15 @@ class Elements:
     ----------
     starts : ndarray, shape (e,)
         [s].
+    sizes : ndarray, shape (e,)
+        [s].
     slots : ndarray of int, shape (e,)
         Which size each has.
     steps : Steps
     """
 
     starts: FloatArray
+    sizes: FloatArray
     slots: npt.NDArray[np.int64]
     steps: Steps
 
@@ -87,8 +92,6 @@ def coarsest_element(system: CoupledSystem, period: float) -> float:
 
 def cut_period(part: LinearPart, period: float, largest: float) -> Elements:
     """Elements no larger than a size [s]."""
-    from coupling.periodic.kernels import fill_steps
-
     bounds = event_times(part.system, period)
     lengths = np.diff(bounds)
     counts = np.maximum(np.ceil(lengths / largest - 1e-9), 1.0).astype(np.int64)
@@ -102,28 +105,19 @@ def cut_period(part: LinearPart, period: float, largest: float) -> Elements:
             sizes[key] = len(values)
             values.append(float(size))
         slots += [sizes[key]] * int(count)
+    steps = element_sizes(part, np.array(values), max(values))
+    return Elements(np.concatenate(starts), np.repeat(lengths / counts, counts), np.array(slots, dtype=np.int64), steps)
+
+
+def element_sizes(part: LinearPart, values: FloatArray, largest: float, *, inner: bool = False) -> Steps:
+    """Room for elements of some sizes, and for a ladder from the largest down."""
     reference = part.reference
-    m, c = reference.eigenvalue.size, reference.stiffness.size
-    steps = empty_steps(len(values) + 2, m, ORDER, c)
-    fill_steps(reference, np.array(values), steps)
-    return Elements(np.concatenate(starts), np.array(slots, dtype=np.int64), steps)
-
-
-def laws_of(system: CoupledSystem) -> tuple[Any, ...]:
-    """The contacts' laws as the kernels take them: at least one, repeated up to a number they are compiled for."""
-    from coupling.gears import ToothContact, piecewise
-
-    contacts = [contact.contact for contact in system.contacts]
-    if len(contacts) > _LAWS[-1]:
-        raise PeriodicError(f"{len(contacts)} tooth contacts; the periodic response takes up to {_LAWS[-1]}")
-    room = next(number for number in _LAWS if len(contacts) <= number)
-    none = ToothContact(1.0, piecewise.constant(1.0, 1.0), piecewise.constant(0.0, 1.0))
-    laws = [_plain(contact.kernel_arguments) for contact in contacts]
-    return tuple(laws + [_plain(none.kernel_arguments)] * (room - len(laws)))
+    sizes = np.concatenate([values, largest / _LADDER ** np.arange(_RUNGS)])
+    return empty_steps(sizes, len(values), reference.eigenvalue.size, ORDER, reference.stiffness.size, inner=inner)
 
 
 def one_pass(
-    part: LinearPart, laws: tuple[Any, ...], elements: Elements, start: FloatArray, *, varied: bool = True
+    part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, *, varied: bool = True
 ) -> Pass:
     """March from a state through the period.
 
@@ -134,12 +128,25 @@ def one_pass(
     """
     from coupling.periodic.kernels import NO_BALANCE, NO_ROOM, march
 
-    z = np.ascontiguousarray(part.left @ start)
-    columns = part.left if varied else part.left[:, :0]
-    real, imag = np.ascontiguousarray(columns.real), np.ascontiguousarray(columns.imag)
-    trace = empty_trace(len(elements.starts) + _ROOM_FOR_CUTS, z.size, ORDER, len(part.system.contacts))
+    z = part.amplitudes_of(start)
+    modes = len(part.eigenvalues)
+    columns = np.zeros((2 * modes, len(start) if varied else 0))
+    if varied:
+        columns[0::2], columns[1::2] = part.left.real, part.left.imag
+    m, c = part.reference.eigenvalue.size, len(part.system.contacts)
+    trace = empty_trace(len(elements.starts) + _ROOM_FOR_CUTS, m, ORDER, c)
     count, cuts, wrong = march(
-        part.reference, laws, elements.steps, elements.starts, elements.slots, z, real, imag, trace
+        part.reference,
+        contacts,
+        elements.steps,
+        elements.starts,
+        elements.sizes,
+        elements.slots,
+        z,
+        columns,
+        modes,
+        trace,
+        element_work(m, ORDER, c, columns.shape[1]),
     )
     if wrong == NO_BALANCE:
         raise PeriodicError("the teeth's forces do not balance within an element of time; expected a law that grows")
@@ -147,13 +154,8 @@ def one_pass(
         raise PeriodicError(
             f"more than {_ROOM_FOR_CUTS} changes of contact in a period: the flanks chatter; give the mesh some damping"
         )
-    end = (part.right @ z).real
+    rows = real_rows(part.right)
+    end = rows @ z[: 2 * modes]
     if not np.all(np.isfinite(end)):
         raise PeriodicError("the motion grew beyond all bounds within a period; look for unstable coupled modes")
-    monodromy = part.right.real @ real - part.right.imag @ imag
-    return Pass(start, end, monodromy, first_elements(trace, int(count)), int(cuts))
-
-
-def _plain(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Arrays in one order of memory, so that all laws have one type."""
-    return tuple(np.array(one, order="C") if isinstance(one, np.ndarray) else one for one in arguments)
+    return Pass(start, end, rows @ columns, first_elements(trace, int(count)), int(cuts))

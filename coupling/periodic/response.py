@@ -2,14 +2,15 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError
+from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Trace
-from coupling.periodic.collocation import WEIGHTS
+from coupling.periodic.collocation import ORDER, weights_to
+from coupling.periodic.element_work import element_work
 from coupling.periodic.floquet import FloquetMultipliers
 from coupling.periodic.linear_part import LinearPart
 from coupling.settings import TransientOutputs
@@ -82,7 +83,7 @@ class PeriodicResponse:
     newton_steps: int
     part: LinearPart = field(repr=False)
     recovery: FloatArray = field(repr=False)
-    laws: tuple[Any, ...] = field(repr=False)
+    contacts: Contacts = field(repr=False)
     trace: Trace = field(repr=False)
 
     @property
@@ -132,11 +133,8 @@ class PeriodicResponse:
             raise CouplingError(f"{samples} samples of a period; expected at least one")
         times = self.period * np.arange(samples, dtype=np.float64) / samples
         amplitudes = self._amplitudes(times)
-        part, half = self.part, self.part.states // 2
-        turned = np.exp(1j * np.outer(times, part.frequencies))
-        q = part.mean + (turned @ part.amplitudes).real + (amplitudes @ part.right[:half].T).real @ part.basis.T
-        v = -(turned @ (part.frequencies[:, None] * part.amplitudes)).imag
-        v = v + part.rate_unit * (amplitudes @ part.right[half:].T).real @ part.basis.T
+        part = self.part
+        q, v = amplitudes @ part.displacement_rows.T, amplitudes @ part.velocity_rows.T
         compression, force = self._contacts(times, amplitudes)
         system = part.system
         a = system.load - q @ system.stiffness.T - v @ system.damping.T - force @ system.contact_directions.T
@@ -152,22 +150,20 @@ class PeriodicResponse:
         )
 
     def _mean(self, values: FloatArray) -> FloatArray:
-        return np.asarray(np.einsum("e,s,esc->c", self.trace.size, WEIGHTS, values) / self.period)
+        weights = weights_to(self.trace.part) * (self.trace.size / self.trace.part)[:, None]
+        return np.asarray(np.einsum("es,esc->c", weights, values) / self.period)
 
-    def _amplitudes(self, times: FloatArray) -> npt.NDArray[np.complex128]:
-        from coupling.periodic.kernels import amplitudes_at
+    def _amplitudes(self, times: FloatArray) -> FloatArray:
+        from coupling.periodic.dense import amplitudes_at
 
-        return np.asarray(amplitudes_at(self.part.reference, self.trace, len(self.trace.start), times))
+        return np.asarray(amplitudes_at(self.part.reference, self.trace, times))
 
-    def _contacts(self, times: FloatArray, amplitudes: npt.NDArray[np.complex128]) -> tuple[FloatArray, FloatArray]:
-        from coupling.periodic.kernels import forces_at
+    def _contacts(self, times: FloatArray, amplitudes: FloatArray) -> tuple[FloatArray, FloatArray]:
+        from coupling.periodic.dense import forces_at
 
         reference = self.part.reference
-        turned = np.exp(1j * np.outer(times, reference.frequency))
-        delta = reference.mean + (turned @ reference.phasor.T).real + (amplitudes @ reference.displacement.T).real
-        rate = (amplitudes @ reference.rate.T).real - (
-            turned @ (reference.frequency[:, None] * reference.phasor.T)
-        ).imag
-        force = np.zeros((len(times), len(reference.stiffness)))
-        forces_at(reference, self.laws, times, np.ascontiguousarray(delta), np.ascontiguousarray(rate), force)
+        delta, rate = amplitudes @ reference.displacement.T, amplitudes @ reference.rate.T
+        force = np.zeros_like(delta)
+        work = element_work(len(reference.eigenvalue), ORDER, len(reference.stiffness))
+        forces_at(self.contacts, times, delta, rate, work, force)
         return delta, force

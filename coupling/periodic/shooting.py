@@ -11,18 +11,19 @@ motions are found as well as stable ones.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.condensation import Condensed, condensed
 from coupling.errors import CouplingError, PeriodicError
+from coupling.kernel_arrays import Contacts
 from coupling.periodic.base_period import common_period
 from coupling.periodic.floquet import multipliers
 from coupling.periodic.linear_part import LinearPart, linear_part
-from coupling.periodic.orbit import Elements, Pass, coarsest_element, cut_period, laws_of, one_pass
+from coupling.periodic.orbit import Elements, Pass, coarsest_element, cut_period, one_pass
 from coupling.periodic.response import PeriodicResponse
+from coupling.step import contact_arrays
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -51,7 +52,8 @@ class Problem:
         [s].
     part : LinearPart
         Of the system that is followed.
-    laws : tuple
+    contacts : Contacts
+        What the kernels take of them.
     """
 
     system: CoupledSystem
@@ -59,7 +61,7 @@ class Problem:
     kept: npt.NDArray[np.int64]
     period: float
     part: LinearPart
-    laws: tuple[Any, ...]
+    contacts: Contacts
 
     def elements(self, level: int) -> Elements:
         """The period cut into elements, halved so many times."""
@@ -72,15 +74,25 @@ class Problem:
 
 
 def problem(system: CoupledSystem, period: float | None = None, like: Problem | None = None) -> Problem:
-    """Make a system ready: its period, its linear part, the teeth's laws.
+    """Make a system ready: its period, its linear part, the teeth.
 
     Of ``like``, the same machine at another speed, is taken what has not changed.
+
+    Raises
+    ------
+    PeriodicError
+        Where the system has laws that the search does not know.
     """
+    if not system.is_smooth:
+        what = "nonlinear bearings" if system.nonlinear else "friction between its teeth"
+        raise PeriodicError(
+            f"the periodic response does not know {what}; expected a system without: leave that out, or march it "
+            "through time until it settles"
+        )
     length = common_period(system, period)
     followed = _followed(system)
     part = linear_part(followed.system, 2.0 * np.pi / length, None if like is None else like.part)
-    laws = like.laws if like is not None and _same_teeth(system, like.system) else laws_of(followed.system)
-    return Problem(system, followed.recovery, followed.kept, length, part, laws)
+    return Problem(system, followed.recovery, followed.kept, length, part, contact_arrays(followed.system))
 
 
 def _followed(system: CoupledSystem) -> Condensed:
@@ -88,12 +100,6 @@ def _followed(system: CoupledSystem) -> Condensed:
     if system.resolved.all():
         return Condensed(system, np.arange(system.size), np.eye(system.size))
     return condensed(system)
-
-
-def _same_teeth(one: CoupledSystem, other: CoupledSystem) -> bool:
-    if len(one.contacts) != len(other.contacts):
-        return False
-    return all(a.contact is b.contact for a, b in zip(one.contacts, other.contacts, strict=True))
 
 
 def periodic_response(
@@ -187,14 +193,14 @@ def response_of(ready: Problem, found: Pass, level: int, error: float, steps: in
         newton_steps=steps,
         part=ready.part,
         recovery=ready.recovery,
-        laws=ready.laws,
+        contacts=ready.contacts,
         trace=found.trace,
     )
 
 
 def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, int] | None:
     """Newton's method on the closure; None where it stands still."""
-    here = one_pass(ready.part, ready.laws, elements, state)
+    here = one_pass(ready.part, ready.contacts, elements, state)
     best = float(np.linalg.norm(here.closure))
     for step in range(_NEWTON_STEPS):
         if best <= _ROUNDING * ready.scale(here.start):
@@ -202,7 +208,7 @@ def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, 
         move = np.linalg.lstsq(here.monodromy - np.eye(len(state)), -here.closure, rcond=1e-14)[0]
         part = 1.0
         while True:
-            there = one_pass(ready.part, ready.laws, elements, here.start + part * move)
+            there = one_pass(ready.part, ready.contacts, elements, here.start + part * move)
             missing = float(np.linalg.norm(there.closure))
             if missing < (1.0 - 0.1 * part) * best:
                 break
@@ -222,7 +228,7 @@ def _search(ready: Problem, level: int, state: FloatArray) -> tuple[Pass, int]:
         if found is not None:
             return found
         for _ in range(_PERIODS * 2**turn):
-            state = one_pass(ready.part, ready.laws, elements, state, varied=False).end
+            state = one_pass(ready.part, ready.contacts, elements, state, varied=False).end
         found = close(ready, elements, state)
     if found is not None:
         return found

@@ -8,7 +8,7 @@ What the room offers:
   :class:`Housing` (:class:`Box`, :class:`CadFile`, :class:`MeshFile`, :class:`Seat`, :class:`Support`,
   :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, :class:`Sensor`), :class:`Rotor`, :class:`Bearing`,
   :class:`Gear`, :class:`GearPair`, :class:`Operation`, :class:`Transient`, :class:`Sweep`, :class:`RotorAnalysis`,
-  :class:`Measured`.
+  :class:`Measured`, :class:`Update`.
 - :func:`dump_case` -- the resolved case as TOML that loads back equal.
 - :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques` -- what follows
   without solving anything.
@@ -87,10 +87,12 @@ from gearwhine.case.shafts import (
     RadialDamping,
     RadialStiffness,
     RollingStiffness,
+    StopStiffness,
 )
 from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
 from gearwhine.case.torques import Run, TorqueHistory, TorqueLine, TorqueRipple
 from gearwhine.case.train import shaft_of
+from gearwhine.case.updating import ModelModes, Update, UpdateParameter
 
 __all__ = [
     "SPEED_KEY",
@@ -132,6 +134,7 @@ __all__ = [
     "MatrixStiffness",
     "Measured",
     "MeshFile",
+    "ModelModes",
     "Mount",
     "Operation",
     "Output",
@@ -158,6 +161,7 @@ __all__ = [
     "SpeedRange",
     "Springs",
     "StiffnessMap",
+    "StopStiffness",
     "Support",
     "Sweep",
     "SweptKey",
@@ -168,6 +172,8 @@ __all__ = [
     "Transient",
     "Unbalance",
     "UnbalanceResponse",
+    "Update",
+    "UpdateParameter",
     "Walls",
     "amounts",
     "applied_torques",

@@ -30,6 +30,7 @@ HelixAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(-60.0)
 Module = Annotated[float, Quantity(units.LENGTH, at_least=1e-5, at_most=0.2)]
 DiametralPitch = Annotated[float, Quantity(units.DIAMETRAL_PITCH, at_least=5.0, at_most=1e5)]
 Misalignment = Annotated[float, Quantity(units.ANGLE, at_least=-0.1, at_most=0.1)]
+FrictionCoefficient = Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=0.5)]
 ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
 
 
@@ -167,6 +168,7 @@ class GearPair(Table):
     `misalignment` [rad] is the angle between the flanks in the plane of action, open towards +z.
     `backlash` [m] is measured along the line of action; None: the back flanks never touch. `centre_distance`
     [m] is checked against the rotors' axes, and needed only in a case without rotors where it is not nominal.
+    `friction` is the coefficient of friction between the teeth, in the transient.
     """
 
     driver: Name
@@ -178,6 +180,13 @@ class GearPair(Table):
     misalignment: Misalignment = 0.0
     backlash: LengthFromZero | None = None
     centre_distance: PositiveLength | None = None
+    friction: FrictionCoefficient = 0.0
+
+    @model_validator(mode="after")
+    def _slides(self) -> GearPair:
+        if self.friction > 0.0 and self.stiffness.model == "constant":
+            raise wrong("0 with the stiffness model 'constant', one spring that knows no pairs of teeth", "friction")
+        return self
 
     @model_validator(mode="after")
     def _two_gears(self) -> GearPair:

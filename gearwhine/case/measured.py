@@ -90,7 +90,8 @@ class Measured(Table):
             raise wrong("either 'frequencies' or a 'file' of measured modes", "frequencies")
         if self.file is None:
             for key in _OF_A_FILE:
-                if key in self.model_fields_set and getattr(self, key):
+                # A resolved case states its defaults.
+                if getattr(self, key) != type(self).model_fields[key].default:
                     raise wrong("no such key without a file, whose survey it is about", key)
             return self._ascending()
         if self.damping_ratios is not None:

@@ -15,6 +15,7 @@ from gearwhine.case.measured import Measured
 from gearwhine.case.rotors import Rotor
 from gearwhine.case.running import Operation, Sweep, Transient
 from gearwhine.case.shafts import Bearing
+from gearwhine.case.updating import Update
 
 Text = Annotated[str, Field(max_length=10_000)]
 
@@ -47,7 +48,7 @@ class Case(Table):
         Text for people.
     material
         Materials by name.
-    housing, operation, transient, sweep, rotor_analysis, measured
+    housing, operation, transient, sweep, rotor_analysis, measured, update
         None where the case has no such table.
     rotor, bearing, gear, gear_pair
         Empty where the case has none.
@@ -68,6 +69,7 @@ class Case(Table):
     sweep: Sweep | None = None
     rotor_analysis: RotorAnalysis | None = None
     measured: Measured | None = None
+    update: Update | None = None
     provenance: dict[str, Text] = Field(default={}, max_length=MOST_ENTRIES)
 
     def rotor_named(self, name: str) -> Rotor:

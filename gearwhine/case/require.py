@@ -16,6 +16,7 @@ _PURPOSES = {
     "transient": "a length of run such as revolutions = 40",
     "sweep": "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }",
     "measured": "frequencies such as ['658 Hz', '1049 Hz'], or a file of them",
+    "update": "what is fitted, such as [[update.parameter]] name = 'top', keys = ['housing.box.wall.top']",
 }
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Tag, model_validator
 
 from gearwhine.case import units
-from gearwhine.case.fields import Force, Length, PositiveLength, Quantity, Table, Whole, wrong
+from gearwhine.case.fields import Force, Length, LengthFromZero, PositiveLength, Quantity, Table, Whole, wrong
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
 
@@ -23,14 +23,25 @@ class BearingLoad(Table):
     z: Force = 0.0
 
 
+class Stop(Table):
+    """A ring around the shaft: beyond its radial `gap` [m] it takes `force` [N] at a `depth` [m], by an `exponent`."""
+
+    force: Annotated[float, Quantity(units.FORCE, above=0.0)]
+    depth: PositiveLength
+    exponent: Annotated[float, Quantity(units.RATIO, at_least=1.0, at_most=10.0)] = 1.0
+    gap: LengthFromZero = 0.0
+
+
 class _Mounted(Table):
     """How a bearing is mounted: its play, its preload, and the rows it has [m, N].
 
     `clearance` is diametral and in running; a negative one is an interference. `preload` is axial: of a single row a
     spring's force on the shaft along `carries`, of two rows the force with which they press each other. `carries` is
-    the way in which an axial force of the shaft presses the balls of a single row, or of two in tandem.
+    the way in which an axial force of the shaft presses the balls of a single row, or of two in tandem. `law`: whether
+    it is the linear one about its load in the transient, or that of every element with its play as they go round.
     """
 
+    law: Literal["linear", "nonlinear"] = "linear"
     clearance: Length = 0.0
     preload: Annotated[float, Quantity(units.FORCE, at_least=0.0)] = 0.0
     carries: Literal["+z", "-z"] = "+z"

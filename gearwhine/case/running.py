@@ -71,7 +71,8 @@ class Transient(Table):
     """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps.
 
     `start`: from static equilibrium under the load, or from turning unloaded, so that the load comes on at once.
-    `modal_coordinates`: how many of each part's modes to record in time.
+    `modal_coordinates`: how many of each part's modes to record in time. `method`: Newmark's steps, the exact march
+    between tooth events, or `auto`, the exact one where it applies.
 
     With a `run` the speed varies over its time, in place of a number of revolutions; then none is discarded by default.
     """
@@ -82,6 +83,7 @@ class Transient(Table):
     points_per_revolution: Annotated[int, Whole(200, 1_000_000)] = 200
     tolerance: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=0.1)] = 1e-4
     start: Literal["equilibrium", "unloaded"] = "equilibrium"
+    method: Literal["newmark", "exact", "auto"] = "newmark"
     modal_coordinates: Annotated[int, Whole(0, 1000)] = 0
 
     @model_validator(mode="after")

@@ -23,7 +23,7 @@ from gearwhine.case.fields import (
     wrong,
 )
 from gearwhine.case.over_speed import Coefficient, OverSpeed
-from gearwhine.case.rolling import BearingLoad, Rolling
+from gearwhine.case.rolling import BearingLoad, Rolling, Stop
 from gearwhine.case.units import Dimension
 
 
@@ -125,11 +125,15 @@ class RollingStiffness(Table):
     rolling: Rolling
 
 
+class StopStiffness(Table):
+    """No stiffness, but a stop that the shaft may strike; linear analyses see its slope under the bearing's load."""
+
+    stop: Stop
+
+
 def _stiffness_form(value: Any) -> str:
     keys = value if isinstance(value, dict) else getattr(value, "model_fields_set", ())
-    if "matrix" in keys:
-        return "~matrix"
-    return "~rolling" if "rolling" in keys else "~radial"
+    return next((f"~{form}" for form in ("matrix", "rolling", "stop") if form in keys), "~radial")
 
 
 def _damping_form(value: Any) -> str:
@@ -151,7 +155,8 @@ class Bearing(Table):
     stiffness: Annotated[
         Annotated[RadialStiffness, Tag("~radial")]
         | Annotated[MatrixStiffness, Tag("~matrix")]
-        | Annotated[RollingStiffness, Tag("~rolling")],
+        | Annotated[RollingStiffness, Tag("~rolling")]
+        | Annotated[StopStiffness, Tag("~stop")],
         Discriminator(_stiffness_form),
     ]
     damping: Annotated[
@@ -162,9 +167,9 @@ class Bearing(Table):
 
     @model_validator(mode="after")
     def _loaded(self) -> Bearing:
-        rolls = isinstance(self.stiffness, RollingStiffness)
-        if self.load is not None and not rolls:
-            raise wrong("nothing: only the stiffness of a rolling bearing depends on its load", "load")
+        depends = isinstance(self.stiffness, RollingStiffness | StopStiffness)
+        if self.load is not None and not depends:
+            raise wrong("nothing: only the stiffness of a rolling bearing or a stop depends on its load", "load")
         if isinstance(self.stiffness, RollingStiffness) and self.load is None and not self.stiffness.rolling.pressed:
             expected = "{ x, y, z }, the force of the shaft on it: a rolling bearing without preload has no stiffness"
             raise wrong(expected, "load")

@@ -244,6 +244,33 @@ def unit_ratio(unit: str, other: str) -> Decimal | None:
     return one.factor / two.factor if one is not None and two is not None and one.powers == two.powers else None
 
 
+def si_amount(value: object) -> float | None:
+    """A quantity of any kind in SI, where hertz and rpm are no angular speeds; None where it is none."""
+    if isinstance(value, str):
+        parts = split_quantity(value)
+        unit = None if parts is None else _parse_unit(parts[1])
+        if parts is None or (parts[1] and unit is None):
+            return None
+        value = float(parts[0] * unit.factor) if unit is not None and parts[1] else float(parts[0])
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        return None
+    return float(value)
+
+
+def amount(value: str | float) -> float:
+    """The same of what is known to be a quantity."""
+    number = si_amount(value)
+    assert number is not None, value
+    return number
+
+
+def kind_of(value: object) -> tuple[tuple[str, int], ...] | None:
+    """What a quantity measures, as powers of base units; None for a plain number, whose kind its key knows."""
+    parts = split_quantity(value) if isinstance(value, str) else None
+    unit = _parse_unit(parts[1]) if parts is not None and parts[1] else None
+    return None if unit is None else unit.without_angle()
+
+
 def format_quantity(number: float, dimension: Dimension) -> str | float:
     """Write a quantity so that `parse_quantity` gives back the very same float.
 

@@ -1,6 +1,7 @@
 """Figures by matplotlib, made without a screen: plain arrays and the rooms' own results in, a `Figure` or a file out.
 
-``draw_transient``, ``draw_gear_pairs``, ``draw_tooth_pair``, ``draw_system`` and ``draw_rotors`` write what a command
+``draw_transient``, ``draw_gear_pairs``, ``draw_tooth_pair``, ``draw_system``,
+``draw_steady`` and ``draw_rotors`` write what a command
 shows into a folder; the others return a figure for print, 160 mm wide, that :func:`save` writes::
 
     assembly = RotorAssembly(rotor, bearings)
@@ -26,6 +27,7 @@ from .rotors import draw_rotors
 from .run_up import draw_order_slices, draw_run_up_waterfall
 from .shaft import draw_shaft
 from .static_deflection import draw_static_deflection
+from .steady import draw_response_curve, draw_steady
 from .style import save
 from .sweep import draw_sweep
 from .system import draw_system
@@ -58,10 +60,12 @@ __all__ = [
     "draw_measured_shapes",
     "draw_mesh_stiffness",
     "draw_order_slices",
+    "draw_response_curve",
     "draw_rotors",
     "draw_run_up_waterfall",
     "draw_shaft",
     "draw_static_deflection",
+    "draw_steady",
     "draw_sweep",
     "draw_system",
     "draw_system_campbell",

@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from coupling import Spectrum
 from gearwhine.figures.style import BLUE
 
+_MOST_LINES = 1 << 12
 _DECADES = 5.0  # of the amplitude axis, below its highest line
 
 
@@ -13,6 +14,11 @@ def draw_lines(axes: Axes, spectrum: Spectrum, limit: float) -> None:
     """Draw the lines of one signal above 0 Hz and up to a limit [Hz], and set the axes to them."""
     shown = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
     frequencies, amplitude = spectrum.frequencies[shown], spectrum.amplitude[shown]
+    if (together := len(amplitude) // _MOST_LINES) > 1:
+        # Of lines closer than the eye can part the highest is drawn: a path of all takes hundreds of megabytes.
+        groups = amplitude[: len(amplitude) // together * together].reshape(-1, together)
+        highest = np.arange(len(groups)) * together + groups.argmax(axis=1)
+        frequencies, amplitude = frequencies[highest], amplitude[highest]
     top = float(amplitude.max(initial=0.0))
     if top > 0.0:
         axes.set_yscale("log")

@@ -21,6 +21,8 @@ from housing import Comparison
 
 FloatArray = npt.NDArray[np.float64]
 
+_ORBIT_SAMPLES = 1 << 14  # of a long record: a path of hundreds of thousands takes long to draw, and memory
+
 
 def draw_transient(
     folder: Path,
@@ -49,7 +51,10 @@ def draw_transient(
     if solved.force_spectra:
         files.append(save(_mesh_force(case, solved, meshes), folder / "mesh-force.png"))
     if solved.histories.gear_motion:
-        orbits = draw_orbits(f"{case.title}: orbits of the gears", solved.histories.gear_motion)
+        motions = solved.histories.gear_motion
+        if solved.record.sampling.is_long:
+            motions = {name: motion[-_ORBIT_SAMPLES:] for name, motion in motions.items()}
+        orbits = draw_orbits(f"{case.title}: orbits of the gears", motions)
         files.append(save(orbits, folder / "orbits.png"))
     if solved.modal.coordinates:
         window = next(iter(solved.force_spectra.values())).window if solved.force_spectra else "hann"
@@ -70,7 +75,7 @@ def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) 
         left.plot(1e3 * (times[shown] - times[0]), solved.histories.mesh_force[name][shown], color=BLUE, lw=1.0)
         left.set(xlabel="time [ms]", ylabel="mesh force [N]")
         left.set_title(f"{name}: six mesh periods", fontsize=10, loc="left")
-        limit = 4.2 * frequency
+        limit = min(4.2 * frequency, float(solved.force_spectra[name].frequencies[-1]))
         draw_lines(right, solved.force_spectra[name], limit)
         tidy(right)
         _mark(right, meshes, limit)

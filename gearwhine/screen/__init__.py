@@ -5,8 +5,10 @@ from gearwhine.screen.gears import show_gears
 from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail, show_survey
 from gearwhine.screen.machine import show_run
 from gearwhine.screen.rotors import show_rotors
+from gearwhine.screen.steady import show_steady
 from gearwhine.screen.sweep import show_sweep
 from gearwhine.screen.system import show_system
+from gearwhine.screen.updating import show_update
 
 __all__ = [
     "show_check",
@@ -19,7 +21,9 @@ __all__ = [
     "show_modes_in_detail",
     "show_rotors",
     "show_run",
+    "show_steady",
     "show_survey",
     "show_sweep",
     "show_system",
+    "show_update",
 ]

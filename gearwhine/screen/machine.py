@@ -9,6 +9,8 @@ from rich.table import Table
 from gearwhine.screen.console import counted, open_console, percent, show_written
 from gearwhine.screen.housing import comparison_table, modes_line
 
+_STEPS = {"newmark": "steps", "exact": "exact elements"}
+
 
 def show_run(document: dict[str, Any]) -> None:
     """The main job's outcome."""
@@ -27,7 +29,8 @@ def show_run(document: dict[str, Any]) -> None:
         _sensors(console, document)
     if "steps" in document:
         console.print(
-            f"Transient: {document['steps']} steps, {document['steps_per_second']:.0f} a second; energy balance closes "
+            f"Transient: {document['steps']} {_STEPS[document['method']]}, "
+            f"{document['steps_per_second']:.0f} a second; energy balance closes "
             f"to {document['energy_error']:.1e}; {document['coordinates']} modal coordinates"
         )
     elif "system" in document:

@@ -5,6 +5,7 @@ import numpy.typing as npt
 
 import rotors as rotor_room
 import rotors.rolling as rolling_room
+from coupling import BearingLaw, GapLaw, RollingLaw
 from gearwhine.case import (
     Bearing,
     Case,
@@ -18,6 +19,7 @@ from gearwhine.case import (
     RollingCatalogue,
     RollingGeometry,
     RollingStiffness,
+    StopStiffness,
 )
 from gearwhine.case.problems import UNSAID
 from gearwhine.case.shafts import PedestalDamping, PedestalStiffness
@@ -60,6 +62,24 @@ def rolling_state(case: Case, index: int) -> rolling_room.RollingState | None:
         raise _refused(given, index, error) from error
 
 
+def bearing_law(case: Case, index: int) -> BearingLaw | None:
+    """The law by which a bearing moves where that is not the linear one of its stiffness.
+
+    Raises
+    ------
+    CaseError
+        As `build_bearings`.
+    """
+    given = case.bearing[index].stiffness
+    if isinstance(given, StopStiffness):
+        return _gap_law(given)
+    if isinstance(given, RollingStiffness) and given.rolling.law == "nonlinear":
+        state = rolling_state(case, index)
+        assert state is not None
+        return RollingLaw(state)
+    return None
+
+
 def rolling_states(case: Case, rotor: str) -> dict[str, rolling_room.RollingState]:
     """The equilibria of one rotor's rolling bearings, by their names.
 
@@ -89,6 +109,9 @@ def _bearing(case: Case, index: int) -> rotor_room.Bearing:
 def _stiffness(case: Case, index: int) -> FloatArray:
     given = case.bearing[index]
     state = rolling_state(case, index)
+    if isinstance(given.stiffness, StopStiffness):
+        load = (0.0, 0.0) if given.load is None else (given.load.x, given.load.y)
+        return _gap_law(given.stiffness).tangent(load)
     if state is None:
         assert not isinstance(given.stiffness, RollingStiffness)
         return _matrix(given.stiffness)
@@ -96,6 +119,11 @@ def _stiffness(case: Case, index: int) -> FloatArray:
         return rolling_room.bearing_from(state, given.name, given.at).stiffness
     except rotor_room.EquilibriumError as error:
         raise _refused(given, index, error) from error
+
+
+def _gap_law(given: StopStiffness) -> GapLaw:
+    stop = given.stop
+    return GapLaw(stop.force, stop.depth, stop.exponent, stop.gap)
 
 
 def _matrix(given: RadialStiffness | RadialDamping | MatrixStiffness | MatrixDamping) -> FloatArray:

@@ -12,7 +12,7 @@ import coupling as room
 import rotors as rotor_room
 from gearwhine.case import Case, require, rotor_speeds
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.bearings import build_bearings
+from gearwhine.stages.bearings import bearing_law, build_bearings
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import SolvedPair, solve_gears
@@ -117,7 +117,11 @@ def build_machine(
             bows.append(room.BowReactions(given.name, bow.at, rotor_room.bow_shape(rotor, bow).reactions))
         # Those of the rotor's own file stand on the ground.
         seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
-        bearings += [room.MountedBearing(bearing, given.name, seats.get(bearing.name)) for bearing in held]
+        laws = {entry.name: bearing_law(case, n) for n, entry in enumerate(case.bearing) if entry.rotor == given.name}
+        bearings += [
+            room.MountedBearing(bearing, given.name, seats.get(bearing.name), laws.get(bearing.name))
+            for bearing in held
+        ]
     driven = driving(case, components)
     if isinstance(housing, SolvedHousing):
         housing = housing_in_machine(case, housing, progress)
@@ -204,4 +208,5 @@ def _mesh(case: Case, pair: SolvedPair) -> room.GearMesh:
         assert gear.rotor is not None
         assert gear.at is not None
         mounted.append(room.MountedGear(name, gear.rotor, gear.at, case.rotor_named(gear.rotor).axis))
-    return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, pair.given.backlash)
+    given = pair.given
+    return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, given.backlash, given.friction)

@@ -124,16 +124,15 @@ def solve_signature(
     """
     histories, drives = solved.histories, [c.name for c in solved.machine.system.contacts if c.drives]
     interval = float(histories.times[1] - histories.times[0])
-    spectra = [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
-    window: room.Window = spectra[0].window if spectra else "uniform"
+    window, limit = solved.record.sampling.window, solved.trusted_limit
     ties = {
-        name: room.amplitude_spectrum(np.ascontiguousarray(force.T), interval, window)
+        name: solved.record.spectrum(np.ascontiguousarray(force.T), limit)
         for name, force in histories.tie_force.items()
     }
     frequencies = np.zeros(0) if housing_frequencies is None else housing_frequencies
     modal, lines = None, {}
     if solved.modal.housing_acceleration.shape[1]:
-        modal = room.amplitude_spectrum(np.ascontiguousarray(solved.modal.housing_acceleration.T), interval, window)
+        modal = solved.record.spectrum(np.ascontiguousarray(solved.modal.housing_acceleration.T), limit)
     if solved.sensor_spectra:
         assert modal is not None
         lines = {name: _traced(solved, name, modal, ties, modes, frequencies) for name in solved.sensor_spectra}
@@ -206,7 +205,8 @@ def _traced(
     peaks = sensor_peaks(solved, sensor)
     places = np.searchsorted(spectrum.frequencies, [peak.frequency for peak in peaks]).astype(int)
     at = spectrum.frequencies[places]
-    values = spectrum.lines[places]
+    # Of a long record the peaks are those of its averaged spectrum, the parts those of its last stretch.
+    values = solved.record.spectrum(solved.histories.sensor_acceleration[sensor], solved.trusted_limit).lines[places]
     by_mode = signature.mode_parts(machine.housing, sensor, modal.lines[:, places].T, values)
     forces = {name: tie.lines[:, places].T for name, tie in ties.items()}
     paths = signature.housing_paths(machine, _HERTZ * at, forces).at(sensor)

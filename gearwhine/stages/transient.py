@@ -1,5 +1,6 @@
 """The transient of a case: the machine turning under load, and what its sensors, gears and bearings show."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -7,19 +8,23 @@ import numpy as np
 import numpy.typing as npt
 
 import coupling as room
-from gearwhine.case import Case, CaseError, Problem, Transient, require, rotor_speeds
+import gearwhine
+from coupling.fingerprint import fingerprint
+from gearwhine.case import Case, require
+from gearwhine.march_files import Arrays, Blocks
 from gearwhine.progress import Progress, silent
+from gearwhine.stages.contents import installed, source_digest
 from gearwhine.stages.driving import driving
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.machine import HousingInMachine, base_motion
+from gearwhine.stages.march_record import MarchRecord, Signals, block_arrays, record_spectra
+from gearwhine.stages.sampling import RECORD_BYTES, Sampling, sampling
+from housing.labelled import content_key
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
-
-# Samples per second over the highest frequency of interest. Stepwise changes of the mesh force have harmonics without
-# end; sampled so finely, little of them folds back, and the spectra of whole periods need no filter.
-_OVERSAMPLING = 100.0
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
 
 
 @dataclass(frozen=True)
@@ -29,29 +34,52 @@ class SolvedTransient:
     Attributes
     ----------
     machine : coupling.Machine
+    method : str
+        By which it was marched, "newmark" or "exact".
     turning : coupling.Turning or None
         Speed over time; None where it is the nominal one all along.
-    result : coupling.TransientResult
-    histories : coupling.Histories
-        Of the recorded revolutions.
+    result : coupling.TransientFigures
+    record : MarchRecord
+        Everything recorded, piece by piece.
+    signals : Signals
+        The same at once; of a long record its last stretch.
     sensor_spectra : dict of str to coupling.Spectrum
-        Acceleration [m/s²].
+        Acceleration [m/s²]; of a long record averaged over stretches, up to the trusted limit.
     force_spectra : dict of str to coupling.Spectrum
-        Gear-mesh force [N].
+        Gear-mesh force [N]; likewise.
     trusted_limit : float
         Highest frequency that the housing's modes carry [Hz].
-    modal : coupling.ModalRecord
-        Of the recorded revolutions.
     """
 
     machine: room.Machine
+    method: str
     turning: room.Turning | None
-    result: room.TransientResult
-    histories: room.Histories
+    result: room.TransientFigures
+    record: MarchRecord
+    signals: Signals
     sensor_spectra: dict[str, room.Spectrum]
     force_spectra: dict[str, room.Spectrum]
     trusted_limit: float
-    modal: room.ModalRecord
+
+    @property
+    def histories(self) -> room.Histories:
+        """Of the signals."""
+        return self.signals.histories
+
+    @property
+    def modal(self) -> room.ModalRecord:
+        """Of the signals."""
+        return self.signals.modal
+
+
+def is_traced(case: Case) -> bool:
+    """Whether lines of the sensors are traced to their origin.
+
+    Lines have names, and parts that add up, where speeds are steady and the ground is at rest.
+    """
+    assert case.operation is not None
+    assert case.transient is not None
+    return case.transient.run is None and case.operation.base is None
 
 
 def solve_transient(
@@ -61,12 +89,24 @@ def solve_transient(
     progress: Progress = silent,
     *,
     housing: SolvedHousing | HousingInMachine | None = None,
+    keep: Callable[[str], Blocks] = lambda key: _InMemory(),
+    record_bytes: int = RECORD_BYTES,
+    samples_per_block: int | None = None,
 ) -> SolvedTransient:
     """March the machine through the case's revolutions, or its run, and take the spectra of what is not discarded.
 
     The record holds whole revolutions of the first driver. Where every shaft then turns a whole number of times
     the spectra are taken as they are, each line exact; otherwise, and over a run, under Hann's window. A run is sampled
-    for its highest speed, and ``discard`` counts revolutions as they are turned.
+    for its highest speed, and ``discard`` counts revolutions as they are turned. A record that is too long for memory
+    is filtered and kept at fewer samples, see :mod:`gearwhine.stages.sampling`.
+
+    Parameters
+    ----------
+    keep : callable
+        Gives the blocks kept under a key of all that the march depends on; the march goes on behind them. By default
+        none are kept, and all are held in memory.
+    record_bytes, samples_per_block : int
+        The longest record kept as sampled, and about how many samples are marched from checkpoint to checkpoint.
 
     Raises
     ------
@@ -74,57 +114,77 @@ def solve_transient(
         Where the motion cannot be followed or its energies do not balance.
     """
     require(case, "operation", "transient", command="run")
-    assert case.operation is not None
     assert case.transient is not None
-    given = case.transient
-    driven = driving(case, machine.rotors)
-    fastest = driven.rates[1] if driven.turning is None else float(driven.turning.rates.max())
-    nominal = _HERTZ / abs(case.operation.speed)
-    period = nominal / fastest
+    turning = driving(case, machine.rotors).turning
+    fastest = 1.0 if turning is None else max(1.0, float(turning.rates.max()))
     limit = _trusted_limit(housing, tuple(fastest * frequency for frequency in mesh_frequencies))
-    per_revolution = _samples_per_revolution(period, limit, given.points_per_revolution)
-    settings = room.TransientSettings(
-        duration=_duration(given, nominal),
-        record_from=_record_from(given, nominal, driven.turning),
-        sample_interval=period / per_revolution,
-        largest_step=nominal / given.points_per_revolution,
-        tolerance=given.tolerance,
-    )
+    modal, traced = case.transient.modal_coordinates, is_traced(case)
+    outputs = room.with_modal_rows(machine, room.transient_outputs(machine), modal, housing=traced)
+
+    def named(result: room.Recorded) -> Signals:
+        histories = _in_space(case, housing, room.histories(machine, result, turning))
+        return Signals(histories, room.modal_record(machine, result, modal, housing=traced))
+
+    nothing = named(room.nothing_recorded(machine, outputs))
+    rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))
+    rows += 2 * len(machine.system.contacts)
+    signals = nothing.columns.shape[1]
+    chosen = sampling(case, turning, limit, signals, rows, largest=record_bytes, block=samples_per_block)
     progress("compiling the time stepper (the first time takes longer)")
-    result = room.simulate(
-        machine.system,
-        settings,
-        room.with_modal_rows(machine, room.transient_outputs(machine), given.modal_coordinates),
-        initial=starting_state(case, machine),
-        turning=driven.turning,
+    march = (machine.system, chosen.settings, outputs)
+    start = starting_state(case, machine)
+    key = room.march_key(*march, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
+    blocks = keep(_with_code(fingerprint(key, base_motion(case)), chosen))
+    last = blocks[len(blocks) - 1] if len(blocks) else None
+    held = nothing.columns if last is None else last["held"]
+    marched = room.march_blocks(
+        *march,
+        turning=turning,
+        initial=start,
+        after=None if last is None else room.Checkpoint.from_arrays(last),
+        samples_per_block=chosen.samples_per_block,
         progress=lambda fraction: progress("marching through the transient", fraction),
     )
-    named = room.histories(machine, result, driven.turning)
+    for block in marched:
+        columns, held = chosen.decimation.through(held, named(block).columns)
+        blocks.append(block_arrays(columns, held, block.after))
+    record = MarchRecord(chosen, blocks, nothing)
+    figures = room.transient_figures(chosen.settings, record.end)
+    stretch = record.last_stretch()
+    of_sensors, of_meshes = record_spectra(record, stretch.histories, limit)
+    method = room.march_method(machine.system, chosen.settings, turning or room.Turning.steady())
+    return SolvedTransient(machine, method, turning, figures, record, stretch, of_sensors, of_meshes, limit)
+
+
+def _in_space(case: Case, housing: SolvedHousing | HousingInMachine | None, named: room.Histories) -> room.Histories:
+    """Histories as accelerometers show them: their motion in space, not beside a base that moves."""
     base = base_motion(case)
-    if base is not None and housing is not None:
-        # What an accelerometer shows is the motion in space.
-        absolute = {
-            name: named.sensor_acceleration[name] + base.acceleration_at(port.position, port.direction, named.times)
-            for name, port in housing.sensors.items()
+    if base is None or housing is None:
+        return named
+    absolute = {
+        name: named.sensor_acceleration[name] + base.acceleration_at(port.position, port.direction, named.times)
+        for name, port in housing.sensors.items()
+    }
+    return replace(named, sensor_acceleration=absolute)
+
+
+def _with_code(key: str, chosen: Sampling) -> str:
+    """The key of a march with what is kept of it, by which code, and on which processor: no other rounds alike."""
+    from llvmlite import binding
+
+    return content_key(
+        {
+            "march": key,
+            "kept": [chosen.decimation.factor, len(chosen.decimation.taps)],
+            "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
+            "source": source_digest(room, gearwhine),
+            "processor": [binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()],
         }
-        named = replace(named, sensor_acceleration=absolute)
-    window = _window(case)
-    interval = settings.sample_interval
-    return SolvedTransient(
-        machine=machine,
-        turning=driven.turning,
-        result=result,
-        histories=named,
-        sensor_spectra={
-            name: room.amplitude_spectrum(signal, interval, window)
-            for name, signal in named.sensor_acceleration.items()
-        },
-        force_spectra={
-            name: room.amplitude_spectrum(signal, interval, window) for name, signal in named.mesh_force.items()
-        },
-        trusted_limit=limit,
-        modal=room.modal_record(machine, result, given.modal_coordinates),
     )
+
+
+class _InMemory(list[Arrays]):
+    """Blocks that nobody keeps."""
 
 
 def starting_state(case: Case, machine: room.Machine) -> tuple[FloatArray, FloatArray] | None:
@@ -162,6 +222,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     return {
         "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
         "run": _run_document(case, solved.turning),
+        "method": solved.method,
         "steps": result.steps,
         "rejected_steps": result.rejected,
         "smallest_step_s": result.smallest_step,
@@ -172,9 +233,11 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
             "loads": result.energy.loads,
             "lost": result.energy.lost,
             "teeth": result.energy.teeth,
+            "friction": result.energy.friction,
         },
         "coordinates": solved.machine.system.size,
         "trusted_below_hz": solved.trusted_limit,
+        "record": record_document(solved),
         "sensors": [
             {
                 "name": name,
@@ -205,30 +268,19 @@ def _run_document(case: Case, turning: room.Turning | None) -> dict[str, Any] | 
     }
 
 
-def _duration(given: Transient, period: float) -> float:
-    """[s]."""
-    if given.run is not None:
-        return given.run.duration
-    assert given.revolutions is not None
-    return given.revolutions * period
-
-
-def _record_from(given: Transient, period: float, turning: room.Turning | None) -> float:
-    """When the discarded revolutions are done [s].
-
-    Raises
-    ------
-    CaseError
-        Where a run does not turn so far.
-    """
-    if turning is None or given.discard == 0.0:
-        return given.discard * period
-    time = float(turning.times_of(np.array([given.discard * period]))[0])
-    if not time < _duration(given, period):
-        turned = float(turning.at(_duration(given, period))[0][0]) / period
-        expected = f"fewer revolutions than the {turned:g} that the run turns"
-        raise CaseError([Problem("transient.discard", given.discard, expected)])
-    return time
+def record_document(solved: SolvedTransient) -> dict[str, Any]:
+    """How much was recorded, how finely, and what the spectra were taken over."""
+    record, spectra = solved.record, [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
+    return {
+        "samples": record.samples,
+        "interval_s": record.sampling.interval,
+        "decimation": record.sampling.decimation.factor,
+        "spectra": {
+            "window": record.sampling.window,
+            "samples": min(record.sampling.stretch, record.samples),
+            "averages": next((one.averages for one in spectra), 1),
+        },
+    }
 
 
 def sensor_peaks(solved: SolvedTransient, sensor: str) -> list[room.Peak]:
@@ -255,17 +307,3 @@ def _trusted_limit(housing: SolvedHousing | HousingInMachine | None, mesh_freque
     if housing is not None:
         return housing.trusted_limit_hz
     return 4.0 * max(mesh_frequencies, default=1000.0)
-
-
-def _samples_per_revolution(period: float, limit: float, floor: int) -> int:
-    """The power of two that samples the frequencies of interest well and meets the case's floor."""
-    return int(2 ** np.ceil(np.log2(max(floor, _OVERSAMPLING * limit * period))))
-
-
-def _window(case: Case) -> room.Window:
-    assert case.transient is not None
-    if case.transient.revolutions is None:
-        return "hann"
-    recorded = case.transient.revolutions - case.transient.discard
-    turns = [recorded * abs(ratio) for ratio in rotor_speeds(case, 1.0).values()]
-    return "uniform" if all(abs(turn - round(turn)) < 1e-9 for turn in turns) else "hann"

@@ -16,7 +16,7 @@ Shapes are rows, degrees of freedom columns; NaN where not measured; complex whe
 """
 
 from housing.correlation.assurance import auto_mac, largest_off_diagonal, mac, modal_scale_factor, pole_weighted_mac
-from housing.correlation.by_dominance import compare_by_dominance
+from housing.correlation.by_dominance import compare_by_dominance, dominance_band
 from housing.correlation.by_shapes import compare_by_shapes
 from housing.correlation.comparison import Comparison, ModePair
 from housing.correlation.complexity import (
@@ -61,6 +61,7 @@ __all__ = [
     "compare_by_shapes",
     "complexity_factor",
     "cross_orthogonality",
+    "dominance_band",
     "enhanced_comac",
     "fdac",
     "frac",

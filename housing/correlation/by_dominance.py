@@ -18,6 +18,11 @@ FloatArray = npt.NDArray[np.float64]
 _BAND = (0.75, 1.05)
 
 
+def dominance_band(measured: FloatArray) -> tuple[float, float]:
+    """Where dominant modes are looked for: 0.75 of the first to 1.05 of the last measured frequency, in their unit."""
+    return _BAND[0] * float(measured[0]), _BAND[1] * float(measured[-1])
+
+
 def compare_by_dominance(
     measured: FloatArray, strengths: Dominance, *, band: tuple[float, float] | None = None
 ) -> Comparison:
@@ -30,7 +35,7 @@ def compare_by_dominance(
     strengths : Dominance
         Of the model's modes.
     band : tuple of float, optional
-        Where to look for dominant modes [rad/s]; by default 0.75 of the first to 1.05 of the last measured one.
+        Where to look for dominant modes [rad/s]; by default that of :func:`dominance_band`.
 
     Raises
     ------
@@ -39,7 +44,7 @@ def compare_by_dominance(
     """
     if len(measured) == 0 or measured[0] <= 0.0 or np.any(np.diff(measured) <= 0.0):
         raise HousingError(f"measured frequencies {measured} rad/s must be positive and ascending")
-    low, high = band or (_BAND[0] * float(measured[0]), _BAND[1] * float(measured[-1]))
+    low, high = band or dominance_band(measured)
     chosen = strengths.strongest(len(measured), (low, high))
     if len(chosen) < len(measured):
         hertz = 2.0 * np.pi

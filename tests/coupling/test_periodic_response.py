@@ -252,11 +252,11 @@ def test_monodromy_over_losses_of_contact(viscous: float, fade: float) -> None:
     ready = problem(system)
     elements = ready.elements(response.level)
     start = ready.part.state(response.displacement, response.velocity)
-    exact = one_pass(ready.part, ready.laws, elements, start)
+    exact = one_pass(ready.part, ready.contacts, elements, start)
     reach = 1e-5
     for column, unit in enumerate(np.eye(2)):
         ends = [
-            one_pass(ready.part, ready.laws, elements, start + sign * reach * unit, varied=False).end
+            one_pass(ready.part, ready.contacts, elements, start + sign * reach * unit, varied=False).end
             for sign in (1.0, -1.0)
         ]
         np.testing.assert_allclose(exact.monodromy[:, column], (ends[0] - ends[1]) / (2.0 * reach), atol=2e-7)

@@ -4,6 +4,7 @@ import json
 import random
 import signal
 import subprocess
+import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -11,6 +12,8 @@ import pytest
 import xarray as xr
 
 SHORT = ("--set", "transient.revolutions=6", "--set", "transient.discard=4", "--set", "housing.box.mesh_size=50 mm")
+COARSE = ("--set", "housing.box.mesh_size=50 mm")
+NUMBERS = ("time", "sensor_acceleration", "bearing_force", "mesh_force", "gear_displacement", "sensor_spectrum")
 # Gears at no torque: fewer files, and no search for the best relief.
 FEW = ("gears", "gear-62-62", "-q", "-o", "out", "--set", "operation=")
 
@@ -27,6 +30,45 @@ def check_whole(folder: Path) -> None:
                 data.load()
         elif path.suffix == ".png":
             assert path.read_bytes().endswith(b"IEND\xaeB`\x82")
+
+
+@pytest.mark.slow
+def test_an_interrupted_run_goes_on_to_the_same_results(start_process, tmp_path: Path) -> None:
+    """Of a case with a housing: its modes too are read again, to the same machine bit for bit."""
+    arguments = ("run", "small-gearbox", *COARSE, "--set", "transient.revolutions=24", "-o")
+    process = start_process(*arguments, "out")
+    wait_for_a_block(process, tmp_path / "out")
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "the same command goes on from there" in errors
+    (kept,) = (tmp_path / "out").glob(".resume-*")
+    first = (kept / "block-00000000.npz").stat().st_mtime_ns
+
+    process = start_process(*arguments, "out")
+    wait_for_a_block(process, tmp_path / "out", len(list(kept.glob("block-*"))) + 1)
+    assert (kept / "block-00000000.npz").stat().st_mtime_ns == first
+    _, errors = process.communicate(timeout=300)
+    assert process.returncode == 0, errors
+    assert not list((tmp_path / "out").glob(".*"))
+
+    process = start_process(*arguments, "whole")
+    _, errors = process.communicate(timeout=300)
+    assert process.returncode == 0, errors
+    with (
+        xr.open_dataset(tmp_path / "out/results.nc") as resumed,
+        xr.open_dataset(tmp_path / "whole/results.nc") as whole,
+    ):
+        assert resumed.equals(whole)
+        assert all(resumed[name].values.tobytes() == whole[name].values.tobytes() for name in NUMBERS)
+
+
+def wait_for_a_block(process: "subprocess.Popen[str]", out: Path, count: int = 1) -> None:
+    limit = time.monotonic() + 300.0
+    while len(list(out.glob(".resume-*/block-*.npz"))) < count:
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < limit, "waited for too long"
+        time.sleep(2e-3)
 
 
 @pytest.mark.slow

@@ -1,0 +1,105 @@
+"""Fewer samples of a record that comes in pieces, without what would fold back.
+
+A symmetric filter of 2H + 1 taps h goes over the record, and every D-th of its values is kept,
+
+    y[m] = sum over k of h[k] x[m D + k],   which stands for the time of sample m D + H:
+
+its delay is exact and taken off. Half a filter's length is left out at each end of the record, where samples are
+missing. The sum runs over the taps in the same order wherever a piece ends, so pieces leave no trace, to the last bit.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+
+FloatArray = npt.NDArray[np.float64]
+
+_REJECTION = 120.0  # dB: below the seven digits in which histories are kept
+
+
+@dataclass(frozen=True)
+class Decimation:
+    """A filter, and how many samples go into one.
+
+    Attributes
+    ----------
+    factor : int
+        D.
+    taps : ndarray, shape (2H + 1,)
+        h, symmetric, of sum 1.
+    """
+
+    factor: int
+    taps: FloatArray
+
+    @cached_property
+    def delay(self) -> int:
+        """H: the first kept value stands for this sample."""
+        return len(self.taps) // 2
+
+    def kept(self, samples: int) -> int:
+        """How many values a record of so many samples gives."""
+        return max((samples - len(self.taps)) // self.factor + 1, 0)
+
+    def through(self, held: FloatArray, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Filter the next piece of a record.
+
+        Parameters
+        ----------
+        held : ndarray, shape (p, k)
+            What the piece before left; at the start of the record none, p = 0.
+        samples : ndarray, shape (s, k)
+
+        Returns
+        -------
+        kept : ndarray, shape (m, k)
+        held : ndarray
+            For the next piece.
+        """
+        record = np.concatenate([held, samples])
+        count = self.kept(len(record))
+        if not count:
+            return record[:0], record
+        span = (count - 1) * self.factor + 1
+        last = len(self.taps) - 1
+        total = self.taps[self.delay] * record[self.delay : self.delay + span : self.factor]
+        for k in range(self.delay):
+            beside = record[k : k + span : self.factor] + record[last - k : last - k + span : self.factor]
+            total += self.taps[k] * beside
+        return total, record[count * self.factor :].copy()
+
+
+def decimation(factor: int, band: float) -> Decimation:
+    """A filter by Kaiser's window that leaves a band alone and lets nothing fold back into it.
+
+    Between the band and the frequency that folds onto its edge the response falls, by 120 dB: above the band the kept
+    samples hold what is no longer there in full, below it all is there.
+
+    Parameters
+    ----------
+    factor : int
+        Samples that go into one; 1 keeps all as they are.
+    band : float
+        Upper end of the band, as a part of the kept samples' rate; below 1/2.
+
+    References
+    ----------
+    J. F. Kaiser, "Nonrecursive digital filter design using the I0-sinh window function", *IEEE Int. Symp. Circuits and
+    Systems*, 1974.
+    """
+    if factor < 1 or not 0.0 < band < 0.5:
+        raise CouplingError(
+            f"decimation by {factor} with a band up to {band} of the rate; expected 1 or more, below 1/2"
+        )
+    if factor == 1:
+        return Decimation(1, np.ones(1))
+    transition = 2.0 * math.pi * (1.0 - 2.0 * band) / factor
+    half = math.ceil((_REJECTION - 7.95) / (2.285 * transition) / 2.0)
+    places = np.arange(-half, half + 1)
+    taps = np.sinc(places / factor) * np.kaiser(2 * half + 1, 0.1102 * (_REJECTION - 8.7))
+    return Decimation(factor, taps / taps.sum())

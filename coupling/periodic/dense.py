@@ -1,0 +1,112 @@
+"""The motion between the places of the elements, compiled: dense output of a trace.
+
+Importing this module imports numba.
+"""
+
+import cmath
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from coupling.contact_kernels import FORCE
+from coupling.kernel_arrays import Contacts
+from coupling.periodic.arrays import Reference, Steps, Trace
+from coupling.periodic.collocation import BINOMIAL, MONOMIALS, ORDER
+from coupling.periodic.element import law
+from coupling.periodic.element_matrices import advance_to, moments
+from coupling.periodic.element_work import Work
+
+FloatArray = npt.NDArray[np.float64]
+
+_EVEN = 1e-6  # part of the spacing by which times at even spacing may miss it
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> FloatArray:
+    """Amplitudes at ascending times, shape (t, 2 m).
+
+    Times at even spacing follow each other within an element by the exponentials of the spacing, which are the same
+    for all of them, and the excess expanded anew about each.
+    """
+    c, m = reference.stiffness.size, reference.eigenvalue.size
+    out = np.empty((times.size, 2 * m))
+    integral, coefficient = np.empty(ORDER, dtype=np.complex128), np.empty((ORDER, c))
+    series, shifted = np.empty((ORDER, c)), np.empty((ORDER, c))
+    excess = trace.excess.reshape(trace.start.size, ORDER * c)
+    spacing = times[1] - times[0] if times.size > 1 else 0.0
+    grown, shares = np.empty(m, dtype=np.complex128), np.empty((ORDER, m), dtype=np.complex128)
+    for k in range(m):
+        z = reference.eigenvalue[k] * spacing
+        grown[k] = cmath.exp(z)
+        moments(z, grown[k], ORDER, integral)
+        for p in range(ORDER):
+            shares[p, k] = integral[p] * spacing
+    element, of = 0, -1
+    for i in range(times.size):
+        while element < trace.start.size - 1 and times[i] >= trace.start[element + 1]:
+            element += 1
+        h = trace.size[element] / trace.part[element]
+        u = (times[i] - trace.start[element]) / h
+        if of != element or abs(times[i] - times[i - 1] - spacing) > _EVEN * spacing:
+            of = element
+            advance_to(reference, h, u, trace.state[element], excess[element], out[i], coefficient, integral)
+            for p in range(ORDER):
+                for a in range(c):
+                    series[p, a] = 0.0
+                    for j in range(ORDER):
+                        series[p, a] += MONOMIALS[j, p] * trace.excess[element, j, a]
+            continue
+        # The excess about the time before, in spacings.
+        u -= spacing / h
+        scale = 1.0
+        for p in range(ORDER):
+            for a in range(c):
+                total = 0.0
+                for j in range(ORDER - 1, p - 1, -1):
+                    total = total * u + BINOMIAL[j, p] * series[j, a]
+                shifted[p, a] = scale * total
+            scale *= spacing / h
+        for k in range(m):
+            value = grown[k] * complex(out[i - 1, 2 * k], out[i - 1, 2 * k + 1])
+            for a in range(c):
+                sent = 0.0j
+                for p in range(ORDER):
+                    sent += shares[p, k] * shifted[p, a]
+                value -= sent * reference.source[k, a]
+            out[i, 2 * k], out[i, 2 * k + 1] = value.real, value.imag
+    return out
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def amplitudes_within(steps: Steps, trace: Trace) -> FloatArray:
+    """Amplitudes at the places of every element, shape (e s, 2 m)."""
+    count, c = trace.start.size, trace.excess.shape[2]
+    m = steps.inner_decay.shape[2]
+    out = np.empty((count * ORDER, 2 * m))
+    for element in range(count):
+        slot = trace.slot[element]
+        for i in range(ORDER):
+            row = element * ORDER + i
+            for k in range(m):
+                x, y = steps.inner_decay[slot, i, k].real, steps.inner_decay[slot, i, k].imag
+                out[row, 2 * k] = x * trace.state[element, 2 * k] - y * trace.state[element, 2 * k + 1]
+                out[row, 2 * k + 1] = x * trace.state[element, 2 * k + 1] + y * trace.state[element, 2 * k]
+            for j in range(ORDER):
+                for a in range(c):
+                    g = trace.excess[element, j, a]
+                    for k in range(2 * m):
+                        out[row, k] -= steps.inner_source[slot, i, j * c + a, k] * g
+    return out
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def forces_at(
+    contacts: Contacts, times: FloatArray, delta: FloatArray, rate: FloatArray, work: Work, out: FloatArray
+) -> None:
+    """The law's force at times, compressions and rates; all but the times of shape (t, c)."""
+    row = work.laws.shape[0] - 1
+    for i in range(times.size):
+        for a in range(contacts.phase.size):
+            law(contacts, a, times[i], delta[i, a], rate[i, a], work.laws, row)
+            out[i, a] = work.laws[row, FORCE]

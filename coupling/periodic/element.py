@@ -1,0 +1,250 @@
+r"""One element of time, compiled: the contacts' forces at its places, and where a law changes its branch.
+
+Importing this module imports numba.
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, TOUCHING, take_law
+from coupling.kernel_arrays import Contacts
+from coupling.periodic.arrays import Reference, Steps
+from coupling.periodic.collocation import AT_ENDS, BARYCENTRIC, INSIDE, MONOMIALS, ORDER, PLACES, POINTS
+from coupling.periodic.element_work import Work
+from coupling.periodic.uncounted import uncounted
+from coupling.small_systems import solve_in_place
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_NEWTON_STEPS = 40
+_NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is found, and to which one is told of
+_FULL = 1.0 - 1e-14
+
+
+@uncounted(forceinline=True)
+def law(contacts: Contacts, a: int, time: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
+    """The law of one contact, into a row."""
+    take_law(contacts, a, time, delta, rate, laws, row)
+
+
+@uncounted()
+def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
+    """Which smooth branch a law is on: the number of touching pairs, and what the damping does."""
+    touching = int(laws[row, TOUCHING])
+    if touching == 0:
+        return 0
+    if laws[row, FORCE] == 0.0 and laws[row, TANGENT] == 0.0:
+        return 4 * touching + 1
+    if laws[row, DAMPING] < reference.full_damping[a] * _FULL:
+        return 4 * touching + 2
+    return 4 * touching + 3
+
+
+@uncounted(fastmath={"reassoc", "contract", "nsz"})
+def product(row: FloatArray, a: int, z: FloatArray) -> float:
+    """A row of a matrix times the amplitudes."""
+    total = 0.0
+    for i in range(z.size):
+        total += row[a, i] * z[i]
+    return total
+
+
+@uncounted()
+def advance(
+    decay: ComplexArray, slot: int, source: FloatArray, z: FloatArray, excess: FloatArray, end: FloatArray
+) -> None:
+    """Amplitudes at the end from those at the start and the excess forces, with the matrices of a slot."""
+    for m in range(decay.shape[1]):
+        x, y = decay[slot, m].real, decay[slot, m].imag
+        end[2 * m] = x * z[2 * m] - y * z[2 * m + 1]
+        end[2 * m + 1] = x * z[2 * m + 1] + y * z[2 * m]
+    for column in range(excess.size):
+        g = excess[column]
+        for i in range(z.size):
+            end[i] -= source[slot, column, i] * g
+
+
+@uncounted(forceinline=True)
+def interpolated(values: FloatArray, a: int, u: float) -> float:
+    """The polynomial through values (ORDER + 2, c) at the points, at u."""
+    above, below = 0.0, 0.0
+    for i in range(ORDER + 2):
+        apart = u - POINTS[i]
+        if apart == 0.0:
+            return float(values[i, a])
+        weight = BARYCENTRIC[i] / apart
+        above += weight * values[i, a]
+        below += weight
+    return above / below
+
+
+@uncounted()
+def solve_element(
+    reference: Reference, contacts: Contacts, steps: Steps, slot: int, time: float, z: FloatArray, work: Work
+) -> bool:
+    """Excess forces at the places, compressions and rates there and at both ends of a slot's size."""
+    c, h = reference.stiffness.size, steps.size[slot]
+    n = ORDER * c
+    base, excess, move, laws = work.base, work.excess, work.move, work.laws
+    delta, rate, slope, rate_slope = work.delta, work.rate, work.slope, work.rate_slope
+    matrix, right, end = work.matrix, work.right, work.end
+    for i in range(2 * n):
+        base[i] = 0.0
+    for i in range(z.size):
+        value = z[i]
+        for row in range(2 * n):
+            base[row] += steps.felt[slot, i, row] * value
+    for a in range(c):
+        delta[0, a], rate[0, a] = product(reference.displacement, a, z), product(reference.rate, a, z)
+    solved = n == 0
+    best, part, scale = math.inf, 1.0, 1.0
+    for i in range(n):
+        move[i] = 0.0
+    for _ in range(_NEWTON_STEPS):
+        if n == 0:
+            break
+        largest, scale = 0.0, 1e-300
+        for row in range(n):
+            i, a = row // c, row % c
+            x, v = base[row], base[n + row]
+            for column in range(n):
+                x -= steps.flexibility[slot, row, column] * excess[column]
+                v -= steps.flexibility[slot, n + row, column] * excess[column]
+            delta[i + 1, a], rate[i + 1, a] = x, v
+            law(contacts, a, time + PLACES[i] * h, x, v, laws, row)
+            force, tangent = laws[row, FORCE], laws[row, TANGENT]
+            slope[row] = tangent - reference.stiffness[a]
+            # Held at zero, what the law returns is a loss and no slope.
+            held = force == 0.0 and tangent == 0.0
+            rate_slope[row] = (0.0 if held else laws[row, DAMPING]) - reference.damping[a]
+            right[row, 0] = force - reference.stiffness[a] * x - reference.damping[a] * v - excess[row]
+            largest = max(largest, abs(right[row, 0]))
+            scale = max(scale, abs(force) + abs(reference.stiffness[a] * x) + abs(reference.damping[a] * v))
+        if largest <= 1e-13 * scale:
+            solved = True
+            break
+        if largest > best and part > 0.02:
+            part *= 0.5
+            for row in range(n):
+                excess[row] -= part * move[row]
+            continue
+        best, part = largest, 1.0
+        for row in range(n):
+            for column in range(n):
+                matrix[row, column] = (
+                    slope[row] * steps.flexibility[slot, row, column]
+                    + rate_slope[row] * steps.flexibility[slot, n + row, column]
+                )
+            matrix[row, row] += 1.0
+        solve_in_place(matrix, right)
+        for row in range(n):
+            move[row] = right[row, 0]
+            excess[row] += move[row]
+    advance(steps.decay, slot, steps.source, z, excess, end)
+    for a in range(c):
+        delta[ORDER + 1, a] = product(reference.displacement, a, end)
+        rate[ORDER + 1, a] = product(reference.rate, a, end)
+    return solved or best <= 1e-9 * scale
+
+
+@uncounted()
+def first_switch(
+    reference: Reference, contacts: Contacts, time: float, h: float, stop: float, furthest: float, work: Work
+) -> tuple[float, int]:
+    """Where a law first changes its branch, as a part of h, and of which contact; beyond ``furthest`` where none does.
+
+    No law is looked at later than ``stop``. The laws just after the start are left in the rows behind those of the
+    places.
+    """
+    c = reference.stiffness.size
+    n = ORDER * c
+    delta, rate, laws = work.delta, work.rate, work.laws
+    first, which = 2.0, -1
+    for a in range(c):
+        before, row = INSIDE, n + a
+        x, v = interpolated(delta, a, before), interpolated(rate, a, before)
+        law(contacts, a, time + before * h, x, v, laws, row)
+        work.looked[0, a], work.looked[1, a] = x, v
+        old = branch(reference, a, laws, row)
+        row = n + c + a
+        x, v = interpolated(delta, a, furthest), interpolated(rate, a, furthest)
+        law(contacts, a, min(time + furthest * h, stop), x, v, laws, row)
+        for i in range(ORDER + 1):
+            # The places, then the furthest point.
+            at_place = i < ORDER and PLACES[i] < furthest
+            u = PLACES[i] if at_place else furthest
+            if before >= first:
+                break
+            if branch(reference, a, laws, i * c + a if at_place else row) == old:
+                before = u
+                if not at_place:
+                    break
+                continue
+            low, high = before, u
+            # Before the last place it is to be found again, with places that stand before it.
+            near = _NEAR if u > PLACES[ORDER - 1] else _ROUGHLY
+            while high - low > near:
+                middle = 0.5 * (low + high)
+                at = min(time + middle * h, stop)
+                law(contacts, a, at, interpolated(delta, a, middle), interpolated(rate, a, middle), laws, n + 2 * c)
+                if branch(reference, a, laws, n + 2 * c) == old:
+                    low = middle
+                else:
+                    high = middle
+            if high < first:
+                first, which = high, a
+            break
+    return first, which
+
+
+@uncounted()
+def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: FloatArray, modes: int, work: Work) -> None:
+    """What the polynomial of the excess misses, carried to the end: squares of error and amplitudes.
+
+    Between the places it misses what vanishes there; of the rest of its shape both ends tell. An element that ends at
+    a part of its size has the law's branch at its start alone for that; and besides what is missed over the whole, the
+    triangle between there and the end, which no cancellation takes away.
+    """
+    c = reference.stiffness.size
+    n = ORDER * c
+    error, h = work.end_error, steps.size[slot]
+    for i in range(2 * modes):
+        error[i] = 0.0
+    for a in range(c):
+        k, d = reference.stiffness[a], reference.damping[a]
+        first = work.laws[n + a, FORCE] - k * work.looked[0, a] - d * work.looked[1, a]
+        last = work.laws[n + c + a, FORCE] - k * work.looked[2, a] - d * work.looked[3, a]
+        for j in range(ORDER):
+            at_end = AT_ENDS[1, j]
+            if part != 1.0:
+                at_end = MONOMIALS[j, ORDER - 1]
+                for power in range(ORDER - 2, -1, -1):
+                    at_end = at_end * (part - INSIDE) + MONOMIALS[j, power]
+            first -= AT_ENDS[0, j] * work.excess[j * c + a]
+            last -= at_end * work.excess[j * c + a]
+        triangle = 0.5 * h * (1.0 - part) * last
+        if part != 1.0:
+            last = -first
+        for m in range(modes):
+            source = reference.source[m, a]
+            error[2 * m] += triangle * source.real
+            error[2 * m + 1] += triangle * source.imag
+        for i in range(2 * modes):
+            error[i] += steps.missed[slot, a, i] * first + steps.missed[slot, c + a, i] * last
+    wrong, size = 0.0, 0.0
+    for i in range(2 * modes):
+        wrong += error[i] * error[i]
+        size += z[i] * z[i]
+    work.measure[0], work.measure[1] = wrong, size
+
+
+@uncounted()
+def held_energy(laws: FloatArray, first: int, count: int) -> float:
+    """In the teeth, by rows of the laws [J]."""
+    total = 0.0
+    for row in range(first, first + count):
+        total += laws[row, ENERGY]
+    return total

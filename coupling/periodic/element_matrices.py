@@ -1,0 +1,152 @@
+r"""The matrices of an element of time, compiled: exponentials, and their integrals with the polynomials of its places.
+
+Importing this module imports numba.
+"""
+
+import cmath
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.periodic.arrays import Reference, Steps
+from coupling.periodic.collocation import MISSING, MONOMIALS, ORDER, PLACES
+from coupling.periodic.uncounted import uncounted
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_MOMENTS = ORDER + 2
+_SERIES_WITHIN = 0.7  # of |z|: beyond, the recursion upwards loses no more than two digits of the highest
+
+
+@uncounted()
+def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
+    """∫₀¹ e^{z(1-u)} uᵏ du for k = 0 ... count - 1, e^z being known."""
+    if z.real * z.real + z.imag * z.imag < _SERIES_WITHIN**2:
+        term = complex(1.0 / count)
+        total = term
+        for i in range(1, 40):
+            term *= z * (1.0 / (count + i))
+            total += term
+            if abs(term.real) + abs(term.imag) < 1e-17 * (abs(total.real) + abs(total.imag)):
+                break
+        out[count - 1] = total
+        for k in range(count - 1, 0, -1):
+            out[k - 1] = (1.0 + z * out[k]) * (1.0 / k)
+    else:
+        inverse = 1.0 / z
+        out[0] = (grown - 1.0) * inverse
+        for k in range(1, count):
+            out[k] = (k * out[k - 1] - 1.0) * inverse
+
+
+@uncounted()
+def end_matrices(
+    reference: Reference, h: float, part: float, decay: ComplexArray, source: FloatArray, integral: ComplexArray
+) -> None:
+    """From the amplitudes at the start of an element of size h to those at a part of it, and from its forces."""
+    c = reference.stiffness.size
+    for m in range(reference.eigenvalue.size):
+        z = reference.eigenvalue[m] * h * part
+        decay[m] = cmath.exp(z)
+        moments(z, decay[m], ORDER, integral)
+        for j in range(ORDER):
+            total, power = 0.0j, h * part
+            for k in range(ORDER):
+                total += integral[k] * (power * MONOMIALS[j, k])
+                power *= part
+            for b in range(c):
+                sent = total * reference.source[m, b]
+                source[j * c + b, 2 * m], source[j * c + b, 2 * m + 1] = sent.real, sent.imag
+
+
+@uncounted()
+def advance_to(
+    reference: Reference,
+    h: float,
+    part: float,
+    z: FloatArray,
+    excess: FloatArray,
+    end: FloatArray,
+    coefficient: FloatArray,
+    integral: ComplexArray,
+) -> None:
+    """Amplitudes at a part of an element of size h from those at its start and the excess forces at its places."""
+    c = reference.stiffness.size
+    power = h
+    for k in range(ORDER):
+        power *= part
+        for b in range(c):
+            coefficient[k, b] = 0.0
+            for j in range(ORDER):
+                coefficient[k, b] += power * MONOMIALS[j, k] * excess[j * c + b]
+    for m in range(reference.eigenvalue.size):
+        turned = reference.eigenvalue[m] * h * part
+        grown = cmath.exp(turned)
+        total = grown * complex(z[2 * m], z[2 * m + 1])
+        moments(turned, grown, ORDER, integral)
+        for b in range(c):
+            sent = 0.0j
+            for k in range(ORDER):
+                sent += integral[k] * coefficient[k, b]
+            total -= sent * reference.source[m, b]
+        end[2 * m], end[2 * m + 1] = total.real, total.imag
+
+
+@uncounted()
+def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexArray, values: ComplexArray) -> None:
+    """Fill in what an element of a slot's size needs."""
+    c, h = reference.stiffness.size, steps.size[slot]
+    n = ORDER * c
+    for row in range(2 * n):
+        for column in range(n):
+            steps.flexibility[slot, row, column] = 0.0
+    end_matrices(reference, h, 1.0, steps.decay[slot], steps.source[slot], integral)
+    for m in range(reference.eigenvalue.size):
+        moments(reference.eigenvalue[m] * h, steps.decay[slot, m], _MOMENTS, integral)
+        for end in range(2):
+            total = 0.0j
+            for k in range(_MOMENTS):
+                total += integral[k] * (h * MISSING[end, k])
+            for b in range(c):
+                sent = total * reference.source[m, b]
+                steps.missed[slot, end * c + b, 2 * m] = sent.real
+                steps.missed[slot, end * c + b, 2 * m + 1] = sent.imag
+        for i in range(ORDER):
+            place = PLACES[i]
+            z = reference.eigenvalue[m] * h * place
+            grown = cmath.exp(z)
+            for a in range(c):
+                # Re(d z) is the product of the rows Re d, -Im d with Re z, Im z.
+                seen = complex(reference.displacement[a, 2 * m], -reference.displacement[a, 2 * m + 1]) * grown
+                steps.felt[slot, 2 * m, i * c + a] = seen.real
+                steps.felt[slot, 2 * m + 1, i * c + a] = -seen.imag
+                seen = complex(reference.rate[a, 2 * m], -reference.rate[a, 2 * m + 1]) * grown
+                steps.felt[slot, 2 * m, n + i * c + a] = seen.real
+                steps.felt[slot, 2 * m + 1, n + i * c + a] = -seen.imag
+            moments(z, grown, ORDER, integral)
+            for j in range(ORDER):
+                values[j] = 0.0j
+                power = h * place
+                for k in range(ORDER):
+                    values[j] += integral[k] * (power * MONOMIALS[j, k])
+                    power *= place
+            if steps.inner_decay.shape[0] > 0:
+                steps.inner_decay[slot, i, m] = grown
+            for j in range(ORDER):
+                for b in range(c):
+                    sent = values[j] * reference.source[m, b]
+                    x, y = sent.real, sent.imag
+                    if x == 0.0 and y == 0.0:
+                        continue
+                    for a in range(c):
+                        steps.flexibility[slot, i * c + a, j * c + b] += (
+                            reference.displacement[a, 2 * m] * x + reference.displacement[a, 2 * m + 1] * y
+                        )
+                        steps.flexibility[slot, n + i * c + a, j * c + b] += (
+                            reference.rate[a, 2 * m] * x + reference.rate[a, 2 * m + 1] * y
+                        )
+                    if steps.inner_decay.shape[0] > 0:
+                        steps.inner_source[slot, i, j * c + b, 2 * m] = x
+                        steps.inner_source[slot, i, j * c + b, 2 * m + 1] = y
+    steps.filled[slot] = 1

@@ -1,0 +1,63 @@
+"""Room that an element's kernels work in."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+class Work(NamedTuple):
+    """n = s c unknown forces of an element, m amplitudes, c contacts, s places."""
+
+    base: FloatArray  # (2 n,) compressions and rates without the excess forces
+    excess: FloatArray  # (n,)
+    move: FloatArray  # (n,) Newton's last step
+    slope: FloatArray  # (n,) of the excess by compression ...
+    rate_slope: FloatArray  # (n,) ... and by rate
+    delta: FloatArray  # (s + 2, c) compressions at the places and both ends
+    rate: FloatArray  # (s + 2, c)
+    looked: FloatArray  # (4, c) compressions and rates just after the start, and just before the end
+    laws: FloatArray  # (n + 2 c + 1, 6) at the places, just after the start, at the end, and one to try with
+    matrix: FloatArray  # (n, n)
+    right: FloatArray  # (n, 1)
+    end: FloatArray  # (2 m,) amplitudes
+    end_error: FloatArray  # (2 m,)
+    measure: FloatArray  # (2,)
+    cut_decay: ComplexArray  # (1, m) to a part of an element
+    cut_source: FloatArray  # (1, n, 2 m)
+    integral: ComplexArray  # (s + 2,)
+    values: ComplexArray  # (s,)
+    coefficient: FloatArray  # (s, c) of the excess as a power series
+    columns: FloatArray  # (n, p) of disturbances
+    moved: FloatArray  # (p,)
+
+
+def element_work(m: int, s: int, c: int, p: int = 0) -> Work:
+    """Room for elements of some shape, and for p disturbances."""
+    n = s * c
+    return Work(
+        base=np.zeros(2 * n),
+        excess=np.zeros(n),
+        move=np.zeros(n),
+        slope=np.zeros(n),
+        rate_slope=np.zeros(n),
+        delta=np.zeros((s + 2, c)),
+        rate=np.zeros((s + 2, c)),
+        looked=np.zeros((4, c)),
+        laws=np.zeros((n + 2 * c + 1, 6)),
+        matrix=np.zeros((n, n)),
+        right=np.zeros((n, 1)),
+        end=np.zeros(2 * m),
+        end_error=np.zeros(2 * m),
+        measure=np.zeros(2),
+        cut_decay=np.zeros((1, m), dtype=np.complex128),
+        cut_source=np.zeros((1, n, 2 * m)),
+        integral=np.zeros(s + 2, dtype=np.complex128),
+        values=np.zeros(s, dtype=np.complex128),
+        coefficient=np.zeros((s, c)),
+        columns=np.zeros((n, p)),
+        moved=np.zeros(p),
+    )

@@ -1,0 +1,132 @@
+"""What becomes of small disturbances of a motion, compiled: over an element, and over a moment where a force steps.
+
+Importing this module imports numba. p disturbances are the columns of an array (2 m, p) of amplitudes.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.contact_kernels import DAMPING, FORCE, TOUCHING
+from coupling.kernel_arrays import Contacts
+from coupling.periodic.arrays import Reference, Steps
+from coupling.periodic.element import law
+from coupling.periodic.element_work import Work
+from coupling.periodic.uncounted import uncounted
+from coupling.small_systems import solve_in_place
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@uncounted()
+def vary(
+    steps: Steps, slot: int, decay: ComplexArray, source: FloatArray, end: int, columns: FloatArray, work: Work
+) -> None:
+    """Carry the disturbances over an element of a slot's size, with the matrices ``end`` to where it ends."""
+    count, p = columns.shape[0], columns.shape[1]
+    n = work.excess.size
+    matrix, right = work.matrix, work.columns
+    for row in range(n):
+        x, v = work.slope[row], work.rate_slope[row]
+        for k in range(p):
+            right[row, k] = 0.0
+        for column in range(n):
+            matrix[row, column] = (
+                x * steps.flexibility[slot, row, column] + v * steps.flexibility[slot, n + row, column]
+            )
+        matrix[row, row] += 1.0
+        for i in range(count):
+            felt = x * steps.felt[slot, i, row] + v * steps.felt[slot, i, n + row]
+            for k in range(p):
+                right[row, k] += felt * columns[i, k]
+    solve_in_place(matrix, right)
+    for m in range(count // 2):
+        x, y = decay[end, m].real, decay[end, m].imag
+        for k in range(p):
+            kept = columns[2 * m, k]
+            columns[2 * m, k] = x * kept - y * columns[2 * m + 1, k]
+            columns[2 * m + 1, k] = x * columns[2 * m + 1, k] + y * kept
+    for i in range(count):
+        for row in range(n):
+            x = source[end, row, i]
+            for k in range(p):
+                columns[i, k] -= x * right[row, k]
+
+
+@uncounted()
+def cross(reference: Reference, a: int, jump: float, columns: FloatArray, moved: FloatArray) -> None:
+    """Carry the disturbances over a moment at which the force of a contact steps: the sooner, the longer it acts."""
+    count, p = columns.shape[0], columns.shape[1]
+    for k in range(p):
+        moved[k] = 0.0
+    for i in range(count):
+        for k in range(p):
+            moved[k] += reference.displacement[a, i] * columns[i, k]
+    for m in range(count // 2):
+        x, y = jump * reference.source[m, a].real, jump * reference.source[m, a].imag
+        for k in range(p):
+            columns[2 * m, k] -= x * moved[k]
+            columns[2 * m + 1, k] -= y * moved[k]
+
+
+@uncounted()
+def touches(contacts: Contacts, a: int, time: float, delta: float, laws: FloatArray, row: int) -> bool:
+    """Whether any pair touches at a time and a compression."""
+    law(contacts, a, time, delta, 0.0, laws, row)
+    return bool(laws[row, TOUCHING] > 0.0)
+
+
+@uncounted()
+def first_touch(
+    reference: Reference, contacts: Contacts, a: int, time: float, near: float, laws: FloatArray, row: int
+) -> float:
+    """Compression at which the first pair touches at a time, near a compression."""
+    reach = 1e-12 * reference.scale[a] + 1e-9 * abs(near)
+    low, high = near, near
+    for _ in range(200):
+        if not touches(contacts, a, time, low, laws, row):
+            break
+        low -= reach
+        reach *= 1.5
+    for _ in range(200):
+        if touches(contacts, a, time, high, laws, row):
+            break
+        high += reach
+        reach *= 1.5
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        if touches(contacts, a, time, middle, laws, row):
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+@uncounted()
+def jump_at(
+    reference: Reference,
+    contacts: Contacts,
+    a: int,
+    time: float,
+    delta: float,
+    rate: float,
+    inside: float,
+    laws: FloatArray,
+    row: int,
+) -> float:
+    """Step in the force of a contact over the speed of crossing, where its flanks meet or part."""
+    law(contacts, a, time - inside, delta - rate * inside, rate, laws, row)
+    before, force, damping = laws[row, TOUCHING] > 0.0, laws[row, FORCE], laws[row, DAMPING]
+    law(contacts, a, time + inside, delta + rate * inside, rate, laws, row)
+    after, sign = laws[row, TOUCHING] > 0.0, -1.0
+    if before == after:
+        return 0.0
+    if after:
+        force, damping, sign = laws[row, FORCE], laws[row, DAMPING], 1.0
+    if force == 0.0 or damping < reference.full_damping[a] * (1.0 - 1e-14):
+        return 0.0  # held at zero by the law, or its damping only fades in: no step
+    later = first_touch(reference, contacts, a, time + inside, delta, laws, row)
+    sooner = first_touch(reference, contacts, a, time - inside, delta, laws, row)
+    crossing = rate - (later - sooner) / (2.0 * inside)
+    # The springs start from nothing; only the damping can step.
+    return sign * damping * rate / crossing if crossing != 0.0 else 0.0

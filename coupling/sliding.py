@@ -1,0 +1,89 @@
+r"""Friction of the teeth among the coordinates: the direction in which a pair of teeth slides, and who holds the speed.
+
+With e the unit vector along which the driver pushes, s its sense of turning and t = s z × e that in which its flank
+moves across the line of action, the flanks of a pair at the position x along the path (in base pitches) slide by
+
+    w = t (u_k - u_i)' + s (ξ_k θ_k' + ξ_i θ_i'),        ξ_k = ξ_k0 + x p_b,    ξ_i = ξ_i0 - x p_b,
+
+linear in x: w = (a + x b)ᵀ q' beside the nominal rotation's W_a + x W_b. By virtual work friction does
+-μ F sgn(w) (a + x b) to the coordinates: ± the force on both gears, and the moments ξ_k and ξ_i times it on their
+shafts. The sign is that of the nominal rotation, which turns at the pitch point; what vibration adds to it would turn
+the force some microseconds earlier or later.
+
+The torque that friction takes from a train of gears comes out of what turns it. Speeds are prescribed, so what the
+friction would do to motions that nothing resists, the train's turning as a whole, is given back to them at once, as an
+inertia force of d'Alembert: a and b are taken orthogonal to those motions.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.component import Component
+from coupling.connector import ContactConnector, Sliding
+from coupling.gears import GearPairGeometry, SlidingFriction
+from coupling.loads import LoadedParts
+from coupling.statics import unresisted_motions
+from coupling.system import CoupledSystem, embed
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def sliding_flanks(
+    components: Sequence[Component],
+    parts: LoadedParts,
+    places: Sequence[tuple[str, float]],
+    geometry: GearPairGeometry,
+    friction: SlidingFriction,
+    angle: float,
+    sense: int,
+    speeds: Sequence[float],
+) -> Sliding:
+    """How the flanks of a gear pair slide.
+
+    Parameters
+    ----------
+    components, parts
+        The machine's.
+    places : two of (str, float)
+        Rotor of the driver and of the driven gear, and the distance from its left end [m].
+    geometry : GearPairGeometry
+    friction : SlidingFriction
+    angle : float
+        From x to the line of action along which the driver pushes [rad].
+    sense : int
+        +1 where the driver turns counter-clockwise as it pushes so, -1 where clockwise.
+    speeds : two of float
+        Signed, of both rotors [rad/s].
+    """
+    across = sense * np.array([-np.sin(angle), np.cos(angle)])
+    gears = (geometry.driver, geometry.driven)
+    rolls = (geometry.driver_roll_angle, geometry.driven_roll_angle)
+    directions = np.zeros((sum(component.size for component in components), 2))
+    nominal = np.zeros(2)
+    for (name, at), gear, roll, side, speed in zip(places, gears, rolls, (1.0, -1.0), speeds, strict=True):
+        which, rotor = parts.rotor(name)
+        begin, end = sense * gear.base_radius * roll(np.array([0.0, 1.0]))
+        moved = side * (across[0] * rotor.direction(at, 0) + across[1] * rotor.direction(at, 1))
+        turned = rotor.rotation(at)
+        directions[:, 0] += embed(components, which, moved + begin * turned)
+        directions[:, 1] += embed(components, which, (end - begin) * turned)
+        nominal += speed * np.array([begin, end - begin])
+    return Sliding(friction, directions, nominal)
+
+
+def held_at_speed(system: CoupledSystem) -> CoupledSystem:
+    """The system with friction that does nothing to motions which nothing resists."""
+    if all(contact.sliding is None for contact in system.contacts):
+        return system
+    free = unresisted_motions(system)[0]
+
+    def held(contact: ContactConnector) -> ContactConnector:
+        if contact.sliding is None:
+            return contact
+        rows = contact.sliding.directions
+        return replace(contact, sliding=replace(contact.sliding, directions=rows - free @ (free.T @ rows)))
+
+    return replace(system, contacts=tuple(held(contact) for contact in system.contacts))

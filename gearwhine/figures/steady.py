@@ -1,0 +1,138 @@
+"""The steady state: one period of the mesh forces with their lines, and the branch of motions over speed."""
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from coupling import ResponseCurve
+from gearwhine.case import Case
+from gearwhine.figures.spectrum_lines import draw_lines
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    GREY,
+    HEAD,
+    INK,
+    RED,
+    RPM,
+    SERIES,
+    legend,
+    panel,
+    save,
+    sheet,
+    shortened,
+    tidy,
+)
+from gearwhine.stages.steady import SolvedSteady, SteadyMotion
+
+FloatArray = npt.NDArray[np.float64]
+
+_HEIGHT, _BETWEEN = 46.0, 6.0  # of the panels of a branch, and between them [mm]
+_MARKS = {"fold": ("o", RED), "period doubling": ("s", INK), "Neimark-Sacker": ("D", INK), "branch point": ("^", INK)}
+
+
+def draw_steady(folder: Path, case: Case, solved: SolvedSteady) -> list[str]:
+    """Draw what was found; returns the files' names."""
+    files = []
+    if solved.machine.meshes:
+        motion = _motion_sheet(case, solved)
+        files.append(save(motion, folder / "steady-motion.png"))
+    if solved.curve is not None:
+        curve = draw_response_curve(f"{case.title}: steady motions over speed", solved, solved.curve)
+        files.append(save(curve, folder / "steady-curve.png"))
+    return files
+
+
+def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve) -> Figure:
+    """Draw a branch: vibration in the teeth, largest force, contact loss and sensors over speed; unstable dashed."""
+    drives = [contact.name for contact in solved.machine.system.contacts[: len(solved.machine.meshes)]]
+    quantities: list[tuple[str, dict[str, FloatArray]]] = []
+    if drives:
+        table = {name: i for i, name in enumerate(drives)}
+        quantities += [
+            ("compression, a.c. rms [µm]", {name: 1e6 * curve.rms_compression[:, i] for name, i in table.items()}),
+            ("largest mesh force [N]", {name: curve.peak_force[:, i] for name, i in table.items()}),
+        ]
+        if curve.contact_loss.max() > 0.0:
+            quantities.append(
+                ("teeth apart [%]", {name: 100.0 * curve.contact_loss[:, i] for name, i in table.items()})
+            )
+    sensors = list(solved.motions[0].histories.sensor_acceleration)
+    if sensors:
+        rms = {name: np.array([motion.sensor_rms[name] for motion in solved.branch]) for name in sensors}
+        quantities.append(("acceleration, rms [m/s²]", rms))
+    note = "full: stable, dashed: unstable; dash-dotted: operation"
+    figure = sheet(HEAD + len(quantities) * (_HEIGHT + _BETWEEN) - _BETWEEN + FOOT, title, note)
+    speeds = RPM * np.abs(curve.speeds)
+    for number, (what, lines) in enumerate(reversed(quantities)):
+        axes = panel(figure, FOOT + number * (_HEIGHT + _BETWEEN), _HEIGHT)
+        _draw_branch(axes, speeds, lines, curve)
+        axes.axvline(RPM * abs(solved.motions[0].speed), color=INK, lw=0.8, ls="-.", zorder=1)
+        axes.set(xlim=(speeds.min(), speeds.max()), ylabel=what)
+        axes.set_ylim(bottom=0.0)
+        if number:
+            axes.tick_params(labelbottom=False)
+        else:
+            axes.set_xlabel("speed of the first driver [rpm]")
+        if len(lines) > 1:
+            axes.legend(loc="best", fontsize=6.5, frameon=False)
+    met = {event.kind for event in curve.bifurcations}
+    legend(
+        figure,
+        [
+            Line2D([], [], ls="", marker=marker, color=color, ms=4, label=kind)
+            for kind, (marker, color) in _MARKS.items()
+            if kind in met
+        ],
+    )
+    return figure
+
+
+def _draw_branch(axes: Axes, speeds: FloatArray, lines: dict[str, FloatArray], curve: ResponseCurve) -> None:
+    stable = curve.stable
+    for number, (name, values) in enumerate(lines.items()):
+        color = SERIES[number % len(SERIES)]
+        label = shortened(name, 30).replace("$", r"\$")
+        start = 0
+        for end in range(1, len(stable) + 1):
+            if end < len(stable) and stable[end] == stable[start]:
+                continue
+            run = slice(start, min(end + 1, len(stable)))
+            style = "-" if stable[start] else (0, (3, 2))
+            axes.plot(speeds[run], values[run], color=color, lw=1.2, ls=style, label=label, zorder=3)
+            label, start = "_", end
+        for event in curve.bifurcations:
+            marker, tint = _MARKS[event.kind]
+            axes.plot(speeds[event.index], values[event.index], marker=marker, color=tint, ms=3.5, ls="", zorder=4)
+
+
+def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
+    drives = [contact.name for contact in solved.machine.system.contacts[: len(solved.machine.meshes)]]
+    figure = Figure(figsize=(9.0, 0.7 + 2.8 * len(drives)), layout="constrained")
+    rows = figure.subplots(len(drives), 2, squeeze=False)
+    stable = [motion for motion in solved.motions if motion.response.stable]
+    for (left, right), name in zip(rows, drives, strict=True):
+        for motion in solved.motions:
+            color = BLUE if motion.response.stable else GREY
+            left.plot(1e3 * motion.histories.times, motion.histories.mesh_force[name], color=color, lw=0.9)
+        left.set(xlabel="time [ms]", ylabel="mesh force [N]")
+        left.set_title(f"{name}: one period", fontsize=10, loc="left", parse_math=False)
+        _spectrum(right, (stable or list(solved.motions))[0], name)
+        tidy(left)
+        tidy(right)
+    assert case.operation is not None
+    speed = f"{case.operation.speed * RPM:.0f} rpm"
+    grey = "" if len(stable) == len(solved.motions) else " (grey: unstable)"
+    figure.suptitle(f"{case.title}: periodic motion at {speed}{grey}", fontsize=11, parse_math=False)
+    return figure
+
+
+def _spectrum(axes: Axes, motion: SteadyMotion, name: str) -> None:
+    spectrum = motion.spectrum(motion.histories.mesh_force[name])
+    draw_lines(axes, spectrum, min(motion.trusted_limit, float(spectrum.frequencies[-1])))
+    axes.set(xlabel="frequency [Hz]", ylabel="mesh force [N, peak]")
+    axes.set_title("its lines", fontsize=10, loc="left")

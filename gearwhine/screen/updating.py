@@ -1,0 +1,110 @@
+"""What was fitted to the measured modes, and what that is worth."""
+
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from gearwhine.screen.console import counted, open_console, show_written
+
+
+def show_update(document: dict[str, Any]) -> None:
+    """Parameters, modes, what the data cannot tell apart, and the tests of the fit."""
+    console = open_console()
+    _parameters(console, document)
+    _modes(console, document)
+    _identifiability(console, document["identifiability"])
+    if "held_back" in document:
+        _held_back(console, document["held_back"])
+    if "null" in document:
+        _null(console, document)
+    else:
+        console.print("How often random frequencies are fitted as well: --null 20. Modes held back: --held-back.")
+    show_written(console, document)
+
+
+def _parameters(console: Console, document: dict[str, Any]) -> None:
+    table = Table("parameter", "before", "after", "give or take", "of the prior's", "", box=SIMPLE_HEAD)
+    for column in table.columns[1:5]:
+        column.justify = "right"
+    for row in document["parameters"]:
+        unit, scale = row["unit"], row["unit_in_si"]
+        was, now, give = (
+            f"{value / scale:.4g} {unit}".strip() for value in (row["before"], row["after"], row["standard_deviation"])
+        )
+        end = "at the end of its range" if row["at_end_of_range"] else ""
+        table.add_row(row["name"], was, now, give, f"{100 * row['left_of_prior_spread']:.0f} %", end)
+    console.print(table)
+
+
+def _modes(console: Console, document: dict[str, Any]) -> None:
+    table = Table("mode", "measured [Hz]", "before [Hz]", "error", "after [Hz]", "error", box=SIMPLE_HEAD)
+    for column in table.columns:
+        column.justify = "right"
+    for pair in document["pairs"]:
+        table.add_row(
+            str(pair["mode"]),
+            f"{pair['measured_hz']:.0f}",
+            f"{pair['before_hz']:.1f}",
+            f"{pair['before_error_percent']:+.2f} %",
+            f"{pair['model_hz']:.1f}",
+            f"{pair['error_percent']:+.2f} %",
+        )
+    console.print(table)
+    agree = "agree" if document["measures_agree"] else "do not all agree"
+    counts = document.get("model_modes")
+    count = "" if counts is None else f"; {counted(counts['count'], 'model mode')} below {counts['below_hz']:.0f} Hz"
+    console.print(
+        f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, rms "
+        f"{document['rms_error_percent']:.2f} % (before: {document['before']['rms_error_percent']:.2f} %){count}; gap "
+        f"{document['gap']:.2f}, the three measures of dominance {agree}."
+    )
+    solved, mesh = document["search"], document["mesh"]
+    console.print(
+        f"{counted(len(solved['steps']), 'design')} solved with {solved['mesh_dofs']} degrees of freedom, verified "
+        f"with {mesh['dofs']}; {document['seconds']['total']:.0f} s."
+    )
+
+
+def _identifiability(console: Console, told: dict[str, Any]) -> None:
+    learned = counted(told["learned_combinations"], "combination")
+    console.print(
+        f"Of {told['parameters']} parameters the data tell {learned} better than the prior did; the rest stays what "
+        "was assumed."
+    )
+    for row in told["confounded"][:6]:
+        one, other = row["parameters"]
+        console.print(f"  not told apart: {one} and {other} (correlation {row['correlation']:+.2f})")
+
+
+def _held_back(console: Console, rows: list[dict[str, Any]]) -> None:
+    table = Table(
+        "held back [Hz]", "predicted [Hz]", "error", "expected", "error before", "rms of others", box=SIMPLE_HEAD
+    )
+    for column in table.columns:
+        column.justify = "right"
+    for row in rows:
+        table.add_row(
+            f"{row['measured_hz']:.0f}",
+            f"{row['predicted_hz']:.1f}",
+            f"{row['error_percent']:+.2f} %",
+            f"± {row['standard_deviation_percent']:.2f} %",
+            f"{row['before_error_percent']:+.2f} %",
+            f"{row['rms_error_percent_of_the_others']:.2f} %",
+        )
+    console.print(table)
+
+
+def _null(console: Console, document: dict[str, Any]) -> None:
+    null = document["null"]
+    five, two, one, rms = (
+        f"{100 * null[key]:.0f} %"
+        for key in ("within_5_percent", "within_2_percent", "within_1_percent", "as_good_in_rms")
+    )
+    console.print(
+        f"Of {null['sets']} random sets of as many frequencies the same search fits {five} within 5 %, {two} within "
+        f"2 % and {one} within 1 % each; {rms} as well as the measured ones in rms."
+    )
+    if null["as_good_in_rms"] > 0.05:
+        console.print("So the errors alone say little of this housing: it is a plausible one, calibrated.")

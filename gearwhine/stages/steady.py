@@ -1,0 +1,263 @@
+"""The steady state of a case directly: the motion that repeats with its excitation, and its branch over speed."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling as room
+from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
+from gearwhine.case.analysed_speeds import BEYOND_OPERATION
+from gearwhine.case.problems import UNSAID
+from gearwhine.progress import Progress, silent
+from gearwhine.stages.housing import SolvedHousing
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_RPM = 60.0 / _HERTZ
+_SLOWEST = 0.5  # of the speed of operation, where a case names no range
+_OVERSAMPLING = 32.0  # of a period over the highest frequency of interest: little folds back below it
+_LEAST_SAMPLES = 512
+_HARMONICS = 4.0  # of the mesh that are of interest where no housing says how far the model goes
+_LINES = 20  # that are told of each signal
+
+
+@dataclass(frozen=True)
+class SteadyMotion:
+    """A periodic motion at one speed.
+
+    Attributes
+    ----------
+    speed : float
+        Of the first driver's rotor [rad/s].
+    response : coupling.PeriodicResponse
+    histories : coupling.Histories
+        Of one period.
+    trusted_limit : float
+        Highest frequency that the model carries [Hz].
+    """
+
+    speed: float
+    response: room.PeriodicResponse
+    histories: room.Histories
+    trusted_limit: float
+
+    def spectrum(self, signal: FloatArray) -> room.Spectrum:
+        """Lines of a signal of the histories, exact."""
+        return room.amplitude_spectrum(signal, self.response.period / len(signal))
+
+    @property
+    def sensor_rms(self) -> dict[str, float]:
+        """Of each sensor's acceleration up to the trusted limit [m/s²]."""
+        signals = self.histories.sensor_acceleration
+        return {name: float(self.spectrum(signal).rms(self.trusted_limit)) for name, signal in signals.items()}
+
+
+@dataclass(frozen=True)
+class SolvedSteady:
+    """The steady state.
+
+    Attributes
+    ----------
+    machine : coupling.Machine
+        At the speed of operation.
+    motions : tuple of SteadyMotion
+        At the speed of operation: one, or all that a branch has there.
+    curve : coupling.ResponseCurve or None
+        The branch over the speed of the first driver's rotor [rad/s].
+    branch : tuple of SteadyMotion
+        Its points.
+    """
+
+    machine: room.Machine
+    motions: tuple[SteadyMotion, ...]
+    curve: room.ResponseCurve | None = None
+    branch: tuple[SteadyMotion, ...] = ()
+
+
+def solve_steady(
+    case: Case,
+    machine: room.Machine,
+    housing: SolvedHousing | None,
+    progress: Progress = silent,
+    *,
+    over_speed: bool = False,
+    downwards: bool = False,
+    points: int = 100,
+) -> SolvedSteady:
+    """Find the motion that repeats at the speed of operation, and where asked follow it over speed.
+
+    Parameters
+    ----------
+    case, machine, housing
+        The case and what was built of it.
+    progress
+        Told what is solved, and how far the branch has come.
+    over_speed
+        Whether the branch is wanted: over the range of ``[sweep]``, else from half to beyond the speed of operation.
+    downwards
+        Whether it begins at the highest speed.
+    points
+        On a branch that runs straight.
+
+    Raises
+    ------
+    CaseError
+        Where the speed is said to vary, or the range holds one speed only.
+    coupling.CouplingError
+        Where the excitation does not repeat.
+    coupling.PeriodicError
+        Where no motion is found, or a branch is lost.
+    """
+    require(case, "rotor", "operation", command="steady")
+    assert case.operation is not None
+    speed = case.operation.speed
+    if speed == 0.0:
+        raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
+    progress("compiling the search for periodic motions (the first time takes longer)")
+    if not over_speed:
+        response = room.periodic_response(machine.system)
+        return SolvedSteady(machine, (_motion(case, machine, housing, speed, response),))
+    low, high = _speed_range(case)
+    low, high = math.copysign(low, speed), math.copysign(high, speed)
+    machines: dict[float, room.Machine] = {}
+
+    def system_at(at: float) -> room.CoupledSystem:
+        machines[at] = machine.at_speed(at)
+        return machines[at].system
+
+    curve = room.response_curve(
+        system_at,
+        *((high, low) if downwards else (low, high)),
+        points=points,
+        progress=lambda fraction: progress("following the motion over speed", fraction),
+    )
+
+    def motion(at: float, response: room.PeriodicResponse) -> SteadyMotion:
+        return _motion(case, machines[at], housing, at, response)
+
+    branch = tuple(motion(float(at), found) for at, found in zip(curve.speeds, curve.responses, strict=True))
+    reached = sorted((float(curve.speeds.min()), float(curve.speeds.max())))
+    here = curve.at(speed) if reached[0] <= speed <= reached[1] else [room.periodic_response(machine.system)]
+    return SolvedSteady(machine, tuple(_motion(case, machine, housing, speed, one) for one in here), curve, branch)
+
+
+def _speed_range(case: Case) -> tuple[float, float]:
+    """Lowest and highest speed of the branch [rad/s]."""
+    assert case.operation is not None
+    if case.sweep is None:
+        return _SLOWEST * abs(case.operation.speed), BEYOND_OPERATION * abs(case.operation.speed)
+    speeds = [abs(speed) for speed in case.sweep.speeds]
+    low, high = min(speeds), max(speeds)
+    if not 0.0 < low < high:
+        raise CaseError(
+            [Problem("sweep.speed", UNSAID, "a range of speeds above zero, over which a motion is followed")]
+        )
+    return low, high
+
+
+def _motion(
+    case: Case, machine: room.Machine, housing: SolvedHousing | None, speed: float, response: room.PeriodicResponse
+) -> SteadyMotion:
+    assert case.operation is not None
+    ratio = abs(speed / case.operation.speed)
+    limit = _HARMONICS * ratio * max(mesh_frequencies(case), default=1000.0) if case.gear_pair else 1000.0
+    if housing is not None:
+        limit = housing.trusted_limit_hz
+    samples = 2 ** math.ceil(math.log2(max(_OVERSAMPLING * limit * response.period, _LEAST_SAMPLES)))
+    record = response.record(room.transient_outputs(machine), samples)
+    return SteadyMotion(speed, response, room.histories(machine, record), limit)
+
+
+def steady_document(case: Case, solved: SolvedSteady) -> dict[str, Any]:
+    """The steady state as the command's JSON."""
+    assert case.operation is not None
+    document: dict[str, Any] = {
+        "title": case.title,
+        "speed_rpm": case.operation.speed * _RPM,
+        "coordinates": solved.machine.system.size,
+        "trusted_below_hz": solved.motions[0].trusted_limit,
+        "motions": [_motion_document(solved.machine, motion) for motion in solved.motions],
+    }
+    if solved.curve is not None:
+        document["curve"] = _curve_document(solved, solved.curve)
+    return document
+
+
+def _motion_document(machine: room.Machine, motion: SteadyMotion) -> dict[str, Any]:
+    response, floquet = motion.response, motion.response.floquet
+    return {
+        "period_s": response.period,
+        "stable": response.stable,
+        "largest_multiplier": floquet.largest,
+        "instability": floquet.leaving,
+        "residual": response.residual,
+        "error": response.error,
+        "elements": response.elements,
+        "switches": response.switches,
+        "newton_steps": response.newton_steps,
+        "gear_pairs": [
+            {
+                "driver": mesh.driver.name,
+                "driven": mesh.driven.name,
+                "mean_force_n": float(response.mean_force[number]),
+                "peak_force_n": float(response.peak_force[number]),
+                "contact_loss_fraction": float(response.contact_loss[number]),
+                "mean_compression_m": float(response.mean_compression[number]),
+                "rms_compression_m": float(response.rms_compression[number]),
+                "force_lines": _lines(motion, motion.histories.mesh_force[name], "amplitude_n"),
+            }
+            for number, (name, mesh) in enumerate(_drives(machine))
+        ],
+        "sensors": [
+            {
+                "name": name,
+                "rms_m_per_s2": motion.sensor_rms[name],
+                "lines": _lines(motion, signal, "amplitude_m_per_s2"),
+            }
+            for name, signal in motion.histories.sensor_acceleration.items()
+        ],
+    }
+
+
+def _lines(motion: SteadyMotion, signal: FloatArray, key: str) -> list[dict[str, float]]:
+    """The highest lines up to the trusted limit: each is a whole number of times the period's frequency."""
+    spectrum = motion.spectrum(signal)
+    limit = motion.trusted_limit * (1.0 + 1e-9)
+    known = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit))
+    highest = known[np.argsort(-spectrum.amplitude[known], kind="stable")][:_LINES]
+    return [
+        {"frequency_hz": float(spectrum.frequencies[i]), key: float(spectrum.amplitude[i])}
+        for i in highest
+        if spectrum.amplitude[i] > 0.0
+    ]
+
+
+def _curve_document(solved: SolvedSteady, curve: room.ResponseCurve) -> dict[str, Any]:
+    return {
+        "speed_rpm": (curve.speeds * _RPM).tolist(),
+        "stable": curve.stable.tolist(),
+        "gear_pairs": [
+            {
+                "driver": mesh.driver.name,
+                "driven": mesh.driven.name,
+                "rms_compression_m": curve.rms_compression[:, number].tolist(),
+                "peak_force_n": curve.peak_force[:, number].tolist(),
+                "contact_loss_fraction": curve.contact_loss[:, number].tolist(),
+            }
+            for number, (_, mesh) in enumerate(_drives(solved.machine))
+        ],
+        "sensors": [
+            {"name": name, "rms_m_per_s2": [motion.sensor_rms[name] for motion in solved.branch]}
+            for name in solved.motions[0].histories.sensor_acceleration
+        ],
+        "bifurcations": [{"kind": event.kind, "speed_rpm": event.speed * _RPM} for event in curve.bifurcations],
+    }
+
+
+def _drives(machine: room.Machine) -> list[tuple[str, room.GearMesh]]:
+    """Each mesh with the name of its drive flanks' contact; these come first among the contacts."""
+    return [(contact.name, mesh) for contact, mesh in zip(machine.system.contacts, machine.meshes, strict=False)]

@@ -1,0 +1,254 @@
+"""An updated housing as the command's JSON, and as the case file that holds what was found."""
+
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from gearwhine.case import Case, UpdateParameter
+from gearwhine.case.check_provenance import without_changed
+from gearwhine.case.problems import Location, key_of
+from gearwhine.case.units import amount
+from gearwhine.stages.update_keys import FittedNumber, with_entry
+from gearwhine.stages.updating import SolvedUpdate
+from housing.updating import UNPAIRED, HeldBack, Misfit, NullFit
+
+_HERTZ = 2.0 * np.pi
+_AT_END = 1e-3  # part of a range that counts as its end
+_PARTS = 4  # parameters named of each combination
+
+
+def update_document(case: Case, solved: SolvedUpdate) -> dict[str, Any]:
+    """What was fitted, how well, and what that is worth."""
+    target, fine = solved.target, solved.misfit_after
+    paired = [pair for pair in fine.pairs if pair != UNPAIRED]
+    document: dict[str, Any] = {
+        "title": case.title,
+        "parameters": _parameters(solved),
+        "pairs": _pairs(solved),
+        "rms_error_percent": fine.rms_percent,
+        "max_error_percent": fine.max_percent,
+        "pairing": "dominance in order of frequency",
+        "gap": fine.gap,
+        "measures_agree": fine.measures_agree,
+        "wrong_pairs": len(fine.pairs) - len(paired),
+        "before": _misfit(solved.misfit_before),
+        "search": {
+            "mesh_dofs": 3 * len(solved.tuned.mesh.points),
+            **_misfit(solved.misfit_tuned),
+            "steps": [
+                {
+                    "promised": step.promised,
+                    "found": step.found,
+                    "accepted": step.accepted,
+                    "trust": step.trust,
+                    "rms_error_percent": step.rms_percent,
+                }
+                for step in solved.steps
+            ],
+        },
+        "mesh": {"nodes": len(solved.after.mesh.points), "dofs": 3 * len(solved.after.mesh.points)},
+        "identifiability": _identifiability(solved),
+        "seconds": {**solved.seconds, "total": sum(solved.seconds.values())},
+    }
+    if target.count is not None:
+        document["model_modes"] = {"below_hz": target.count.limit / _HERTZ, "count": fine.count}
+    if solved.held_back:
+        document["held_back"] = [_held_back(row) for row in solved.held_back]
+    if solved.null:
+        document["null"] = _null(solved.null, solved.misfit_tuned)
+    return document
+
+
+def _misfit(misfit: Misfit) -> dict[str, Any]:
+    return {
+        "misfit": misfit.value,
+        "rms_error_percent": misfit.rms_percent,
+        "max_error_percent": misfit.max_percent,
+        "gap": misfit.gap,
+        "measures_agree": misfit.measures_agree,
+        "model_modes": misfit.count,
+    }
+
+
+def _parameters(solved: SolvedUpdate) -> list[dict[str, Any]]:
+    parameters = [number.parameter for number in solved.fitted.numbers]
+    rows = []
+    values = solved.posterior.values(parameters)
+    for place, (number, (after, deviation)) in enumerate(zip(solved.fitted.numbers, values, strict=True)):
+        parameter = number.parameter
+        slack = _AT_END * (parameter.high - parameter.low)
+        rows.append(
+            {
+                "name": parameter.name,
+                "keys": [key_of(location) for location in number.places],
+                "factor": number.given.factor,
+                "unit": number.given.unit,
+                "unit_in_si": _unit_in_si(number.given),
+                "before": number.start,
+                "after": after,
+                "standard_deviation": deviation,
+                "prior": {"nominal": parameter.nominal, "spread": parameter.spread},
+                "range": [parameter.low, parameter.high],
+                "at_end_of_range": after - parameter.low < slack or parameter.high - after < slack,
+                "left_of_prior_spread": float(solved.posterior.deviations[place]),
+            }
+        )
+    return rows
+
+
+def _pairs(solved: SolvedUpdate) -> list[dict[str, Any]]:
+    rows = []
+    before, after = solved.misfit_before, solved.misfit_after
+    left = solved.posterior.frequency_deviations()
+    strengths = solved.after.state.dominance.acceleration
+    for place, measured in enumerate(solved.target.frequencies):
+        error, old = float(after.errors[place]), float(before.errors[place])
+        mode, tuned = int(after.pairs[place]), int(solved.misfit_tuned.pairs[place])
+        rows.append(
+            {
+                "measured_hz": float(measured) / _HERTZ,
+                "before_hz": float(measured * np.exp(old)) / _HERTZ,
+                "model_hz": float(measured * np.exp(error)) / _HERTZ,
+                "before_error_percent": 100.0 * float(np.expm1(old)),
+                "error_percent": 100.0 * float(np.expm1(error)),
+                "mode": mode + 1,
+                "strength": None if mode == UNPAIRED else float(strengths[mode]),
+                "left_uncertain_percent": None if tuned == UNPAIRED else 100.0 * float(left[tuned]),
+            }
+        )
+    return rows
+
+
+def _identifiability(solved: SolvedUpdate) -> dict[str, Any]:
+    names = [number.parameter.name for number in solved.fitted.numbers]
+    after = solved.posterior
+    combinations = []
+    for information, direction in zip(after.information, after.directions, strict=True):
+        leading = np.argsort(-np.abs(direction))[:_PARTS]
+        sign = np.sign(direction[leading[0]])
+        parts = {names[place]: float(sign * direction[place]) for place in leading}
+        combinations.append({"information": float(information), "parts": parts})
+    return {
+        "parameters": len(names),
+        "learned_combinations": after.n_learned,
+        "combinations": combinations,
+        "confounded": [
+            {"parameters": [names[i], names[j]], "correlation": correlation} for i, j, correlation in after.confounded
+        ],
+    }
+
+
+def _held_back(row: HeldBack) -> dict[str, Any]:
+    return {
+        "measured_hz": row.measured / _HERTZ,
+        "predicted_hz": row.predicted / _HERTZ,
+        "error_percent": row.error_percent,
+        "standard_deviation_percent": 100.0 * row.deviation,
+        "before_error_percent": row.start_error_percent,
+        "before_standard_deviation_percent": 100.0 * row.prior_deviation,
+        "rms_error_percent_of_the_others": row.rms_percent,
+    }
+
+
+def _null(fits: list[NullFit], own: Misfit) -> dict[str, Any]:
+    def part(test: Any) -> float:
+        return sum(1 for fit in fits if test(fit)) / len(fits)
+
+    return {
+        "sets": len(fits),
+        "as_good_in_rms": part(lambda fit: fit.rms_percent <= own.rms_percent),
+        "as_good_in_misfit": part(lambda fit: fit.value <= own.value),
+        "within_5_percent": part(lambda fit: fit.max_percent <= 5.0),
+        "within_2_percent": part(lambda fit: fit.max_percent <= 2.0),
+        "within_1_percent": part(lambda fit: fit.max_percent <= 1.0),
+        "within_2_percent_and_clear": part(
+            lambda fit: fit.max_percent <= 2.0 and fit.gap >= 0.1 and fit.measures_agree
+        ),
+        "median_rms_error_percent": float(np.median([fit.rms_percent for fit in fits])),
+        "fits": [
+            {
+                "frequencies_hz": (fit.frequencies / _HERTZ).tolist(),
+                "rms_error_percent": fit.rms_percent,
+                "max_error_percent": fit.max_percent,
+                "gap": fit.gap,
+                "measures_agree": fit.measures_agree,
+                "misfit": fit.value,
+            }
+            for fit in fits
+        ],
+    }
+
+
+def updated_case(case: Case, solved: SolvedUpdate) -> str:
+    """The case with what was found, as TOML; what each number was, is and why stands at the top and in [provenance].
+
+    The prior stays where it was: an update of the updated case begins at what was found, and is drawn to what was
+    nominal.
+    """
+    fitted, fine = solved.fitted, solved.misfit_after
+    parameters = [number.parameter for number in fitted.numbers]
+    document, changed = fitted.document, set[Location]()
+    provenance: dict[str, str] = {}
+    old = solved.misfit_before
+    remarks = [
+        f"# Updated to {len(fine.pairs)} measured frequencies by 'gearwhine update'; errors:",
+        f"#   before: rms {old.rms_percent:.2f} %, largest {old.max_percent:.2f} %",
+        f"#   after:  rms {fine.rms_percent:.2f} %, largest {fine.max_percent:.2f} %, gap of dominance {fine.gap:.2f}",
+        "# Each parameter before and after, with one standard deviation of what prior and measurement leave of it:",
+    ]
+    prior: dict[int, dict[str, Any]] = {}
+    for place, (number, (after, deviation)) in enumerate(
+        zip(fitted.numbers, solved.posterior.values(parameters), strict=True)
+    ):
+        was, now, give = (_shown(value, number.given) for value in (number.start, after, deviation))
+        remarks.append(f"#   {number.parameter.name}: {was} -> {now}, give or take {give}")
+        why = f"found: by updating to the measured frequencies; {was} before, {now} give or take {give} after"
+        for location, value in number.entries(_rounded(after, number.given)):
+            text = f"{value:.10g}" if number.given.factor or not number.given.unit else _shown(value, number.given)
+            document = with_entry(document, location, float(text) if _is_number(text) else text)
+            changed.add(location)
+            provenance[key_of(location)] = why
+        prior[place] = _prior(number)
+    before = fitted.document
+    for place, entry in prior.items():
+        document = with_entry(
+            document, ("update", "parameter", place), {**document["update"]["parameter"][place], **entry}
+        )
+    document = without_changed(dict(document), before, changed)
+    document["provenance"] = {**document.get("provenance", {}), **provenance}
+    return "\n".join(remarks) + "\n\n" + tomli_w.dumps(document)
+
+
+def _prior(number: FittedNumber) -> dict[str, Any]:
+    """The prior as it was, now that the case's own number is another one."""
+    parameter, given = number.parameter, number.given
+    if given.factor:
+        return {}
+    return {"nominal": _exact(parameter.nominal, given), "spread": _exact(parameter.spread, given)}
+
+
+def _unit_in_si(given: UpdateParameter) -> float:
+    return amount(f"1 {given.unit}") if given.unit else 1.0
+
+
+def _exact(value: float, given: UpdateParameter) -> str | float:
+    return f"{value / _unit_in_si(given):.12g} {given.unit}" if given.unit else value
+
+
+def _shown(value: float, given: UpdateParameter) -> str:
+    """A value in the unit of its range, to four digits or to a hundredth of a millimetre's like."""
+    return f"{value / _unit_in_si(given):.5g} {given.unit}".strip()
+
+
+def _rounded(value: float, given: UpdateParameter) -> float:
+    """The value as it is shown."""
+    return float(f"{value / _unit_in_si(given):.5g}") * _unit_in_si(given)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

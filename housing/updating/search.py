@@ -1,0 +1,219 @@
+"""The search: a surrogate within a region of trust, a true solve, and only true decreases are accepted.
+
+Within the region the surrogate is searched from many starts by Gauss-Newton steps on whatever modes are paired there;
+the best of them is solved for in truth. Where that lessens the misfit it is the next design, else the region shrinks.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import lsq_linear
+
+from housing.errors import HousingError
+from housing.updating.misfit import GAP_SCALE, UNPAIRED, Misfit, Target, measure, residuals
+from housing.updating.parameters import Parameter, coordinate_bounds
+from housing.updating.surrogate import ModalState, Surrogate
+
+FloatArray = npt.NDArray[np.float64]
+
+_STEPS = 8  # of Gauss and Newton from each start
+_WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
+_SHORTENED = (1.0, 0.5, 0.25, 0.1)
+_PROBE = 1e-3  # step in z for the slope of the clearance
+
+
+class Design(Protocol):
+    """A design that has been solved."""
+
+    @property
+    def coordinates(self) -> FloatArray:
+        """z, shape (n_parameters,)."""
+
+    @property
+    def state(self) -> ModalState:
+        """Its modes."""
+
+    def surrogate(self) -> Surrogate:
+        """Its neighbourhood."""
+
+
+AnyDesign = TypeVar("AnyDesign", bound=Design)
+
+Solve = Callable[[FloatArray, AnyDesign | None], AnyDesign]
+"""Solves a design at coordinates z; the second is a neighbour whose mesh it may start from.
+
+Raises :class:`housing.HousingError` where there is no sound model."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How hard a search tries.
+
+    Attributes
+    ----------
+    solves : int
+        True solves at most.
+    starts : int
+        On the surrogate, in each region.
+    trust : float
+        Half-width of the first region, as a part of each range.
+    least_trust : float
+        Where the search gives up.
+    enough : float
+        J below which nothing more is sought.
+    seed : int
+    """
+
+    solves: int = 30
+    starts: int = 40
+    trust: float = 0.15
+    least_trust: float = 0.005
+    enough: float = 0.0
+    seed: int = 1
+
+
+@dataclass(frozen=True)
+class Step:
+    """One true solve of a search: what the surrogate promised and what was found, and the region it was in."""
+
+    promised: float
+    found: float
+    accepted: bool
+    trust: float
+    rms_percent: float
+
+
+@dataclass(frozen=True)
+class Found(Generic[AnyDesign]):
+    """Where a search has ended."""
+
+    design: AnyDesign
+    misfit: Misfit
+    steps: tuple[Step, ...]
+
+
+def search(
+    solve: Solve[AnyDesign],
+    target: Target,
+    parameters: Sequence[Parameter],
+    start: AnyDesign,
+    effort: Effort = Effort(),
+    progress: Callable[[str], None] = lambda message: None,
+) -> Found[AnyDesign]:
+    """Fit the parameters, from a design that has been solved.
+
+    Parameters
+    ----------
+    solve : callable
+        See :data:`Solve`.
+    target : Target
+    parameters : sequence of Parameter
+    start : Design
+    effort : Effort
+    progress : callable
+        Told in words what was found.
+
+    Returns
+    -------
+    Found
+        The best of all designs solved, the start among them.
+    """
+    bounds = coordinate_bounds(parameters)
+    generator = np.random.default_rng(effort.seed)
+    design, misfit = start, measure(target, start.state, start.coordinates)
+    trust, steps = effort.trust, list[Step]()
+    surrogate = design.surrogate()
+    while len(steps) < effort.solves and trust >= effort.least_trust and misfit.value > effort.enough:
+        region = _region(design.coordinates, bounds, trust)
+        point, promised = search_surrogate(surrogate, target, region, effort.starts, generator)
+        if promised > misfit.value - _WORTH * abs(misfit.value):
+            # Nothing here is better: perhaps so close by that other starts find it, in a smaller region.
+            trust *= 0.5
+            continue
+        try:
+            trial = solve(point, design)
+        except HousingError as error:
+            progress(f"solve {len(steps) + 1}: no sound housing there ({error})")
+            steps.append(Step(promised, np.inf, False, trust, np.inf))
+            trust *= 0.5
+            continue
+        found = measure(target, trial.state, trial.coordinates)
+        accepted = found.value < misfit.value
+        steps.append(Step(promised, found.value, accepted, trust, found.rms_percent))
+        kept = (misfit.value - found.value) / (misfit.value - promised)
+        progress(
+            f"solve {len(steps)}: misfit {found.value:.4g} ({'better' if accepted else 'no better'} than "
+            f"{misfit.value:.4g}, {promised:.4g} promised), rms {found.rms_percent:.2f} %, "
+            f"max {found.max_percent:.2f} %, gap {found.gap:.2f}, margin {found.margin:.2f}, {found.count} modes, "
+            f"trust {trust:.3f}"
+        )
+        if accepted:
+            design, misfit, surrogate = trial, found, trial.surrogate()
+        trust = min(trust * 1.4, 0.4) if kept > 0.6 else trust if kept > 0.25 else trust * 0.5
+    return Found(design, misfit, tuple(steps))
+
+
+def search_surrogate(
+    surrogate: Surrogate, target: Target, region: FloatArray, starts: int, generator: np.random.Generator
+) -> tuple[FloatArray, float]:
+    """The least misfit that the surrogate finds within a region, shape (2, n), and where."""
+    low, high = region
+    center = np.clip(surrogate.center, low, high)
+    points = [center, *(low + (high - low) * generator.random((starts, len(low))))]
+    valued = [(measure(target, surrogate.at(point).state, point).value, place) for place, point in enumerate(points)]
+    best_point, best = center, valued[0][0]
+    # The surrogate's own centre, and the better half of the others, since most of those lead to the same places.
+    for _, place in [valued[0], *sorted(valued[1:])[: max(1, starts // 2)]]:
+        point, value = _descend(surrogate, target, points[place], region)
+        if value < best:
+            best_point, best = point, value
+    return best_point, best
+
+
+def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: FloatArray) -> tuple[FloatArray, float]:
+    """Gauss and Newton's steps on the surrogate from a start, kept within the region."""
+    low, high = region
+    near = surrogate.at(point)
+    misfit = measure(target, near.state, point)
+    for _ in range(_STEPS):
+        if (misfit.pairs == UNPAIRED).all():
+            break
+        missed, slopes = residuals(target, misfit, near, penalties=True)
+        rows, right = [slopes, np.eye(len(point))], [-missed, -point]
+        lacking = -misfit.clearance(target)
+        if lacking > 0.0:
+            rows.append(_clearance_slope(surrogate, target, point, misfit)[None] / GAP_SCALE)
+            right.append(np.array([lacking / GAP_SCALE]))
+        room = np.stack([low - point, high - point]) + np.array([[-1e-12], [1e-12]])
+        step = lsq_linear(np.vstack(rows), np.concatenate(right), bounds=room).x
+        for part in _SHORTENED:
+            trial = np.clip(point + part * step, low, high)
+            at_trial = surrogate.at(trial)
+            found = measure(target, at_trial.state, trial)
+            if found.value < misfit.value:
+                break
+        else:
+            break
+        settled = misfit.value - found.value < 1e-3 * misfit.value
+        point, near, misfit = trial, at_trial, found
+        if settled:
+            break
+    return point, misfit.value
+
+
+def _clearance_slope(surrogate: Surrogate, target: Target, point: FloatArray, misfit: Misfit) -> FloatArray:
+    slope = np.empty(len(point))
+    for number in range(len(point)):
+        beside = point.copy()
+        beside[number] += _PROBE
+        clearance = measure(target, surrogate.at(beside).state, beside).clearance(target)
+        slope[number] = (clearance - misfit.clearance(target)) / _PROBE
+    return np.clip(slope, -10.0, 10.0)  # beside an exchange of 8th and 9th the gap has a kink
+
+
+def _region(point: FloatArray, bounds: FloatArray, trust: float) -> FloatArray:
+    half = trust * (bounds[1] - bounds[0])
+    return np.stack([np.maximum(point - half, bounds[0]), np.minimum(point + half, bounds[1])])

@@ -1,0 +1,148 @@
+"""A housing's modes about a design, carried to its neighbours in a millisecond.
+
+Frozen modes stall where two of them cross or exchange their dominance. The surrogate lets all modes at hand mix: with
+Λ = diag(λ) of the design's mass-normalised modes Φ and d the step in the parameters,
+
+    H(d) = diag(ln λ) + Σ_j d_j Λ^-½ [Φᵀ dK_j Φ - ½ (Λ Φᵀ dM_j Φ + Φᵀ dM_j Φ Λ)] Λ^-½,
+
+whose eigenvalues are ln λ at the neighbour and whose eigenvectors C make its shapes Φ (I - ½ Σ_j d_j Φᵀ dM_j Φ) C. It
+is exact to first order, shapes but for what the modes above those at hand would add, and of the logarithm: a frequency
+that goes with a power of a parameter goes exactly so where that parameter's coordinate is its logarithm.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from housing.dominance import Dominance, dominance
+from housing.updating.rates import ModalRates
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_TOGETHER = 1e-9  # difference of ln λ below which two modes are one
+_RIGID = 1e-6  # part of the highest eigenvalue at hand below which a mode is rigid and left out
+
+
+@dataclass(frozen=True)
+class ModalState:
+    """What a fit looks at of a design's modes, ascending in frequency.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (n_modes,)
+        [rad/s].
+    seats : ndarray, shape (n_modes, n_seats, 2)
+        x and y translation of each bearing seat in the mass-normalised shapes [1/√kg].
+    skin : ndarray, shape (n_modes, n_points)
+        Outward normal motion at the survey's points [1/√kg].
+    measured : ndarray, shape (n_modes, n_dofs), or None
+        Motion at the degrees of freedom where shapes were measured [1/√kg].
+    """
+
+    frequencies: FloatArray
+    seats: FloatArray
+    skin: FloatArray
+    measured: FloatArray | None = None
+
+    @property
+    def dominance(self) -> Dominance:
+        """Each mode's strength between seats and skin."""
+        return dominance(self.frequencies, self.seats, self.skin)
+
+
+@dataclass(frozen=True)
+class Neighbour:
+    """The surrogate's modes at some coordinates.
+
+    Attributes
+    ----------
+    state : ModalState
+    slopes : ndarray, shape (n_parameters, n_modes)
+        d ln ω of each mode by each coordinate.
+    surrogate : Surrogate
+        Whose neighbour it is.
+    step : ndarray, shape (n_parameters,)
+        From there to here.
+    mixture : ndarray, shape (n_modes, n_modes)
+        C, the eigenvectors of H.
+    """
+
+    state: ModalState
+    slopes: FloatArray
+    surrogate: "Surrogate"
+    step: FloatArray
+    mixture: FloatArray
+
+    def measured_slopes(self, modes: IntArray) -> FloatArray:
+        """Rates of some modes' motions where shapes were measured, shape (n_parameters, n_modes, n_dofs) [1/√kg].
+
+        The eigenvectors of H turn by dC = C R, R_ab = (Cᵀ H_j C)_ab / (μ_b - μ_a) for the coordinate j, with
+        μ = ln λ, and the mass adds -½ Φᵀ dM_j Φ C.
+        """
+        surrogate, mixture = self.surrogate, self.mixture
+        assert surrogate.state.measured is not None
+        logarithms = 2.0 * np.log(self.state.frequencies)
+        apart = logarithms[modes] - logarithms[:, None]
+        # Modes of one frequency have no shapes of their own, and those of each do not turn into themselves.
+        inverse = np.divide(1.0, apart, out=np.zeros_like(apart), where=np.abs(apart) > _TOGETHER)
+        turned = mixture @ ((mixture.T @ (surrogate.rates @ mixture[:, modes])) * inverse)
+        whole = turned - 0.5 * np.tensordot(self.step, surrogate.mass, axes=1) @ turned
+        whole -= 0.5 * surrogate.mass @ mixture[:, modes]
+        return np.asarray(whole.transpose(0, 2, 1) @ surrogate.state.measured)
+
+
+@dataclass(frozen=True)
+class Surrogate:
+    """The modes of a design and what each coordinate does to them.
+
+    Attributes
+    ----------
+    center : ndarray, shape (n_parameters,)
+        The design's coordinates.
+    state : ModalState
+        At the design, elastic modes only.
+    rates : ndarray, shape (n_parameters, n_modes, n_modes)
+        Λ^-½ [...] Λ^-½ of each coordinate.
+    mass : ndarray, shape (n_parameters, n_modes, n_modes)
+        Φᵀ dM Φ of each coordinate.
+    """
+
+    center: FloatArray
+    state: ModalState
+    rates: FloatArray
+    mass: FloatArray
+
+    @classmethod
+    def about(cls, center: FloatArray, state: ModalState, rates: ModalRates) -> "Surrogate":
+        """The surrogate about a design; rigid modes, which no parameter moves, are left out."""
+        eigenvalues = state.frequencies**2
+        kept = eigenvalues > _RIGID * eigenvalues[-1]
+        eigenvalues = eigenvalues[kept]
+        stiffness, mass = rates.stiffness[:, kept][:, :, kept], rates.mass[:, kept][:, :, kept]
+        change = stiffness - 0.5 * (eigenvalues[:, None] * mass + mass * eigenvalues)
+        scale = 1.0 / np.sqrt(eigenvalues)
+        measured = None if state.measured is None else state.measured[kept]
+        elastic = ModalState(state.frequencies[kept], state.seats[kept], state.skin[kept], measured)
+        return cls(center, elastic, scale[:, None] * change * scale, mass)
+
+    def at(self, coordinates: FloatArray) -> Neighbour:
+        """Modes at other coordinates."""
+        step = coordinates - self.center
+        whole = np.tensordot(step, self.rates, axes=1)
+        diagonal = np.arange(len(whole))
+        whole[diagonal, diagonal] += 2.0 * np.log(self.state.frequencies)
+        values, mixture = linalg.eigh(whole, check_finite=False)
+        slopes = 0.5 * np.einsum("am,pam->pm", mixture, self.rates @ mixture)
+        carried = mixture - 0.5 * np.tensordot(step, self.mass, axes=1) @ mixture
+        state = self.state
+        n = len(carried)
+        moved = ModalState(
+            frequencies=np.exp(0.5 * values),
+            seats=(carried.T @ state.seats.reshape(n, -1)).reshape(state.seats.shape),
+            skin=carried.T @ state.skin,
+            measured=None if state.measured is None else carried.T @ state.measured,
+        )
+        return Neighbour(moved, slopes, self, step, mixture)

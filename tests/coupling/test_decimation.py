@@ -1,0 +1,61 @@
+"""Decimation of a record in pieces: no trace of the joints, sines kept, and what would fold back gone."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from coupling import CouplingError, amplitude_spectrum, averaged_spectrum, decimation
+
+
+@given(st.lists(st.integers(0, 300), max_size=12), st.sampled_from([1, 2, 3, 16]), st.integers(0, 2**32 - 1))
+def test_pieces_leave_no_trace(cuts: list[int], factor: int, seed: int) -> None:
+    record = np.random.default_rng(seed).normal(size=(sum(cuts), 3))
+    plan = decimation(factor, 0.25)
+    whole, _ = plan.through(record[:0], record)
+    held, parts = record[:0], [record[:0]]
+    for piece in np.split(record, np.cumsum(cuts)):
+        kept, held = plan.through(held, piece)
+        parts.append(kept)
+    assert np.concatenate(parts).tobytes() == whole.tobytes()
+    assert len(whole) == plan.kept(len(record))
+
+
+@pytest.mark.parametrize("factor", [2, 8, 32])
+def test_a_sine_in_the_band_is_kept_in_place_and_one_that_folds_is_gone(factor: int) -> None:
+    plan = decimation(factor, 0.25)
+    n = np.arange(400 * factor)
+    kept_at = plan.delay + factor * np.arange(plan.kept(len(n)))
+    for cycles in (0.0, 0.1, 0.25):  # per kept sample
+        wave = np.cos(2.0 * np.pi * cycles / factor * n + 0.3)
+        kept, _ = plan.through(np.zeros((0, 1)), wave[:, None])
+        assert np.abs(kept[:, 0] - wave[kept_at]).max() < 3e-6
+    for cycles in (0.75, 0.9, 1.1, 1.25):  # these would stand at 0.25 or below
+        wave = np.cos(2.0 * np.pi * cycles / factor * n + 0.3)
+        assert np.abs(plan.through(np.zeros((0, 1)), wave[:, None])[0]).max() < 3e-6
+
+
+@pytest.mark.parametrize(("factor", "band"), [(0, 0.25), (4, 0.5), (4, 0.0)])
+def test_a_filter_that_cannot_be_is_refused(factor: int, band: float) -> None:
+    with pytest.raises(CouplingError, match="decimation by"):
+        decimation(factor, band)
+
+
+def test_an_average_keeps_power_whatever_the_phases() -> None:
+    """A sine whose phase differs from stretch to stretch keeps its height; the mean is the mean of the means."""
+    times = np.arange(256) / 256.0
+    phases = np.array([0.0, 1.0, 2.5, 4.0])
+    stretches = np.array([[2.0 + k + 3.0 * np.sin(2.0 * np.pi * 20.0 * times + phi)] for k, phi in enumerate(phases)])
+    spectrum = averaged_spectrum(iter(stretches), 1.0 / 256.0)
+    assert spectrum.averages == 4
+    assert spectrum.amplitude[0, 20] == pytest.approx(3.0)
+    assert spectrum.amplitude[0, 0] == pytest.approx(3.5)
+    assert float(spectrum.rms(128.0)[0]) == pytest.approx(3.0 / np.sqrt(2.0))
+
+
+def test_the_average_of_one_is_its_spectrum() -> None:
+    signal = np.random.default_rng(1).normal(size=(2, 512)) + 1.0
+    for window in ("uniform", "hann"):
+        one, average = amplitude_spectrum(signal, 0.1, window), averaged_spectrum([signal], 0.1, window)
+        assert average.amplitude == pytest.approx(np.abs(one.amplitude), rel=1e-12)
+        assert np.exp(1j * average.phase) == pytest.approx(np.exp(1j * one.phase), abs=1e-9)

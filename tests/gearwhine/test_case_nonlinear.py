@@ -1,0 +1,92 @@
+"""Friction of teeth, nonlinear rolling bearings and stops in a case: what is read, what is refused, what moves."""
+
+import copy
+import tomllib
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import pytest
+
+from coupling import GapLaw, RollingLaw
+from gearwhine.case import CaseError, dump_case, parse_case
+from gearwhine.stages.bearings import bearing_law, build_bearings
+from gearwhine.stages.machine import solve_machine
+from gearwhine.stages.transient import solve_transient, transient_document
+
+SPUR_PAIR = tomllib.loads(files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8"))
+DEEP_GROOVE = {"count": 9, "element_diameter": "9 mm", "pitch_diameter": "46 mm", "clearance": "6 um"}
+STOP = {"force": "1 kN", "depth": "10 um", "exponent": 1.5, "gap": "50 um"}
+
+
+def spur_pair(*, pair: dict[str, Any] | None = None, **bearing: Any) -> Any:
+    """The bundled pair with its gear pair and its first bearing changed."""
+    document = copy.deepcopy(SPUR_PAIR)
+    document["gear_pair"][0].update(pair or {})
+    document["bearing"][0].update(copy.deepcopy(bearing))
+    document["transient"] = {"revolutions": 1, "discard": 0, "tolerance": 1e-3}
+    return parse_case(document)
+
+
+def rolling(law: str) -> dict[str, Any]:
+    return {"stiffness": {"rolling": DEEP_GROOVE | {"law": law}}, "load": {"x": "300 N", "y": "800 N"}}
+
+
+def test_what_is_read_is_written() -> None:
+    case = spur_pair(pair={"friction": 0.06}, **rolling("nonlinear"))
+    assert case.gear_pair[0].friction == 0.06
+    again = parse_case(tomllib.loads(dump_case(case)))
+    assert again.gear_pair == case.gear_pair
+    assert again.bearing == case.bearing
+    stopped = spur_pair(stiffness={"stop": STOP})
+    assert parse_case(tomllib.loads(dump_case(stopped))).bearing == stopped.bearing
+
+
+def test_laws_of_bearings() -> None:
+    assert bearing_law(spur_pair(), 0) is None
+    assert bearing_law(spur_pair(**rolling("linear")), 0) is None
+    law = bearing_law(spur_pair(**rolling("nonlinear")), 0)
+    assert isinstance(law, RollingLaw)
+    np.testing.assert_allclose(law.state.load[:2], [300.0, 800.0])
+    assert bearing_law(spur_pair(stiffness={"stop": STOP}), 0) == GapLaw(1000.0, 1e-5, 1.5, 5e-5)
+    # Linear analyses find nothing where the shaft does not press on its stop.
+    idle = spur_pair(stiffness={"stop": STOP})
+    assert not build_bearings(idle, "input")[0].stiffness.any()
+    pressed = spur_pair(stiffness={"stop": STOP}, load={"x": "1 kN"})
+    np.testing.assert_allclose(
+        build_bearings(pressed, "input")[0].stiffness, np.diag([1.5 * 1000.0 / 1e-5, 1000.0 / 6e-5]), atol=1e-3
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"pair": {"friction": 0.51}}, "gear_pair[0].friction"),
+        ({"pair": {"friction": -0.01}}, "gear_pair[0].friction"),
+        ({"pair": {"friction": 0.1, "stiffness": {"model": "constant", "value": "1e8 N/m"}}}, "gear_pair[0].friction"),
+        (rolling("quadratic"), "bearing[0].stiffness.rolling.law"),
+        ({"stiffness": {"stop": STOP | {"depth": "0 um"}}}, "bearing[0].stiffness.stop.depth"),
+        ({"stiffness": {"stop": STOP | {"exponent": 0.5}}}, "bearing[0].stiffness.stop.exponent"),
+        ({"stiffness": {"stop": STOP | {"gap": "-1 um"}}}, "bearing[0].stiffness.stop.gap"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_its_key(changes: dict[str, Any], key: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        spur_pair(**changes)
+    assert key in str(caught.value)
+
+
+def test_all_of_it_moves_together() -> None:
+    """Energies add up, the load's share of the first bearing comes out, and friction costs about half a percent."""
+    case = spur_pair(pair={"friction": 0.06, "backlash": "60 um"}, **rolling("nonlinear"))
+    _, pairs, machine = solve_machine(case)
+    solved = solve_transient(case, machine, (pairs[0].mesh_frequency,))
+    document = transient_document(case, solved)
+    assert document["energy_error"] < 5e-3
+    assert case.operation is not None
+    turned = 2.0 * np.pi * abs(case.operation.torque)
+    assert 0.002 < document["energy_j"]["friction"] / turned < 0.02
+    force = solved.histories.bearing_force["input-back"].mean(axis=0)
+    other = solved.histories.bearing_force["input-front"].mean(axis=0)
+    # Gear and bearings stand in a row, the gear in the middle.
+    np.testing.assert_allclose(force, other, rtol=0.05, atol=0.05 * np.linalg.norm(other))

@@ -1,0 +1,73 @@
+"""Rates of a whole case by its fitted numbers, against differences of solved designs."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gearwhine.case import case_document, load_case, parse_case
+from gearwhine.stages.designs import HousingDesigns
+from gearwhine.stages.update_keys import fitted_case
+from housing import HousingError
+
+NUMBERS: list[tuple[list[str], list[Any], Any]] = [
+    (["housing.box.wall.top"], ["6 mm", "20 mm"], "3 mm"),
+    (["housing.seat.*.boss.diameter"], ["60 mm", "90 mm"], "5 mm"),
+    (["housing.box.feet.size[1]"], ["10 mm", "40 mm"], "4 mm"),
+    (["housing.box.size[2]", "housing.seat.*.center[2]"], [0.9, 1.1], 0.02),
+    (["housing.support.*.stiffness.y"], ["1e8 N/m", "1e10 N/m"], "5e8 N/m"),
+    (["housing.mass.cover.mass"], ["0.5 kg", "4 kg"], "0.5 kg"),
+    (["material.steel.youngs_modulus"], ["190 GPa", "220 GPa"], "5 GPa"),
+    (["material.steel.poisson_ratio"], [0.2, 0.4], 0.02),
+    (["material.iron.density"], ["7000 kg/m^3", "7500 kg/m^3"], "100 kg/m^3"),
+]
+
+
+@pytest.fixture(scope="module")
+def designs() -> HousingDesigns:
+    document = case_document(load_case("steel-box", ["housing.box.mesh_size=50 mm"]).case)
+    document["housing"]["support"] = [
+        {"name": f"mount {n}", "surface": f"foot-{n}", "stiffness": {"x": 3e8, "y": 1e9, "z": 4e8}} for n in range(1, 5)
+    ]
+    document["housing"]["mass"] = [{"name": "cover", "mass": "2 kg", "surface": "top", "offset": [0.0, 0.02, 0.01]}]
+    document["material"]["iron"] = {"youngs_modulus": "110 GPa", "poisson_ratio": 0.25, "density": "7200 kg/m^3"}
+    document["housing"]["region"] = [
+        {"name": "left half", "box": [["-1 m", "-1 m", "-1 m"], ["0 m", "1 m", "1 m"]], "material": "iron"}
+    ]
+    document["measured"] = {"frequencies": ["700 Hz"]}
+    document["update"] = {
+        "modes": 20,
+        "parameter": [
+            {"name": f"p{place}", "keys": keys, "range": span, "spread": spread, "factor": len(keys) > 1}
+            for place, (keys, span, spread) in enumerate(NUMBERS)
+        ],
+    }
+    case = parse_case(document)
+    assert case.update is not None
+    return HousingDesigns(fitted_case(case), case.update.modes, threads=1)
+
+
+def test_slopes_of_all_numbers_together_are_those_of_solved_designs(designs: HousingDesigns) -> None:
+    """Geometry, springs, a mass, moduli and a density at once, along two directions: to 1e-6 of the largest."""
+    start = designs.solve(designs.start)
+    slopes = start.surrogate().at(start.coordinates).slopes
+    for seed in range(2):
+        way = np.random.default_rng(seed).normal(size=len(NUMBERS))
+        way /= np.linalg.norm(way)
+        quotients = []
+        for step in (0.02, 0.01):
+            either = [designs.solve(start.coordinates + sign * step * way, start) for sign in (1.0, -1.0)]
+            assert all(np.array_equal(one.mesh.blocks[0].nodes, start.mesh.blocks[0].nodes) for one in either)
+            frequencies = [np.log(one.state.frequencies[:12]) for one in either]
+            quotients.append((frequencies[0] - frequencies[1]) / (2.0 * step))
+        expected = (4.0 * quotients[1] - quotients[0]) / 3.0
+        assert np.abs(way @ slopes[:, :12] - expected).max() < 1e-6 * np.abs(slopes).max()
+
+
+def test_a_design_that_is_no_sound_housing_is_said(designs: HousingDesigns) -> None:
+    wide = designs.start.copy()
+    wide[1] = 100.0  # as wide a boss as its range allows is still sound
+    assert designs.case_at(wide).housing is not None
+    broken = HousingDesigns(designs.case, 10_000)
+    with pytest.raises(HousingError):
+        broken.solve(designs.start)

@@ -1,0 +1,74 @@
+"""The steady state by the command: the motion that the transient settles to, and its branch over speed."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from gearwhine.case import CaseError, load_case, mesh_frequencies
+from gearwhine.cli import run_command
+from gearwhine.stages.gears import solve_gears
+from gearwhine.stages.machine import build_machine
+from gearwhine.stages.steady import solve_steady
+from gearwhine.stages.transient import solve_transient
+
+FEW = ("rotor.input.modes=2", "rotor.output.modes=2")
+BALANCED = "rotor.input.unbalance="  # so that all repeats with the mesh
+
+
+@pytest.mark.slow
+def test_the_transient_settles_to_it() -> None:
+    """Newmark's march, after twenty revolutions: their forces agree as far as its own tolerance goes."""
+    changes = [*FEW, BALANCED, "transient.revolutions=21", "transient.discard=20", "transient.tolerance=1e-5"]
+    case = load_case("spur-pair", changes).case
+    machine = build_machine(case, None, solve_gears(case))
+    marched = solve_transient(case, machine, mesh_frequencies(case))
+    (motion,) = solve_steady(case, machine, None).motions
+    (settled,) = (force for name, force in marched.histories.mesh_force.items() if "back" not in name)
+    (steady,) = (force for name, force in motion.histories.mesh_force.items() if "back" not in name)
+    assert motion.response.period == pytest.approx(60.0 / 5500.0 / 28, rel=1e-12)
+    assert motion.response.stable
+    times = np.mod(marched.histories.times, motion.response.period)
+    expected = np.interp(times, motion.histories.times, steady, period=motion.response.period)
+    assert np.sqrt(np.mean((settled - expected) ** 2)) < 2e-3 * np.std(steady)
+
+
+@pytest.mark.slow
+def test_the_command_follows_the_motion_over_speed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    changes = [*FEW, BALANCED, "sweep.speed=['3000 rpm', '6000 rpm']"]
+    arguments = ["steady", "spur-pair", "--curve", "--points", "8", "-q", "--json", "-o", str(tmp_path)]
+    for change in changes:
+        arguments += ["--set", change]
+    assert run_command(arguments) == 0
+    document = json.loads(capsys.readouterr().out)
+    curve, (motion,) = document["curve"], document["motions"]
+    speeds = curve["speed_rpm"]
+    assert speeds[0] == pytest.approx(3000.0)
+    assert speeds[-1] == pytest.approx(6000.0)
+    assert len(speeds) >= 8
+    assert motion["stable"]
+    assert 1e3 * motion["period_s"] == pytest.approx(60e3 / 5500.0 / 28, rel=1e-12)
+    # The mean force is the torque over the base radius, whatever the speed.
+    expected = 71.77 / (0.5 * 28 * 3.175e-3 * np.cos(np.radians(20.0)))
+    assert motion["gear_pairs"][0]["mean_force_n"] == pytest.approx(expected, rel=1e-9)
+    # Its lines stand at multiples of the mesh frequency.
+    orders = [line["frequency_hz"] / (28 * 5500.0 / 60.0) for line in motion["gear_pairs"][0]["force_lines"]]
+    assert orders == pytest.approx(np.round(orders), abs=1e-9)
+    assert {"steady-motion.png", "steady-curve.png", "results.nc"} <= {path.name for path in tmp_path.iterdir()}
+    with xr.open_dataset(tmp_path / "results.nc") as data:
+        np.testing.assert_allclose(data["branch_speed"], speeds)
+        assert data["branch_peak_force"].attrs["units"] == "N"
+        moduli = np.hypot(*data["floquet_multiplier"].values[0].T)
+        assert moduli.max() == pytest.approx(motion["largest_multiplier"], rel=1e-12)
+
+
+def test_what_stands_still_or_has_no_range_is_refused() -> None:
+    case = load_case("spur-pair", [*FEW, "sweep.speed=['3000 rpm']"]).case
+    machine = build_machine(case, None, solve_gears(case))
+    with pytest.raises(CaseError, match="a range of speeds"):
+        solve_steady(case, machine, None, over_speed=True)
+    still = load_case("spur-pair", [*FEW, "operation.speed=0 rpm", "transient="]).case
+    with pytest.raises(CaseError, match="stands still"):
+        solve_steady(still, machine, None)
