@@ -19,7 +19,7 @@ FloatArray = npt.NDArray[np.float64]
 RESULTS_FILE = "results.nc"
 _HERTZ = 2.0 * np.pi
 _MICRO = 1e6
-_TOLD = 3  # modes in a picture
+_TOLD = 2  # modes in a picture
 _SAME = 1e-9  # of frequencies and shapes, for the run's housing to be this one
 
 
