@@ -341,24 +341,49 @@ def render(
     case: CaseName,
     *,
     modes: Annotated[
-        str, Parameter(help="Which modes: 'dominant', 'all', or numbers such as '1,4,9' or '1-6'.")
-    ] = "dominant",
+        str | None,
+        Parameter(
+            help="Which modes: 'dominant' (unless a line or --measured is asked for), 'all', or '1,4,9' or '1-6'."
+        ),
+    ] = None,
+    line: Annotated[
+        list[float],
+        Parameter(
+            name=["--line"],
+            negative=(),
+            consume_multiple=False,
+            help="How the housing moves at the line nearest to a frequency [Hz] of the run in OUT. May be repeated.",
+        ),
+    ] = [],  # noqa: B006 - read only
+    measured: Annotated[
+        bool, Parameter(name=["--measured"], negative=(), help="Measured shapes beside the model's, at their points.")
+    ] = False,
     view: Annotated[
         Literal["iso", "front", "back", "left", "right", "top"], Parameter(help="From where to look.")
     ] = "iso",
     format: Annotated[  # noqa: A002 - the name of the option
-        Literal["png", "glb"], Parameter(help="Pictures, or glTF models that move in any 3D viewer.")
+        Literal["png", "glb", "gif", "mp4"],
+        Parameter(help="Pictures; glTF models that move in any 3D viewer; or films, MP4 where ffmpeg is installed."),
     ] = "png",
     fresh: Fresh = False,
     common: Common = _DEFAULTS,
 ) -> None:
-    """The housing's mode shapes, as pictures or moving models, in OUT (default: ./<case>-results)."""
+    """Shapes of modes, of a run's lines, or measured: pictures, films, models in OUT (default: ./<case>-results)."""
     from gearwhine.screen import show_files
     from gearwhine.work import render_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        folder = _folder(case, common)
-        return render_case(given, folder, modes, view, progress, mode_format=format, fresh=fresh)
+        return render_case(
+            given,
+            _folder(case, common),
+            modes,
+            view,
+            progress,
+            mode_format=format,
+            lines=line,
+            measured=measured,
+            fresh=fresh,
+        )
 
     _on_case(case, common, work, show_files)
 

@@ -1,21 +1,64 @@
-"""Which mode shapes to draw, and drawing them: pictures, or models that move."""
+"""Which shapes to draw, and drawing them: pictures, films, or models that move."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from gearwhine.case import CaseError, Problem
+from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.problems import UNSAID
 from gearwhine.progress import Progress
 from gearwhine.stages.housing import SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
     from housing import Comparison
+    from housing.measured import MappedSurvey
 
-ModeFormat = Literal["png", "glb"]
+ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
+_HERTZ = 2.0 * np.pi
 _MOST_MODES = 5000
 _DOMINANT = 8
+
+
+def check_request(
+    case: Case, which: str | None, mode_format: ModeFormat, lines: Sequence[float], *, measured: bool
+) -> None:
+    """Refuse what cannot be drawn before anything is solved.
+
+    Raises
+    ------
+    CaseError
+        For numbers of modes that are none, lines as models or below zero, or measured shapes without a survey.
+    housing.errors.RendererUnavailableError, housing.errors.EncoderUnavailableError
+        Where nothing here draws or encodes.
+    """
+    if which not in (None, "dominant", "all"):
+        parse_numbers(str(which), None)
+    if lines and mode_format == "glb":
+        raise CaseError(
+            [Problem("--format", mode_format, "png, gif or mp4 with --line, whose points need not move in phase")]
+        )
+    for line in lines:
+        if not 0.0 < line < np.inf:
+            raise CaseError([Problem("--line", line, "a frequency above zero [Hz]")])
+    if measured:
+        require(case, "housing", "measured", command="render --measured")
+        assert case.measured is not None
+        survey = case.measured.survey
+        if survey is None or survey.geometry is None:
+            raise CaseError(
+                [Problem("measured.file", UNSAID, "a survey with points and shapes, for render --measured")]
+            )
+    if mode_format != "glb" and (which is not None or lines):
+        from housing.renderer import find_renderer
+
+        find_renderer()
+    if mode_format == "mp4":
+        from housing.animations import find_encoder
+
+        find_encoder()
 
 
 def draw_modes(
@@ -37,16 +80,16 @@ def draw_modes(
     which : str
         ``dominant``, ``all``, or numbers as :func:`parse_numbers` reads them.
     view : str
-        From where to look at pictures.
-    mode_format : {"png", "glb"}
-        A picture of each mode and one sheet of all; or a model of each that moves.
+        From where to look at pictures and films.
+    mode_format : {"png", "glb", "gif", "mp4"}
+        A picture of each mode and one sheet of all; or a model, or a film, of each.
     place : path
     progress : callable
     """
     notes = {}
     if comparison is not None:
         notes = {
-            pair.mode: f"measured {pair.measured / (2.0 * np.pi):.0f} Hz ({pair.error_percent:+.1f} %"
+            pair.mode: f"measured {pair.measured / _HERTZ:.0f} Hz ({pair.error_percent:+.1f} %"
             + (")" if pair.mac is None else f", MAC {pair.mac:.2f})")
             for pair in comparison.pairs
         }
@@ -61,16 +104,83 @@ def draw_modes(
         from housing.gltf import write_mode_models
 
         return [path.name for path in write_mode_models(housing.mesh, housing.modes, numbers, place)]
-    from housing import pictures
+    from gearwhine.drawing_process import draw_apart
+    from housing.drawn_shapes import drawn_housing, drawn_modes
 
-    files = pictures.render_modes(
-        housing.mesh, housing.modes, numbers, place, notes=notes, view=view, progress=progress
-    )
-    if len(numbers) > 1:
-        progress("drawing all on one sheet")
-        sheet = place / "modes.png"
-        files.append(pictures.render_gallery(housing.mesh, housing.modes, numbers, sheet, notes=notes, view=view))
-    return [path.name for path in files]
+    surface = drawn_housing(housing.mesh)
+    shapes = drawn_modes(surface, housing.modes, numbers, notes)
+    sheet = "modes.png" if len(numbers) > 1 and mode_format == "png" else None
+    return draw_apart(surface, shapes, place, mode_format, view, progress, sheet=sheet)
+
+
+def draw_lines(
+    housing: SolvedHousing,
+    folder: Path,
+    frequencies: Sequence[float],
+    view: str,
+    mode_format: ModeFormat,
+    place: Path,
+    progress: Progress,
+) -> list[dict[str, Any]]:
+    """Draw how the housing moves at lines of the run in ``folder``, into ``place``, and tell of them.
+
+    Raises
+    ------
+    CaseError
+        As :func:`gearwhine.stages.operating_shapes.read_lines`.
+    """
+    from gearwhine.drawing_process import draw_apart
+    from gearwhine.stages.operating_shapes import drawn_line, lines_document, read_lines
+    from housing.drawn_shapes import drawn_housing
+
+    lines = read_lines(folder, frequencies, housing)
+    surface = drawn_housing(housing.mesh)
+    shapes = [drawn_line(line, housing, surface) for line in lines]
+    draw_apart(surface, shapes, place, mode_format, view, progress)
+    return lines_document(lines, housing, surface)
+
+
+def draw_measured(
+    case: Case,
+    housing: SolvedHousing,
+    comparison: "Comparison | None",
+    survey: "MappedSurvey | None",
+    view: str,
+    place: Path,
+) -> list[str]:
+    """Draw measured shapes beside those of the model that they are paired with, as ``measured-and-model.png``.
+
+    Raises
+    ------
+    CaseError
+        Where no measured mode has a partner.
+    """
+    from gearwhine.figures import ShapePair, draw_measured_shapes, save
+    from gearwhine.stages.measured import mapped_shapes, read_measured
+    from housing.measured.wireframe import laid_over, point_motions, wireframe
+    from housing.scene import viewing_direction
+
+    measured = read_measured(case)
+    if comparison is None or survey is None or measured.shapes is None or not comparison.pairs:
+        raise CaseError([Problem("measured.file", UNSAID, "measured shapes of which some are like the model's")])
+    geometry, of_model = survey.geometry, mapped_shapes(housing, survey)
+    drawn = []
+    for pair in comparison.pairs:
+        model = of_model[pair.mode - 1]
+        laid = laid_over(measured.shapes[pair.measured_mode - 1], model)
+        likeness = "" if pair.mac is None else f", MAC {pair.mac:.2f}"
+        drawn.append(
+            ShapePair(
+                f"{pair.measured / _HERTZ:.0f} Hz measured, mode {pair.mode} at {pair.model / _HERTZ:.0f} Hz "
+                f"({pair.error_percent:+.1f} %{likeness})",
+                point_motions(geometry, laid),
+                # What was not measured is left out of both.
+                point_motions(geometry, np.where(np.isfinite(laid), model, np.nan)),
+            )
+        )
+    title = f"Measured and model shapes: {case.title}"
+    figure = draw_measured_shapes(title, geometry.positions, wireframe(geometry), drawn, viewing_direction(view))
+    return [save(figure, place / "measured-and-model.png")]
 
 
 def parse_numbers(text: str, count: int | None) -> list[int]:

@@ -20,7 +20,15 @@ def explain(error: Exception) -> tuple[int, str | None]:
     from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
     from coupling.gears.errors import ContactAccuracyError, GearError
     from gearwhine.case import CaseError
-    from housing.errors import FactorizationError, HealthError, HousingError, IncompleteModesError, ReductionError
+    from housing.errors import (
+        EncoderUnavailableError,
+        FactorizationError,
+        HealthError,
+        HousingError,
+        IncompleteModesError,
+        ReductionError,
+        RendererUnavailableError,
+    )
     from meshes.errors import GeometryError, MesherUnavailableError
     from rotors.errors import EquilibriumError, RotorError
     from rotors.errors import IncompleteModesError as IncompleteRotorModesError
@@ -33,6 +41,7 @@ def explain(error: Exception) -> tuple[int, str | None]:
         return 2, str(error)
     proofs = (
         ContactAccuracyError,
+        EncoderUnavailableError,
         EquilibriumError,
         FactorizationError,
         HealthError,
@@ -43,11 +52,11 @@ def explain(error: Exception) -> tuple[int, str | None]:
         ModesError,
         PeriodicError,
         ReductionError,
+        RendererUnavailableError,
         TransientError,
         WorkersError,
     )
-    # The renderer's error lives beside VTK, which must not be imported for its sake.
-    if isinstance(error, proofs) or type(error).__name__ == "RendererUnavailableError":
+    if isinstance(error, proofs):
         return 1, str(error)
     if isinstance(error, MemoryError):
         return 1, "out of memory; a larger mesh_size or a lower frequency_limit needs less"

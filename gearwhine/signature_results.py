@@ -4,6 +4,7 @@ parts."""
 import numpy as np
 import numpy.typing as npt
 
+import coupling as room
 from gearwhine.rotor_results import Variables
 from gearwhine.stages.signature import SolvedSignature
 from gearwhine.stages.transient import SolvedTransient
@@ -28,6 +29,8 @@ def write_signature(
         _coordinates(transient, variables, coordinates)
     if any(found.lines.values()):
         _lines(found, variables, coordinates)
+    if found.housing is not None:
+        _housing(found.housing, transient.trusted_limit, variables, coordinates)
 
 
 def _coordinates(transient: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
@@ -39,6 +42,20 @@ def _coordinates(transient: SolvedTransient, variables: Variables, coordinates: 
         ("modal_coordinate", "frequency"),
         spectrum.amplitude,
         _unit("m kg0.5", f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz")
+        | {"window": spectrum.window},
+    )
+
+
+def _housing(spectrum: room.Spectrum, limit: float, variables: Variables, coordinates: Variables) -> None:
+    """Up to where the modes are complete: what any line's operating shape is made of."""
+    shown = spectrum.frequencies <= limit * (1.0 + 1e-9)
+    lines = spectrum.lines[:, shown]
+    coordinates["housing_line"] = ("housing_line", spectrum.frequencies[shown], _unit("Hz", "frequency"))
+    coordinates["part"] = ("part", ["real", "imaginary"], {})
+    variables["housing_acceleration_spectrum"] = (
+        ("housing_mode", "housing_line", "part"),
+        np.stack([lines.real, lines.imag], axis=-1),
+        _unit("m kg0.5 s-2", "complex peak amplitude of a housing mode's acceleration, by unit modal mass")
         | {"window": spectrum.window},
     )
 

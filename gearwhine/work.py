@@ -19,7 +19,7 @@ from gearwhine.case import (
     swept_keys,
 )
 from gearwhine.comparison_files import write_comparison
-from gearwhine.drawings import ModeFormat, draw_modes, parse_numbers
+from gearwhine.drawings import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.march_files import kept_march
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.progress import Progress
@@ -63,13 +63,13 @@ def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = Fals
 
 def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitStack, *, fresh: bool) -> dict[str, Any]:
     from gearwhine import figures, results
-    from housing import pictures
+    from housing.renderer import find_renderer
 
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
     if case.housing is not None:
         # Found out before the work, not after it.
-        pictures.load_pyvista()
+        find_renderer()
     start = time.perf_counter()
     seconds: dict[str, float] = {}
     document: dict[str, Any] = {"title": case.title}
@@ -363,29 +363,36 @@ def update_case(
 def render_case(
     case: Case,
     folder: Path,
-    which: str,
+    which: str | None,
     view: str,
     progress: Progress,
     *,
     mode_format: ModeFormat = "png",
+    lines: Sequence[float] = (),
+    measured: bool = False,
     fresh: bool = False,
 ) -> dict[str, Any]:
-    """Pictures of mode shapes, or moving models of them."""
-    if which not in ("dominant", "all"):
-        parse_numbers(which, None)
-    if mode_format == "png":
-        from housing import pictures
+    """Pictures, films or models of mode shapes; of a run's lines; of measured shapes beside the model's.
 
-        pictures.load_pyvista()
+    Modes are drawn where ``which`` names them or nothing else is asked for.
+    """
+    which = which or (None if lines or measured else "dominant")
+    check_request(case, which, mode_format, lines, measured=measured)
     housing = housing_stage.solve_housing(case, progress, command="render", folder=folder, fresh=fresh)
-    comparison = None
-    if case.measured is not None and housing.strengths is not None:
-        comparison = comparison_stage.compare_housing(case, housing, progress)
+    comparison, survey = None, None
+    if case.measured is not None and (measured or housing.strengths is not None):
+        comparison, survey = comparison_stage.compare_with_survey(case, housing, progress)
+    document: dict[str, Any] = {}
     with staging(folder) as place:
-        draw_modes(housing, comparison, which, view, mode_format, place, progress)
+        if which is not None:
+            draw_modes(housing, comparison, which, view, mode_format, place, progress)
+        if lines:
+            document["lines"] = draw_lines(housing, folder, lines, view, mode_format, place, progress)
+        if measured:
+            draw_measured(case, housing, comparison, survey, view, place)
         keep_modes(place, housing)
         files = _files(place, housing, summary=False)
-    return {"folder": str(folder), "files": files, **housing_documents.origin_document(housing)}
+    return document | {"folder": str(folder), "files": files, **housing_documents.origin_document(housing)}
 
 
 def report_case(folder: Path) -> dict[str, Any]:

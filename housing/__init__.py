@@ -19,7 +19,7 @@ What the room offers:
   measured modes; ``housing.correlation`` has the criteria.
 - ``housing.measured`` -- files of measured modes and responses, and where on the model they were measured.
 - ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
-- ``housing.pictures`` -- mode shapes off-screen; not imported here, because it brings VTK.
+- ``housing.pictures``, ``housing.animations`` -- shapes drawn off-screen; not imported here, since they bring VTK.
 """
 
 from housing.assembly import assemble

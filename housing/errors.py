@@ -27,3 +27,11 @@ class ModeFileError(HousingError):
 
 class MeasuredDataError(HousingError):
     """A file of measured data cannot be used, or does not belong to the model; the message says what was expected."""
+
+
+class RendererUnavailableError(RuntimeError):
+    """No library that draws without a screen is on this machine, or it fails; the message says what to do."""
+
+
+class EncoderUnavailableError(RuntimeError):
+    """No program that encodes films is on this machine, or it fails; the message says what to do."""

@@ -20,6 +20,7 @@ from .flank_charts import draw_flank_charts
 from .gear_pairs import draw_gear_pairs
 from .harris_map import draw_harris_map
 from .mac_matrix import draw_mac_matrix
+from .measured_shapes import ShapePair, draw_measured_shapes
 from .mesh_stiffness import draw_mesh_stiffness
 from .mode_shapes import draw_lateral_modes, draw_torsional_modes
 from .rotors import draw_rotors
@@ -44,6 +45,7 @@ __all__ = [
     "DrawnUnbalance",
     "ProbeResponse",
     "RotorAssembly",
+    "ShapePair",
     "draw_campbell",
     "draw_comparison",
     "draw_contact_path",
@@ -55,6 +57,7 @@ __all__ = [
     "draw_harris_map",
     "draw_lateral_modes",
     "draw_mac_matrix",
+    "draw_measured_shapes",
     "draw_mesh_stiffness",
     "draw_order_slices",
     "draw_response_curve",

@@ -95,6 +95,8 @@ class SolvedSignature:
         Of the forces in all directions that a bearing holds, shape (d, m).
     modes : coupling.CoupledModes
         That names refer to.
+    housing : coupling.Spectrum or None
+        Of the accelerations of the housing's modes [m √kg / s²], shape (n_modes, m), where there are any.
     """
 
     lines: dict[str, tuple[TracedLine, ...]]
@@ -103,6 +105,7 @@ class SolvedSignature:
     force_sidebands: dict[str, tuple[ShaftSidebands, ...]]
     bearing_spectra: dict[str, room.Spectrum]
     modes: room.CoupledModes
+    housing: room.Spectrum | None = None
 
 
 def solve_signature(
@@ -127,9 +130,11 @@ def solve_signature(
         for name, force in histories.tie_force.items()
     }
     frequencies = np.zeros(0) if housing_frequencies is None else housing_frequencies
-    lines = {}
-    if solved.sensor_spectra:
+    modal, lines = None, {}
+    if solved.modal.housing_acceleration.shape[1]:
         modal = solved.record.spectrum(np.ascontiguousarray(solved.modal.housing_acceleration.T), limit)
+    if solved.sensor_spectra:
+        assert modal is not None
         lines = {name: _traced(solved, name, modal, ties, modes, frequencies) for name in solved.sensor_spectra}
     return SolvedSignature(
         lines=lines,
@@ -145,6 +150,7 @@ def solve_signature(
         },
         bearing_spectra=ties,
         modes=modes,
+        housing=modal,
     )
 
 

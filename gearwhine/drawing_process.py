@@ -1,0 +1,156 @@
+"""Drawing in a process of its own: where VTK crashes, the command goes on to say so.
+
+The process is handed plain data, a file of arrays (``.npz``, without pickled objects) and a file of JSON, and answers
+in lines of JSON: what it draws now, and at last the names of the files, or what went wrong.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+
+import gearwhine
+from gearwhine.progress import Progress
+from housing.drawn_shapes import DrawnHousing, DrawnShape
+from housing.errors import EncoderUnavailableError, HousingError, RendererUnavailableError
+
+_ERRORS = (EncoderUnavailableError, HousingError, RendererUnavailableError)
+_CAPTIONS = ("name", "title", "note", "quantity", "largest")
+
+
+def draw_apart(
+    housing: DrawnHousing,
+    shapes: Sequence[DrawnShape],
+    folder: Path,
+    file_format: str,
+    view: str,
+    progress: Progress,
+    *,
+    sheet: str | None = None,
+) -> list[str]:
+    """Draw shapes into a folder, and with a name for it also the ``sheet`` of all; the files' names.
+
+    Raises
+    ------
+    RendererUnavailableError
+        Where nothing here draws without a screen, or the drawing process dies.
+    EncoderUnavailableError
+        Where MP4 is asked for and nothing encodes it.
+    """
+    task = {
+        "folder": str(folder),
+        "format": file_format,
+        "view": view,
+        "sheet": sheet,
+        "shapes": [{key: getattr(shape, key) for key in _CAPTIONS} for shape in shapes],
+    }
+    with tempfile.TemporaryDirectory() as desk, tempfile.TemporaryFile("w+", encoding="utf-8") as troubles:
+        arrays: dict[str, Any] = {f"motion_{i}": shape.motion for i, shape in enumerate(shapes)}
+        np.savez(Path(desk) / "arrays.npz", rest=housing.rest, triangles=housing.triangles, **arrays)
+        (Path(desk) / "task.json").write_text(json.dumps(task), encoding="utf-8")
+        process = subprocess.Popen(
+            [sys.executable, "-m", "gearwhine.drawing_process", desk],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=troubles,
+            text=True,
+            env=_environment(),
+        )
+        try:
+            assert process.stdout is not None
+            answer = _follow(process.stdout, progress)
+            code = process.wait()
+        finally:
+            process.kill()  # does nothing to one that has ended
+            process.wait()
+            if process.stdout is not None:
+                process.stdout.close()
+        if "failed" in answer:
+            kind = {error.__name__: error for error in _ERRORS}[answer["failed"]]
+            raise kind(answer["message"])
+        if "files" not in answer:
+            troubles.seek(0)
+            raise RendererUnavailableError(_how_it_died(code, troubles.read()))
+    return [str(name) for name in answer["files"]]
+
+
+def _follow(lines: IO[str], progress: Progress) -> dict[str, Any]:
+    """Pass on what is told, up to the answer; empty where there is none."""
+    for line in lines:
+        try:
+            told = json.loads(line)
+        except ValueError:  # a library's own chatter
+            continue
+        if isinstance(told, dict):
+            if "files" in told or "failed" in told:
+                return told
+            progress(str(told.get("progress", "drawing")))
+    return {}
+
+
+def _how_it_died(code: int, troubles: str) -> str:
+    how = f"ended with exit code {code}"
+    if code < 0:
+        how = f"was ended by signal {-code} ({signal.strsignal(-code)})"
+    said = [line for line in troubles.splitlines() if line.strip()]
+    last = f"; its last words: {said[-1].strip()[:300]}" if said else ""
+    return (
+        f"the renderer {how}{last}\n"
+        "Pictures need a working EGL or OSMesa: on Debian or Ubuntu sudo apt-get install libegl1 libegl-mesa0 libgl1; "
+        "VTK_DEFAULT_OPENGL_WINDOW must not name a window that needs a screen"
+    )
+
+
+def _environment() -> dict[str, str]:
+    """The same code is imported there, wherever the command was started from."""
+    root = str(Path(gearwhine.__file__).parent.parent)
+    return os.environ | {"PYTHONPATH": os.pathsep.join([root, *filter(None, [os.environ.get("PYTHONPATH")])])}
+
+
+def _tell(document: dict[str, Any]) -> None:
+    sys.stdout.write(json.dumps(document) + "\n")
+    sys.stdout.flush()
+
+
+def _draw(desk: Path) -> list[str]:
+    """Do the task that lies on the desk."""
+    from housing.animations import animate_shapes
+    from housing.pictures import render_shapes, render_sheet
+
+    task = json.loads((desk / "task.json").read_text(encoding="utf-8"))
+    with np.load(desk / "arrays.npz", allow_pickle=False) as arrays:
+        rest, triangles = arrays["rest"], arrays["triangles"]
+        shapes = [DrawnShape(motion=arrays[f"motion_{i}"], **words) for i, words in enumerate(task["shapes"])]
+    housing, folder, view = DrawnHousing(rest, triangles, np.arange(len(rest))), Path(task["folder"]), task["view"]
+
+    def progress(message: str) -> None:
+        _tell({"progress": message})
+
+    if task["format"] == "png":
+        files = render_shapes(housing, shapes, folder, view=view, progress=progress)
+        if task["sheet"] is not None:
+            progress("drawing all on one sheet")
+            files.append(render_sheet(housing, shapes, folder / task["sheet"], view=view))
+    else:
+        files = animate_shapes(housing, shapes, folder, task["format"], view=view, progress=progress)
+    return [path.name for path in files]
+
+
+def _main(desk: Path) -> None:
+    # An interruption of the command ends this process by the command's own hand.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        _tell({"files": _draw(desk)})
+    except _ERRORS as error:
+        _tell({"failed": type(error).__name__, "message": str(error)})
+
+
+if __name__ == "__main__":
+    _main(Path(sys.argv[1]))

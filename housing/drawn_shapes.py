@@ -1,0 +1,130 @@
+"""Shapes made ready to be drawn: a housing's skin at rest, and motions of it with their captions."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import HousingError
+from housing.modes import ModeSet
+from housing.skin import check_numbers, drawn_name, outer_skin
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.int64]
+
+MODE_QUANTITY = "Displacement / largest"
+
+
+@dataclass(frozen=True)
+class DrawnHousing:
+    """The outer surface at rest.
+
+    Attributes
+    ----------
+    rest : ndarray, shape (n_points, 3)
+        [m].
+    triangles : ndarray of int, shape (n_triangles, 3)
+        Places in ``rest``.
+    nodes : ndarray of int, shape (n_points,)
+        Which of the mesh's nodes these are.
+    """
+
+    rest: FloatArray
+    triangles: IntArray
+    nodes: IntArray
+
+    @property
+    def diagonal(self) -> float:
+        """Of the box around it [m]."""
+        return float(np.linalg.norm(np.ptp(self.rest, axis=0)))
+
+
+@dataclass(frozen=True)
+class DrawnShape:
+    """A harmonic motion u(t) = Re U e^{iωt} of the surface, with its captions.
+
+    Attributes
+    ----------
+    name : str
+        Of its file, without ending.
+    title, note : str
+        The line above the picture and those below that; the note may be empty.
+    motion : ndarray of float or complex, shape (n_points, 3)
+        U, to any scale. A real one moves in one phase; a complex one may run around.
+    quantity : str
+        What the colours show, with its unit.
+    largest : float
+        That quantity where the motion is largest.
+
+    Raises
+    ------
+    HousingError
+        Where nothing moves, or a number of the motion is none.
+    """
+
+    name: str
+    title: str
+    note: str
+    motion: FloatArray | ComplexArray
+    quantity: str = MODE_QUANTITY
+    largest: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not np.all(np.isfinite(self.motion)) or not np.any(self.motion):
+            raise HousingError(f"{self.title or self.name}: a shape to draw needs finite displacements, some not zero")
+
+    @property
+    def amplitude(self) -> FloatArray:
+        """Largest displacement of each point over a period, as part of the largest of all, shape (n_points,)."""
+        swing = peak_displacement(self.motion)
+        return np.asarray(swing / swing.max())
+
+    def at(self, angle: float) -> FloatArray:
+        """Displacement at a phase angle [rad] after that of the widest, the largest amplitude being 1."""
+        turned = self.motion * np.exp(1j * (angle - widest_angle(self.motion)))
+        return np.asarray(turned.real / peak_displacement(self.motion).max())
+
+
+def peak_displacement(motion: FloatArray | ComplexArray) -> FloatArray:
+    """Largest |Re U e^{iθ}| over θ for each row of U, shape (n_points,).
+
+    With U = a + ib, |Re U e^{iθ}|² = ½ (|U|² + Re (U·U) e^{2iθ}): the largest is half the major axis of the ellipse
+    that the point runs along, √(½ (|U|² + |U·U|)).
+    """
+    return np.asarray(np.sqrt(0.5 * ((np.abs(motion) ** 2).sum(axis=1) + np.abs((motion**2).sum(axis=1)))))
+
+
+def widest_angle(motion: FloatArray | ComplexArray) -> float:
+    """The θ at which Σ |Re U e^{−iθ}|² over all points is largest [rad]; 0 where all move in phase with a real U."""
+    return 0.5 * float(np.angle((motion**2).sum()))
+
+
+def drawn_housing(mesh: Mesh) -> DrawnHousing:
+    """The surface of a mesh to draw shapes on."""
+    skin = outer_skin(mesh)
+    return DrawnHousing(mesh.points[skin.nodes], skin.triangles, skin.nodes)
+
+
+def drawn_modes(
+    housing: DrawnHousing, modes: ModeSet, numbers: Sequence[int], notes: Mapping[int, str] | None = None
+) -> list[DrawnShape]:
+    """Modes by their numbers, from 1, named ``mode-03-1007Hz``; ``notes`` stand below their titles.
+
+    Raises
+    ------
+    HousingError
+        Where there is no mode of such a number.
+    """
+    check_numbers(modes, numbers)
+    return [
+        DrawnShape(
+            drawn_name(modes, number),
+            f"Mode {number}   {modes.frequencies_hz[number - 1]:.0f} Hz",
+            (notes or {}).get(number, ""),
+            modes.shapes[number - 1][housing.nodes],
+        )
+        for number in numbers
+    ]
