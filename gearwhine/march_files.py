@@ -49,6 +49,11 @@ class BlockFiles:
     def __len__(self) -> int:
         return self._count
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether no block is on file; one that an interruption kept from being counted is there."""
+        return not self._file(0).exists()
+
     def append(self, arrays: Arrays) -> None:
         """Write the next block: after this call it is there, whatever happens."""
         target = self._file(self._count)
@@ -102,7 +107,7 @@ def kept_march(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Block
         try:
             yield blocks
         except BaseException as error:
-            if not len(blocks):
+            if blocks.is_empty:
                 _clear(place, folder if made else None)
             elif isinstance(error, KeyboardInterrupt):
                 error.add_note("what was marched so far is kept: the same command goes on from there, --fresh does not")

@@ -160,3 +160,18 @@ def test_the_march_goes_on_before_a_damaged_block(tmp_path: Path, damage: bytes)
         blocks.append(some(3))
         assert float(blocks[3]["columns"][0, 0]) == 3.0
     assert not list(tmp_path.iterdir())
+
+
+def test_an_interruption_while_a_block_is_put_in_its_place_keeps_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(folder: Path) -> None:
+        raise KeyboardInterrupt
+
+    # Between the block's renaming and its being counted.
+    monkeypatch.setattr("gearwhine.march_files._force_names", interrupted)
+    with pytest.raises(KeyboardInterrupt) as stop, kept_march(tmp_path, "key") as blocks:
+        blocks.append({"columns": np.ones(3)})
+    assert "goes on from there" in stop.value.__notes__[0]
+    with kept_march(tmp_path, "key") as blocks:
+        assert len(blocks) == 1
