@@ -113,6 +113,7 @@ class Update(Table):
     model_modes: ModelModes | None = None
     modes: Annotated[int, Whole(2, 1000)] = 48
     solves: Annotated[int, Whole(1, 10_000)] = 40
+    explore: Annotated[int, Whole(0, 10_000)] = 0
 
     @model_validator(mode="after")
     def _named_once(self) -> Update:

@@ -29,6 +29,7 @@ from housing.updating import (
     Step,
     Target,
     counterparts,
+    explore,
     hold_back,
     measure,
     null_fits,
@@ -127,11 +128,13 @@ def update_housing(
     known: list[HousingDesign] = [start]
 
     def solve(coordinates: FloatArray, near: HousingDesign | None) -> HousingDesign:
-        known.append(coarse.solve(coordinates, near))
-        return known[-1]
+        solved = coarse.solve(coordinates, near)
+        if null:  # each keeps a mesh and its modes in memory
+            known.append(solved)
+        return solved
 
     effort = Effort(solves=given.solves)
-    found = search(solve, target, coarse.parameters, start, effort, progress)
+    found = explore(solve, target, coarse.parameters, start, effort, given.explore, progress)
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
     before, after, found, target = _corrected(fine, found, target, start, solve, effort, progress)
@@ -233,6 +236,6 @@ def _corrected(
 
 
 def _thinned(designs: list[HousingDesign]) -> list[HousingDesign]:
-    """The first, the last and some between: each keeps a mesh and its modes in memory."""
+    """The first, the last and some between."""
     chosen = np.unique(np.linspace(0, len(designs) - 1, min(len(designs), 8)).round().astype(int))
     return [designs[place] for place in chosen]

@@ -4,8 +4,8 @@
 it
   does to the modes, exactly; :class:`Surrogate` -- the modes of a design's neighbours.
 - :class:`Target`, :func:`measure` -- what was measured and how far a design is from it (:class:`Misfit`).
-- :func:`search` -- the fit, by true solves (:data:`Solve`) of :class:`Design`; :func:`posterior` -- what the data say
-  beside the prior (:class:`Posterior`).
+- :func:`search`, :func:`explore` -- the fit from one start or from several, by true solves (:data:`Solve`) of
+  :class:`Design`; :func:`posterior` -- what the data say beside the prior (:class:`Posterior`).
 - :func:`hold_back`, :func:`null_fits` -- what the fit is worth: modes left out and predicted, random frequencies
 fitted.
 """
@@ -14,7 +14,7 @@ from housing.updating.misfit import UNPAIRED, Misfit, ModeCount, Target, counter
 from housing.updating.parameters import Parameter, coordinate_bounds, values_at
 from housing.updating.posterior import Posterior, posterior
 from housing.updating.rates import ModalRates, ModelRate, modal_rates
-from housing.updating.search import Design, Effort, Found, Solve, Step, search, search_surrogate
+from housing.updating.search import Design, Effort, Found, Solve, Step, explore, search, search_surrogate
 from housing.updating.surrogate import ModalState, Neighbour, Surrogate
 from housing.updating.worth import HeldBack, NullFit, hold_back, null_fits, random_frequencies
 
@@ -39,6 +39,7 @@ __all__ = [
     "Target",
     "coordinate_bounds",
     "counterparts",
+    "explore",
     "hold_back",
     "measure",
     "modal_rates",

@@ -20,6 +20,7 @@ from housing.updating import (
     Surrogate,
     Target,
     coordinate_bounds,
+    explore,
     hold_back,
     measure,
     null_fits,
@@ -274,3 +275,39 @@ def test_random_frequencies_are_a_survey_could_have_told(seed: int) -> None:
     assert measured[0] <= drawn[0]
     assert drawn[-1] <= measured[-1]
     assert (np.diff(np.log(drawn)) > 0.01).all()
+
+
+@dataclass(frozen=True)
+class TwoBasins:
+    """One parameter, one mode: ln ω² goes with z, but from z > 0.5 on the mode has another shape, and none between."""
+
+    coordinates: FloatArray
+
+    def surrogate(self) -> Surrogate:
+        (z,) = self.coordinates
+        shape = np.array([[1.0, 0.0]]) if z < 0.5 else np.array([[0.0, 1.0]])
+        state = ModalState(np.array([100.0 * np.exp(0.5 * z)]), np.ones((1, 1, 2)), np.ones((1, 1)), shape)
+        return Surrogate(self.coordinates, state, np.ones((1, 1, 1)), np.zeros((1, 1, 1)))
+
+    @property
+    def state(self) -> ModalState:
+        return self.surrogate().at(self.coordinates).state
+
+
+def test_exploring_finds_a_basin_that_no_step_leads_to() -> None:
+    """The measured shape is that of the far side; near the start nothing is better than the start itself."""
+
+    def solve_either(coordinates: FloatArray, near: Design | None) -> TwoBasins:
+        return TwoBasins(coordinates)
+
+    target = target_at([100.0 * np.exp(0.5)], noise=0.05, shapes=np.array([[0.0, 1.0]]))
+    begin = solve_either(np.array([-1.0]), None)
+    effort = Effort(trust=0.02, starts=4, solves=20)
+    alone = search(solve_either, target, FREE[:1], begin, replace(effort, solves=2))
+    explored = explore(solve_either, target, FREE[:1], begin, effort, 20)
+    assert alone.misfit.pairs[0] == UNPAIRED
+    assert explored.misfit.pairs[0] == 0
+    assert explored.design.coordinates[0] == pytest.approx(1.0, abs=0.1)
+    assert (
+        explore(solve_either, target, FREE[:1], begin, replace(effort, solves=2), 0).misfit.value == alone.misfit.value
+    )
