@@ -99,13 +99,9 @@ def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
         for rotation in _starts(points, samples.points)
     ]
     limit = _PROMISING * (min(rms for rms, _ in first) + samples.spacing)
-    found = [_settle(points, surface, motion, diagonal, _STEPS) for rms, motion in first if rms < limit]
-    found.sort(key=lambda one: one[0])
-    best = found[0][0]
-    fits: list[RigidMotion] = []
-    for rms, motion in found:
-        if rms < best + _EQUAL * diagonal and all(_distinct(motion, other, points, diagonal) for other in fits):
-            fits.append(motion)
+    promising = _parted(first, limit, points, diagonal)
+    found = [_settle(points, surface, motion, diagonal, _STEPS) for motion in promising]
+    fits = _parted(found, min(rms for rms, _ in found) + _EQUAL * diagonal, points, diagonal)
     fits.sort(key=lambda motion: motion.angle_degrees)
     motion = fits[0]
     gaps, _, firmness = surface.gaps(motion.place(points))
@@ -190,6 +186,17 @@ def _settle(
         if moved < _SETTLED * diagonal:
             break
     return best
+
+
+def _parted(
+    found: list[tuple[float, RigidMotion]], limit: float, points: FloatArray, diagonal: float
+) -> list[RigidMotion]:
+    """The motions that leave less than a limit, of those that are nearly one the best alone, the best first."""
+    parted: list[RigidMotion] = []
+    for rms, motion in sorted(found, key=lambda one: one[0]):
+        if rms <= limit and all(_distinct(motion, other, points, diagonal) for other in parted):
+            parted.append(motion)
+    return parted
 
 
 def _distinct(one: RigidMotion, other: RigidMotion, points: FloatArray, diagonal: float) -> bool:

@@ -171,8 +171,8 @@ def test_points_on_one_face_alone_can_slide(box: Mesh, geometry_of_survey: Measu
     assert any("slide along the surface" in remark for remark in alignment.remarks)
 
 
-def test_curved_surfaces_are_met_where_they_are(block: Callable[..., Mesh]) -> None:
-    """A point beside a solid block lies on the face it looks at, at its true distance."""
+def test_a_point_beside_a_block_lies_on_the_face_it_looks_at(block: Callable[..., Mesh]) -> None:
+    """A solid block, whose faces are all outer ones."""
     mesh = block((0.3, 0.2, 0.1), (3, 2, 1), 2)
     geometry = MeasuredGeometry(("a",), np.array([[0.1, 0.07, 0.102]]), np.array([0]), np.array([[0, 0, 1.0]]))
     mapped = map_survey(mesh, geometry)
