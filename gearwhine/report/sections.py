@@ -123,6 +123,14 @@ _PARAMETERS = (
     Column("after", "after (SI)", ".5g"),
     Column("standard_deviation", "± (SI)", ".2g"),
 )
+_HELD_BACK = (
+    Column("measured_hz", "held back [Hz]", ".1f"),
+    Column("predicted_hz", "predicted [Hz]", ".1f"),
+    Column("error_percent", "error [%]", "+.2f"),
+    Column("standard_deviation_percent", "expected ± [%]", ".2f"),
+    Column("before_error_percent", "error before [%]", "+.2f"),
+    Column("rms_error_percent_of_the_others", "rms of the others [%]", ".2f"),
+)
 _EVENTS = (Column("speed_rpm", "speed [rpm]", ".1f"), Column("kind", "what happens"))
 _MOST_MODES = 60  # of the coupled system that a table holds
 _LINES_OF_A_SENSOR = 6
@@ -179,7 +187,24 @@ def _comparison(document: Document) -> Section:
 
 
 def _update(document: Document) -> Section:
-    return Section("Updated numbers", (), _table(_PARAMETERS, document["parameters"]), ("update",))
+    before, learned = document["before"], document["identifiability"]
+    sentences = [
+        f"Before: {before['rms_error_percent']:.2f} % root mean square, {before['max_error_percent']:.2f} % at most.",
+        f"The data tell {learned['learned_combinations']} combinations of the {learned['parameters']} numbers better "
+        "than the prior.",
+    ]
+    if null := document.get("null"):
+        sentences.append(
+            f"Of {null['sets']} random sets of as many frequencies the same search fits "
+            f"{100 * null['within_5_percent']:.0f} % within 5 %, {100 * null['within_2_percent']:.0f} % within 2 % and "
+            f"{100 * null['within_1_percent']:.0f} % within 1 % each; {100 * null['as_good_in_rms']:.0f} % as well as "
+            "the measured ones in rms."
+        )
+    else:
+        sentences.append("Not known is how often random frequencies are fitted as well (--null).")
+    tables = _table(_PARAMETERS, document["parameters"])
+    tables += _table(_HELD_BACK, document.get("held_back", ()), "Each mode predicted by a fit to the others")
+    return Section("Updated numbers", tuple(sentences), tables, ("update",))
 
 
 def _rotors(document: Document) -> Section:
@@ -194,7 +219,8 @@ def _gears(document: Document) -> Section:
 def _system(document: Document) -> Section:
     modes, sentences = document.get("modes", ()), []
     if stability := document.get("stability"):
-        sentences.append("All modes decay." if stability.get("stable", True) else "Some modes grow: see the command.")
+        growing = len(stability["growing"])
+        sentences.append("No mode grows." if stability["stable"] else f"Unstable: {growing} of the modes grow.")
     if len(modes) > _MOST_MODES:
         sentences.append(f"The lowest {_MOST_MODES} of {len(modes)} modes.")
     tables = _table(_SYSTEM, modes[:_MOST_MODES])

@@ -21,6 +21,8 @@ def show_update(document: dict[str, Any]) -> None:
         _null(console, document)
     else:
         console.print("How often random frequencies are fitted as well: --null 20. Modes held back: --held-back.")
+    for warning in document.get("warnings", ()):
+        console.print(f"Mind: {warning['message']}.")
     show_written(console, document)
 
 

@@ -9,6 +9,7 @@ from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.check_provenance import without_changed
 from gearwhine.case.problems import Location, key_of
 from gearwhine.case.units import amount
+from gearwhine.stages.measured import read_measured
 from gearwhine.stages.update_keys import FittedNumber, with_entry
 from gearwhine.stages.updating import SolvedUpdate
 from housing.updating import UNPAIRED, HeldBack, Misfit, NullFit
@@ -51,6 +52,9 @@ def update_document(case: Case, solved: SolvedUpdate) -> dict[str, Any]:
         "identifiability": _identifiability(solved),
         "seconds": {**solved.seconds, "total": sum(solved.seconds.values())},
     }
+    if case.measured is not None and read_measured(case).shapes is not None:
+        message = "the measured shapes were not used: modes are paired by dominance; 'gearwhine compare' pairs by shape"
+        document["warnings"] = [{"name": "shapes", "message": message}]
     if target.count is not None:
         document["model_modes"] = {"below_hz": target.count.limit / _HERTZ, "count": fine.count}
     if solved.held_back:
@@ -112,7 +116,7 @@ def _pairs(solved: SolvedUpdate) -> list[dict[str, Any]]:
                 "model_hz": float(measured * np.exp(error)) / _HERTZ,
                 "before_error_percent": 100.0 * float(np.expm1(old)),
                 "error_percent": 100.0 * float(np.expm1(error)),
-                "mode": mode + 1,
+                "mode": None if mode == UNPAIRED else mode + 1,
                 "strength": None if mode == UNPAIRED else float(strengths[mode]),
                 "left_uncertain_percent": None if tuned == UNPAIRED else 100.0 * float(left[tuned]),
             }

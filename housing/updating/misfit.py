@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
+from housing.correlation import mac
 from housing.errors import HousingError
 from housing.updating.surrogate import ModalState, Neighbour
 
@@ -210,7 +211,7 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
         raise HousingError(
             f"shapes measured at {target.shapes.shape[1]} degrees of freedom, of which the model has none"
         )
-    table = _mac(target.shapes, state.measured)
+    table = mac(target.shapes, state.measured)
     rows, columns = linear_sum_assignment(-table)
     pairs, values = np.full(len(table), UNPAIRED), np.zeros(len(table))
     values[rows] = table[rows, columns]
@@ -221,15 +222,9 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
 def counterparts(modes: IntArray, state: ModalState, other: ModalState) -> IntArray:
     """The other design's modes that move seats and skin as some of one's modes do, whatever their order there."""
     motions = [np.hstack([of.seats.reshape(len(of.seats), -1), of.skin]) for of in (state, other)]
-    rows, columns = linear_sum_assignment(-_mac(motions[0][modes], motions[1]))
+    rows, columns = linear_sum_assignment(-mac(motions[0][modes], motions[1]))
     assert (rows == np.arange(len(modes))).all()
     return np.asarray(columns)
-
-
-def _mac(measured: FloatArray, model: FloatArray) -> FloatArray:
-    """|aᵀ b|² / (aᵀ a bᵀ b), shape (n_measured, n_model)."""
-    norms = np.outer((measured**2).sum(axis=1), (model**2).sum(axis=1))
-    return np.asarray((measured @ model.T) ** 2 / np.where(norms > 0.0, norms, 1.0))
 
 
 def residuals(

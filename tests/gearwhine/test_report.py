@@ -102,6 +102,33 @@ def test_sections_follow_what_the_document_holds() -> None:
     assert [section.title for section in sections_of(modes)] == ["Housing modes"]  # type: ignore[arg-type]
 
 
+def test_what_a_fit_is_worth_is_told_beside_it() -> None:
+    worth = {
+        "sets": 20,
+        "within_5_percent": 0.8,
+        "within_2_percent": 0.15,
+        "within_1_percent": 0.0,
+        "as_good_in_rms": 0.3,
+    }
+    held = {"measured_hz": 658.0, "predicted_hz": 700.0, "error_percent": 6.383, "standard_deviation_percent": 2.0}
+    document = {
+        "parameters": [{"name": "top wall", "before": 0.012, "after": 0.013, "standard_deviation": 0.0016}],
+        "before": {"rms_error_percent": 13.6, "max_error_percent": 24.0},
+        "identifiability": {"learned_combinations": 8, "parameters": 18},
+    }
+    (alone,) = sections_of(document)
+    assert any("Not known" in sentence for sentence in alone.sentences)
+    (tested,) = sections_of(document | {"null": worth, "held_back": [held]})
+    assert any("80 % within 5 %" in sentence and "30 % as well" in sentence for sentence in tested.sentences)
+    assert tested.tables[1].filled()[1] == [["658.0", "700.0", "+6.38", "2.00"]]
+
+
+def test_an_unstable_machine_is_not_called_stable() -> None:
+    growing = {"stable": False, "growing": [{"frequency_hz": 90.0}]}
+    (section,) = sections_of({"system": {"modes": [], "stability": growing}})
+    assert section.sentences[0].startswith("Unstable: 1 of")
+
+
 def test_columns_without_values_are_left_out() -> None:
     (table,) = sections_of(RUN)[1].tables
     columns, rows = table.filled()
