@@ -41,6 +41,7 @@ class FreeSystem:
     ----------
     free : ndarray of int, shape (n,)
         Those left, among the 3 n_nodes.
+    threads : int
 
     Raises
     ------
@@ -56,7 +57,7 @@ class FreeSystem:
             raise HousingError("every degree of freedom is fixed")
         self.free = np.flatnonzero(~held)
         self._matrices = matrices
-        self._threads = threads
+        self.threads = threads
         self._pointer, self._rows, self._source = _lower_pattern(matrices, self.free)
 
     @property
@@ -77,21 +78,18 @@ class FreeSystem:
     @cached_property
     def mass(self) -> "FreeMass":
         """M [kg], as an operator."""
-        return FreeMass(self._matrices, self.free, self._threads)
+        return FreeMass(self._matrices, self.free, self.threads)
 
     def shifted(self, shift: float) -> SymmetricMatrix:
         """K - shift M, always on the same pattern [rad²/s²]."""
-        values = self._matrices.blocks.ravel()[self._source]
-        if shift:
-            values -= shift * self._mass_values
-        return self._matrix(values)
+        return self._matrix(self._matrices.shifted_blocks(shift).ravel()[self._source])
 
     def floor(self, limit: float = 0.0) -> float:
         """λ up to which a mode counts as rigid [rad²/s²].
 
         It is far above the rounding of K, and its root small beside a limit of circular frequencies [rad/s].
         """
-        ratio = self.stiffness.diagonal() / self._mass_values[self._pointer[:-1]]
+        ratio = self.stiffness.diagonal() / self._matrices.mass_diagonal()[self.free]
         return max(_ROUNDING * float(ratio.max()), (_FLOOR * limit) ** 2)
 
     def expand(self, vectors: FloatArray) -> FloatArray:
@@ -100,17 +98,8 @@ class FreeSystem:
         full[:, self.free] = vectors.T
         return full.reshape(len(full), self.n_nodes, 3)
 
-    @cached_property
-    def _mass_values(self) -> FloatArray:
-        """M's entries on the pattern."""
-        block, component = np.divmod(self._source, 9)
-        values = np.where(component % 4 == 0, self._matrices.node_mass[block], 0.0)
-        if len(self._matrices.attached_mass):
-            values += self._matrices.attached_mass_blocks().ravel()[self._source]
-        return values
-
     def _matrix(self, values: FloatArray) -> SymmetricMatrix:
-        return SymmetricMatrix(self._pointer, self._rows, values, self._threads)
+        return SymmetricMatrix(self._pointer, self._rows, values, self.threads)
 
 
 class FreeMass:

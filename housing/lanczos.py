@@ -17,7 +17,9 @@ no mode is found twice. Several columns at a time because the factor is read onc
 """
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +34,8 @@ _BLOCK = 8
 _DEPENDENT = 1e-11  # what is left of a column, as a part of it, where it lay in the basis
 _NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
 _ORTHONORMAL = 1e-14  # how far products of a new block's columns may be from those of orthonormal ones
+_SHARES = 4  # of the rows, in products with the basis
+_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
 
 
@@ -43,6 +47,7 @@ def shift_invert(
     *,
     above: bool = False,
     seed: int = 0,
+    threads: int = 1,
 ) -> tuple[FloatArray, FloatArray]:
     """The modes nearest to a shift on one side of it.
 
@@ -60,6 +65,8 @@ def shift_invert(
         Whether the shift lies above the modes wanted, which are then all there are below it, rather than below them.
     seed : int
         Of the random starting block; each also doubles its width.
+    threads : int
+        That orthogonalise; the modes are the same to the last bit for any number.
 
     Returns
     -------
@@ -76,19 +83,19 @@ def shift_invert(
     n = mass.shape[0]
     width = min(_BLOCK * 2**seed, n)
     most = min(n, 8 * count + 40 * width)
-    basis = np.empty((n, most + width), order="F")  # the system gives memory to what is used of it
+    # The system gives memory to what is used of it.
+    basis, inertia = (np.empty((n, most + width), order="F") for _ in range(2))
     small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
 
+    tall = _Tall(n, threads)
     start = np.random.default_rng(seed).standard_normal((n, width))
-    found = _orthonormal(basis[:, :0], [], solve(np.ascontiguousarray(mass @ start)), mass)
-    size, checked = 0, 0
-    recent: list[FloatArray] = []
+    found = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, tall)
+    begin, size, checked = 0, 0, 0
     while found.block.shape[1] and size + found.block.shape[1] <= most + width:
-        begin, size = size, size + found.block.shape[1]
-        basis[:, begin:size] = found.block
-        recent = [*recent[-1:], found.inertia]
-        found = _orthonormal(basis[:, :size], recent, solve(found.inertia), mass)
+        previous, begin, size = begin, size, size + found.block.shape[1]
+        basis[:, begin:size], inertia[:, begin:size] = found.block, found.inertia
+        found = _orthonormal(basis[:, :size], inertia[:, :size], size - previous, solve(found.inertia), mass, tall)
         small[:size, begin:size] = found.projections[:size]
         remainder = found.projections[size:]
         whole = found.block.shape[1] == 0
@@ -105,8 +112,8 @@ def shift_invert(
                 step = outside / wanted
                 norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))
                 order = np.argsort(1.0 / wanted)
-                vectors = basis[:, :size] @ (mixture / norms)[:, order]
-                vectors += found.block @ (step / norms)[:, order]
+                vectors = tall.combined(found.block, (step / norms)[:, order])
+                tall.subtract(vectors, basis[:, :size], -(mixture / norms)[:, order])
                 return shift + 1.0 / wanted[order], vectors
         small[size : size + len(remainder), begin:size] = remainder
         small[begin:size, size : size + len(remainder)] = remainder.T
@@ -135,40 +142,72 @@ class _Addition:
     projections: FloatArray
 
 
-def _orthonormal(basis: FloatArray, recent: list[FloatArray], block: FloatArray, mass: Operator) -> _Addition:
-    """What a block adds to a basis V.
+class _Tall:
+    """Products of matrices with many rows and few columns, by shares of their rows.
 
-    First its last blocks are taken off, whose products with M are at hand: in exact arithmetic that is everything.
-    Then, once more, all of it.
+    There are as many shares whatever the threads, so that sums over the rows are rounded alike.
+    """
+
+    def __init__(self, rows: int, threads: int) -> None:
+        self._threads = min(threads, _SHARES) if rows > _WORTH_A_THREAD else 1
+        self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
+
+    def products(self, left: FloatArray, right: FloatArray) -> FloatArray:
+        """LᵀR."""
+        return np.asarray(sum(self._each(lambda rows: left[rows].T @ right[rows])))
+
+    def subtract(self, block: FloatArray, basis: FloatArray, parts: FloatArray) -> None:
+        """Take B p off a block, in place."""
+
+        def take(rows: slice) -> None:
+            block[rows] -= basis[rows] @ parts
+
+        self._each(take)
+
+    def combined(self, block: FloatArray, mixture: FloatArray) -> FloatArray:
+        """B m."""
+        return np.concatenate(self._each(lambda rows: block[rows] @ mixture))
+
+    def _each(self, work: Callable[[slice], Any]) -> list[Any]:
+        if self._threads == 1:
+            return [work(rows) for rows in self._shares]
+        with ThreadPoolExecutor(self._threads) as pool:
+            return list(pool.map(work, self._shares))
+
+
+def _orthonormal(
+    basis: FloatArray, inertia_of_basis: FloatArray, recent: int, block: FloatArray, mass: Operator, tall: _Tall
+) -> _Addition:
+    """What a block adds to a basis V, given M V.
+
+    First its last vectors are taken off, so many as are recent: in exact arithmetic that is everything. Then, once
+    more, all of it.
     """
     within = np.zeros((basis.shape[1], block.shape[1]))
-    end = basis.shape[1]
-    for inertia in reversed(recent):
-        place = slice(end - inertia.shape[1], end)
-        within[place] = inertia.T @ block
-        block -= basis[:, place] @ within[place]
-        end = place.start
-    again = basis.T @ (mass @ block)
-    block -= basis @ again
+    last = slice(basis.shape[1] - recent, None)
+    within[last] = tall.products(inertia_of_basis[:, last], block)
+    tall.subtract(block, basis[:, last], within[last])
+    again = tall.products(inertia_of_basis, block)
+    tall.subtract(block, basis, again)
     within += again
     inertia = mass @ block
-    products = block.T @ inertia
+    products = tall.products(block, inertia)
     left = np.sqrt(np.maximum(products.diagonal(), 0.0))
     given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
     kept = left > _DEPENDENT * given
     values, turn = np.linalg.eigh(products[np.ix_(kept, kept)] / np.outer(left[kept], left[kept]))
     mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
     mixture[kept] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[kept, None]
-    new, new_inertia, shares = block @ mixture, inertia @ mixture, mixture.T @ products
+    new, new_inertia, shares = tall.combined(block, mixture), tall.combined(inertia, mixture), mixture.T @ products
     if new.shape[1]:
         # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
         if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
-            new -= basis @ (basis.T @ (mass @ new))
+            tall.subtract(new, basis, tall.products(inertia_of_basis, new))
             new_inertia = mass @ new
-            shares = new.T @ inertia
-        own = new.T @ new_inertia
+            shares = tall.products(new, inertia)
+        own = tall.products(new, new_inertia)
         if np.abs(own - np.eye(len(own))).max() > _ORTHONORMAL:
             unit = np.linalg.inv(np.linalg.cholesky(own)).T
-            new, new_inertia = new @ unit, new_inertia @ unit
-            shares = new.T @ inertia
+            new, new_inertia = tall.combined(new, unit), tall.combined(new_inertia, unit)
+            shares = tall.products(new, inertia)
     return _Addition(new, new_inertia, np.vstack([within, shares]))

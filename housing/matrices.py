@@ -81,10 +81,25 @@ class Matrices:
 
     def shifted(self, shift: float) -> sparse.csr_array:
         """K - shift M, always on the same pattern, whatever the shift [rad²/s²]."""
-        blocks = self.blocks - shift * self.node_mass[:, None, None] * np.eye(3)
+        return self._matrix(self.shifted_blocks(shift))
+
+    def shifted_blocks(self, shift: float) -> FloatArray:
+        """K - shift M on the pattern, shape (n_blocks, 3, 3)."""
+        blocks = self.blocks.copy()
+        inertia = shift * self.node_mass
+        for component in range(3):
+            blocks[:, component, component] -= inertia
         if len(self.attached_mass):
-            blocks -= shift * self.attached_mass_blocks()
-        return self._matrix(blocks)
+            upper = self.attached_mass.upper
+            blocks[np.searchsorted(self._keys, self._keys_of(upper))] -= shift * upper.blocks
+        return blocks
+
+    def mass_diagonal(self) -> FloatArray:
+        """The diagonal of M [kg], shape (3 n_nodes,)."""
+        diagonal = np.repeat(self.node_mass[self.pointer[:-1]], 3)
+        if len(self.attached_mass):
+            diagonal += self.attached_mass.matrix(self.n_nodes).diagonal()
+        return diagonal
 
     def plus(self, additions: Additions) -> "Matrices":
         """The matrices with something attached.
@@ -115,13 +130,6 @@ class Matrices:
             attached_mass=self.attached_mass + additions.mass,
             attached_damping=self.attached_damping + additions.damping,
         )
-
-    def attached_mass_blocks(self) -> FloatArray:
-        """The attached mass on the pattern, shape (n_blocks, 3, 3)."""
-        blocks = np.zeros_like(self.blocks)
-        upper = self.attached_mass.upper
-        blocks[np.searchsorted(self._keys, self._keys_of(upper))] = upper.blocks
-        return blocks
 
     @cached_property
     def rows(self) -> IntArray:

@@ -132,7 +132,9 @@ class Search:
         start = time.perf_counter()
         system = self._system
         try:
-            return shift_invert(factor.solve, system.mass, shift, count, above=above, seed=attempt)
+            return shift_invert(
+                factor.solve, system.mass, shift, count, above=above, seed=attempt, threads=system.threads
+            )
         except IncompleteModesError:
             if attempt + 1 == _ATTEMPTS:
                 raise
