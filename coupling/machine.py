@@ -357,7 +357,7 @@ def _sliding(
     speeds: dict[str, float],
     sense: int,
 ) -> Sliding | None:
-    """How one side of the teeth slides, of which `contact` is the law; None without friction, or where the gears stand still and do not slide."""
+    """How one side of the teeth slides, whose law `contact` is; None without friction, or where nothing turns."""
     gears = (mesh.driver, mesh.driven)
     if mesh.friction == 0.0 or speeds[mesh.driver.rotor] == 0.0:
         return None

@@ -72,6 +72,11 @@ class FaceSlices:
         """Of all slices [m]."""
         return self.width * self.z.size
 
+    @property
+    def half_span(self) -> float:
+        """Half of what a slice spans along the path of contact [base pitches]; 0 for spur gears."""
+        return 0.5 * float(np.ptp(self.shift)) / max(self.z.size - 1, 1)
+
 
 @dataclass(frozen=True, eq=False)
 class FaceLoads:

@@ -11,7 +11,8 @@ The row begins with `HEADER` numbers, at the places named below; then come
 * the intervals, `INTERVAL` numbers each: where it begins and one over its width. One more begins at 1, where steps end;
 * the pairs, `PAIR` numbers each, by kind of pair, interval and pair. First the cubic of its gap [m] in a variable from
   0 to 1 over the interval; then that of its stiffness [N/m] or, where the load spreads over the face, the number of its
-  row of cells, and where the interval begins and how long it is in them. A pair that cannot be there has an infinite gap;
+  column of cells, and where in it the interval begins and how long it is. A pair that cannot be there has an infinite
+  gap;
 * the pairs of the hunting period, `ENTERING` numbers each: what pitch deviations add to the gap of the pair that enters
   at phase n, at n mod h [m], and its kind; none where all pairs are alike;
 * the cells of `coupling.gears.face_table`, `CELL` numbers each, by depth, kind and position.

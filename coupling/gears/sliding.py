@@ -109,7 +109,7 @@ def turned_share(
     place : array_like
         Places along the path [base pitches].
     half, pitch_point, path_end : float
-        [base pitches]; `half` above 0.
+        [base pitches]; `half` 0 for a line of contact that turns all at once.
     """
     at = np.asarray(place, dtype=np.float64)
     low, high = np.clip(at - half, 0.0, path_end), np.clip(at + half, 0.0, path_end)
@@ -123,17 +123,16 @@ def turned_share(
 
 
 def _turns_by_slices(contact: ToothContact) -> bool:
-    return contact.faces is not None and bool(np.ptp(contact.faces.shift) > 0.0)
+    return contact.faces is not None and contact.faces.half_span > 0.0
 
 
 def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:
     """The three integrals as the numbers of a law."""
     faces = contact.faces
     assert faces is not None
-    half = 0.5 * abs(float(faces.shift[1] - faces.shift[0]))
 
     def share(which: int) -> Weight:
-        return lambda place: turned_share(place, half, friction.pitch_point, friction.path_end)[which]
+        return lambda place: turned_share(place, faces.half_span, friction.pitch_point, friction.path_end)[which]
 
     weights = (np.ones_like, share(0), share(1))
     table = face_table(faces, contact.kinds, contact.module, weights, breaks=(friction.pitch_point,))
