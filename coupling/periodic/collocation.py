@@ -33,6 +33,9 @@ PLACES: FloatArray = 0.5 * (1.0 + np.polynomial.legendre.leggauss(ORDER)[0])
 MONOMIALS: FloatArray = np.ascontiguousarray(np.linalg.inv(np.vander(PLACES, increasing=True)).T)
 """Coefficients of u⁰, u¹, ... of the polynomial that is 1 at place j and 0 at the others, shape (ORDER, ORDER)."""
 
+GAUSS: FloatArray = np.ascontiguousarray(0.5 * np.polynomial.legendre.leggauss(ORDER)[1])
+"""Weights of an integral over the whole element, shape (ORDER,)."""
+
 POINTS: FloatArray = np.concatenate([[0.0], PLACES, [1.0]])
 """Both ends and the places: where a compression within an element is interpolated from, shape (ORDER + 2,)."""
 
