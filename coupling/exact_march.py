@@ -43,7 +43,8 @@ from coupling.turning import Turning
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_STRETCHES, _ELEMENTS = 256, 2048  # at most about so many between two looks at the error
+_STRETCHES, _ELEMENTS = 256, 1024  # at most about so many between two looks at the error ...
+_FIRST_STRETCHES = 8  # ... and at first: most of what is marched in vain is found out there
 _SIZES = 64  # that have matrices of their own, besides the ladder's
 _SAME_SIZE = 1e-11  # parts of the coarsest element by which elements of one size may differ
 _FINEST_LEVEL = 24  # 4096 times finer than the coarsest element
@@ -135,11 +136,11 @@ class ExactRun(MarchRun):
             record.write(trace, free, np.zeros(0), samples, 0)
             record.add(before, trace, self._steps, free)
         clock = time.perf_counter() - before.seconds
-        state, position = before, 0
+        state, position, stretch_limit = before, 0, _FIRST_STRETCHES
         while position < len(bounds) - 1:
             element = self.base * 2.0 ** (-0.5 * state.level)
             pieces = np.maximum(np.ceil(np.diff(bounds[position:]) / element - 1e-9), 1.0).astype(np.int64)
-            last = position + max(1, min(_STRETCHES, int(np.searchsorted(np.cumsum(pieces), _ELEMENTS))))
+            last = position + max(1, min(stretch_limit, int(np.searchsorted(np.cumsum(pieces), _ELEMENTS))))
             last = min(last, len(bounds) - 1)
             if position < first_record < last:
                 last = first_record
@@ -176,7 +177,7 @@ class ExactRun(MarchRun):
                 highest=max(state.highest, energy),
                 lowest=min(state.lowest, energy),
             )
-            z, position = end, last
+            z, position, stretch_limit = end, last, min(2 * stretch_limit, _STRETCHES)
             progress(done / settings.duration)
         return replace(state, block=number + 1, seconds=time.perf_counter() - clock)
 

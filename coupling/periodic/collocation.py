@@ -55,6 +55,9 @@ MISSING: FloatArray = _missing(PLACES)
 BINOMIAL: FloatArray = np.array([[float(math.comb(j, k)) for k in range(ORDER)] for j in range(ORDER)])
 """Coefficients of (u + v)ʲ, shape (ORDER, ORDER)."""
 
+AT_END: FloatArray = np.ascontiguousarray(MONOMIALS @ BINOMIAL)
+"""Coefficients of (u - 1)⁰, (u - 1)¹, ... of the polynomial that is 1 at place j, shape (ORDER, ORDER)."""
+
 
 def weights_to(part: FloatArray) -> FloatArray:
     """Weights at the places of an integral from 0 to ``part``, shapes (e,) and (e, ORDER); Gauss's own for 1."""
