@@ -31,7 +31,6 @@ from coupling.gears import (
     tooth_contact,
 )
 from coupling.gears.kernels import tooth_force
-from coupling.gears.rim import kept_root_flexibility
 
 PHASES = np.arange(256) / 256.0
 CALLS = 1_000_000
@@ -52,18 +51,17 @@ MODELS: dict[str, StiffnessModel] = {
 
 
 @njit
-def summed(calls, compression, a, b, c, d, e, f, g, h, i):  # type: ignore[no-untyped-def]
+def summed(calls, compression, law, at):  # type: ignore[no-untyped-def]
     """All that the law says of a mesh that turns on by a seventieth of a period at each call, so that all is made."""
     total = 0.0
     for call in range(calls):
-        law = tooth_force(call / 70.0, compression, 0.01, a, b, c, d, e, f, g, h, i)
-        total += law[0] + law[1] + law[2] + law[3] + law[4] + law[5]
+        said = tooth_force(call / 70.0, compression, 0.01, law, at)
+        total += said[0] + said[1] + said[2] + said[3] + said[4] + said[5]
     return total
 
 
 def contact_of(pair: GearPairGeometry, model: StiffnessModel) -> ToothContact:
     """The whole way from gears to their law, with nothing kept from the last time."""
-    kept_root_flexibility.cache_clear()
     fresh = replace(pair, driver=replace(pair.driver), driven=replace(pair.driven))
     faces = face_slices(fresh) if fresh.overlap_ratio > 0.0 else None
     return tooth_contact(fresh, model, 100.0, corner_contact=True, faces=faces)

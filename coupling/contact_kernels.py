@@ -39,73 +39,10 @@ def deviation_of(clearance: FloatArray, errors: FloatArray, k: int, turned: floa
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
     """Fill in a row of the laws' table for a contact."""
-    if delta <= contacts.first_touch[k]:
-        laws[row, :] = 0.0
-        return
-    law = tooth_force(
-        contacts.phase[k] + contacts.rate[k] * turned,
-        delta,
-        rate,
-        contacts.reach[k, 0],
-        contacts.reach[k, 1],
-        contacts.reach[k, 2],
-        contacts.curves[k],
-        contacts.damping[k],
-        contacts.damping_depth[k],
-        contacts.entering[k, : contacts.pairs[k]],
-        contacts.faces[k],
-        contacts.face_depth[k],
-    )
+    phase = contacts.phase[k] + contacts.rate[k] * turned
+    law = tooth_force(phase, delta, rate, contacts.law, contacts.law_at[k])
     laws[row, FORCE], laws[row, TANGENT], laws[row, DAMPING] = law[0], law[1], law[2]
     laws[row, ENERGY], laws[row, PHASE_SLOPE], laws[row, TOUCHING] = law[3], law[4], law[5]
-
-
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def settle(
-    contacts: Contacts,
-    turned: float,
-    free: FloatArray,
-    free_rate: FloatArray,
-    flexibility: FloatArray,
-    by_displacement: float,
-    by_velocity: float,
-    delta: FloatArray,
-    rate: FloatArray,
-    laws: FloatArray,
-    jacobian: FloatArray,
-    residual: FloatArray,
-) -> bool:
-    """Contact forces from the compressions and rates without contact, by Newton's method on the compressions.
-
-    Of teeth alone: :func:`settle_all` takes friction and bearings too, and what it is given costs time at every call.
-    Fills in compressions, rates and laws. The law is piecewise linear but for wide faces, so the method ends after a
-    few steps with the right set of touching pairs.
-    """
-    c = free.size
-    per = by_velocity / by_displacement
-    delta[:] = free
-    for _ in range(_NEWTON_STEPS):
-        for k in range(c):
-            rate[k] = free_rate[k] + per * (delta[k] - free[k])
-            take_law(contacts, k, turned, delta[k], rate[k], laws, k)
-        largest, scale = 0.0, 1e-300
-        for k in range(c):
-            residual[k, 0] = free[k] - delta[k]
-            for j in range(c):
-                residual[k, 0] -= by_displacement * flexibility[k, j] * laws[j, FORCE]
-            scale = max(scale, abs(free[k]) + abs(delta[k]))
-            largest = max(largest, abs(residual[k, 0]))
-        if largest <= 1e-13 * scale:
-            return True
-        for k in range(c):
-            for j in range(c):
-                stiff = laws[j, TANGENT] + laws[j, DAMPING] * per
-                jacobian[k, j] = by_displacement * flexibility[k, j] * stiff
-            jacobian[k, k] += 1.0
-        solve_in_place(jacobian, residual)
-        for k in range(c):
-            delta[k] += residual[k, 0]
-    return False
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -116,19 +53,15 @@ def take_friction(
     row = contacts.friction_row[k]
     a, b, a_slope, b_slope = 0.0, 0.0, 0.0, 0.0
     if laws[k, FORCE] > 0.0:
+        by_slices = contacts.shares_at[k] >= 0
         a, b, a_slope, b_slope = friction_shares(
             contacts.phase[k] + contacts.rate[k] * turned,
             delta,
-            contacts.reach[k, 0],
-            contacts.reach[k, 1],
-            contacts.reach[k, 2],
-            contacts.curves[k],
-            contacts.entering[k, : contacts.pairs[k]],
-            contacts.faces[k],
-            contacts.face_depth[k],
+            contacts.law,
+            contacts.shares_at[k] if by_slices else contacts.law_at[k],
+            by_slices,
             contacts.friction[k, 1],
             contacts.friction[k, 2],
-            contacts.friction[k, 3],
         )
     pressed = contacts.friction[k, 0] * laws[k, FORCE]
     stiff, viscous = contacts.friction[k, 0] * laws[k, TANGENT], contacts.friction[k, 0] * laws[k, DAMPING]
@@ -164,8 +97,8 @@ def take_forces(
         take_bearings(bearings, contacts.phase.size, turned, delta, force, tangents, held)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def settle_all(
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def settle(
     contacts: Contacts,
     bearings: Bearings,
     turned: float,
@@ -187,7 +120,8 @@ def settle_all(
     """Forces from the deflections and rates without them, by Newton's method on the deflections.
 
     Fills in deflections, rates, laws and forces. The teeth's law is piecewise linear but for wide faces, so the method
-    ends after a few steps with the right set of touching pairs. Bearings begin with the forces that they had.
+    ends after a few steps with the right set of touching pairs. Bearings begin with the forces that they had. Put in
+    place, as what it is given would cost time at every call.
     """
     c, u, directions = contacts.phase.size, free.size, force.size
     per = by_velocity / by_displacement

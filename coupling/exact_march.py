@@ -43,9 +43,10 @@ from coupling.turning import Turning
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_STRETCHES, _ELEMENTS = 256, 2048  # at most about so many between two looks at the error
+_STRETCHES, _ELEMENTS = 256, 1024  # at most about so many between two looks at the error ...
+_FIRST_STRETCHES = 8  # ... and at first: most of what is marched in vain is found out there
 _SIZES = 64  # that have matrices of their own, besides the ladder's
-_DIGITS = 11  # to which elements of one size agree
+_SAME_SIZE = 1e-11  # parts of the coarsest element by which elements of one size may differ
 _FINEST_LEVEL = 24  # 4096 times finer than the coarsest element
 _ORDER_OF_ERROR = 6.0  # in which it falls at least, kinks in the laws' tables included
 _MUCH_BETTER = 1e-2  # part of the tolerance below which elements may grow
@@ -113,6 +114,7 @@ class ExactRun(MarchRun):
         self.part = part
         self.record = Record(self.part, outputs, self.arrays.contacts)
         self._steps = element_sizes(self.part, np.zeros(_SIZES), self.base, inner=True)
+        self._trace = empty_trace(0, part.reference.eigenvalue.size, ORDER, len(part.system.contacts))
         # Below this the motion is rounding of the reference's.
         own = float(np.linalg.norm(self.part.mean) + np.abs(self.part.amplitudes).sum())
         self._quiet = (1e-9 * own) ** 2 + 1e-300
@@ -121,7 +123,7 @@ class ExactRun(MarchRun):
         self, number: int, before: Checkpoint, samples: Samples, progress: Callable[[float], None]
     ) -> Checkpoint:
         """One block."""
-        settings, record, sizes = self.settings, self.record, _Sizes(self._steps)
+        settings, record, sizes = self.settings, self.record, _Sizes(self._steps, _SAME_SIZE * self.base)
         bounds = self.bounds(number)
         first_record = int(np.searchsorted(bounds, settings.record_from - same_time(self.base)))
         if bounds[0] > settings.record_from:
@@ -134,11 +136,11 @@ class ExactRun(MarchRun):
             record.write(trace, free, np.zeros(0), samples, 0)
             record.add(before, trace, self._steps, free)
         clock = time.perf_counter() - before.seconds
-        state, position = before, 0
+        state, position, stretch_limit = before, 0, _FIRST_STRETCHES
         while position < len(bounds) - 1:
             element = self.base * 2.0 ** (-0.5 * state.level)
             pieces = np.maximum(np.ceil(np.diff(bounds[position:]) / element - 1e-9), 1.0).astype(np.int64)
-            last = position + max(1, min(_STRETCHES, int(np.searchsorted(np.cumsum(pieces), _ELEMENTS))))
+            last = position + max(1, min(stretch_limit, int(np.searchsorted(np.cumsum(pieces), _ELEMENTS))))
             last = min(last, len(bounds) - 1)
             if position < first_record < last:
                 last = first_record
@@ -151,7 +153,7 @@ class ExactRun(MarchRun):
             q, v = record.motion(end, free, done)
             error = float(np.sqrt(trace.error[:, 0].max() / (trace.error[:, 1].mean() + self._quiet)))
             if not (np.isfinite(error) and float(np.abs(q).max(initial=0.0)) < limit):
-                figures = record.contact_figures(state.contact_totals, trace)
+                figures = record.contact_figures(state, trace)
                 raise TransientError(self.lost(float(bounds[position]), replace(state, contact_totals=figures), done))
             if error > settings.tolerance:
                 state = self._finer(state, float(bounds[position]), error, len(trace.start))
@@ -175,7 +177,7 @@ class ExactRun(MarchRun):
                 highest=max(state.highest, energy),
                 lowest=min(state.lowest, energy),
             )
-            z, position = end, last
+            z, position, stretch_limit = end, last, min(2 * stretch_limit, _STRETCHES)
             progress(done / settings.duration)
         return replace(state, block=number + 1, seconds=time.perf_counter() - clock)
 
@@ -190,7 +192,10 @@ class ExactRun(MarchRun):
     def _elements(
         self, stretches: FloatArray, pieces: IntArray, z: FloatArray, sizes: "_Sizes"
     ) -> tuple[Trace, FloatArray]:
-        """Through stretches of time, each cut into equal pieces: the trace, and the amplitudes at the end."""
+        """Through stretches of time, each cut into equal pieces: the trace, and the amplitudes at the end.
+
+        The trace holds until the next call.
+        """
         from coupling.periodic.kernels import NO_BALANCE, NO_ROOM, march
 
         reference, modes = self.part.reference, len(self.part.eigenvalues)
@@ -198,7 +203,10 @@ class ExactRun(MarchRun):
         length = np.repeat(np.diff(stretches) / pieces, pieces)
         within = np.arange(len(length)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
         starts = np.repeat(stretches[:-1], pieces) + within * length
-        trace, end = empty_trace(_CUTS + 5 * len(length), m, ORDER, c), z.copy()
+        room = _CUTS + 5 * len(length)
+        if room > len(self._trace.start):
+            self._trace = empty_trace(room, m, ORDER, c)
+        trace, end = self._trace, z.copy()
         slots = sizes.slots(length)
         none, work = np.zeros((2 * modes, 0)), element_work(m, ORDER, c)
         count, _, wrong = march(
@@ -230,19 +238,18 @@ class _Sizes:
     New in every block, so that a march that goes on from a checkpoint does just the same.
     """
 
-    def __init__(self, steps: Steps) -> None:
-        self._steps, self._known = steps, dict[str, int]()
+    def __init__(self, steps: Steps, unit: float) -> None:
+        self._steps, self._unit, self._known = steps, unit, dict[int, int]()
 
     def slots(self, lengths: FloatArray) -> IntArray:
         """The slot of each length, -1 for none: the first sizes get one, while there is room."""
-        values, which = np.unique(lengths, return_inverse=True)
-        slots = np.full(len(values), -1, dtype=np.int64)
-        for i, value in enumerate(values):
-            # What rounding alone holds apart is one size.
-            key = f"{value:.{_DIGITS}e}"
+        # What rounding alone holds apart is one size.
+        keys, first, which = np.unique(np.rint(lengths / self._unit), return_index=True, return_inverse=True)
+        slots = np.full(len(keys), -1, dtype=np.int64)
+        for i, key in enumerate(keys.astype(np.int64).tolist()):
             if key not in self._known and len(self._known) < _SIZES:
                 self._known[key] = len(self._known)
-                self._steps.size[self._known[key]] = value
+                self._steps.size[self._known[key]] = lengths[first[i]]
                 self._steps.filled[self._known[key]] = 0
             slots[i] = self._known.get(key, -1)
         return slots[which]

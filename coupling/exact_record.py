@@ -1,37 +1,19 @@
 """What an exact march leaves behind: states, samples and the figures of its proof, from the trace of its elements."""
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.kernel_arrays import Contacts, Samples
 from coupling.marching import Checkpoint
-from coupling.periodic.arrays import Steps, Trace
-from coupling.periodic.collocation import ORDER, PLACES, weights_to
+from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
+from coupling.periodic.collocation import ORDER
 from coupling.periodic.element_work import element_work
 from coupling.periodic.linear_part import LinearPart
 from coupling.settings import TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
-
-
-class FreeMotion(NamedTuple):
-    """Motions that nothing resists, beside the reference's own: uniformly accelerated from a time on."""
-
-    time: float  # [s]
-    place: FloatArray  # (r,)
-    rate: FloatArray  # (r,)
-    acceleration: FloatArray  # (r,)
-
-    def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Places and rates, shapes (t, r)."""
-        after = (times - self.time)[:, None]
-        return (
-            self.place + after * (self.rate + 0.5 * self.acceleration * after),
-            self.rate + self.acceleration * after,
-        )
 
 
 class Record:
@@ -54,18 +36,27 @@ class Record:
         self._displacement = outputs.displacement @ part.displacement_rows, outputs.displacement @ part.rigid
         self._velocity = outputs.velocity @ part.velocity_rows, outputs.velocity @ part.rigid
         self._acceleration = outputs.acceleration @ moving, outputs.acceleration @ system.contact_directions
-        # Powers are taken in the principal directions of what damps: the squares of the rates there give the loss.
-        self._loss, directions = np.linalg.eigh(0.5 * (system.damping + system.damping.T))
-        self._principal = directions.T @ part.velocity_rows, directions.T @ part.rigid
-        self._pushing = directions.T @ self.load[:, 2 * modes :]
-        skew = directions.T @ (system.stiffness - system.stiffness.T) @ part.displacement_rows
-        self._skew = skew if np.abs(skew).max(initial=0.0) > 1e-12 * np.abs(moving).max(initial=0.0) else None
+        self._powers = self._rows_of_powers()
+        self._room = PowersRoom(np.zeros(self.load.shape[1]), np.zeros(system.size), np.zeros(ORDER))
+
+    def _rows_of_powers(self) -> Powers:
+        part, system = self.part, self.part.system
+        # In the principal directions of what damps the squares of the rates give the loss.
+        loss, directions = np.linalg.eigh(0.5 * (system.damping + system.damping.T))
+        forces = system.stiffness @ part.displacement_rows
+        skew = (system.stiffness - system.stiffness.T) @ part.displacement_rows
+        if np.abs(skew).max(initial=0.0) <= 1e-12 * np.abs(forces).max(initial=0.0):
+            skew = skew[:, :0]
+        riding = np.flatnonzero(np.any(self.load, axis=0))
+        rows = part.velocity_rows, part.rigid, skew, self.load[:, riding]
+        rate, free, skew, pushing = (np.ascontiguousarray(row.T @ directions) for row in rows)
+        return Powers(rate, free, loss, skew, riding, pushing)
 
     def free_motion(self, state: Checkpoint) -> FreeMotion:
         """From a state on."""
         rigid = self.part.rigid
         q, v = self.part.own_response(state.time)
-        return FreeMotion(state.time, rigid.T @ (state.q - q), rigid.T @ (state.v - v), rigid.T @ self.load[:, -2])
+        return FreeMotion(np.array([state.time]), rigid.T @ (state.q - q), rigid.T @ (state.v - v), rigid.T @ self.load[:, -2])
 
     def motion(self, z: FloatArray, free: FreeMotion, time: float) -> tuple[FloatArray, FloatArray]:
         """All coordinates and rates at a time, shape (n,) each."""
@@ -91,58 +82,17 @@ class Record:
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion) -> Checkpoint:
         """The state with the work, the losses and the contacts' figures of a trace added."""
-        from coupling.periodic.dense import amplitudes_within
+        from coupling.record_kernels import add_contacts, add_powers
 
-        h = trace.size / trace.part
-        weights = weights_to(trace.part) * h[:, None]
-        times = trace.start[:, None] + h[:, None] * PLACES
-        power = self._powers(amplitudes_within(steps, trace), times.ravel(), free)
-        given, lost, kinetic = (values.reshape(weights.shape) for values in power)
-        turning = self._turning(trace, times)
-        # What the teeth held jumps where pairs come and go.
-        held = np.concatenate([[state.stored], trace.energy[:, 1]])
-        totals = state.totals + [
-            np.sum(weights * given),
-            np.sum(weights * (lost + trace.loss.sum(axis=2))),
-            np.sum(weights * turning) + np.sum(trace.energy[:, 0] - held[:-1]),
-            0.0,
-            0.0,
-        ]
-        totals[3] = max(state.totals[3], float(kinetic.max(initial=0.0)))
-        contact_totals = self.contact_figures(state.contact_totals, trace)
-        return replace(state, totals=totals, stored=float(held[-1]), contact_totals=contact_totals)
+        totals, figures = state.totals.copy(), state.contact_totals.copy()
+        add_powers(steps, trace, self._powers, free, self._room, totals)
+        stored = add_contacts(trace, self.contacts, state.stored, self._room.weights, totals, figures)
+        return replace(state, totals=totals, stored=float(stored), contact_totals=figures)
 
-    def _powers(self, z: FloatArray, times: FloatArray, free: FreeMotion) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Of the loads, lost without the teeth's, and the kinetic energy, shape (t,) each."""
-        v = z @ self._principal[0].T + free.at(times)[1] @ self._principal[1].T
-        square = v * v
-        lost = square @ self._loss
-        if self._skew is not None:
-            lost += 0.5 * np.einsum("ti,ti->t", v, z @ self._skew.T)
-        given = np.einsum("ti,ti->t", z[:, -self._pushing.shape[1] :] @ self._pushing.T, v)
-        return given, lost, 0.5 * square.sum(axis=1)
-
-    def _turning(self, trace: Trace, times: FloatArray) -> FloatArray:
-        """Power of the turning teeth on the contacts [W], shape (e, s): ∂U/∂p p' - f e'."""
-        total = np.zeros_like(times)
-        for k, contact in enumerate(self.part.system.contacts):
-            total += contact.rate * trace.turning[:, :, k]
-            for amplitude, frequency, phase in contact.errors:
-                slip = -amplitude * frequency * np.sin(frequency * times + phase)
-                total -= trace.force[:, :, k] * slip
-        return total
-
-    @staticmethod
-    def contact_figures(before: FloatArray, trace: Trace) -> FloatArray:
+    def contact_figures(self, before: Checkpoint, trace: Trace) -> FloatArray:
         """Impulse, time apart, largest force and last touch, shape (c, 4), with those of a trace."""
-        figures = before.copy()
-        weights = weights_to(trace.part) * (trace.size / trace.part)[:, None]
-        figures[:, 0] += np.einsum("es,esc->c", weights, trace.force)
-        # Flanks that touch without a force, where the damping would pull, count as apart; switches bound such elements.
-        touching = np.any(trace.force > 0.0, axis=1)
-        figures[:, 1] += trace.size @ ~touching
-        peaks = trace.force.reshape(len(weights) * ORDER, len(figures))
-        figures[:, 2] = np.maximum(figures[:, 2], peaks.max(axis=0, initial=0.0))
-        ends = np.where(touching, (trace.start + trace.size)[:, None], 0.0)
-        figures[:, 3] = np.where(touching.any(axis=0), ends.max(axis=0, initial=0.0), figures[:, 3])
+        from coupling.record_kernels import add_contacts
+
+        figures = before.contact_totals.copy()
+        add_contacts(trace, self.contacts, before.stored, self._room.weights, before.totals.copy(), figures)
         return figures

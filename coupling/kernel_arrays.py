@@ -65,21 +65,15 @@ class Contacts(NamedTuple):
     """The tooth contacts, padded to common lengths."""
 
     direction: FloatArray  # (k, n) Dᵀ, those of bearings and friction included
-    reach: FloatArray  # (c, 3): first and last position of a pair [base pitches], rows of the curves per base pitch
-    curves: FloatArray  # (c, kinds of pairs, pieces + 1, 11): `coupling.gears.law_table`
-    damping: FloatArray  # (c,)
-    damping_depth: FloatArray  # (c,)
+    law: FloatArray  # numbers of all laws, one after another: `coupling.gears.law_table`
+    law_at: IntArray  # (c,) where those of each begin
+    shares_at: IntArray  # (c,) the same of what friction takes; -1 where its lines of contact turn all at once
     phase: FloatArray  # (c,)
     rate: FloatArray  # (c,)
     errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
     clearance: FloatArray  # (c,)
-    entering: FloatArray  # (c, pairs, 2): gap and kind of each pair of teeth
-    faces: FloatArray  # (c, kinds of pairs, depths, pieces, 20): cells where the load spreads over the face
-    face_depth: FloatArray  # (c,) 0 where it does not
-    pairs: IntArray  # (c,) pairs of teeth in a hunting period; 0 where all are alike
-    first_touch: FloatArray  # (c,) compression below which no pair can touch [m]
     friction_row: IntArray  # (c,) first of the two directions along which friction acts; -1: none
-    friction: FloatArray  # (c, 4) coefficient with the sense of sliding; pitch point, half line and end of the path
+    friction: FloatArray  # (c, 3) coefficient with the sense of sliding; pitch point and end of the path
     sliding: FloatArray  # (c, 2) W_a and W_b: how the nominal rotation slides
 
 

@@ -261,7 +261,7 @@ def couple(
         rate = abs(speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
         direction, errors = _flank(components, mesh, parts, speeds, sense)
         name = f"{mesh.driver.name} -> {mesh.driven.name}"
-        sliding = _sliding(components, mesh, parts, speeds, sense)
+        sliding = _sliding(components, mesh, mesh.contact, parts, speeds, sense)
         drive.append(ContactConnector(name, direction, mesh.contact, phase, rate, errors, sliding=sliding))
         if mesh.backlash is not None:
             direction, errors = _flank(components, mesh, parts, speeds, -sense)
@@ -276,7 +276,7 @@ def couple(
                     errors,
                     mesh.backlash,
                     drives=False,
-                    sliding=_sliding(components, mesh, parts, speeds, -sense),
+                    sliding=_sliding(components, mesh, law_of_back, parts, speeds, -sense),
                 )
             )
 
@@ -350,9 +350,14 @@ def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> S
 
 
 def _sliding(
-    components: Sequence[Component], mesh: GearMesh, parts: LoadedParts, speeds: dict[str, float], sense: int
+    components: Sequence[Component],
+    mesh: GearMesh,
+    contact: ToothContact,
+    parts: LoadedParts,
+    speeds: dict[str, float],
+    sense: int,
 ) -> Sliding | None:
-    """How one side of the teeth slides; None without friction, or where the gears stand still and do not slide."""
+    """How one side of the teeth slides, whose law `contact` is; None without friction, or where nothing turns."""
     gears = (mesh.driver, mesh.driven)
     if mesh.friction == 0.0 or speeds[mesh.driver.rotor] == 0.0:
         return None
@@ -361,7 +366,7 @@ def _sliding(
         parts,
         [(gear.rotor, gear.at) for gear in gears],
         mesh.geometry,
-        sliding_friction(mesh.geometry, mesh.contact, mesh.friction),
+        sliding_friction(mesh.geometry, contact, mesh.friction),
         mesh.geometry.line_of_action_angle(_centre_line_angle(mesh), sense),
         sense,
         [speeds[gear.rotor] for gear in gears],

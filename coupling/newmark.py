@@ -32,7 +32,6 @@ from coupling.contact_kernels import (
     PHASE_SLOPE,
     deviation_of,
     settle,
-    settle_all,
     take_forces,
     take_law,
 )
@@ -263,43 +262,25 @@ def march(
                     rate_free[k] = dv0[k] + moved * da[k] - slip[k]
                 for k in range(c, u):
                     delta_free[k] = dq0[k] + displaced * da[k]
-                if directions == c:
-                    settled = settle(
-                        contacts,
-                        turned,
-                        delta_free,
-                        rate_free,
-                        matrices.flexibility[slot],
-                        displaced,
-                        moved,
-                        delta,
-                        rate,
-                        laws,
-                        jacobian,
-                        residual,
-                    )
-                    for k in range(c):
-                        push[k] = laws[k, FORCE]
-                else:
-                    settled = settle_all(
-                        contacts,
-                        bearings,
-                        turned,
-                        delta_free,
-                        rate_free,
-                        matrices.flexibility[slot],
-                        displaced,
-                        moved,
-                        delta,
-                        rate,
-                        laws,
-                        push,
-                        drag,
-                        tangents,
-                        held,
-                        jacobian,
-                        residual,
-                    )
+                settled = settle(
+                    contacts,
+                    bearings,
+                    turned,
+                    delta_free,
+                    rate_free,
+                    matrices.flexibility[slot],
+                    displaced,
+                    moved,
+                    delta,
+                    rate,
+                    laws,
+                    push,
+                    drag,
+                    tangents,
+                    held,
+                    jacobian,
+                    residual,
+                )
                 if not settled:
                     unsettled += 1
                 for k in range(directions):

@@ -115,10 +115,11 @@ def friction_push(
     if force <= 0.0:
         return np.zeros_like(contact.direction), np.zeros_like(contact.direction)
     friction = contact.sliding.friction
-    start, end, parts, table, _, _, entering, faces, face_depth = contact.contact.kernel_arguments
-    place = friction.pitch_point, friction.half_line, friction.path_end
-    law = start, end, parts, table, entering, faces, face_depth
-    a, b, a_slope, b_slope = friction_shares(phase, compression, *law, *place)
+    by_slices = bool(friction.shares.size)
+    law = friction.shares if by_slices else contact.contact.kernel_arguments[0]
+    a, b, a_slope, b_slope = friction_shares(
+        phase, compression, law, 0, by_slices, friction.pitch_point, friction.path_end
+    )
     turned = friction.coefficient * float(np.sign(contact.sliding.nominal[1])) * contact.sliding.directions
     return turned @ [force * a, force * b], turned @ [slope * a + force * a_slope, slope * b + force * b_slope]
 

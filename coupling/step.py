@@ -208,51 +208,35 @@ def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, Float
 def contact_arrays(system: CoupledSystem) -> Contacts:
     """The tooth contacts, laid out for the kernels."""
     c = len(system.contacts)
-    arguments = [contact.contact.kernel_arguments for contact in system.contacts]
     harmonics = max((len(contact.errors) for contact in system.contacts), default=0)
     errors = np.zeros((c, harmonics, 3))
-    first_touch = np.zeros(c)
-    for k, (contact, argument) in enumerate(zip(system.contacts, arguments, strict=True)):
+    for k, contact in enumerate(system.contacts):
         errors[k, : len(contact.errors)] = contact.errors
-        # No cubic c₀ + c₁ u + ... falls below c₀ and its negative coefficients together on 0 ≤ u ≤ 1.
-        gaps = argument[3][:, :-1, 3:7]
-        lowest = (gaps[..., 0] + np.minimum(gaps[..., 1:], 0.0).sum(axis=-1)).min()
-        first_touch[k] = lowest + argument[6][:, 0].min(initial=0.0)
-    entering = [argument[6] for argument in arguments]
     rows = [system.contact_directions.T, *(connector.directions.T for connector in system.nonlinear)]
-    friction_row, friction, sliding = np.full(c, -1, dtype=np.int64), np.zeros((c, 4)), np.zeros((c, 2))
+    numbers = [contact.contact.kernel_arguments[0] for contact in system.contacts]
+    law_at = np.cumsum([0, *map(len, numbers)])[:-1]
+    friction_row, shares_at = np.full(c, -1, dtype=np.int64), np.full(c, -1, dtype=np.int64)
+    friction, sliding = np.zeros((c, 3)), np.zeros((c, 2))
     for k, contact in enumerate(system.contacts):
         if contact.sliding is not None:
             law, sliding[k] = contact.sliding.friction, contact.sliding.nominal
             sense = float(np.sign(sliding[k, 1]))
-            friction[k] = sense * law.coefficient, law.pitch_point, law.half_line, law.path_end
+            friction[k] = sense * law.coefficient, law.pitch_point, law.path_end
             friction_row[k] = sum(map(len, rows))
             rows.append(contact.sliding.directions.T)
+            if law.shares.size:
+                shares_at[k] = sum(map(len, numbers))
+                numbers.append(law.shares)
     return Contacts(
         direction=np.ascontiguousarray(np.concatenate(rows)),
-        reach=np.array([argument[:3] for argument in arguments], dtype=np.float64).reshape(c, 3),
-        curves=_padded([argument[3] for argument in arguments], 3),
-        damping=np.array([argument[4] for argument in arguments], dtype=np.float64),
-        damping_depth=np.array([argument[5] for argument in arguments], dtype=np.float64),
+        law=np.concatenate([np.zeros(0), *numbers]),
+        law_at=law_at.astype(np.int64),
+        shares_at=shares_at,
         phase=np.array([contact.phase for contact in system.contacts], dtype=np.float64),
         rate=np.array([contact.rate for contact in system.contacts], dtype=np.float64),
         errors=errors,
         clearance=np.array([contact.clearance for contact in system.contacts], dtype=np.float64),
-        entering=_padded(entering, 2),
-        faces=_padded([argument[7] for argument in arguments], 4),
-        face_depth=np.array([argument[8] for argument in arguments], dtype=np.float64),
-        pairs=np.array([len(pairs) for pairs in entering], dtype=np.int64),
-        first_touch=first_touch,
         friction_row=friction_row,
         friction=friction,
         sliding=sliding,
     )
-
-
-def _padded(arrays: list[FloatArray], dimensions: int) -> FloatArray:
-    """All of them in one, with zeros up to the longest of each axis."""
-    shape = np.array([array.shape for array in arrays], dtype=np.int64).reshape(-1, dimensions).max(axis=0, initial=0)
-    together = np.zeros((len(arrays), *shape))
-    for one, array in zip(together, arrays, strict=True):
-        one[tuple(slice(length) for length in array.shape)] = array
-    return together

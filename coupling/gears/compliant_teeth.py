@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -19,17 +20,18 @@ import numpy.typing as npt
 
 from coupling.gears import piecewise
 from coupling.gears.beam_compliance import PlaneState
-from coupling.gears.cornell import cornell
-from coupling.gears.elastic_ring import elastic_ring
+from coupling.gears.chebyshev import by_few_values
+from coupling.gears.cornell import solved_cornell
+from coupling.gears.elastic_ring import solved_elastic_ring
 from coupling.gears.errors import StiffnessModelError
 from coupling.gears.foundation import RootSection
 from coupling.gears.geometry import Gear
 from coupling.gears.hertz import hertz_compliance, line_contact
-from coupling.gears.normal_section import by_normal_section
+from coupling.gears.normal_section import Compliance, by_normal_section
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
-from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, potential_energy
-from coupling.gears.weber_banaschek import weber_banaschek
+from coupling.gears.tooth_compliance import SolvedTooth, ToothCompliance, ToothModel, solved_potential_energy
+from coupling.gears.weber_banaschek import solved_weber_banaschek
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -55,21 +57,27 @@ class CompliantTeeth(ABC):
     force: float | None
 
     @abstractmethod
+    def solved_tooth(self, gear: Gear) -> SolvedTooth:
+        """One tooth, with all that does not depend on the load's radius solved."""
+
     def tooth(self, gear: Gear, radius: FloatArray) -> ToothCompliance:
         """Compliance of one tooth under a load at `radius` [m]."""
+        return self.solved_tooth(gear)(radius)
 
-    def teeth_compliance(self, geometry: GearPairGeometry, position: npt.ArrayLike) -> FloatArray:
-        """Compliance of both teeth without their contact [m/N] at `position` in base pitches."""
-        driver, driven = geometry.driver, geometry.driven
-        return self._one_tooth(driver, geometry.driver_radius(position)) + self._one_tooth(
-            driven, geometry.driven_radius(position)
-        )
+    def solved_teeth(self, geometry: GearPairGeometry) -> Compliance:
+        """Compliance of both teeth without their contact [m/N] by position in base pitches, solved for any."""
+        driver, driven = self._one_tooth(geometry.driver), self._one_tooth(geometry.driven)
+        return lambda position: driver(geometry.driver_radius(position)) + driven(geometry.driven_radius(position))
 
-    def _one_tooth(self, gear: Gear, radius: FloatArray) -> FloatArray:
+    def _one_tooth(self, gear: Gear) -> Compliance:
+        def solve(spur: Gear) -> Compliance:
+            solved = self.solved_tooth(spur)
+            return lambda radius: solved(radius).total
+
         if gear.helix_angle == 0.0:
-            return self.tooth(gear, radius).total
-        yields = by_normal_section(gear, radius, lambda spur, there: self.tooth(spur, there).total)
-        return np.asarray(yields / math.cos(gear.base_helix_angle), dtype=np.float64)
+            return solve(gear)
+        yields = by_normal_section(gear, solve)
+        return lambda radius: yields(radius) / math.cos(gear.base_helix_angle)
 
     def contact_compliance(
         self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None
@@ -103,13 +111,18 @@ class CompliantTeeth(ABC):
         ndarray
             Same shape as `position`.
         """
-        return self.teeth_compliance(geometry, position) + self.contact_compliance(geometry, position, force)
+        at = np.asarray(position, dtype=np.float64)
+        return self.solved_teeth(geometry)(at) + self.contact_compliance(geometry, at, force)
 
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         """Stiffness [N/m] by position; the table is checked against the model to 1e-9."""
-        return piecewise.tabulated(
-            lambda position: 1.0 / self.pair_compliance(geometry, position), geometry.contact_ratio
-        )
+        length, teeth = geometry.contact_ratio, self.solved_teeth(geometry)
+
+        def stiffness(position: FloatArray) -> FloatArray:
+            yields = teeth(position) + self.contact_compliance(geometry, position)
+            return np.asarray(1.0 / yields, dtype=np.float64)
+
+        return piecewise.tabulated(by_few_values(stiffness, length), length)
 
     def _check(self, name: str) -> None:
         if self.contact not in ("yang-sun", "weber"):
@@ -142,11 +155,11 @@ class PotentialEnergyStiffness(CompliantTeeth):
     def __post_init__(self) -> None:
         self._check("potential-energy")
 
-    def tooth(self, gear: Gear, radius: FloatArray) -> ToothCompliance:
-        """Compliance of one tooth under a load at `radius` [m]."""
+    def solved_tooth(self, gear: Gear) -> SolvedTooth:
+        """One tooth, with all that does not depend on the load's radius solved."""
         if self.tooth_model is not None:
-            return self.tooth_model(gear, radius)
-        return potential_energy(gear, radius, self.root_section)
+            return partial(self.tooth_model, gear)
+        return solved_potential_energy(gear, self.root_section)
 
 
 @dataclass(frozen=True)
@@ -160,9 +173,9 @@ class ElasticRingStiffness(CompliantTeeth):
     def __post_init__(self) -> None:
         self._check("elastic-ring")
 
-    def tooth(self, gear: Gear, radius: FloatArray) -> ToothCompliance:
-        """Compliance of one tooth under a load at `radius` [m]."""
-        return elastic_ring(gear, radius, self.state)
+    def solved_tooth(self, gear: Gear) -> SolvedTooth:
+        """One tooth, with all that does not depend on the load's radius solved."""
+        return solved_elastic_ring(gear, self.state)
 
 
 @dataclass(frozen=True)
@@ -176,9 +189,9 @@ class CornellStiffness(CompliantTeeth):
     def __post_init__(self) -> None:
         self._check("cornell")
 
-    def tooth(self, gear: Gear, radius: FloatArray) -> ToothCompliance:
-        """Compliance of one tooth under a load at `radius` [m]."""
-        return cornell(gear, radius, self.state)
+    def solved_tooth(self, gear: Gear) -> SolvedTooth:
+        """One tooth, with all that does not depend on the load's radius solved."""
+        return solved_cornell(gear, self.state)
 
 
 @dataclass(frozen=True)
@@ -191,6 +204,6 @@ class WeberBanaschekStiffness(CompliantTeeth):
     def __post_init__(self) -> None:
         self._check("weber-banaschek")
 
-    def tooth(self, gear: Gear, radius: FloatArray) -> ToothCompliance:
-        """Compliance of one tooth under a load at `radius` [m]."""
-        return weber_banaschek(gear, radius)
+    def solved_tooth(self, gear: Gear) -> SolvedTooth:
+        """One tooth, with all that does not depend on the load's radius solved."""
+        return solved_weber_banaschek(gear)

@@ -28,8 +28,8 @@ import numpy.typing as npt
 from coupling.gears.beam_compliance import PlaneState, axis_crossing, beam_compliance, foot_at_slope
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import fillet_points, flank_points, load_angle
-from coupling.gears.rim import rim_compliance
-from coupling.gears.tooth_compliance import ToothCompliance
+from coupling.gears.rim import solved_rim
+from coupling.gears.tooth_compliance import SolvedTooth, ToothCompliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -59,21 +59,31 @@ def cornell(gear: Gear, radius: FloatArray, state: PlaneState | None = None) -> 
     GearError
         For a radius off the involute flank.
     """
-    radius = np.asarray(radius, dtype=np.float64)
-    state = state or cornell_state(gear)
+    return solved_cornell(gear, state)(radius)
+
+
+def solved_cornell(gear: Gear, state: PlaneState | None = None) -> SolvedTooth:
+    """`cornell` of one tooth, for any radii."""
+    chosen = state or cornell_state(gear)
     foot = foot_at_slope(gear, EFFECTIVE_FILLET_ANGLE)
-    parts = beam_compliance(gear, radius, foot, state)
     section = fillet_points(gear, np.array(foot))
-    lever = (axis_crossing(gear, radius) - section.height) / (2.0 * section.half_thickness)
-    nu, beta = gear.poisson_ratio, load_angle(gear, radius)
+    nu = gear.poisson_ratio
     coupling = 2.0 * (1.0 - nu)
-    if state == "plane-strain":
+    if chosen == "plane-strain":
         coupling = 2.0 * (1.0 - nu - 2.0 * nu**2) / (1.0 - nu**2)
-    thrust = np.tan(beta) ** 2 / (2.4 * (1.0 + nu))
-    shape = 16.67 / math.pi * lever**2 + coupling * lever + 1.534 * (1.0 + thrust)
-    plane = 1.0 if state == "plane-stress" else 1.0 - nu**2
-    foundation = np.cos(beta) ** 2 * plane * shape / (gear.youngs_modulus * gear.face_width)
-    return ToothCompliance(*parts, foundation=foundation, rim=rim_compliance(gear, radius, state))
+    plane = 1.0 if chosen == "plane-stress" else 1.0 - nu**2
+    rim = solved_rim(gear, chosen)
+
+    def tooth(radius: FloatArray) -> ToothCompliance:
+        radius = np.asarray(radius, dtype=np.float64)
+        beta = load_angle(gear, radius)
+        lever = (axis_crossing(gear, radius) - section.height) / (2.0 * section.half_thickness)
+        thrust = np.tan(beta) ** 2 / (2.4 * (1.0 + nu))
+        shape = 16.67 / math.pi * lever**2 + coupling * lever + 1.534 * (1.0 + thrust)
+        foundation = np.cos(beta) ** 2 * plane * shape / (gear.youngs_modulus * gear.face_width)
+        return ToothCompliance(*beam_compliance(gear, radius, foot, chosen), foundation=foundation, rim=rim(radius))
+
+    return tooth
 
 
 def cornell_state(gear: Gear) -> PlaneState:

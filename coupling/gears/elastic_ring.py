@@ -25,8 +25,8 @@ import numpy.typing as npt
 
 from coupling.gears.beam_compliance import PlaneState, beam_compliance, foot_at_height
 from coupling.gears.geometry import Gear
-from coupling.gears.rim import rim_compliance, ring_compliance
-from coupling.gears.tooth_compliance import ToothCompliance
+from coupling.gears.rim import solved_rim, solved_ring
+from coupling.gears.tooth_compliance import SolvedTooth, ToothCompliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -52,10 +52,17 @@ def elastic_ring(gear: Gear, radius: FloatArray, state: PlaneState = "plane-stre
     GearError
         For a radius off the involute flank.
     """
-    radius = np.asarray(radius, dtype=np.float64)
+    return solved_elastic_ring(gear, state)(radius)
+
+
+def solved_elastic_ring(gear: Gear, state: PlaneState = "plane-stress") -> SolvedTooth:
+    """`elastic_ring` of one tooth, for any radii."""
     foot = foot_at_height(gear, gear.root_circle_radius)
-    return ToothCompliance(
-        *beam_compliance(gear, radius, foot, state),
-        foundation=ring_compliance(gear, radius, state),
-        rim=rim_compliance(gear, radius, state),
-    )
+    ring, rim = solved_ring(gear, state), solved_rim(gear, state)
+
+    def tooth(radius: FloatArray) -> ToothCompliance:
+        radius = np.asarray(radius, dtype=np.float64)
+        beam = beam_compliance(gear, radius, foot, state)
+        return ToothCompliance(*beam, foundation=ring(radius), rim=rim(radius))
+
+    return tooth

@@ -72,6 +72,11 @@ class FaceSlices:
         """Of all slices [m]."""
         return self.width * self.z.size
 
+    @property
+    def half_span(self) -> float:
+        """Half of what a slice spans along the path of contact [base pitches]; 0 for spur gears."""
+        return 0.5 * float(np.ptp(self.shift)) / max(self.z.size - 1, 1)
+
 
 @dataclass(frozen=True, eq=False)
 class FaceLoads:
@@ -79,13 +84,14 @@ class FaceLoads:
 
     Attributes
     ----------
-    line_load : ndarray, shape (p, n)
-        Load per width [N/m], transverse.
+    line_load, line_tangent : ndarray, shape (p, n)
+        Load per width [N/m], transverse, and its rise by compression [N/m per m].
     force, tangent : ndarray, shape (p,)
         Of each pair [N], and its rise by compression [N/m].
     """
 
     line_load: FloatArray
+    line_tangent: FloatArray
     force: FloatArray
     tangent: FloatArray
 
@@ -171,7 +177,7 @@ def load_faces(
         if not changed.any():
             load = np.where(touching, slices.flattening * excess, 0.0)
             tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
-            return FaceLoads(load, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
+            return FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
         touching = touches
         fixed[changed], rising[changed] = _fields(slices, base[changed], gap[changed], touching[changed])
     raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
@@ -231,7 +237,7 @@ def balance_faces(
         raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
     load = np.where(touching, slices.flattening * (own - gap - (fixed + own * rising)), 0.0)
     tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
-    loads = FaceLoads(load, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
+    loads = FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
     carried = np.bincount(owner, loads.force, meshes)
     rounding = 1e-9 * (force + stiffness * np.abs(touched)) + 1e-300
     if np.any(np.abs(carried - force) > rounding) or np.any(load < -rounding.max()):

@@ -12,6 +12,7 @@ a spur gear's, the splines along the positions end and begin.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +25,9 @@ from coupling.gears.pair_curves import PairCurves, corners_of
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 IntArray = npt.NDArray[np.int64]
+Weight = Callable[[FloatArray], FloatArray]
 
+CELL = 20
 POSITIONS = 160
 DEPTHS = 24
 _DEEPEST = 0.02
@@ -45,7 +48,7 @@ class FaceTable:
         Positions of the middle of the face [base pitches].
     first_touch : ndarray, shape (v, m, 4)
         Cubics of the gap at which a pair first touches [m].
-    cells : ndarray, shape (v, d + 1, m, 20)
+    cells : ndarray, shape (d + 1, v, m, CELL)
         Coefficients c_mn of the force [N], row by row, and the four of U_0 [J]. Cells of one depth lie side by side, as
         the pairs of a mesh are about equally deep; the last ones are those beyond the table.
     depth_unit : float
@@ -82,36 +85,59 @@ def face_state(slices: FaceSlices, kinds: tuple[PairCurves, ...], position: Floa
     return FaceState(whole, tooth_stiffness(slices, whole), gap + slices.gap, (at >= start) & (at <= end))
 
 
-def face_table(slices: FaceSlices, kinds: tuple[PairCurves, ...], module: float) -> FaceTable:
-    """Table of every kind of pair; `module` [m] sets how deep it goes."""
+def face_table(
+    slices: FaceSlices,
+    kinds: tuple[PairCurves, ...],
+    module: float,
+    weights: Sequence[Weight] = (np.ones_like,),
+    breaks: Sequence[float] = (),
+) -> FaceTable:
+    """Table of every kind of pair, or of sums over its slices with other weights than one.
+
+    Parameters
+    ----------
+    slices : FaceSlices
+    kinds : tuple of PairCurves
+    module : float
+        Of the gears [m]; it sets how deep the table goes.
+    weights : sequence of callable
+        What each slice's force counts, by its place on the path of contact [base pitches]. With w of them the table
+        holds w kinds for each of `kinds`, one after another.
+    breaks : sequence of float
+        Places on the path where a weight has a corner.
+    """
     reach = float(np.abs(slices.shift).max()) if slices.z.size > 1 else 0.0
-    pieces = _pieces(_breaks(kinds, reach))
+    pieces = _pieces(_breaks(kinds, reach, breaks))
     knots = np.concatenate([*(piece[:-1] for piece in pieces[:-1]), pieces[-1]])
     deepest = _DEEPEST * module + 1.5 * float(np.ptp(slices.gap))
     unit = deepest / DEPTHS**2
     compressions = unit * np.arange(DEPTHS + 1.0) ** 2
+    factors = [slices.width * weight(knots[:, None] + slices.shift) for weight in weights]
     touches, cells = [], []
     for number in range(len(kinds)):
         state = face_state(slices, kinds, knots, np.full(knots.size, number))
         gap = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         # At the very ends nothing may meet for rounding: as at the next position.
         gap = np.where(np.isfinite(gap), gap, np.nanmax(np.where(np.isfinite(gap), gap, np.nan)))
-        shape = (knots.size, DEPTHS + 1)
+        shape = (knots.size, DEPTHS + 1, slices.z.size)
         base, gaps = np.repeat(state.base, DEPTHS + 1, axis=0), np.repeat(state.gap, DEPTHS + 1, axis=0)
         meeting = np.repeat(state.meeting, DEPTHS + 1, axis=0)
         loads = load_faces(slices, base, gaps, meeting, (gap[:, None] + compressions).ravel())
-        force = loads.force.reshape(shape)
-        rise = loads.tangent.reshape(shape) * 2.0 * unit * np.arange(DEPTHS + 1.0)
-        force[:, 0] = 0.0
-        touches.append(_powers(pieces, gap[:, None])[:, 0])
-        cells.append(_cells(_powers(pieces, force), _powers(pieces, rise), unit))
-    return FaceTable(knots, np.array(touches), np.array(cells), unit)
+        for factor in factors:
+            force = np.einsum("pdz,pz->pd", loads.line_load.reshape(shape), factor)
+            tangent = np.einsum("pdz,pz->pd", loads.line_tangent.reshape(shape), factor)
+            force[:, 0] = 0.0
+            rise = tangent * 2.0 * unit * np.arange(DEPTHS + 1.0)
+            touches.append(_powers(pieces, gap[:, None])[:, 0])
+            cells.append(_cells(_powers(pieces, force), _powers(pieces, rise), unit))
+    return FaceTable(knots, np.array(touches), np.stack(cells, axis=1), unit)
 
 
-def _breaks(kinds: tuple[PairCurves, ...], reach: float) -> FloatArray:
+def _breaks(kinds: tuple[PairCurves, ...], reach: float, others: Sequence[float]) -> FloatArray:
     """Ends of the positions, and between them where corners come to the face and leave it, `reach` from its middle."""
     start, end = kinds[0].stiffness.knots[[0, -1]]
-    corners = np.concatenate([corners_of(curve) for kind in kinds for curve in (kind.stiffness, kind.deviation)])
+    curves = [curve for kind in kinds for curve in (kind.stiffness, kind.deviation)]
+    corners = np.concatenate([*(corners_of(curve) for curve in curves), others])
     breaks = np.unique(np.concatenate([corners - reach, corners + reach]))
     first, last = start - reach, end + reach
     breaks = breaks[(breaks > first + _APART) & (breaks < last - _APART)]

@@ -22,6 +22,7 @@ import numpy.typing as npt
 
 from coupling.gears.errors import require_finite
 from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.sliding import turned_share
 from coupling.gears.static import StaticMesh, period_mean
 from coupling.gears.tooth_contact import ToothContact
 
@@ -76,25 +77,29 @@ def mesh_friction(
     """
     require_finite("friction coefficient", coefficient, minimum=0.0)
     if contact.faces is not None and mesh.line_loads is not None:
-        positions = mesh.positions[..., None] + contact.faces.shift
+        positions, half = mesh.positions[..., None] + contact.faces.shift, contact.faces.half_span
         forces = mesh.line_loads * contact.faces.width
     else:
-        positions, forces = mesh.positions[..., None], mesh.pair_forces[..., None]
-    # Corners slide where the path ends.
-    positions = np.clip(positions, 0.0, geometry.contact_ratio)
-    driver = geometry.driver_roll_angle(positions) * geometry.driver.base_radius
-    driven = geometry.driven_roll_angle(positions) * geometry.driven.base_radius
-    sliding = driven / geometry.ratio - driver  # over the driver's speed
-    normal = forces / math.cos(geometry.driver.base_helix_angle)
-    friction = coefficient * normal * np.sign(sliding)
-    lost = np.asarray((friction * sliding).sum(axis=(1, 2)))
+        positions, half, forces = mesh.positions[..., None], 0.0, mesh.pair_forces[..., None]
+    turned, placed = turned_share(positions, half, geometry.pitch_point_position, geometry.contact_ratio)
+    normal = coefficient * forces / math.cos(geometry.driver.base_helix_angle)
+    # Before the pitch point the force is positive, and both distances are straight lines along the path.
+    across, by_place = -(normal * turned).sum(axis=(1, 2)), -(normal * placed).sum(axis=(1, 2))
+    driver_moment, driven_moment = (
+        gear.base_radius * (roll(0.0) * across + (roll(1.0) - roll(0.0)) * by_place)
+        for gear, roll in (
+            (geometry.driver, geometry.driver_roll_angle),
+            (geometry.driven, geometry.driven_roll_angle),
+        )
+    )
+    lost = driven_moment / geometry.ratio - driver_moment  # the sliding over the driver's speed
     put_in = mesh.force * geometry.driver.base_radius
     mean = period_mean(mesh.phases, lost)
     return MeshFriction(
         mesh.phases,
-        np.asarray(friction.sum(axis=(1, 2))),
-        np.asarray((friction * driver).sum(axis=(1, 2))),
-        np.asarray((friction * driven).sum(axis=(1, 2))),
+        across,
+        driver_moment,
+        driven_moment,
         lost,
         1.0 - mean / put_in if put_in > 0.0 else 1.0,
     )

@@ -5,93 +5,105 @@ are taken to share as they share the elastic one, friction pushes with
 
     mu F A,    A = sum_j E_j sgn(s_j - s_C) / sum_j E_j,        mu F B,    B = sum_j E_j sgn(s_j - s_C) s_j / sum_j E_j
 
-along the directions in which a pair at s slides, ``a + s b``. With A and B go their slopes by the compression, so that
-Newton's tangent, no longer symmetric, is exact: k_j being that of each pair, ``A' = (sum_j k_j sgn(...) - A k) / E``.
+along the directions in which a pair at s slides, ``a + s b``. Where a line of contact lies across the path, its slices
+turn one after another, each under its own load: sums over slices stand for the E_j (:mod:`coupling.gears.sliding`).
+With A and B go their slopes by the compression, so that Newton's tangent, no longer symmetric, is exact: k_j being that
+of each pair, ``A' = (sum_j k_j sgn(...) - A k) / E``.
 
 Importing this module imports numba.
 """
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from coupling.gears.kernels import face_force
+from coupling.gears.face_table import CELL
+from coupling.gears.kernels import face_force, nearness, number_at, place
+from coupling.gears.law_table import (
+    CELLS_AT,
+    DEPTH_STEP,
+    DEPTH_UNIT,
+    DEPTHS,
+    FIRST_PAIR,
+    HUNTING,
+    KIND_STEP,
+    PAIR,
+    PAIRS,
+    PAIRS_AT,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def mean_turn(position: float, pitch_point: float, half_line: float, path_end: float) -> tuple[float, float]:
-    """Means of sgn(x - s_C) and of x sgn(x - s_C) over the part of a contact line that lies on the path."""
-    low, high = max(position - half_line, 0.0), min(position + half_line, path_end)
-    if high <= low:
-        # A point; beyond the path the corner that slides there.
-        at = min(max(position, 0.0), path_end)
-        sign = 1.0 if at > pitch_point else (-1.0 if at < pitch_point else 0.0)
-        return sign, sign * at
-    turn = min(max(pitch_point, low), high)
-    length = high - low
-    return (high + low - 2.0 * turn) / length, 0.5 * (high * high + low * low - 2.0 * turn * turn) / length
+def from_cells(law: FloatArray, at: int, here: int, u: float, approach: float) -> tuple[float, float]:
+    """What the cells of a pair hold at a place, and its slope by the compression."""
+    unit = number_at(law, at + DEPTH_UNIT)
+    r = math.sqrt(approach / unit)
+    depth = min(int(r), int(number_at(law, at + DEPTHS)) - 1)
+    cell = at + int(number_at(law, at + CELLS_AT)) + depth * int(number_at(law, at + DEPTH_STEP))
+    cell += CELL * int(number_at(law, here + 4))
+    p = number_at(law, here + 5) + u * number_at(law, here + 6)
+    value, slope, _, _ = face_force(law, cell, unit, 1.0 / unit, p, float(depth), r - depth)
+    return value, slope
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def friction_shares(
-    phase: float,
-    compression: float,
-    start: float,
-    end: float,
-    parts: float,
-    table: FloatArray,
-    entering: FloatArray,
-    faces: FloatArray,
-    face_depth: float,
-    pitch_point: float,
-    half_line: float,
-    path_end: float,
+    phase: float, compression: float, law: FloatArray, at: int, by_slices: bool, pitch_point: float, path_end: float
 ) -> tuple[float, float, float, float]:
     """A, B and their slopes by the compression [1/m]; zeros where no pair touches.
 
-    ``start`` to ``face_depth`` are those of `coupling.gears.kernels.tooth_force`, the last three as in
-    `coupling.gears.sliding.SlidingFriction`.
+    Parameters
+    ----------
+    phase, compression : float
+        As for `coupling.gears.kernels.tooth_force`.
+    law : ndarray
+    at : int
+        Where the numbers begin of the contact's law or, with ``by_slices``, of `SlidingFriction.shares`.
+    by_slices : bool
+        Whether a line of contact turns piece by piece.
+    pitch_point, path_end : float
+        As in `coupling.gears.sliding.SlidingFriction`.
     """
-    number = np.floor(phase)
-    position = phase - number
-    if position >= 1.0:  # a phase a hair below a whole number rounds up
-        position -= 1.0
-        number += 1.0
-    ahead = np.ceil(start - position)
-    position += ahead
-    number -= ahead
+    number, interval, u, _ = place(law, at, phase)
+    pairs, unit = int(number_at(law, at + PAIRS)), number_at(law, at + DEPTH_UNIT)
+    hunting, first = int(number_at(law, at + HUNTING)), int(number_at(law, at + FIRST_PAIR))
+    pairs_at = at + int(number_at(law, at + PAIRS_AT))
+    # Shares hold three kinds for one: the force, the force turned, the force turned and placed.
+    next_kind = int(number_at(law, at + KIND_STEP))
     elastic, stiff, across, across_slope, by_place, by_place_slope = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    while position < end:
-        at = int(table[0, int((position - start) * parts), 0])
-        while table[0, at + 1, 1] <= position:
-            at += 1
-        u = (position - table[0, at, 1]) * table[0, at, 2]
-        approach, kind = compression, 0
-        if entering.size > 0:
-            pair = int(number) % entering.shape[0]
-            approach -= entering[pair, 0]
-            kind = int(entering[pair, 1])
-        approach -= table[kind, at, 3] + u * (table[kind, at, 4] + u * (table[kind, at, 5] + u * table[kind, at, 6]))
-        if approach > 0.0:
-            if face_depth > 0.0:
-                root = np.sqrt(approach / face_depth)
-                force, k, _, _ = face_force(faces, kind, at, face_depth, 1.0 / face_depth, u, root)
+    for pair in range(pairs):
+        start = pairs_at + PAIR * (pairs * interval + pair)
+        approach, here = nearness(law, at, hunting, int(number) - first - pair, u, compression, start)
+        if approach <= 0.0:
+            continue
+        if by_slices:
+            force, k = from_cells(law, at, here, u, approach)
+            turned, turned_slope = from_cells(law, at, here + next_kind, u, approach)
+            placed, placed_slope = from_cells(law, at, here + 2 * next_kind, u, approach)
+        else:
+            if unit > 0.0:
+                force, k = from_cells(law, at, here, u, approach)
             else:
-                k = table[kind, at, 7] + u * (table[kind, at, 8] + u * (table[kind, at, 9] + u * table[kind, at, 10]))
+                c2, c3 = number_at(law, here + 6), number_at(law, here + 7)
+                k = number_at(law, here + 4) + u * (number_at(law, here + 5) + u * (c2 + u * c3))
                 force = k * approach
-            sign, placed = mean_turn(position, pitch_point, half_line, path_end)
-            elastic += force
-            stiff += k
-            across += sign * force
-            across_slope += sign * k
-            by_place += placed * force
-            by_place_slope += placed * k
-        position += 1.0
-        number -= 1.0
+            # Beyond the path it is a corner that slides, there where the path ends.
+            position = min(max(phase - number + (first + pair), 0.0), path_end)
+            sign = 1.0 if position > pitch_point else (-1.0 if position < pitch_point else 0.0)
+            turned, turned_slope = sign * force, sign * k
+            placed, placed_slope = position * turned, position * turned_slope
+        elastic += force
+        stiff += k
+        across += turned
+        across_slope += turned_slope
+        by_place += placed
+        by_place_slope += placed_slope
     if elastic <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     a, b = across / elastic, by_place / elastic

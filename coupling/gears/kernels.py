@@ -1,13 +1,13 @@
-"""The tooth contact law, compiled: scalars and plain arrays in, scalars out, no allocation.
+"""The tooth contact law, compiled: scalars and a row of numbers in, scalars out, no allocation.
 
-Importing this module imports numba.  The law is derived in :mod:`coupling.gears.tooth_contact`; arguments
-that describe the contact come from `ToothContact.kernel_arguments`:
+Importing this module imports numba.  The law is derived in :mod:`coupling.gears.tooth_contact`; what describes the
+contact is laid out by :mod:`coupling.gears.law_table` and comes from `ToothContact.kernel_arguments`:
 ``tooth_force(phase, compression, rate, *contact.kernel_arguments)``.
 
-What costs time here is not arithmetic but waiting, and arrays that change hands. Numba counts each array in and out of
-a function, atomically, unless it can prove that it need not: hence entries are read one by one, never through views,
-nothing can raise (division follows numpy), and `face_force` is put in place.  Each argument is copied at every call:
-hence few arrays.
+What costs time here is not arithmetic but what goes on around it. Each argument is copied at every call: hence one
+array. Numba counts an array in and out of a function, atomically, unless it can prove that it need not: hence entries
+are read one by one, never through views, nothing can raise (division follows numpy), and small functions are put in
+place. It looks at every index for being negative, counted from the end: hence `number_at`.
 """
 
 from __future__ import annotations
@@ -18,43 +18,102 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from coupling.gears.face_table import CELL
+from coupling.gears.law_table import (
+    CELLS_AT,
+    DAMPING,
+    DAMPING_DEPTH,
+    DEPTH_STEP,
+    DEPTH_UNIT,
+    DEPTHS,
+    ENTERING,
+    ENTERING_AT,
+    FIRST_PAIR,
+    FIRST_TOUCH,
+    HEADER,
+    HUNTING,
+    INTERVAL,
+    INTERVALS_AT,
+    KIND_STEP,
+    PAIR,
+    PAIRS,
+    PAIRS_AT,
+    PARTS,
+)
+
 FloatArray = npt.NDArray[np.float64]
 TangentForce = tuple[float, float, float, float, float, int]
 
 
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def number_at(law: FloatArray, index: int) -> float:
+    """A number of the law's, at an index that is not negative."""
+    return law[np.uint64(index)]
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def place(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, float]:
+    """Periods gone, interval of the period, place in it from 0 to 1, and one over its width."""
+    number = np.floor(phase)
+    x = phase - number
+    if x >= 1.0:  # a phase a hair below a whole number rounds up
+        x -= 1.0
+        number += 1.0
+    interval = int(number_at(law, at + HEADER + int(x * number_at(law, at + PARTS))))
+    here = at + int(number_at(law, at + INTERVALS_AT)) + INTERVAL * interval
+    while number_at(law, here + INTERVAL) <= x:
+        here += INTERVAL
+        interval += 1
+    per_width = number_at(law, here + 1)
+    return number, interval, (x - number_at(law, here)) * per_width, per_width
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"}, inline="always")
+def nearness(
+    law: FloatArray, at: int, hunting: int, entered: int, u: float, compression: float, here: int
+) -> tuple[float, int]:
+    """By how much a pair's flanks are pressed together [m], negative where they are apart, and where its numbers begin.
+
+    ``here``: where those of the same pair begin if it is of the first kind; ``entered``: phase at which it entered.
+    """
+    if hunting > 0:
+        entry = at + int(number_at(law, at + ENTERING_AT)) + ENTERING * (entered % hunting)
+        compression -= number_at(law, entry)
+        here += int(number_at(law, entry + 1)) * int(number_at(law, at + KIND_STEP))
+    g0, g1 = number_at(law, here), number_at(law, here + 1)
+    return compression - g0 - u * (g1 + u * (number_at(law, here + 2) + u * number_at(law, here + 3))), here
+
+
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"}, inline="always")
 def face_force(
-    cells: FloatArray, kind: int, at: int, unit: float, per_unit: float, p: float, r: float
+    law: FloatArray, cell: int, unit: float, per_unit: float, p: float, begin: float, rho: float
 ) -> tuple[float, float, float, float]:
     """Force, tangent, energy and the energy's slope by p of a pair whose face is loaded unevenly.
 
-    ``cells`` (v, d, m, 20), ``unit``: see :mod:`coupling.gears.face_table`; ``kind`` and ``at`` say which kind of
-    pair and which interval, ``unit r^2`` is the compression beyond first touch, ``per_unit`` is 1 / ``unit``.
+    ``cell``: where its numbers begin, see :mod:`coupling.gears.face_table`; ``unit (begin + rho)^2`` is the compression
+    beyond first touch, ``per_unit`` is 1 / ``unit``.
     """
-    cell = min(int(r), cells.shape[1] - 1)
-    begin = float(cell)
-    rho = r - begin
     # The force's cubic in rho at this p, and how it changes with p: Horner's scheme for both at once.
-    top = cells[kind, cell, at, 12]
-    low = cells[kind, cell, at, 8] + p * top
-    mid = cells[kind, cell, at, 4] + p * low
-    v0, d0 = cells[kind, cell, at, 0] + p * mid, mid + p * (low + p * top)
-    top = cells[kind, cell, at, 13]
-    low = cells[kind, cell, at, 9] + p * top
-    mid = cells[kind, cell, at, 5] + p * low
-    v1, d1 = cells[kind, cell, at, 1] + p * mid, mid + p * (low + p * top)
-    top = cells[kind, cell, at, 14]
-    low = cells[kind, cell, at, 10] + p * top
-    mid = cells[kind, cell, at, 6] + p * low
-    v2, d2 = cells[kind, cell, at, 2] + p * mid, mid + p * (low + p * top)
-    top = cells[kind, cell, at, 15]
-    low = cells[kind, cell, at, 11] + p * top
-    mid = cells[kind, cell, at, 7] + p * low
-    v3, d3 = cells[kind, cell, at, 3] + p * mid, mid + p * (low + p * top)
-    top = cells[kind, cell, at, 19]
-    low = cells[kind, cell, at, 18] + p * top
-    mid = cells[kind, cell, at, 17] + p * low
-    v4, d4 = cells[kind, cell, at, 16] + p * mid, mid + p * (low + p * top)
+    top = number_at(law, cell + 12)
+    low = number_at(law, cell + 8) + p * top
+    mid = number_at(law, cell + 4) + p * low
+    v0, d0 = number_at(law, cell) + p * mid, mid + p * (low + p * top)
+    top = number_at(law, cell + 13)
+    low = number_at(law, cell + 9) + p * top
+    mid = number_at(law, cell + 5) + p * low
+    v1, d1 = number_at(law, cell + 1) + p * mid, mid + p * (low + p * top)
+    top = number_at(law, cell + 14)
+    low = number_at(law, cell + 10) + p * top
+    mid = number_at(law, cell + 6) + p * low
+    v2, d2 = number_at(law, cell + 2) + p * mid, mid + p * (low + p * top)
+    top = number_at(law, cell + 15)
+    low = number_at(law, cell + 11) + p * top
+    mid = number_at(law, cell + 7) + p * low
+    v3, d3 = number_at(law, cell + 3) + p * mid, mid + p * (low + p * top)
+    top = number_at(law, cell + 19)
+    low = number_at(law, cell + 18) + p * top
+    mid = number_at(law, cell + 17) + p * low
+    v4, d4 = number_at(law, cell + 16) + p * mid, mid + p * (low + p * top)
     # Integrals of the powers of rho times 2 a r.
     power = 2.0 * unit * rho
     w0 = power * (begin + 0.5 * rho)
@@ -71,20 +130,7 @@ def face_force(
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def tooth_force(
-    phase: float,
-    compression: float,
-    rate: float,
-    start: float,
-    end: float,
-    parts: float,
-    table: FloatArray,
-    damping: float,
-    damping_depth: float,
-    entering: FloatArray,
-    faces: FloatArray,
-    face_depth: float,
-) -> TangentForce:
+def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, at: int) -> TangentForce:
     """Force of the tooth contact, its tangent, and its stored energy.
 
     Parameters
@@ -93,24 +139,10 @@ def tooth_force(
         Mesh periods since the driver's zero, any real number.
     compression, rate : float
         Compression of the contact [m] and its rate [m/s].
-    start, end : float
-        Positions in base pitches between which pairs touch.
-    parts : float
-        Rows of the table per base pitch.
-    table : ndarray, shape (v, m + 1, 11)
-        For each kind of pair, the cubics of its gap [m] and of its stiffness [N/m]; see `coupling.gears.law_table`.
-    damping : float
-        Damping coefficient [N s/m] of a mesh that is pressed together by ``damping_depth`` or more.
-    damping_depth : float
-        Compression of the deepest pair [m] up to which the damping fades in; 0 for all of it at first touch.
-    entering : ndarray, shape (h, 2)
-        What pitch deviations add to the gap of the pair that enters at phase n, at n mod h [m], and which kind that
-        pair is; empty where all pairs are alike.
-    faces : ndarray, shape (v, d, m, 20)
-        Where the load spreads over the face, the cells of `coupling.gears.face_table`, on the same intervals; they
-        stand for the stiffness, and the gap is that of first touch.
-    face_depth : float
-        Their unit of compression [m]; 0 where there are none.
+    law : ndarray
+        Numbers of `coupling.gears.law_table`, of this law and perhaps of others before and after it.
+    at : int
+        Where those of this law begin.
 
     Returns
     -------
@@ -126,65 +158,55 @@ def tooth_force(
     touching : int
         Number of pairs that touch.
     """
-    number = np.floor(phase)
-    position = phase - number
-    if position >= 1.0:  # a phase a hair below a whole number rounds up
-        position -= 1.0
-        number += 1.0
-    ahead = np.ceil(start - position)
-    position += ahead
-    number -= ahead
-    uneven = face_depth > 0.0
-    per_depth = 1.0 / face_depth if uneven else 0.0
+    if compression <= number_at(law, at + FIRST_TOUCH):
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    number, interval, u, per_width = place(law, at, phase)
+    pairs = int(number_at(law, at + PAIRS))
+    hunting = int(number_at(law, at + HUNTING))
+    unit = number_at(law, at + DEPTH_UNIT)
+    uneven = unit > 0.0
+    per_unit, cells, deepest_cell, depth_step = 0.0, 0, 0, 0
+    if uneven:
+        per_unit = 1.0 / unit
+        cells = at + int(number_at(law, at + CELLS_AT))
+        deepest_cell, depth_step = int(number_at(law, at + DEPTHS)) - 1, int(number_at(law, at + DEPTH_STEP))
+    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
     force, tangent, energy, slope = 0.0, 0.0, 0.0, 0.0
     touching, deepest = 0, 0.0
-    next_at, next_kind, next_u, next_approach, next_root = 0, 0, 0.0, -1.0, 0.0
-    more = True
-    while more:
-        # Where the next pair is, one pair ahead of its forces, which need not wait for looking it up and for the root.
-        at, kind, u, approach, root = next_at, next_kind, next_u, next_approach, next_root
-        more = position < end
-        if more:
-            next_at = int(table[0, int((position - start) * parts), 0])
-            while table[0, next_at + 1, 1] <= position:
-                next_at += 1
-            next_u = (position - table[0, next_at, 1]) * table[0, next_at, 2]
-            next_approach = compression
-            if entering.size > 0:
-                pair = int(number) % entering.shape[0]
-                next_approach -= entering[pair, 0]
-                next_kind = int(entering[pair, 1])
-            g0, g1 = table[next_kind, next_at, 3], table[next_kind, next_at, 4]
-            g2, g3 = table[next_kind, next_at, 5], table[next_kind, next_at, 6]
-            next_approach -= g0 + next_u * (g1 + next_u * (g2 + next_u * g3))
-            if uneven:
-                next_root = math.sqrt(max(next_approach, 0.0) * per_depth)
-            position += 1.0
-            number -= 1.0
+    first = int(number) - int(number_at(law, at + FIRST_PAIR))
+    for pair in range(pairs):
+        approach, here = nearness(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
         if approach > 0.0:
-            per_width = table[0, at, 2]
-            g1, g2, g3 = table[kind, at, 4], table[kind, at, 5], table[kind, at, 6]
-            gap_slope = g1 + u * (2.0 * g2 + 3.0 * u * g3)
+            g2, g3 = number_at(law, here + 2), number_at(law, here + 3)
+            gap_slope = number_at(law, here + 1) + u * (2.0 * g2 + 3.0 * u * g3)
             touching += 1
             deepest = max(deepest, approach)
             if uneven:
+                r = math.sqrt(approach * per_unit)
+                depth = min(int(r), deepest_cell)
+                cell = cells + depth * depth_step + CELL * int(number_at(law, here + 4))
+                length = number_at(law, here + 6)
+                p = number_at(law, here + 5) + u * length
+                begin = float(depth)
                 pair_force, pair_tangent, pair_energy, pair_slope = face_force(
-                    faces, kind, at, face_depth, per_depth, u, root
+                    law, cell, unit, per_unit, p, begin, r - begin
                 )
                 force += pair_force
                 tangent += pair_tangent
                 energy += pair_energy
-                slope += (pair_slope - pair_force * gap_slope) * per_width
+                slope += pair_slope * length - pair_force * gap_slope
             else:
-                c0, c1, c2, c3 = table[kind, at, 7], table[kind, at, 8], table[kind, at, 9], table[kind, at, 10]
-                k = c0 + u * (c1 + u * (c2 + u * c3))
+                c1, c2, c3 = number_at(law, here + 5), number_at(law, here + 6), number_at(law, here + 7)
+                k = number_at(law, here + 4) + u * (c1 + u * (c2 + u * c3))
                 k_slope = c1 + u * (2.0 * c2 + 3.0 * u * c3)
                 force += k * approach
                 tangent += k
                 energy += 0.5 * k * approach * approach
-                slope += (0.5 * k_slope * approach - k * gap_slope) * approach * per_width
+                slope += (0.5 * k_slope * approach - k * gap_slope) * approach
     if touching == 0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    slope *= per_width
+    damping, damping_depth = number_at(law, at + DAMPING), number_at(law, at + DAMPING_DEPTH)
     if deepest < damping_depth:
         tangent += damping * rate / damping_depth
         damping *= deepest / damping_depth
@@ -196,25 +218,14 @@ def tooth_force(
 
 @njit(cache=True, nogil=True)
 def tooth_force_history(
-    phase: FloatArray,
-    compression: FloatArray,
-    rate: FloatArray,
-    start: float,
-    end: float,
-    parts: float,
-    table: FloatArray,
-    damping: float,
-    damping_depth: float,
-    entering: FloatArray,
-    faces: FloatArray,
-    face_depth: float,
+    phase: FloatArray, compression: FloatArray, rate: FloatArray, law: FloatArray, at: int
 ) -> FloatArray:
     """`tooth_force` at every sample of a history.
 
     Parameters
     ----------
     phase, compression, rate : ndarray, shape (t,)
-    start, end, parts, table, damping, damping_depth, entering, faces, face_depth
+    law, at
         As for `tooth_force`.
 
     Returns
@@ -222,10 +233,9 @@ def tooth_force_history(
     ndarray, shape (t, 6)
         Columns in the order that `tooth_force` returns them.
     """
-    law = (start, end, parts, table, damping, damping_depth, entering, faces, face_depth)
     history = np.empty((phase.size, 6))
     for i in range(phase.size):
-        force, tangent, viscous, energy, slope, touching = tooth_force(phase[i], compression[i], rate[i], *law)
+        force, tangent, viscous, energy, slope, touching = tooth_force(phase[i], compression[i], rate[i], law, at)
         history[i, 0], history[i, 1], history[i, 2] = force, tangent, viscous
         history[i, 3], history[i, 4], history[i, 5] = energy, slope, touching
     return history

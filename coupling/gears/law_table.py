@@ -1,49 +1,129 @@
-r"""The curves of a contact law, laid out for the compiled kernel.
+r"""The numbers of a contact law, laid out for the compiled kernel: one row of numbers, whatever the law holds.
 
-One row holds all that the kernel reads of an interval of positions: where it begins, how wide it is, and the cubics
-of the gap and of the stiffness there. An interval is found by an index instead of a search: the whole range is cut
-into as many equal parts as it has intervals, and row i names the interval in which part i begins too; from there it
-is few steps forward, none where the knots are even.
+The teeth of a mesh are a base pitch apart, so the phase places all of its pairs at once: pair j is at ``x + j``, x the
+phase's fraction. All curves of all pairs are therefore cut at common knots of x, and one look-up finds what the law
+needs of every pair. An interval is found by an index instead of a search: the period is cut into equal parts, and each
+names the interval in which it begins; from there it is few steps forward, mostly none.
+
+The row begins with `HEADER` numbers, at the places named below; then come
+
+* the parts, with the number of an interval each;
+* the intervals, `INTERVAL` numbers each: where it begins and one over its width. One more begins at 1, where steps end;
+* the pairs, `PAIR` numbers each, by kind of pair, interval and pair. First the cubic of its gap [m] in a variable from
+  0 to 1 over the interval; then that of its stiffness [N/m] or, where the load spreads over the face, the number of its
+  column of cells, and where in it the interval begins and how long it is. A pair that cannot be there has an infinite
+  gap;
+* the pairs of the hunting period, `ENTERING` numbers each: what pitch deviations add to the gap of the pair that enters
+  at phase n, at n mod h [m], and its kind; none where all pairs are alike;
+* the cells of `coupling.gears.face_table`, `CELL` numbers each, by depth, kind and position.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
+from coupling.gears.face_table import CELL, FaceTable
+from coupling.gears.pair_curves import PairCurves
+from coupling.gears.piecewise import PiecewiseCubic
+
 FloatArray = npt.NDArray[np.float64]
 
-COLUMNS = 11
+FIRST_TOUCH, PARTS, INTERVALS, PAIRS, FIRST_PAIR, KIND_STEP = 0, 1, 2, 3, 4, 5
+"""Compression below which no pair touches [m]; how many parts, intervals, and pairs at once; j of the first pair; the
+distance from one kind's pairs to the next one's."""
+DAMPING, DAMPING_DEPTH, HUNTING, DEPTH_UNIT, DEPTHS, DEPTH_STEP = 6, 7, 8, 9, 10, 11
+"""Damping [N s/m] and the depth over which it fades in [m]; pairs of the hunting period; unit of the cells' depth [m],
+0 where there are none, their number in depth, and the distance from one depth to the next."""
+INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT = 12, 13, 14, 15
+"""Where these begin; the parts begin at `HEADER`."""
+HEADER = 16
+INTERVAL, PAIR, ENTERING = 2, 8, 2
+
+_PARTS_PER_INTERVAL = 4
 _HAIR = 1e-14
-"""In ranges: by rounding alone an even part must not begin in the interval before its own."""
+"""In periods: by rounding alone a part must not begin in the interval before its own."""
+_SAME_KNOT = 1e-9
+"""Knots nearer to each other than this, in base pitches, are one."""
 
 
-def law_table(knots: FloatArray, gap: FloatArray, stiffness: FloatArray) -> tuple[float, float, float, FloatArray]:
-    """First and last position, equal parts per base pitch, and the table of every kind of pair.
+def law_table(
+    curves: Sequence[PairCurves] | FaceTable, entering: FloatArray, damping: float, damping_depth: float
+) -> FloatArray:
+    """The law's numbers in a row.
 
     Parameters
     ----------
-    knots : ndarray, shape (m + 1,)
-        Increasing positions [base pitches].
-    gap, stiffness : ndarray, shape (v, m, 4)
-        Of every kind, coefficients c0 ... c3 on each interval in a variable from 0 to 1 [m], [N/m].
-
-    Returns
-    -------
-    start, end : float
-        The outer knots.
-    parts : float
-        m / (end - start).
-    table : ndarray, shape (v, m + 1, 11)
-        Columns: the interval in which the row's equal part begins; where the row's own interval begins; one over its
-        width; the gap's coefficients; the stiffness's. The last row begins at infinity, where the steps end.
+    curves : sequence of PairCurves, or FaceTable
+        Of every kind of pair.
+    entering : ndarray, shape (h, 2)
+        Gap [m] and kind of each pair of the hunting period.
+    damping, damping_depth : float
+        [N s/m], [m]
     """
-    start, end, count = float(knots[0]), float(knots[-1]), knots.size - 1
-    begins = np.linspace(start, end, count + 1)
-    table = np.zeros((gap.shape[0], count + 1, COLUMNS))
-    first = np.searchsorted(knots, begins + _HAIR * (end - start), side="right") - 1
-    table[:, :, 0] = np.minimum(first, count - 1)
-    table[:, :-1, 1], table[:, -1, 1] = knots[:-1], np.inf
-    table[:, :-1, 2] = 1.0 / np.diff(knots)
-    table[:, :-1, 3:7], table[:, :-1, 7:] = gap, stiffness
-    return start, end, count / (end - start), table
+    if isinstance(curves, FaceTable):
+        gaps = [PiecewiseCubic(curves.knots, touch) for touch in curves.first_touch]
+        knots = _period_knots([curves.knots])
+        second, cells = _cell_places(curves, knots), curves.cells
+    else:
+        gaps, stiffnesses = [kind.deviation for kind in curves], [kind.stiffness for kind in curves]
+        knots = _period_knots([curve.knots for curve in (*gaps, *stiffnesses)])
+        second, cells = np.array([_by_pair(curve, knots, 0.0) for curve in stiffnesses]), np.zeros((0, 0, 0, CELL))
+    first = np.array([_by_pair(gap, knots, np.inf) for gap in gaps])
+    pairs = np.concatenate([first, second], axis=-1)
+    parts = _PARTS_PER_INTERVAL * (knots.size - 1)
+    begins = np.minimum(np.searchsorted(knots, np.arange(parts) / parts + _HAIR, side="right") - 1, knots.size - 2)
+    intervals = np.column_stack([knots, np.append(1.0 / np.diff(knots), 0.0)])
+    sections = [array.ravel() for array in (begins, intervals, pairs, entering, cells)]
+    at = HEADER + np.cumsum([0, *(section.size for section in sections)])
+    header = np.zeros(HEADER)
+    # No cubic c0 + c1 u + ... falls below c0 and its negative coefficients together on 0 <= u <= 1.
+    lowest = first[..., 0] + np.minimum(first[..., 1:], 0.0).sum(axis=-1)
+    header[FIRST_TOUCH] = lowest.min() + entering[:, 0].min(initial=0.0)
+    header[[PARTS, INTERVALS, PAIRS]] = parts, knots.size - 1, pairs.shape[2]
+    header[[FIRST_PAIR, KIND_STEP]] = math.floor(gaps[0].knots[0]), pairs[0].size
+    header[[DAMPING, DAMPING_DEPTH, HUNTING]] = damping, damping_depth, len(entering)
+    header[[INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT]] = at[1:5]
+    if isinstance(curves, FaceTable):
+        header[[DEPTH_UNIT, DEPTHS, DEPTH_STEP]] = curves.depth_unit, cells.shape[0], cells[0].size
+    return np.concatenate([header, *sections])
+
+
+def _period_knots(knots: Sequence[FloatArray]) -> FloatArray:
+    """Where any pair's curve has a knot, over the period from 0 to 1; the ends of contact are kept exactly."""
+    ends = np.unique([0.0, 1.0, *(knots[0][[0, -1]] % 1.0)])
+    inner = np.unique(np.concatenate(knots) % 1.0)
+    # The nearest end is one of the two that it lies between.
+    above = np.searchsorted(ends, inner, side="right").clip(1, ends.size - 1)
+    inner = inner[np.minimum(inner - ends[above - 1], ends[above] - inner) > _SAME_KNOT]
+    inner = inner[np.diff(inner, prepend=-1.0) > _SAME_KNOT]
+    return np.sort(np.concatenate([ends, inner]))
+
+
+def _places(knots: FloatArray, curve_knots: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Where the intervals of all pairs begin and end on the curve, (m, j) both."""
+    pairs = np.arange(math.floor(curve_knots[0]), math.ceil(curve_knots[-1]))
+    return knots[:-1, None] + pairs, knots[1:, None] + pairs
+
+
+def _by_pair(curve: PiecewiseCubic, knots: FloatArray, absent: float) -> FloatArray:
+    """Cubics (m, j, 4) of all pairs on each interval, and a constant where there is none."""
+    low, high = _places(knots, curve.knots)
+    cubics = curve.between(low, high)
+    middle = 0.5 * (low + high)
+    cubics[(middle < curve.knots[0]) | (middle > curve.knots[-1])] = absent, 0.0, 0.0, 0.0
+    return cubics
+
+
+def _cell_places(table: FaceTable, knots: FloatArray) -> FloatArray:
+    """Row of cells, begin and length in them, (v, m, j, 4), of all kinds of pairs."""
+    low, high = _places(knots, table.knots)
+    row = np.clip(np.searchsorted(table.knots, 0.5 * (low + high), side="right") - 1, 0, table.knots.size - 2)
+    width = np.diff(table.knots)[row]
+    one = np.stack([row, (low - table.knots[row]) / width, (high - low) / width, 0.0 * row], axis=-1)
+    kinds = np.repeat(one[None], table.cells.shape[1], axis=0)
+    kinds[..., 0] += (np.arange(len(kinds)) * table.cells.shape[2])[:, None, None]
+    return kinds

@@ -24,6 +24,7 @@ import numpy.typing as npt
 from coupling.gears.geometry import Gear
 
 FloatArray = npt.NDArray[np.float64]
+Compliance = Callable[[FloatArray], FloatArray]
 
 
 def normal_section_gears(gear: Gear) -> tuple[tuple[Gear, float], ...]:
@@ -34,18 +35,22 @@ def normal_section_gears(gear: Gear) -> tuple[tuple[Gear, float], ...]:
     return tuple((_spur(gear, teeth), weight) for teeth, weight in weights if weight > 0.0)
 
 
-def by_normal_section(
-    gear: Gear, radius: FloatArray, compliance: Callable[[Gear, FloatArray], FloatArray]
-) -> FloatArray:
-    """Compliance c_n of one helical tooth [m/N] at transverse radii [m], by a function of spur gear and radius."""
+def by_normal_section(gear: Gear, solve: Callable[[Gear], Compliance]) -> Compliance:
+    """Compliance c_n of one helical tooth [m/N] by transverse radii [m], where `solve` gives that of a spur gear's."""
     low, high = _reach(gear, np.array([gear.form_radius, gear.tip_radius]))
-    share = (_reach(gear, radius) - low) / (high - low)
-    total = np.zeros_like(share)
-    for spur, weight in normal_section_gears(gear):
-        foot, tip = _reach(spur, np.array([spur.form_radius, spur.tip_radius]))
-        there = np.hypot(spur.base_radius, foot + share * (tip - foot))
-        total = total + weight * compliance(spur, there)
-    return np.asarray(total, dtype=np.float64)
+    sections = [
+        (spur, weight, solve(spur), _reach(spur, np.array([spur.form_radius, spur.tip_radius])))
+        for spur, weight in normal_section_gears(gear)
+    ]
+
+    def compliance(radius: FloatArray) -> FloatArray:
+        share = (_reach(gear, radius) - low) / (high - low)
+        total = np.zeros_like(share)
+        for spur, weight, tooth, (foot, tip) in sections:
+            total = total + weight * tooth(np.hypot(spur.base_radius, foot + share * (tip - foot)))
+        return np.asarray(total, dtype=np.float64)
+
+    return compliance
 
 
 def _reach(gear: Gear, radius: FloatArray) -> FloatArray:

@@ -97,15 +97,6 @@ def pair_kinds(
     )
 
 
-def curve_table(kinds: Sequence[PairCurves]) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """All curves on common knots (m + 1,): the cubics of the gaps and of the stiffnesses, (v, m, 4) both."""
-    curves = [curve for kind in kinds for curve in (kind.deviation, kind.stiffness)]
-    knots = np.unique(np.concatenate([curve.knots for curve in curves]))
-    knots = knots[np.concatenate([[True], np.diff(knots) > _SAME_KNOT])]
-    cubics = np.array([_on_common(curve, knots) for curve in curves])
-    return knots, cubics[0::2], cubics[1::2]
-
-
 def corners_of(curve: PiecewiseCubic) -> FloatArray:
     """Inner knots where a curve's slope jumps by more than the fit of a smooth one leaves."""
     widths = np.diff(curve.knots)
@@ -116,12 +107,6 @@ def corners_of(curve: PiecewiseCubic) -> FloatArray:
     least = 1e-9 * float(np.abs(curve.coefficients[:, 0]).max())
     jumps = np.abs(after - before) > max(_SLOPE_JUMP * largest, least, 1e-30)
     return np.asarray(curve.knots[1:-1][jumps], dtype=np.float64)
-
-
-def _on_common(curve: PiecewiseCubic, knots: FloatArray) -> FloatArray:
-    """Coefficients on knots among which the curve's own are, but for rounding."""
-    nearest = np.abs(curve.knots[:, None] - knots).argmin(axis=1)
-    return PiecewiseCubic(knots[nearest], curve.coefficients).on_knots(knots).coefficients
 
 
 def _weakened(geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: PairFaults) -> PiecewiseCubic:

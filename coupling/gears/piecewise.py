@@ -76,11 +76,26 @@ class PiecewiseCubic:
         knots : ndarray
             Increasing; every knot of this function within their range is among them.
         """
-        inside = 0.5 * (knots[1:] + knots[:-1])
+        return PiecewiseCubic(knots, self.between(knots[:-1], knots[1:]))
+
+    def between(self, low: FloatArray, high: FloatArray) -> FloatArray:
+        """Coefficients on intervals each of which lies within one of this function's, or outside, where ends are held.
+
+        Parameters
+        ----------
+        low, high : ndarray
+            Where they begin and end; any shape.
+
+        Returns
+        -------
+        ndarray
+            That shape and 4.
+        """
+        inside = 0.5 * (low + high)
         interval = np.clip(np.searchsorted(self.knots, inside, side="right") - 1, 0, self.knots.size - 2)
         width = np.diff(self.knots)[interval]
-        u = (knots[:-1] - self.knots[interval]) / width
-        part = np.diff(knots) / width
+        u = (low - self.knots[interval]) / width
+        part = (high - low) / width
         c0, c1, c2, c3 = np.moveaxis(self.coefficients[interval], -1, 0)
         moved = [
             c0 + u * (c1 + u * (c2 + u * c3)),
@@ -91,7 +106,7 @@ class PiecewiseCubic:
         held = (inside < self.knots[0]) | (inside > self.knots[-1])
         for power, values in enumerate(moved):
             values[held] = self(inside[held]) if power == 0 else 0.0
-        return PiecewiseCubic(knots, np.column_stack(moved))
+        return np.stack(moved, axis=-1)
 
 
 def constant(value: float, length: float) -> PiecewiseCubic:

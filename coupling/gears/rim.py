@@ -18,7 +18,7 @@ the gear: a web that is not in the middle of the face, and spokes, also tilt the
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +28,7 @@ from coupling.gears.errors import StiffnessModelError
 from coupling.gears.foundation import held_radius
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import load_angle, root_half_angle
-from coupling.gears.ring_body import Annulus, RootFlexibility, root_flexibility
+from coupling.gears.ring_body import Annulus, root_flexibility
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,37 +36,25 @@ SOLID_HOLD = 1.0 / 3.0
 """Where a gear without a bore is held, in root circle radii."""
 
 
-@lru_cache(maxsize=64)
-def kept_root_flexibility(
-    rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float
-) -> RootFlexibility:
-    """`root_flexibility`, kept: it is the same for all radii, and models ask for some radii at a time."""
-    return root_flexibility(rings, half_angle, poisson_ratio, kappa)
+BodyCompliance = Callable[[FloatArray], FloatArray]
+"""From radii of loaded points [m] to what the body yields there along the line of action [m/N], of the same shape."""
 
 
-def ring_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-stress") -> FloatArray:
-    """Compliance of the body of the teeth's full width, along the line of action [m/N].
+def solved_ring(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
+    """The body of the teeth's full width, solved once for loads at any radius.
 
     Parameters
     ----------
     gear : Gear
-    radius : ndarray
-        Radii of the loaded points [m].
     state : {"plane-stress", "plane-strain"}
-
-    Returns
-    -------
-    ndarray
-        Same shape as `radius`.
     """
-    body = (Annulus(_hold(gear), 1.0, gear.face_width),)
-    return _compliance(gear, radius, body, state, turning=held_radius(gear) is not None)
+    return _solved(gear, (Annulus(_hold(gear), 1.0, gear.face_width),), state, turning=held_radius(gear) is not None)
 
 
-def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-stress") -> FloatArray:
-    """What the body yields beyond `ring_compliance` because rim and web are not one [m/N].
+def solved_rim(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
+    """What the body yields beyond that of `solved_ring` because rim and web are not one, solved once.
 
-    Zero, of the shape of `radius`, for a gear without a rim or with a rim alone.
+    Zero for a gear without a rim or with a rim alone.
 
     Raises
     ------
@@ -74,7 +62,7 @@ def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-st
         For a web that begins inside the bore's circle.
     """
     if gear.rim_inner_radius is None or gear.web_thickness is None:
-        return np.zeros(np.shape(radius))
+        return lambda radius: np.zeros(np.shape(radius))
     held, inside = _hold(gear), gear.rim_inner_radius / gear.root_circle_radius
     if inside <= held:
         raise StiffnessModelError(
@@ -83,27 +71,28 @@ def rim_compliance(gear: Gear, radius: FloatArray, state: PlaneState = "plane-st
         )
     rings = (Annulus(held, inside, gear.web_thickness), Annulus(inside, 1.0, gear.face_width))
     plain = (Annulus(held, 1.0, gear.face_width),)
-    with_rim, without = (_compliance(gear, radius, body, state, turning=True) for body in (rings, plain))
-    return with_rim - without
+    with_rim, without = (_solved(gear, body, state, turning=True) for body in (rings, plain))
+    return lambda radius: with_rim(radius) - without(radius)
 
 
-def _compliance(
-    gear: Gear, radius: FloatArray, rings: tuple[Annulus, ...], state: PlaneState, turning: bool
-) -> FloatArray:
+def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, turning: bool) -> BodyCompliance:
     """Work of a unit load on the root arc; `turning` keeps the twist of the whole body."""
     plane_modulus(gear, state)  # refuses an unknown state
     nu = gear.poisson_ratio
     kappa = (3.0 - nu) / (1.0 + nu) if state == "plane-stress" else 3.0 - 4.0 * nu
-    arc = kept_root_flexibility(rings, root_half_angle(gear), nu, kappa)
-    beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
+    arc = root_flexibility(rings, root_half_angle(gear), nu, kappa)
     torque = gear.base_radius / gear.root_circle_radius
-    across, along = np.cos(beta), np.sin(beta)
-    work = arc.lateral[0, 0] * across**2 + 2.0 * arc.lateral[0, 1] * across * torque + arc.lateral[1, 1] * torque**2
-    if not turning:
-        # Under a torque alone the whole ring twists by (1/r_i^2 - 1) / (4 pi G) per width, whatever the tractions.
-        twist = (1.0 + nu) / (2.0 * math.pi) * (rings[0].inner ** -2 - 1.0)
-        work = work - twist * torque**2
-    return np.asarray((work + arc.radial * along**2) / (gear.youngs_modulus * gear.face_width), dtype=np.float64)
+    # Under a torque alone the whole ring twists by (1/r_i^2 - 1) / (4 pi G) per width, whatever the tractions.
+    twist = 0.0 if turning else (1.0 + nu) / (2.0 * math.pi) * (rings[0].inner ** -2 - 1.0)
+
+    def compliance(radius: FloatArray) -> FloatArray:
+        beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
+        across, along = np.cos(beta), np.sin(beta)
+        work = arc.lateral[0, 0] * across**2 + 2.0 * arc.lateral[0, 1] * across * torque + arc.lateral[1, 1] * torque**2
+        work = work - twist * torque**2 + arc.radial * along**2
+        return np.asarray(work / (gear.youngs_modulus * gear.face_width), dtype=np.float64)
+
+    return compliance
 
 
 def _hold(gear: Gear) -> float:

@@ -8,25 +8,38 @@ line of action by
 
 (speeds w by their amounts), which turns at the pitch point. Coulomb's friction on the pair's normal force
 ``F_j / cos(beta_b)``, F_j in the transverse plane, is ``mu F_j / cos(beta_b) sgn(w(s_j))``; see
-:mod:`coupling.gears.friction_kernels` for the sum over the pairs. On a helical face, whose contact line spans
-``s - h <= x <= s + h``, the load is taken as even over what of it lies on the path. Most faces carry less towards the
-ends of the path, so this overstates the loss; :func:`coupling.gears.mesh_friction` follows every slice, for a load that
-stands still.
+:mod:`coupling.gears.friction_kernels` for the sum over the pairs.
+
+On a helical face every slice has its own place x on the path, its own load q and its own turning. What a pair then
+gives to the sums are integrals over its line of contact,
+
+    E_j = int q dz,      int q sgn(x - s_C) dz,      int q x sgn(x - s_C) dz,
+
+functions of the place of the face's middle and of the compression beyond first touch alone, as the force itself is:
+they are tables of the same kind (:mod:`coupling.gears.face_table`). A slice that the pitch point lies in counts by its
+parts before and behind it.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
 
 from coupling.gears.errors import GearError, require_finite
+from coupling.gears.face_table import Weight, face_table
+from coupling.gears.law_table import law_table
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.tooth_contact import ToothContact
+
+FloatArray = npt.NDArray[np.float64]
 
 LARGEST_COEFFICIENT = 0.5
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SlidingFriction:
     """Coulomb friction of a pair of gears: how much, and where along the path of contact it turns.
 
@@ -36,21 +49,22 @@ class SlidingFriction:
         mu over the cosine of the base helix angle: friction force by the pair's force in the transverse plane.
     pitch_point : float
         Where the sliding turns [base pitches].
-    half_line : float
-        h, half of what a contact line spans along the path [base pitches]; 0 for spur gears.
     path_end : float
         End of the path of contact, where corners slide [base pitches].
+    shares : ndarray
+        Numbers of `coupling.gears.law_table` for the three integrals over a line of contact that turns piece by piece,
+        in three kinds of pairs for each kind; empty where lines of contact turn all at once.
     """
 
     coefficient: float
     pitch_point: float
-    half_line: float
     path_end: float
+    shares: FloatArray = field(default_factory=lambda: np.zeros(0), repr=False)
 
     @property
     def event_phases(self) -> tuple[float, ...]:
         """Phases in [0, 1) at which the force steps, turning all at once with a straight line of contact."""
-        return (self.pitch_point % 1.0,) if self.half_line == 0.0 else ()
+        return () if self.shares.size else (self.pitch_point % 1.0,)
 
 
 def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coefficient: float) -> SlidingFriction:
@@ -60,7 +74,7 @@ def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coeffici
     ----------
     geometry : GearPairGeometry
     contact : ToothContact
-        The law of its teeth.
+        The law of its teeth, on the side that slides.
     coefficient : float
         Of friction, mu.
 
@@ -77,9 +91,50 @@ def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coeffici
             f"{geometry.label}: friction needs the place of each pair of teeth, over a contact ratio of "
             f"{geometry.contact_ratio:.6g}; got a stiffness of the whole mesh, over {contact.contact_ratio:.6g}"
         )
-    return SlidingFriction(
-        coefficient / math.cos(geometry.driver.base_helix_angle),
-        geometry.pitch_point_position,
-        0.0 if contact.faces is None else 0.5 * geometry.overlap_ratio,
-        geometry.contact_ratio,
+    friction = SlidingFriction(
+        coefficient / math.cos(geometry.driver.base_helix_angle), geometry.pitch_point_position, geometry.contact_ratio
     )
+    return replace(friction, shares=_shares(contact, friction)) if _turns_by_slices(contact) else friction
+
+
+def turned_share(
+    place: npt.ArrayLike, half: float, pitch_point: float, path_end: float
+) -> tuple[FloatArray, FloatArray]:
+    """Means of sgn(x - s_C) and of x sgn(x - s_C) over ``place - half <= x <= place + half``, what lies on the path.
+
+    Beyond the path it is a corner that slides, there where the path ends.
+
+    Parameters
+    ----------
+    place : array_like
+        Places along the path [base pitches].
+    half, pitch_point, path_end : float
+        [base pitches]; `half` 0 for a line of contact that turns all at once.
+    """
+    at = np.asarray(place, dtype=np.float64)
+    low, high = np.clip(at - half, 0.0, path_end), np.clip(at + half, 0.0, path_end)
+    turn = np.clip(pitch_point, low, high)
+    length = high - low
+    point = length <= 0.0
+    length = np.where(point, 1.0, length)
+    sign = np.where(point, np.sign(low - pitch_point), (high + low - 2.0 * turn) / length)
+    placed = np.where(point, low * np.sign(low - pitch_point), (0.5 * (high**2 + low**2) - turn**2) / length)
+    return sign, placed
+
+
+def _turns_by_slices(contact: ToothContact) -> bool:
+    return contact.faces is not None and contact.faces.half_span > 0.0
+
+
+def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:
+    """The three integrals as the numbers of a law."""
+    faces = contact.faces
+    assert faces is not None
+
+    def share(which: int) -> Weight:
+        return lambda place: turned_share(place, faces.half_span, friction.pitch_point, friction.path_end)[which]
+
+    weights = (np.ones_like, share(0), share(1))
+    table = face_table(faces, contact.kinds, contact.module, weights, breaks=(friction.pitch_point,))
+    entering = contact.entering * [1.0, len(weights)]
+    return law_table(table, entering, 0.0, 0.0)

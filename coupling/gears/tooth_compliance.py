@@ -22,7 +22,7 @@ import numpy.typing as npt
 from coupling.gears.beam_compliance import beam_compliance
 from coupling.gears.foundation import RootSection, foundation_compliance
 from coupling.gears.geometry import Gear
-from coupling.gears.rim import rim_compliance
+from coupling.gears.rim import solved_rim
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,6 +53,8 @@ class ToothCompliance:
 
 ToothModel = Callable[[Gear, FloatArray], ToothCompliance]
 """A tooth model: from a gear and radii on its flank [m] to the compliance of a tooth there."""
+SolvedTooth = Callable[[FloatArray], ToothCompliance]
+"""One tooth, all solved that does not depend on the load: from radii on its flank [m] to its compliance."""
 
 
 def potential_energy(gear: Gear, radius: FloatArray, root_section: RootSection = "ma2014") -> ToothCompliance:
@@ -81,9 +83,16 @@ def potential_energy(gear: Gear, radius: FloatArray, root_section: RootSection =
     StiffnessModelError
         For a body outside the range of Sainsot's formula.
     """
-    radius = np.asarray(radius, dtype=np.float64)
-    return ToothCompliance(
-        *beam_compliance(gear, radius),
-        foundation=foundation_compliance(gear, radius, root_section),
-        rim=rim_compliance(gear, radius),
-    )
+    return solved_potential_energy(gear, root_section)(radius)
+
+
+def solved_potential_energy(gear: Gear, root_section: RootSection = "ma2014") -> SolvedTooth:
+    """`potential_energy` of one tooth, for any radii."""
+    rim = solved_rim(gear)
+
+    def tooth(radius: FloatArray) -> ToothCompliance:
+        radius = np.asarray(radius, dtype=np.float64)
+        foundation = foundation_compliance(gear, radius, root_section)
+        return ToothCompliance(*beam_compliance(gear, radius), foundation=foundation, rim=rim(radius))
+
+    return tooth

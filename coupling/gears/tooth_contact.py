@@ -43,13 +43,13 @@ from coupling.gears.errors import GearError
 from coupling.gears.face_slices import FaceSlices
 from coupling.gears.face_table import FaceState, face_state, face_table
 from coupling.gears.law_table import law_table
-from coupling.gears.pair_curves import PairCurves, corners_of, curve_table
+from coupling.gears.pair_curves import PairCurves, corners_of
 from coupling.gears.pair_geometry import IntArray
 from coupling.gears.piecewise import PiecewiseCubic
 
 FloatArray = npt.NDArray[np.float64]
 
-KernelArguments = tuple[float, float, float, FloatArray, float, float, FloatArray, FloatArray, float]
+KernelArguments = tuple[FloatArray, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,26 +165,26 @@ class ToothContact:
 
     @property
     def kernel_arguments(self) -> KernelArguments:
-        """Everything `coupling.gears.kernels.tooth_force` wants after phase, compression and rate.
+        """What `coupling.gears.kernels.tooth_force` wants after phase, compression and rate.
 
-        First and last position, rows per base pitch and the table (v, m + 1, 11) of `coupling.gears.law_table`, damping
-        and its depth, gap and kind of every pair of the hunting period (h, 2), the cells (v, d, m, 20) of
-        `coupling.gears.face_table` and their unit, 0 without any.
+        The row of numbers of `coupling.gears.law_table`, and where it begins.
         """
+        return self._law, 0
+
+    @cached_property
+    def _law(self) -> FloatArray:
+        curves = self.kinds if self.faces is None else face_table(self.faces, self.kinds, self.module)
+        return law_table(curves, self.entering, self.damping, self.damping_depth)
+
+    @property
+    def entering(self) -> FloatArray:
+        """Gap [m] and kind of every pair of the hunting period, shape (h, 2)."""
         entering = np.zeros((self.hunting_numbers, 2))
         if self.pitch_gaps.size:
             entering[:, 0] = self.pitch_gaps
         if self.pair_variants.size:
             entering[:, 1] = self.pair_variants
-        curves, (cells, depth) = self._law_tables
-        return (*curves, float(self.damping), float(self.damping_depth), entering, cells, depth)
-
-    @cached_property
-    def _law_tables(self) -> tuple[tuple[float, float, float, FloatArray], tuple[FloatArray, float]]:
-        if self.faces is None:
-            return law_table(*curve_table(self.kinds)), (np.zeros((0, 0, 0, 20)), 0.0)
-        made = face_table(self.faces, self.kinds, self.module)
-        return law_table(made.knots, made.first_touch, 0.0 * made.first_touch), (made.cells, made.depth_unit)
+        return entering
 
     @property
     def kinds(self) -> tuple[PairCurves, ...]:

@@ -28,8 +28,8 @@ import numpy.typing as npt
 from coupling.gears.beam_compliance import ROOT_CIRCLE, axis_crossing, beam_compliance
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import fillet_points, load_angle
-from coupling.gears.rim import rim_compliance
-from coupling.gears.tooth_compliance import ToothCompliance
+from coupling.gears.rim import solved_rim
+from coupling.gears.tooth_compliance import SolvedTooth, ToothCompliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,15 +53,24 @@ def weber_banaschek(gear: Gear, radius: FloatArray) -> ToothCompliance:
     GearError
         For a radius off the involute flank.
     """
-    radius = np.asarray(radius, dtype=np.float64)
+    return solved_weber_banaschek(gear)(radius)
+
+
+def solved_weber_banaschek(gear: Gear) -> SolvedTooth:
+    """`weber_banaschek` of one tooth, for any radii."""
     section = fillet_points(gear, np.array(ROOT_CIRCLE))
-    lever = (axis_crossing(gear, radius) - section.height) / (2.0 * section.half_thickness)
-    nu, beta = gear.poisson_ratio, load_angle(gear, radius)
-    thrust = (1.0 - nu) / 2.4 * np.tan(beta) ** 2
-    shape = 18.0 / math.pi * lever**2 + 2.0 * (1.0 - 2.0 * nu) / (1.0 - nu) * lever + 4.8 / math.pi * (1.0 + thrust)
-    foundation = np.cos(beta) ** 2 * (1.0 - nu**2) * shape / (gear.youngs_modulus * gear.face_width)
-    return ToothCompliance(
-        *beam_compliance(gear, radius, ROOT_CIRCLE, "plane-strain"),
-        foundation=foundation,
-        rim=rim_compliance(gear, radius, "plane-strain"),
-    )
+    nu = gear.poisson_ratio
+    coupling = 2.0 * (1.0 - 2.0 * nu) / (1.0 - nu)
+    rim = solved_rim(gear, "plane-strain")
+
+    def tooth(radius: FloatArray) -> ToothCompliance:
+        radius = np.asarray(radius, dtype=np.float64)
+        beta = load_angle(gear, radius)
+        lever = (axis_crossing(gear, radius) - section.height) / (2.0 * section.half_thickness)
+        thrust = (1.0 - nu) / 2.4 * np.tan(beta) ** 2
+        shape = 18.0 / math.pi * lever**2 + coupling * lever + 4.8 / math.pi * (1.0 + thrust)
+        foundation = np.cos(beta) ** 2 * (1.0 - nu**2) * shape / (gear.youngs_modulus * gear.face_width)
+        beam = beam_compliance(gear, radius, ROOT_CIRCLE, "plane-strain")
+        return ToothCompliance(*beam, foundation=foundation, rim=rim(radius))
+
+    return tooth

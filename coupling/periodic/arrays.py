@@ -90,8 +90,8 @@ def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
 
 
 def first_elements(trace: Trace, count: int) -> Trace:
-    """The elements that a trace holds."""
-    return Trace._make(rows[:count].copy() for rows in trace)
+    """The elements that a trace holds, in its own memory."""
+    return Trace._make(rows[:count] for rows in trace)
 
 
 def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner: bool) -> Steps:
@@ -110,3 +110,39 @@ def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner
         inner_decay=np.zeros((within, s, m), dtype=np.complex128),
         inner_source=np.zeros((within, s, n, 2 * m)),
     )
+
+
+class FreeMotion(NamedTuple):
+    """r motions that nothing resists, beside the reference's own: uniformly accelerated from a time on."""
+
+    time: FloatArray  # (1,) [s]
+    place: FloatArray  # (r,)
+    rate: FloatArray  # (r,)
+    acceleration: FloatArray  # (r,)
+
+    def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Places and rates, shapes (t, r)."""
+        after = (times - self.time)[:, None]
+        return (
+            self.place + after * (self.rate + 0.5 * self.acceleration * after),
+            self.rate + self.acceleration * after,
+        )
+
+
+class Powers(NamedTuple):
+    """Rows that turn amplitudes into powers, in the n principal directions of what damps."""
+
+    rate: FloatArray  # (2 m, n) rates of the amplitudes ...
+    free: FloatArray  # (r, n) ... and of what is free
+    loss: FloatArray  # (n,) principal values: the squares of the rates times these give the loss
+    skew: FloatArray  # (2 m, n) forces of a stiffness that is not symmetric, twice; (0, n) where it is
+    riding: IntArray  # (k,) amplitudes that carry loads ...
+    pushing: FloatArray  # (k, n) ... and these
+
+
+class PowersRoom(NamedTuple):
+    """Room for powers."""
+
+    amplitude: FloatArray  # (2 m,)
+    rate: FloatArray  # (n,)
+    weights: FloatArray  # (s,)

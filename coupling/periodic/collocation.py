@@ -33,6 +33,9 @@ PLACES: FloatArray = 0.5 * (1.0 + np.polynomial.legendre.leggauss(ORDER)[0])
 MONOMIALS: FloatArray = np.ascontiguousarray(np.linalg.inv(np.vander(PLACES, increasing=True)).T)
 """Coefficients of u⁰, u¹, ... of the polynomial that is 1 at place j and 0 at the others, shape (ORDER, ORDER)."""
 
+GAUSS: FloatArray = np.ascontiguousarray(0.5 * np.polynomial.legendre.leggauss(ORDER)[1])
+"""Weights of an integral over the whole element, shape (ORDER,)."""
+
 POINTS: FloatArray = np.concatenate([[0.0], PLACES, [1.0]])
 """Both ends and the places: where a compression within an element is interpolated from, shape (ORDER + 2,)."""
 
@@ -51,6 +54,9 @@ MISSING: FloatArray = _missing(PLACES)
 
 BINOMIAL: FloatArray = np.array([[float(math.comb(j, k)) for k in range(ORDER)] for j in range(ORDER)])
 """Coefficients of (u + v)ʲ, shape (ORDER, ORDER)."""
+
+AT_END: FloatArray = np.ascontiguousarray(MONOMIALS @ BINOMIAL)
+"""Coefficients of (u - 1)⁰, (u - 1)¹, ... of the polynomial that is 1 at place j, shape (ORDER, ORDER)."""
 
 
 def weights_to(part: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ from numba import njit
 
 from coupling.contact_kernels import FORCE
 from coupling.kernel_arrays import Contacts
-from coupling.periodic.arrays import Reference, Steps, Trace
+from coupling.periodic.arrays import Reference, Trace
 from coupling.periodic.collocation import BINOMIAL, MONOMIALS, ORDER
 from coupling.periodic.element import law
 from coupling.periodic.element_matrices import advance_to, moments
@@ -75,28 +75,6 @@ def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> Floa
                     sent += shares[p, k] * shifted[p, a]
                 value -= sent * reference.source[k, a]
             out[i, 2 * k], out[i, 2 * k + 1] = value.real, value.imag
-    return out
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def amplitudes_within(steps: Steps, trace: Trace) -> FloatArray:
-    """Amplitudes at the places of every element, shape (e s, 2 m)."""
-    count, c = trace.start.size, trace.excess.shape[2]
-    m = steps.inner_decay.shape[2]
-    out = np.empty((count * ORDER, 2 * m))
-    for element in range(count):
-        slot = trace.slot[element]
-        for i in range(ORDER):
-            row = element * ORDER + i
-            for k in range(m):
-                x, y = steps.inner_decay[slot, i, k].real, steps.inner_decay[slot, i, k].imag
-                out[row, 2 * k] = x * trace.state[element, 2 * k] - y * trace.state[element, 2 * k + 1]
-                out[row, 2 * k + 1] = x * trace.state[element, 2 * k + 1] + y * trace.state[element, 2 * k]
-            for j in range(ORDER):
-                for a in range(c):
-                    g = trace.excess[element, j, a]
-                    for k in range(2 * m):
-                        out[row, k] -= steps.inner_source[slot, i, j * c + a, k] * g
     return out
 
 

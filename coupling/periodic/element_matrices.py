@@ -4,18 +4,20 @@ Importing this module imports numba.
 """
 
 import cmath
+import math
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.periodic.arrays import Reference, Steps
-from coupling.periodic.collocation import MISSING, MONOMIALS, ORDER, PLACES
+from coupling.periodic.collocation import AT_END, MISSING, MONOMIALS, ORDER, PLACES
 from coupling.periodic.uncounted import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _MOMENTS = ORDER + 2
+_NEAR_END = 1.0  # largest |λ t| of a series of powers: no term of it is larger than its sum
 _SERIES_WITHIN = 0.7  # of |z|: beyond, the recursion upwards loses no more than two digits of the highest
 
 
@@ -90,6 +92,56 @@ def advance_to(
             for k in range(ORDER):
                 sent += integral[k] * coefficient[k, b]
             total -= sent * reference.source[m, b]
+        end[2 * m], end[2 * m + 1] = total.real, total.imag
+
+
+@uncounted()
+def carry_on(
+    reference: Reference,
+    h: float,
+    part: float,
+    z: FloatArray,
+    excess: FloatArray,
+    end: FloatArray,
+    coefficient: FloatArray,
+    integral: ComplexArray,
+) -> None:
+    """As :func:`advance_to`, where the amplitudes at the end of the element are known already, for a part near 1.
+
+    From there on by their power series, of as many terms as the fastest mode asks for.
+    """
+    c = reference.stiffness.size
+    beyond, fastest = h * (part - 1.0), 0.0
+    for m in range(reference.eigenvalue.size):
+        value = reference.eigenvalue[m]
+        fastest = max(fastest, value.real * value.real + value.imag * value.imag)
+    fastest = math.sqrt(fastest) * abs(beyond)
+    if fastest > _NEAR_END:
+        advance_to(reference, h, part, z, excess, end, coefficient, integral)
+        return
+    power = beyond
+    for k in range(ORDER):
+        for b in range(c):
+            coefficient[k, b] = 0.0
+            for j in range(ORDER):
+                coefficient[k, b] += power * AT_END[j, k] * excess[j * c + b]
+        power *= part - 1.0
+    terms, size = ORDER, 1.0
+    for k in range(1, ORDER + 1):
+        size *= fastest / k
+    while size > 1e-17:
+        terms += 1
+        size *= fastest / terms
+    for m in range(reference.eigenvalue.size):
+        rate, term = reference.eigenvalue[m] * beyond, complex(end[2 * m], end[2 * m + 1])
+        total = term
+        for k in range(terms):
+            term *= rate
+            if k < ORDER:
+                for b in range(c):
+                    term -= coefficient[k, b] * reference.source[m, b]
+            term *= 1.0 / (k + 1)
+            total += term
         end[2 * m], end[2 * m + 1] = total.real, total.imag
 
 

@@ -40,7 +40,7 @@ from coupling.periodic.element import (
     law,
     solve_element,
 )
-from coupling.periodic.element_matrices import advance_to, end_matrices, fill_step
+from coupling.periodic.element_matrices import carry_on, end_matrices, fill_step
 from coupling.periodic.element_work import Work
 from coupling.periodic.uncounted import uncounted
 from coupling.periodic.variations import cross, jump_at, vary
@@ -178,7 +178,7 @@ def march(
                     end = 0 * slot  # 0, in a form that is no constant: a constant would compile all anew
                     end_matrices(reference, h, part, work.cut_decay[end], work.cut_source[end], work.integral)
                     vary(steps, slot, work.cut_decay, work.cut_source, end, columns, work)
-                advance_to(reference, h, part, z, work.excess, work.end, work.coefficient, work.integral)
+                carry_on(reference, h, part, z, work.excess, work.end, work.coefficient, work.integral)
             for i in range(z.size):
                 z[i] = work.end[i]
             if left - length <= 1e-12 * whole:

@@ -158,4 +158,6 @@ def one_pass(
     end = rows @ z[: 2 * modes]
     if not np.all(np.isfinite(end)):
         raise PeriodicError("the motion grew beyond all bounds within a period; look for unstable coupled modes")
-    return Pass(start, end, rows @ columns, first_elements(trace, int(count)), int(cuts))
+    # What is kept has no room to spare.
+    kept = Trace._make(part.copy() for part in first_elements(trace, int(count)))
+    return Pass(start, end, rows @ columns, kept, int(cuts))
