@@ -44,7 +44,8 @@ LOWEST = 1e-16
 
 def chain_arrays(chain: Chain) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
     """A chain as the compiled functions take it."""
-    return chain.table.lengths, chain.table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
+    table = chain.table
+    return table.lengths, table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
 
 
 def count_below(chain: Chain, frequency: float) -> int:

@@ -74,7 +74,7 @@ def rigid_states(chain: Chain) -> FloatArray:
 
 def shared_roots(elastic: FloatArray) -> FloatArray:
     """Ascending natural frequencies (m,), those that share one null space at their mean."""
-    if not _has_neighbours(elastic):
+    if not has_neighbours(elastic):
         return elastic
     shared = elastic.copy()
     for group in groups(elastic, ONE_NULL_SPACE):
@@ -82,13 +82,13 @@ def shared_roots(elastic: FloatArray) -> FloatArray:
     return shared
 
 
-def _has_neighbours(elastic: FloatArray) -> bool:
+def has_neighbours(elastic: FloatArray) -> bool:
     """Whether some roots are near each other, as most are not."""
     return bool((elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]).any())
 
 
-def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArray]:
-    """Fields of the modes at the given natural frequencies, and the mixture that makes them orthonormal.
+def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArray, FloatArray, FloatArray]:
+    """Fields of the modes at the given natural frequencies, the mixture that makes them orthonormal, and its energies.
 
     Parameters
     ----------
@@ -103,26 +103,32 @@ def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArr
         m fields.
     mixture
         (m, m): modes are ``mixture @ fields``; block diagonal over groups of near roots.
+    mass, stiffness
+        (m, m): integrated anew where modes are combinations of fields, so that what cancels keeps its digits.
     """
     from .shape_kernels import null_states
 
     zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
-    shared, elastic = frequencies.copy(), frequencies[zeros:]
-    shared[zeros:] = shared_roots(elastic)
-    near = groups(elastic, NEAR_ROOT) if _has_neighbours(elastic) else []
-    states = null_states(shared[zeros:] ** 2, *chain_arrays(chain))
+    shared, elastic, near = frequencies, frequencies[zeros:], []
+    if has_neighbours(elastic):
+        shared, near = np.concatenate([frequencies[:zeros], shared_roots(elastic)]), groups(elastic, NEAR_ROOT)
+    squared = shared**2
+    states = null_states(squared[zeros:], *chain_arrays(chain))
     if zeros:
         states = np.concatenate([rigid_states(chain)[:zeros], states])
-    fields = Fields(chain, shared**2, states)
+    fields = Fields(chain, squared, states)
     mass, stiffness = fields.energies()
     scale = 1.0 / np.sqrt(mass.diagonal())
     scale[:zeros] = 1.0
     mixture = np.diag(scale)
+    if not near:
+        both = scale[:, None] * scale
+        return fields, mixture, both * mass, both * stiffness
     for group in near:
         if group.stop - group.start > 1:
             part = slice(group.start + zeros, group.stop + zeros)
             mixture[part, part] = ritz_vectors(mass[part, part], stiffness[part, part])[1].T
-    return fields, mixture
+    return fields, mixture, *fields.energies(mixture)
 
 
 def ritz_vectors(mass: FloatArray, stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -19,7 +19,6 @@ from .exact_roots import ExactRoots, Speed, constant_speed
 from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
 from .projection import Projection, basis_for
-from .segment import Segment
 from .shaft import Rotor
 from .spatial_chain import SpatialChain, spatial_chain, whirl_reach
 from .spatial_field import SpatialMotion
@@ -207,8 +206,7 @@ def certified_whirl(
 def is_undriven(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
     """Whether roots may be counted by inertia: nothing damps or drives, and all stiffness is positive."""
     # Under compression the shaft's own stiffness may fail to be.
-    compressed = any(isinstance(part, Segment) and part.axial_force < 0.0 for part in rotor.segments)
-    return is_conservative(bearings) and not compressed
+    return not rotor.is_compressed and is_conservative(bearings)
 
 
 def _reach_behind(ascending: FloatArray, count: int) -> float:
