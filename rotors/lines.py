@@ -82,12 +82,15 @@ class Line:
         return int(np.count_nonzero((self.node_inertia > 0.0) & ~np.isinf(self.node_stiffness)))
 
     def likely_frequency(self, count: int) -> float:
-        """About the ``count``-th natural frequency of the bare shaft, by its waves, or a scale of it; rad/s."""
+        """About the ``count``-th natural frequency of the bare shaft, by its waves, or a scale of it; rad/s.
+
+        Held by springs and without discs: a free shaft's lies lower, that of a clamped one higher.
+        """
         shear, bending = self._wave_sums
         if shear == 0.0:
             # In the chain's units stiffness is about one.
             return float(np.pi / np.sqrt(max(self.node_inertia[:, 0].sum(), 1e-300)))
-        phase = (count + 0.5) * np.pi
+        phase = (count - 0.5) * np.pi
         # Waves are no longer than those of bending without shear, nor than those of shear without bending.
         return min(phase / shear, (phase / bending) ** 2) if bending else phase / shear
 

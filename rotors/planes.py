@@ -14,7 +14,7 @@ from .errors import require, require_count, require_finite
 from .lines import Line, cut_together
 from .planar_basis import DEFAULT_COUNT
 from .projection import slowest
-from .root_count import count_below, isolate
+from .root_count import counts_below, isolate
 from .rotor_lines import bending_lines
 from .search import chain_that_holds, limit_above, proved_modes
 from .shaft import Rotor
@@ -87,7 +87,7 @@ def rest_frequencies(
         require(count is None, "frequency_limit and count", (frequency_limit, count), "one of the two")
         require_finite("frequency_limit", frequency_limit, positive=True)
         limit, chains = frequency_limit, cut_together(lines[:1] if alike else lines, frequency_limit)
-        expected = [count_below(chain, limit) for chain in chains]
+        expected = counts_below(chains, limit)
         found = [isolate(chain, number, limit) for chain, number in zip(chains, expected, strict=True)]
     else:
         chains, shares = _shares(rotor.free_lines.bending, lines, wanted or DEFAULT_COUNT)
@@ -99,7 +99,7 @@ def rest_frequencies(
             most = f"at most {both.size}, all this lumped rotor has"
             require(count <= both.size, "count of frequencies", count, most)
         limit = limit_above(float(both[min(wanted or DEFAULT_COUNT, both.size) - 1]), chains[0])
-        expected = [count_below(chain, limit) for chain in chains]
+        expected = counts_below(chains, limit)
         found = [one[:number] for one, number in zip(found, expected, strict=True)]
     solved = [
         proved_modes(chain, frequencies, number, limit)
@@ -130,14 +130,15 @@ def _shares(bare: Line, lines: list[Line], count: int) -> tuple[list[Chain], lis
 
     Of a lumped rotor that has fewer, all.
     """
-    available = [line.available_modes for line in lines]
+    # Distributed mass has no end of modes; of lumped ones, constraints take some in one plane or the other.
+    available = [line.available_modes for line in lines] if bare.available_modes < np.inf else [np.inf]
     if sum(available) <= count:
         most = [int(number) for number in available]
         return [chain_that_holds(line, number) for line, number in zip(lines, most, strict=True)], most
     low, high = 0.0, bare.likely_frequency((count + 1) // 2)
     while True:
         chains = cut_together(lines, high)
-        shares = [count_below(chain, high) for chain in chains]
+        shares = counts_below(chains, high)
         if sum(shares) >= count:
             break
         low, high = high, 2.0 * high
@@ -146,7 +147,7 @@ def _shares(bare: Line, lines: list[Line], count: int) -> tuple[list[Chain], lis
         if sum(shares) <= count + 1:
             break
         middle = 0.5 * (low + high)
-        fewer = [count_below(chain, middle) for chain in chains]
+        fewer = counts_below(chains, middle)
         if sum(fewer) >= count:
             high, shares = middle, fewer
         else:
