@@ -59,8 +59,8 @@ def certify(
     residual = np.abs(stiffness.diagonal()[moving] / squared[moving] - 1.0)
     worst = float(residual.max(initial=0.0))
     skewness = float(np.abs(mass - np.eye(squared.size)).max(initial=0.0))
-    failed = np.count_nonzero(~(residual <= ENERGY_TOLERANCE))
-    found = squared.size - failed if skewness <= ORTHONORMALITY_TOLERANCE else 0
+    failed = int(np.count_nonzero(~(residual <= ENERGY_TOLERANCE)))
+    found = int(squared.size) - failed if skewness <= ORTHONORMALITY_TOLERANCE else 0
     certificate = ModeCertificate(limit, expected, found, worst, skewness)
     if not certificate.complete:
         raise IncompleteModesError(

@@ -26,6 +26,8 @@ FloatArray = npt.NDArray[np.float64]
 ONE_NULL_SPACE = 2e-12
 # Roots closer than this are twins, of which a count of modes takes in both or none.
 SAME_ROOT = 1e-10
+# Of a rigid motion in an elastic mode, as a part of its norm.
+LEAST_SHARE = 1e-12
 # Shapes of roots closer than this mix in rounding, and are separated again by their energies.
 NEAR_ROOT = 1e-4
 
@@ -102,7 +104,8 @@ def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArr
     fields
         m fields.
     mixture
-        (m, m): modes are ``mixture @ fields``; block diagonal over groups of near roots.
+        (m, m): modes are ``mixture @ fields``; block diagonal over groups of near roots, but for the rigid motions'
+        share that is taken out of the others where rounding has left one.
     mass, stiffness
         (m, m): integrated anew where modes are combinations of fields, so that what cancels keeps its digits.
     """
@@ -121,13 +124,18 @@ def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArr
     scale = 1.0 / np.sqrt(mass.diagonal())
     scale[:zeros] = 1.0
     mixture = np.diag(scale)
-    if not near:
+    # Beside a very heavy disc a rigid motion's share in an elastic shape is all rounding, but counts.
+    rigid = scale[zeros:, None] * mass[zeros:, :zeros]
+    leaning = zeros > 0 and np.abs(rigid).max(initial=0.0) > LEAST_SHARE
+    if not near and not leaning:
         both = scale[:, None] * scale
         return fields, mixture, both * mass, both * stiffness
     for group in near:
         if group.stop - group.start > 1:
             part = slice(group.start + zeros, group.stop + zeros)
             mixture[part, part] = ritz_vectors(mass[part, part], stiffness[part, part])[1].T
+    if leaning:
+        mixture[zeros:, :zeros] = -mixture[zeros:, zeros:] @ mass[zeros:, :zeros]
     return fields, mixture, *fields.energies(mixture)
 
 
