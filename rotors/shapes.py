@@ -86,7 +86,7 @@ def shared_roots(elastic: FloatArray) -> FloatArray:
 
 def has_neighbours(elastic: FloatArray) -> bool:
     """Whether some roots are near each other, as most are not."""
-    return np.count_nonzero(elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]) > 0
+    return bool(np.count_nonzero(elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]))
 
 
 def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArray, FloatArray, FloatArray]:

@@ -1,7 +1,7 @@
 """Where whirl strains a rotor: the strain energy of complex modes in lengths of shaft, bearings and pedestals.
 
-In motion Re[q e^{λt}] strain energy swings at twice the frequency, in elliptic orbits about a mean. Meant here is the mean
-over one turn of the phase with the growth or decay e^{Re λ t} left out, ½ Re(q̂ᴴ K q̂) / 2: of the shaft
+In motion Re[q̂ e^{λt}] strain energy swings at twice the frequency about a mean. Meant here is the mean over one turn of
+the phase, with the growth or decay e^{Re λ t} left out, ¼ Re(q̂ᴴ K q̂): of the shaft
 
     ¼ ∫ |f_x|²/(κGA + P) + |f_y|²/(κGA + P) + (|m_x|² + |m_y|²)/EI + g P (|β_x|² + |β_y|²) + |n|²/EA dz
 
@@ -101,7 +101,7 @@ def _in_springs(motion: SpatialMotion, bearing: Bearing) -> tuple[FloatArray, Fl
     dynamic = stiffness + at * bearing.spatial_damping
     ground = pedestal.stiffness + at * pedestal.damping + at**2 * pedestal.mass * np.eye(2)
     force = (dynamic[:, :2] @ deflection[:, :, None])[:, :, 0]
-    foot = np.linalg.solve(ground + dynamic[:, :2, :2], force[:, :, None])[:, :, 0]
+    foot = np.asarray(np.linalg.solve(ground + dynamic[:, :2, :2], force[:, :, None])[:, :, 0], np.complex128)
     deflection[:, :2] -= foot
     return _stored(stiffness, deflection), _stored(pedestal.stiffness, foot)
 

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from finite_element_rotor import bending_model, rod_model
 
@@ -87,8 +88,8 @@ def test_twins_tied_by_a_hair_in_torsion() -> None:
 
 
 def test_digits_of_what_a_hair_holds() -> None:
-    # Two bodies that the hair alone bends between: rigid to the square of 1e-6, which is their frequencies' ratio to the
-    # bars' own. The hair's mass, a part in 1e9 of theirs, moves as its static shape does.
+    # Two bodies that the hair alone bends between: they are rigid to the square of the ratio of these frequencies to
+    # the bars' own. The hair's mass, a part in 1e9 of theirs, moves as its static shape does.
     bar, end = Segment(1.0, 0.01, 0.0, ALUMINIUM), Segment(0.0002573, 0.1329, 0.5 * 0.1329, ALUMINIUM)
     hair = Segment(0.1023, 1.313e-6, 0.0, STEEL)
     discs = [Disc(0.6668382, 0.3519), Disc(1.4359764, 0.3519)]
@@ -122,7 +123,7 @@ def rigid_body(parts: list[tuple[Segment, float]], disc: Disc) -> tuple[float, f
     return mass, math.fsum(inertia + m * (z - centre) ** 2 for m, inertia, z in points), centre
 
 
-def cubic_mass(mass: float, length: float) -> np.ndarray:
+def cubic_mass(mass: float, length: float) -> npt.NDArray[np.float64]:
     """Consistent mass matrix of a slender uniform beam."""
     return (mass / 420.0) * np.array(
         [

@@ -1,4 +1,4 @@
-"""Bending moments and strain energies of complex whirl modes: equilibrium, closed forms, sensitivities, finite elements."""
+"""Bending moments and strain energies of whirl modes: equilibrium, closed forms, sensitivities, finite elements."""
 
 import math
 from dataclasses import replace
@@ -144,9 +144,7 @@ def test_damped_shares_are_those_of_finite_elements(axial: bool) -> None:
     full, parts = (spatial_matrices(SHAFT, some, limit, axial=axial) for some in (held, bare))
     order = full.mass.shape[0]
     system = np.block([[np.zeros((order, order)), np.eye(order)], [np.zeros((order, 2 * order))]])
-    system[order:] = -np.linalg.solve(
-        full.mass, np.hstack([full.stiffness, full.damping + speed * full.gyroscopic])
-    )
+    system[order:] = -np.linalg.solve(full.mass, np.hstack([full.stiffness, full.damping + speed * full.gyroscopic]))
     values, vectors = linalg.eig(system)
     found = modes.strain_energy_shares(SHAFT.joints)
     for mode in range(count):
@@ -174,7 +172,7 @@ def test_cut_anywhere_the_parts_add_up_and_places_must_be_on_the_shaft() -> None
         modes.section_loads([1.2])
 
 
-def test_a_free_rotor_bends_alone_and_its_rigid_motions_strain_nothing() -> None:
+def test_in_a_free_rotor_the_shaft_alone_is_strained() -> None:
     modes = solve_whirl(SHAFT, [], 400.0, count=4)
     shares = modes.strain_energy_shares(SHAFT.joints)
     assert shares.bearings.shape == shares.pedestals.shape == (modes.frequencies.size, 0)
