@@ -9,6 +9,7 @@ import numpy.typing as npt
 from gearwhine.stages.rotors import SolvedRotor
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 Variables = dict[str, tuple[Any, Any, dict[str, str]]]
 
 _HERTZ = 2.0 * np.pi
@@ -46,6 +47,10 @@ def write_rotors(solved: tuple[SolvedRotor, ...], variables: Variables, coordina
         _stiffness_map(solved, variables)
     if any(one.response is not None for one in solved):
         _response(solved, variables, coordinates)
+    if any(one.torsion is not None for one in solved):
+        _torsion(solved, variables, coordinates)
+    if any(one.operation is not None for one in solved):
+        _whirl_loads(solved, places, variables)
 
 
 def _campbell(solved: tuple[SolvedRotor, ...], variables: Variables) -> None:
@@ -64,14 +69,15 @@ def _campbell(solved: tuple[SolvedRotor, ...], variables: Variables) -> None:
 
 
 def _stiffness_map(solved: tuple[SolvedRotor, ...], variables: Variables) -> None:
-    """Forward critical speeds over the stiffness of all bearings, which is the same for every rotor."""
+    """Critical speeds over the stiffness of all bearings, which is the same for every rotor."""
     maps = [one.stiffness_map for one in solved]
-    given = next(one.stiffnesses for one in maps if one is not None)
-    variables["map_stiffness"] = ("map_step", given, _unit("N/m", "stiffness of every bearing"))
+    known = next(one for one in maps if one is not None)
+    whirl = "forward" if known.direction > 0 else "backward"
+    variables["map_stiffness"] = ("map_step", known.stiffnesses, _unit("N/m", "stiffness of every bearing"))
     variables["map_critical_speed"] = (
         ("rotor", "map_step", "map_curve"),
         padded([np.empty((0, 0)) if one is None else one.speeds * _RPM for one in maps]),
-        _unit("rpm", "undamped forward critical speeds"),
+        _unit("rpm", f"undamped critical speeds of {whirl} whirl"),
     )
 
 
@@ -96,6 +102,56 @@ def _response(solved: tuple[SolvedRotor, ...], variables: Variables, coordinates
         ("orbit_major_axis", "m", "half the length of the orbit", [reading.major_axis for *_, reading in rows]),
     ):
         variables[name] = (("probe", "response_step"), padded(values), _unit(unit, what))
+
+
+def _torsion(solved: tuple[SolvedRotor, ...], variables: Variables, coordinates: Variables) -> None:
+    """Angle and torque at each probe over frequency; probes of all rotors in one row."""
+    rows = [
+        (one.rotor.name, one.torsion.response.frequencies, reading)
+        for one in solved
+        if one.torsion is not None
+        for reading in one.torsion.readings
+    ]
+    coordinates["torsion_probe"] = ("torsion_probe", [f"{name}: {reading.probe.name}" for name, _, reading in rows], {})
+    for name, unit, what, values in (
+        ("torsion_frequency", "Hz", "frequency of the torques", [omega / _HERTZ for _, omega, _ in rows]),
+        ("torsion_angle", "rad", "angle, zero to peak", [np.abs(reading.angle) for *_, reading in rows]),
+        ("torsion_angle_phase", "rad", "phase of the angle", [np.angle(reading.angle) for *_, reading in rows]),
+        (
+            "torsion_torque",
+            "N m",
+            "torque in the shaft, zero to peak",
+            [np.abs(reading.torque) for *_, reading in rows],
+        ),
+        ("torsion_torque_phase", "rad", "phase of that torque", [np.angle(reading.torque) for *_, reading in rows]),
+    ):
+        variables[name] = (("torsion_probe", "torsion_step"), padded(values), _unit(unit, what))
+
+
+def _whirl_loads(solved: tuple[SolvedRotor, ...], places: Sequence[FloatArray], variables: Variables) -> None:
+    """Along each rotor the largest deflection and bending moment over a cycle of its whirl modes at operation."""
+    deflections, moments = [], []
+    for one, z in zip(solved, places, strict=True):
+        if one.operation is None:
+            deflections.append(np.empty((0, 0)))
+            moments.append(np.empty((0, 0)))
+        else:
+            deflections.append(_largest_over_cycle(*one.whirl[0].evaluate(z)))
+            moments.append(_largest_over_cycle(*one.whirl[0].section_loads(z)[1]))
+    for name, unit, what, values in (
+        ("deflection", "kg-0.5", "deflection", deflections),
+        ("moment", "N kg-0.5", "bending moment", moments),
+    ):
+        variables[f"rotor_whirl_{name}"] = (
+            ("rotor", "whirl_mode", "place"),
+            padded(values),
+            _unit(unit, f"largest {what} over a cycle of the whirl modes at operation, of unit norm in mass"),
+        )
+
+
+def _largest_over_cycle(x: ComplexArray, y: ComplexArray) -> FloatArray:
+    """Half the long axis of an ellipse: what turns one way and what turns the other, where they meet."""
+    return np.asarray((np.abs(x + 1j * y) + np.abs(x - 1j * y)) / 2.0)
 
 
 def padded(arrays: Sequence[FloatArray]) -> FloatArray:

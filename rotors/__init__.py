@@ -56,6 +56,7 @@ from .torsional_response import Torque, TorsionalDashpot, TorsionalResponse, tor
 from .unbalance import BowShape, SynchronousResponse, bow_shape, unbalance_response
 from .whirl import WhirlModes, solve_whirl
 from .whirl_certificate import WhirlCertificate
+from .whirl_energy import StrainShares
 
 __all__ = [
     "AxialModes",
@@ -90,6 +91,7 @@ __all__ = [
     "SpatialMotion",
     "StaticDeflection",
     "StaticForce",
+    "StrainShares",
     "SynchronousResponse",
     "Torque",
     "TorsionalDashpot",

@@ -191,8 +191,8 @@ class Bearing:
     def plane_support(self, direction: int) -> RadialSupport:
         """The bearing's own direct spring in x (``direction`` 0) or y (1)."""
         # The section's slope in x is its rotation about y; the slope in y is minus that about x.
-        tilt = float(self.spatial_stiffness[4 - direction, 4 - direction])
-        return RadialSupport(self.at, float(self.radial_stiffness[direction, direction]), tilt)
+        direct = self._constant(self.stiffness).diagonal().tolist()
+        return RadialSupport(self.at, direct[direction], direct[4 - direction] if len(direct) == 5 else 0.0)
 
     def _constant(self, matrix: FloatArray) -> FloatArray:
         if matrix.ndim == 3:

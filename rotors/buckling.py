@@ -62,7 +62,7 @@ def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> flo
 
 def require_unbuckled(rotor: Rotor, supports: Sequence[RadialSupport]) -> None:
     """Raise `RotorError` saying at what factor, if the rotor's own axial forces buckle it."""
-    if any(isinstance(part, Segment) and part.axial_force < 0.0 for part in rotor.segments):
+    if rotor.is_compressed:
         buckled = _has_buckled(rotor, supports, 1.0)
         factor = buckling_factor(rotor, supports) if buckled else np.inf
         require(

@@ -140,6 +140,10 @@ class Chain:
         fraction = (positions - left) / (self.nodes[piece + 1] - left)
         return piece, np.minimum(np.maximum(fraction, 0.0), 1.0)
 
+    def on_springs(self, stiffness: FloatArray) -> "Chain":
+        """The same pieces with other springs at the nodes, (p + 1, n), in scaled units."""
+        return replace(self, node_stiffness=stiffness)
+
     def node_at(self, position: float) -> int:
         """Index of the node at a position (m), which must be one of the nodes."""
         return station_index(self.nodes, position)
@@ -170,13 +174,13 @@ class Chain:
 
         An axial force works on a shaft that tilts, so that no tilt is free where there is one.
         """
+        if self.size == 2 and np.count_nonzero(self.node_stiffness[:, 0]) > 1:
+            return np.zeros((0, self.nodes.size, 2))
         place = (self.nodes - self.nodes[0]) / self.length_unit
         if self.size == 1:
             free = not bool((self.node_stiffness > 0.0).any())
             return np.ones((1, place.size, 1))[: int(free)]
         held = place[self.node_stiffness[:, 0] > 0.0]
-        if held.size > 1:
-            return np.zeros((0, place.size, 2))
         slope, constant = np.ones_like(place), np.zeros_like(place)
         loaded = bool(self.table.coefficients[:, 5].any())
         tilt_held = loaded or bool((self.node_stiffness[:, 1] > 0.0).any())

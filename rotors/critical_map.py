@@ -25,7 +25,7 @@ DEFAULT_CRITICALS = 4
 
 @dataclass(frozen=True)
 class CriticalSpeedMap:
-    """Forward critical speeds over bearing stiffness.
+    """Critical speeds over bearing stiffness.
 
     Attributes
     ----------
@@ -33,10 +33,13 @@ class CriticalSpeedMap:
         (s,): of every bearing, N/m.
     speeds
         (s, c): ascending, rad/s; NaN where a disc's polar inertia leaves fewer.
+    direction
+        1 of forward whirl, −1 of backward.
     """
 
     stiffnesses: FloatArray
     speeds: FloatArray
+    direction: int = 1
 
 
 def critical_speed_map(
@@ -85,4 +88,4 @@ def critical_speed_map(
         motion, _ = certified_criticals(rotor, held, [one], None, count)
         speeds = np.sort(motion.eigenvalues.imag)
         rows[k, : speeds.size] = speeds
-    return CriticalSpeedMap(values, rows)
+    return CriticalSpeedMap(values, rows, direction)

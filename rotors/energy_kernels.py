@@ -35,16 +35,18 @@ def energy_weights(
     nodal = (pieces + 1) * n
     mass, turning = np.zeros(motion_size + nodal), np.zeros(motion_size + nodal)
     strain = np.zeros(strain_size + nodal)
-    value = np.empty(given.shape[1])
-    at_motion, at_strain = 0, 0
-    for piece in range(pieces):
-        e = element[piece]
+    values = np.empty((lengths.size, points, given.shape[1]))
+    for e in range(lengths.size):
         for g in range(points):
-            for row in range(value.size):
+            for row in range(given.shape[1]):
                 total = 0.0
                 for j in range(given.shape[2] - 1, -1, -1):
                     total = total * (2.0 * fractions[g] - 1.0) + given[e, row, j]
-                value[row] = total * lengths[e] * weights[g]
+                values[e, g, row] = total * lengths[e] * weights[g]
+    at_motion, at_strain = 0, 0
+    for piece in range(pieces):
+        for g in range(points):
+            value = values[element[piece], g]
             if n == 2:
                 mass[at_motion], mass[at_motion + 1] = value[2], value[3]
                 # A round section's polar moment of area is twice its diametral one.

@@ -13,6 +13,7 @@ term J₀ from the Wittrick–Williams count and bounds the growth of any transf
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -81,17 +82,26 @@ class Line:
         return int(np.count_nonzero((self.node_inertia > 0.0) & ~np.isinf(self.node_stiffness)))
 
     def likely_frequency(self, count: int) -> float:
-        """About the ``count``-th natural frequency of the bare shaft, by its waves, or a scale of it; rad/s."""
-        heavy = self.inertia[self.kind, 0]
-        if not bool(heavy.any()):
+        """About the ``count``-th natural frequency of the bare shaft, by its waves, or a scale of it; rad/s.
+
+        Held by springs and without discs: a free shaft's lies lower, that of a clamped one higher.
+        """
+        shear, bending = self._wave_sums
+        if shear == 0.0:
             # In the chain's units stiffness is about one.
             return float(np.pi / np.sqrt(max(self.node_inertia[:, 0].sum(), 1e-300)))
-        phase = (count + 0.5) * np.pi
+        phase = (count - 0.5) * np.pi
         # Waves are no longer than those of bending without shear, nor than those of shear without bending.
-        waves = [phase / (self.lengths @ np.sqrt(heavy / self.stiffness[self.kind, 0]))]
-        if self.stiffness.shape[1] == 2:
-            waves.append((phase / (self.lengths @ (heavy / self.stiffness[self.kind, 1]) ** 0.25)) ** 2)
-        return float(min(waves))
+        return min(phase / shear, (phase / bending) ** 2) if bending else phase / shear
+
+    @cached_property
+    def _wave_sums(self) -> tuple[float, float]:
+        """∫ (m / k)^½ dz with the stiffness against shear (or of the rod), and ∫ (m / k)^¼ dz with that of bending."""
+        heavy = self.inertia[self.kind, 0]
+        shear = self.lengths @ np.sqrt(heavy / self.stiffness[self.kind, 0])
+        bent = self.stiffness.shape[1] == 2
+        bending = self.lengths @ (heavy / self.stiffness[self.kind, 1]) ** 0.25 if bent else 0.0
+        return float(shear), float(bending)
 
     def cut(self, highest: float) -> Chain:
         """Chain good up to ``highest`` rad/s.
@@ -134,17 +144,24 @@ class Line:
             stations=self.stations,
         )
 
-    def held(self, places: Sequence[float], stiffness: Sequence[tuple[float, ...]]) -> "Line":
-        """The same line with springs to ground at some places (m), n stiffnesses (in scaled units) each."""
+    def held(self, places: Sequence[float], *springs: Sequence[tuple[float, ...]]) -> "list[Line]":
+        """The same line with springs to ground at some places (m), n stiffnesses (in scaled units) each.
+
+        There is one line for each set of springs; all share their places.
+        """
         if not places:
-            return self
+            return [self] * len(springs)
         nodes = merged_positions(self.nodes, places)
         line = self if nodes.size == self.nodes.size else self.with_nodes(nodes)
-        node_stiffness = line.node_stiffness.copy()
-        for place, spring in zip(places, stiffness, strict=True):
-            node_stiffness[station_index(nodes, place)] += spring
         stations = merged_positions(self.stations, places)
-        return replace(line, node_stiffness=node_stiffness, stations=stations)
+        index = [station_index(nodes, place) for place in places]
+        lines = []
+        for stiffness in springs:
+            node_stiffness = line.node_stiffness.copy()
+            for node, spring in zip(index, stiffness, strict=True):
+                node_stiffness[node] += spring
+            lines.append(replace(line, node_stiffness=node_stiffness, stations=stations))
+        return lines
 
     def with_nodes(self, nodes: FloatArray) -> "Line":
         """The same line cut at nodes (m) that include its own; new ones are bare, and no stations."""
@@ -166,3 +183,11 @@ class Line:
             node_stiffness=spread(nodes.size, index, self.node_stiffness),
             node_polar=spread(nodes.size, index, self.node_polar),
         )
+
+
+def cut_together(lines: Sequence[Line], highest: float) -> list[Chain]:
+    """Chains good up to ``highest`` rad/s of lines that differ by their springs only: the first is cut for all."""
+    first = lines[0].cut(highest)
+    index = first.nodes.searchsorted(lines[0].nodes)
+    springs = [spread(first.nodes.size, index, line.node_stiffness) for line in lines[1:]]
+    return [first, *(first.on_springs(stiffness) for stiffness in springs)]

@@ -11,14 +11,13 @@ from .buckling import require_unbuckled
 from .certificate import ModeCertificate
 from .chain import Chain
 from .errors import require, require_count, require_finite
-from .lines import Line
+from .lines import Line, cut_together
 from .planar_basis import DEFAULT_COUNT
 from .projection import slowest
-from .root_count import count_below
-from .rotor_lines import bending_line
-from .search import certified_modes, chain_that_holds
+from .root_count import counts_below, isolate
+from .rotor_lines import bending_lines
+from .search import chain_that_holds, limit_above, proved_modes
 from .shaft import Rotor
-from .shapes import SAME_ROOT
 from .whirl import solve_whirl
 from .whirl_certificate import WhirlCertificate
 
@@ -26,8 +25,6 @@ FloatArray = npt.NDArray[np.float64]
 
 # Bisections after which roots of both planes that are not parted yet are one.
 MOST_HALVINGS = 50
-# Part of the frequency scale below which there are rigid motions only.
-STANDSTILL = 1e-12
 
 
 @dataclass(frozen=True)
@@ -84,62 +81,64 @@ def rest_frequencies(
     planes = [tuple(bearing.plane_support(direction) for bearing in held) for direction in (0, 1)]
     for supports in planes:
         require_unbuckled(rotor, supports)
-    lines = [bending_line(rotor, supports) for supports in planes]
+    lines = bending_lines(rotor, planes)
+    alike = planes[0] == planes[1]
     if frequency_limit is not None:
         require(count is None, "frequency_limit and count", (frequency_limit, count), "one of the two")
         require_finite("frequency_limit", frequency_limit, positive=True)
-        chains = [line.cut(frequency_limit) for line in lines]
-        shares = [count_below(chain, frequency_limit) for chain in chains]
+        limit, chains = frequency_limit, cut_together(lines[:1] if alike else lines, frequency_limit)
+        expected = counts_below(chains, limit)
+        found = [isolate(chain, number, limit) for chain, number in zip(chains, expected, strict=True)]
     else:
-        chains, shares = _shares(lines, wanted or DEFAULT_COUNT)
-    alike = planes[0] == planes[1]
+        chains, shares = _shares(rotor.free_lines.bending, lines, wanted or DEFAULT_COUNT)
+        if alike:
+            chains, shares = chains[:1], shares[:1]
+        found = [isolate(chain, share, chain.highest) for chain, share in zip(chains, shares, strict=True)]
+        both = np.sort(np.concatenate(found * 2 if alike else found))
+        if count is not None:
+            most = f"at most {both.size}, all this lumped rotor has"
+            require(count <= both.size, "count of frequencies", count, most)
+        limit = limit_above(float(both[min(wanted or DEFAULT_COUNT, both.size) - 1]), chains[0])
+        expected = counts_below(chains, limit)
+        found = [one[:number] for one, number in zip(found, expected, strict=True)]
     solved = [
-        certified_modes(chain, share, frequency_limit)
-        for chain, share in list(zip(chains, shares, strict=True))[: 1 if alike else 2]
-        if share
+        proved_modes(chain, frequencies, number, limit)
+        for chain, frequencies, number in zip(chains, found, expected, strict=True)
+        if number
     ]
-    merged = np.sort(
-        np.concatenate([modes.frequencies for modes in (solved * 2 if alike else solved)] or [np.zeros(0)])
-    )
-    if count is not None:
-        expected = f"at most {merged.size}, all this lumped rotor has"
-        require(count <= merged.size, "count of frequencies", count, expected)
-    if frequency_limit is not None:
-        limit = frequency_limit
-    else:
-        # Just above the last one wanted, and taking in its twins; rigid motions' zeros are below every limit.
-        last = float(merged[min(wanted or DEFAULT_COUNT, merged.size) - 1])
-        limit = last * (1.0 + 2.0 * SAME_ROOT) if last > 0.0 else STANDSTILL * chains[0].highest
-        merged = merged[merged <= limit]
+    if alike:
+        solved, expected = solved * 2, expected * 2
+    frequencies = np.sort(np.concatenate([modes.frequencies for modes in solved] or [np.zeros(0)]))
     certificate = ModeCertificate(
         limit=limit,
-        expected=sum(count_below(chain, limit) for chain in chains),
-        found=merged.size,
+        expected=sum(expected),
+        found=frequencies.size,
         max_residual=max((modes.certificate.max_residual for modes in solved), default=0.0),
         orthonormality=max((modes.certificate.orthonormality for modes in solved), default=0.0),
     )
-    return RestFrequencies(merged, certificate)
+    return RestFrequencies(frequencies, certificate)
 
 
 def _is_planar(bearing: Bearing) -> bool:
     """Whether each plane has its own springs, and the ground behind them."""
-    stiffness = bearing.spatial_stiffness
-    return bearing.pedestal is None and bool((stiffness[~np.eye(5, dtype=np.bool_)] == 0.0).all())
+    stiffness = bearing.stiffness
+    return bearing.pedestal is None and np.count_nonzero(stiffness) == np.count_nonzero(stiffness.diagonal())
 
 
-def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
+def _shares(bare: Line, lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
     """Chains of the planes, and how many modes each gives to the lowest ``count`` of both.
 
     Of a lumped rotor that has fewer, all.
     """
-    available = [line.available_modes for line in lines]
+    # Distributed mass has no end of modes; of lumped ones, constraints take some in one plane or the other.
+    available = [line.available_modes for line in lines] if bare.available_modes < np.inf else [np.inf]
     if sum(available) <= count:
         most = [int(number) for number in available]
         return [chain_that_holds(line, number) for line, number in zip(lines, most, strict=True)], most
-    low, high = 0.0, lines[0].likely_frequency((count + 1) // 2)
+    low, high = 0.0, bare.likely_frequency((count + 1) // 2)
     while True:
-        chains = [line.cut(high) for line in lines]
-        shares = [count_below(chain, high) for chain in chains]
+        chains = cut_together(lines, high)
+        shares = counts_below(chains, high)
         if sum(shares) >= count:
             break
         low, high = high, 2.0 * high
@@ -148,7 +147,7 @@ def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
         if sum(shares) <= count + 1:
             break
         middle = 0.5 * (low + high)
-        fewer = [count_below(chain, middle) for chain in chains]
+        fewer = counts_below(chains, middle)
         if sum(fewer) >= count:
             high, shares = middle, fewer
         else:

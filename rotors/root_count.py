@@ -29,6 +29,8 @@ were combined on the way: it is a smooth function of ω between −1 and 1, zero
 the count's parity as its sign. Where the count shows one root between two frequencies, steps on it converge fast.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -44,7 +46,8 @@ LOWEST = 1e-16
 
 def chain_arrays(chain: Chain) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
     """A chain as the compiled functions take it."""
-    return chain.table.lengths, chain.table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
+    table = chain.table
+    return table.lengths, table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
 
 
 def count_below(chain: Chain, frequency: float) -> int:
@@ -57,9 +60,14 @@ def count_below(chain: Chain, frequency: float) -> int:
     frequency
         Positive, rad/s. Rigid motions at zero count as below.
     """
+    return counts_below([chain], frequency)[0]
+
+
+def counts_below(chains: Sequence[Chain], frequency: float) -> list[int]:
+    """The same of several chains."""
     from .count_kernels import count_of
 
-    return int(count_of(frequency, *chain_arrays(chain)))
+    return [int(count_of(frequency, *chain_arrays(chain))) for chain in chains]
 
 
 def isolate(chain: Chain, wanted: int, limit: float) -> FloatArray:
@@ -95,4 +103,5 @@ def isolate(chain: Chain, wanted: int, limit: float) -> FloatArray:
             "that are absurdly soft, or stiff beyond a constraint (use an infinite stiffness there)"
         )
     # Brackets of one multiple root may end in either order, a rounding apart.
-    return np.concatenate([np.zeros(zeros), np.maximum.accumulate(found)])
+    found = np.maximum.accumulate(found)
+    return np.concatenate([np.zeros(zeros), found]) if zeros else found

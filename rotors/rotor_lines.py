@@ -171,13 +171,19 @@ class FreeLines:
 
 def bending_line(rotor: "Rotor", supports: Sequence[RadialSupport] = ()) -> Line:
     """A rotor's bending in one plane on springs."""
-    for support in supports:
-        rotor.require_on_shaft(f"rotor {rotor.name!r} support", support.at)
+    return bending_lines(rotor, [supports])[0]
+
+
+def bending_lines(rotor: "Rotor", planes: Sequence[Sequence[RadialSupport]]) -> list[Line]:
+    """A rotor's bending in several planes, whose springs stand at the same places."""
+    places = [support.at for support in planes[0]]
+    for place in places:
+        rotor.require_on_shaft(f"rotor {rotor.name!r} support", place)
     free = rotor.free_lines.bending
     # A displacement unit squared is the reciprocal of a unit of stiffness.
     shift, tilt = (free.displacement_unit**2).tolist()
-    springs = [(support.stiffness * shift, support.tilt_stiffness * tilt) for support in supports]
-    return free.held([support.at for support in supports], springs)
+    springs = [[(one.stiffness * shift, one.tilt_stiffness * tilt) for one in supports] for supports in planes]
+    return free.held(places, *springs)
 
 
 def bending_chain(rotor: "Rotor", supports: Sequence[RadialSupport], highest: float) -> Chain:
@@ -191,7 +197,7 @@ def rod_line(rotor: "Rotor", springs: Sequence[AxisSpring], motion: RodMotion) -
         rotor.require_on_shaft(f"rotor {rotor.name!r} spring", spring.at)
     free = rotor.free_lines.torsion if motion == "torsion" else rotor.free_lines.axial
     unit = float(free.displacement_unit[0]) ** 2
-    return free.held([spring.at for spring in springs], [(spring.stiffness * unit,) for spring in springs])
+    return free.held([spring.at for spring in springs], [(spring.stiffness * unit,) for spring in springs])[0]
 
 
 def axial_chain_on(rotor: "Rotor", bending: Chain) -> Chain:

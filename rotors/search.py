@@ -17,6 +17,8 @@ from .shapes import SAME_ROOT, mode_fields
 FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_COUNT = 10
+# Part of the frequency scale below which there are rigid motions only.
+STANDSTILL = 1e-12
 # A first guess this far off would mean a model of no finite frequency at all.
 MOST_DOUBLINGS = 200
 
@@ -61,16 +63,30 @@ def certified_modes(chain: Chain, wanted: int, limit: float | None = None) -> Fo
     IncompleteModesError
         The modes fail their own proof.
     """
-    expected, frequencies = wanted, isolate(chain, wanted, limit or chain.highest)
+    frequencies = isolate(chain, wanted, limit or chain.highest)
     if limit is None:
-        # Certify a little above the last mode, and take in its twins, if it has any.
-        limit = min(max(float(frequencies[-1]) * (1.0 + 2.0 * SAME_ROOT), 1e-12 * chain.highest), chain.highest)
-        expected = count_below(chain, limit)
-        if expected > wanted:
-            frequencies = isolate(chain, expected, chain.highest)
-    fields, mixture = mode_fields(chain, frequencies)
-    certificate = certify(limit, expected, frequencies, *fields.energies(mixture))
-    return FoundModes(frequencies, fields, mixture, certificate)
+        limit = limit_above(float(frequencies[-1]), chain)
+        wanted = count_below(chain, limit)
+    return proved_modes(chain, frequencies, wanted, limit)
+
+
+def limit_above(last: float, chain: Chain) -> float:
+    """A limit (rad/s) a little above the last mode, which takes in its twins, if it has any."""
+    return min(max(last * (1.0 + 2.0 * SAME_ROOT), STANDSTILL * chain.highest), chain.highest)
+
+
+def proved_modes(chain: Chain, frequencies: FloatArray, expected: int, limit: float) -> FoundModes:
+    """Modes of a chain at its lowest frequencies (m,), or at the ``expected`` lowest where those lack twins.
+
+    Raises
+    ------
+    IncompleteModesError
+        The modes fail their own proof.
+    """
+    if expected > frequencies.size:
+        frequencies = isolate(chain, expected, chain.highest)
+    fields, mixture, mass, stiffness = mode_fields(chain, frequencies)
+    return FoundModes(frequencies, fields, mixture, certify(limit, expected, frequencies, mass, stiffness))
 
 
 def chain_that_holds(line: Line, wanted: int) -> Chain:

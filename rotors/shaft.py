@@ -140,6 +140,11 @@ class Rotor:
         """Total mass, kg."""
         return math.fsum([part.mass for part in self.segments] + [disc.mass for disc in self.discs])
 
+    @cached_property
+    def is_compressed(self) -> bool:
+        """Whether an axial force compresses some part of the shaft."""
+        return any(isinstance(part, Segment) and part.axial_force < 0.0 for part in self.segments)
+
     @property
     def polar_inertia(self) -> float:
         """Total moment of inertia about the axis, kg·m²."""

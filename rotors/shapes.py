@@ -26,6 +26,8 @@ FloatArray = npt.NDArray[np.float64]
 ONE_NULL_SPACE = 2e-12
 # Roots closer than this are twins, of which a count of modes takes in both or none.
 SAME_ROOT = 1e-10
+# Of a rigid motion in an elastic mode, as a part of its norm.
+LEAST_SHARE = 1e-12
 # Shapes of roots closer than this mix in rounding, and are separated again by their energies.
 NEAR_ROOT = 1e-4
 
@@ -74,7 +76,7 @@ def rigid_states(chain: Chain) -> FloatArray:
 
 def shared_roots(elastic: FloatArray) -> FloatArray:
     """Ascending natural frequencies (m,), those that share one null space at their mean."""
-    if not _has_neighbours(elastic):
+    if not has_neighbours(elastic):
         return elastic
     shared = elastic.copy()
     for group in groups(elastic, ONE_NULL_SPACE):
@@ -82,13 +84,13 @@ def shared_roots(elastic: FloatArray) -> FloatArray:
     return shared
 
 
-def _has_neighbours(elastic: FloatArray) -> bool:
+def has_neighbours(elastic: FloatArray) -> bool:
     """Whether some roots are near each other, as most are not."""
-    return bool((elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]).any())
+    return bool(np.count_nonzero(elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]))
 
 
-def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArray]:
-    """Fields of the modes at the given natural frequencies, and the mixture that makes them orthonormal.
+def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArray, FloatArray, FloatArray]:
+    """Fields of the modes at the given natural frequencies, the mixture that makes them orthonormal, and its energies.
 
     Parameters
     ----------
@@ -102,27 +104,39 @@ def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArr
     fields
         m fields.
     mixture
-        (m, m): modes are ``mixture @ fields``; block diagonal over groups of near roots.
+        (m, m): modes are ``mixture @ fields``; block diagonal over groups of near roots, but for the rigid motions'
+        share that is taken out of the others where rounding has left one.
+    mass, stiffness
+        (m, m): integrated anew where modes are combinations of fields, so that what cancels keeps its digits.
     """
     from .shape_kernels import null_states
 
     zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
-    shared, elastic = frequencies.copy(), frequencies[zeros:]
-    shared[zeros:] = shared_roots(elastic)
-    near = groups(elastic, NEAR_ROOT) if _has_neighbours(elastic) else []
-    states = null_states(shared[zeros:] ** 2, *chain_arrays(chain))
+    shared, elastic, near = frequencies, frequencies[zeros:], []
+    if has_neighbours(elastic):
+        shared, near = np.concatenate([frequencies[:zeros], shared_roots(elastic)]), groups(elastic, NEAR_ROOT)
+    squared = shared**2
+    states = null_states(squared[zeros:], *chain_arrays(chain))
     if zeros:
         states = np.concatenate([rigid_states(chain)[:zeros], states])
-    fields = Fields(chain, shared**2, states)
+    fields = Fields(chain, squared, states)
     mass, stiffness = fields.energies()
     scale = 1.0 / np.sqrt(mass.diagonal())
     scale[:zeros] = 1.0
     mixture = np.diag(scale)
+    # Beside a very heavy disc a rigid motion's share in an elastic shape is all rounding, but counts.
+    rigid = scale[zeros:, None] * mass[zeros:, :zeros]
+    leaning = zeros > 0 and np.abs(rigid).max(initial=0.0) > LEAST_SHARE
+    if not near and not leaning:
+        both = scale[:, None] * scale
+        return fields, mixture, both * mass, both * stiffness
     for group in near:
         if group.stop - group.start > 1:
             part = slice(group.start + zeros, group.stop + zeros)
             mixture[part, part] = ritz_vectors(mass[part, part], stiffness[part, part])[1].T
-    return fields, mixture
+    if leaning:
+        mixture[zeros:, :zeros] = -mixture[zeros:, zeros:] @ mass[zeros:, :zeros]
+    return fields, mixture, *fields.energies(mixture)
 
 
 def ritz_vectors(mass: FloatArray, stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -30,6 +30,10 @@ class SpatialMotion:
         (w,) complex: λ and Ω, rad/s.
     forward, backward
         (w, p + 1, 4) complex: r±, β± and the forces that belong to them, right of every node, in scaled units.
+    axial
+        (w, p + 1, 2) complex: the same of z, which is at rest where no bearing ties it to the others.
+    rod
+        Pieces of the shaft's axial motion, where there is any.
     """
 
     chain: Chain
@@ -37,6 +41,8 @@ class SpatialMotion:
     speeds: ComplexArray
     forward: ComplexArray
     backward: ComplexArray
+    axial: ComplexArray
+    rod: Chain | None = None
 
     @classmethod
     def of(
@@ -49,14 +55,14 @@ class SpatialMotion:
     ) -> "SpatialMotion":
         """Motions from solutions (w, order) and their unit of force (w,); blocks that the chain lacks are at rest."""
         states = chain.states(solutions, scale)
-        parts = {block: np.zeros((*states.shape[:2], 4), dtype=np.complex128) for block in (1, -1)}
+        parts = {block: np.zeros((*states.shape[:2], 2 * len(of)), np.complex128) for block, of in MEMBERS.items()}
         first = 0
         for block in chain.blocks:
             local = first + np.arange(len(MEMBERS[block]))
-            if block:
-                parts[block] = states[:, :, np.concatenate([local, chain.size + local])]
+            parts[block] = states[:, :, np.concatenate([local, chain.size + local])]
             first += local.size
-        return cls(chain.bending, eigenvalues, speeds, parts[1], parts[-1])
+        rod = chain.axial if 0 in chain.blocks else None
+        return cls(chain.bending, eigenvalues, speeds, parts[1], parts[-1], parts[0], rod)
 
     @property
     def count(self) -> int:
@@ -72,6 +78,7 @@ class SpatialMotion:
             speeds=self.speeds[chosen],
             forward=self.forward[chosen],
             backward=self.backward[chosen],
+            axial=self.axial[chosen],
         )
 
     def joined(self, other: "SpatialMotion") -> "SpatialMotion":
@@ -82,16 +89,22 @@ class SpatialMotion:
             speeds=np.concatenate([self.speeds, other.speeds]),
             forward=np.concatenate([self.forward, other.forward]),
             backward=np.concatenate([self.backward, other.backward]),
+            axial=np.concatenate([self.axial, other.axial]),
         )
 
     def plus(self, other: "SpatialMotion") -> "SpatialMotion":
         """The sum of two answers to the same frequencies."""
-        return replace(self, forward=self.forward + other.forward, backward=self.backward + other.backward)
+        return replace(
+            self,
+            forward=self.forward + other.forward,
+            backward=self.backward + other.backward,
+            axial=self.axial + other.axial,
+        )
 
     def scaled(self, factors: ComplexArray) -> "SpatialMotion":
         """Every motion times a number, (w,)."""
         by = factors[:, None, None]
-        return replace(self, forward=by * self.forward, backward=by * self.backward)
+        return replace(self, forward=by * self.forward, backward=by * self.backward, axial=by * self.axial)
 
     def shares(self) -> FloatArray:
         """∫ ρA |r±|² + ρI |β±|² dz with the nodes' own, of the forward and the backward part, (w, 2), kg·m²."""
@@ -133,6 +146,21 @@ class SpatialMotion:
         forward, backward = self.at(z)
         unit = self.chain.displacement_unit[1]
         return planes(forward[:, :, 1] * unit, backward[:, :, 1] * unit)
+
+    def section_loads(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
+        """Complex shear forces (N) and bending moments (N·m) at positions z (m), both (2, w, len(z)) over x and y."""
+        forward, backward = self.at(z)
+        unit = self.chain.displacement_unit
+        shear = planes(forward[:, :, 2] / unit[0], backward[:, :, 2] / unit[0])
+        moment = planes(forward[:, :, 3] / unit[1], backward[:, :, 3] / unit[1])
+        return np.array(shear), np.array(moment)
+
+    def axial_at(self, z: npt.ArrayLike) -> ComplexArray:
+        """Axial states (w, len(z), 2) at positions z (m) of a shaft that moves along its axis, in scaled units."""
+        assert self.rod is not None
+        pieces, fractions = self.rod.places(require_positions(self.rod.nodes, z))
+        transfers = self.rod.transfers_to(pieces, fractions, -(self.eigenvalues**2))
+        return np.asarray(np.einsum("zwij,wzj->wzi", transfers, self.axial[:, pieces]))
 
     def _inside(self, block: int, states: ComplexArray, pieces: IntArray, fractions: FloatArray) -> ComplexArray:
         transfers = self.chain.transfers_to(pieces, fractions, *self._squared(block))

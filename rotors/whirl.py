@@ -19,13 +19,13 @@ from .exact_roots import ExactRoots, Speed, constant_speed
 from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
 from .projection import Projection, basis_for
-from .segment import Segment
 from .shaft import Rotor
 from .spatial_chain import SpatialChain, spatial_chain, whirl_reach
 from .spatial_field import SpatialMotion
 from .spatial_ties import block_sets
 from .whirl_certificate import NO_OSCILLATION, WhirlCertificate, certified_roots, oscillating
 from .whirl_count import is_conservative
+from .whirl_energy import StrainShares, strain_shares
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -54,14 +54,17 @@ class WhirlModes:
         counter-clockwise (forward for positive speed), −1 circular and clockwise, 0 planar.
     certificate
         Proof that none is missing.
+    bearings
+        What the shapes stand on, with the coefficients of this speed.
     motion
-        The exact shapes, of unit norm in the inertias of the nodes, m per √kg.
+        The exact shapes, of unit norm in the inertias of shaft and nodes, m per √kg.
     """
 
     speed: float
     eigenvalues: ComplexArray
     direction: FloatArray
     certificate: WhirlCertificate
+    bearings: tuple[Bearing, ...] = field(repr=False)
     motion: SpatialMotion = field(repr=False)
 
     @property
@@ -87,6 +90,37 @@ class WhirlModes:
     def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Complex x and y of every mode at positions z (m), both (w, len(z)), by the exact field."""
         return self.motion.evaluate(z)
+
+    def section_loads(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
+        """Complex shear forces and bending moments of every mode at positions z (m), both (2, w, len(z)) over x and y.
+
+        f = κGA (x' − β) + P x' in N and EI β' in N·m, for the motion that `evaluate` gives; just right of a position,
+        and at the shaft's right end just left of it. Over a cycle the bending moment's vector goes round an ellipse.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        return self.motion.section_loads(z)
+
+    def strain_energy_shares(self, edges: npt.ArrayLike) -> StrainShares:
+        """Parts of every mode's strain energy, in the mean of a cycle, in lengths of shaft and what holds it.
+
+        The mean is that of the swinging ¼ q̂ᴴKq̂ with growth or decay left out; of a bearing the symmetric part of its
+        stiffness stores energy (`rotors.whirl_energy`).
+
+        Parameters
+        ----------
+        edges
+            (e + 1,): ascending positions that part the shaft, m: `Rotor.joints` for its segments.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        return strain_shares(self.motion, self.bearings, edges)
 
     def direction_at(self, z: npt.ArrayLike) -> FloatArray:
         """Whirl at positions z (m), (w, len(z)): 1 circular counter-clockwise, 0 planar, −1 circular clockwise."""
@@ -149,6 +183,7 @@ def solve_whirl(
         eigenvalues=motion.eigenvalues,
         direction=(shares[:, 0] - shares[:, 1]) / shares.sum(axis=1),
         certificate=certificate,
+        bearings=tuple(constant),
         motion=motion.scaled(1.0 / np.sqrt(shares.sum(axis=1)).astype(np.complex128)),
     )
 
@@ -207,8 +242,7 @@ def certified_whirl(
 def is_undriven(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
     """Whether roots may be counted by inertia: nothing damps or drives, and all stiffness is positive."""
     # Under compression the shaft's own stiffness may fail to be.
-    compressed = any(isinstance(part, Segment) and part.axial_force < 0.0 for part in rotor.segments)
-    return is_conservative(bearings) and not compressed
+    return not rotor.is_compressed and is_conservative(bearings)
 
 
 def _reach_behind(ascending: FloatArray, count: int) -> float:

@@ -21,7 +21,14 @@ Inside, lengths are in m, masses in kg, forces in N, angles in rad, speeds in ra
 """
 
 from gearwhine.case.analysed_speeds import campbell_speeds, response_speeds, table_range, whirl_speeds
-from gearwhine.case.analysis import Probe, RotorAnalysis, StiffnessMap, UnbalanceResponse
+from gearwhine.case.analysis import (
+    Probe,
+    RotorAnalysis,
+    StiffnessMap,
+    TorsionalAnalysis,
+    TorsionProbe,
+    UnbalanceResponse,
+)
 from gearwhine.case.attachments import (
     AxialDashpots,
     AxialSprings,
@@ -169,6 +176,8 @@ __all__ = [
     "TorqueHistory",
     "TorqueLine",
     "TorqueRipple",
+    "TorsionProbe",
+    "TorsionalAnalysis",
     "Transient",
     "Unbalance",
     "UnbalanceResponse",

@@ -11,6 +11,8 @@ from gearwhine.case.draft import Draft
 from gearwhine.case.problems import NOTHING, Finding, Location, did_you_mean, key_of, look_up, show_value
 
 _PROBES = ("rotor_analysis", "unbalance_response", "probes")
+_TORSION = ("rotor_analysis", "torsional_response")
+_TORSION_PROBES = (*_TORSION, "probes")
 _NAMED = (
     ("rotor",),
     ("bearing",),
@@ -23,6 +25,7 @@ _NAMED = (
     ("housing", "sensor"),
     ("housing", "region"),
     _PROBES,
+    _TORSION_PROBES,
 )
 
 
@@ -44,8 +47,9 @@ def check_names(draft: Draft) -> Iterator[Finding]:
     for index, pair in draft.raw_entries("gear_pair"):
         for key in ("driver", "driven"):
             yield from _check_reference(pair, ("gear_pair", index, key), "gear", gears)
-    for index, probe in draft.raw_entries(*_PROBES):
-        yield from _check_reference(probe, (*_PROBES, index, "rotor"), "rotor", rotors)
+    for keys in (_PROBES, _TORSION_PROBES, (*_TORSION, "torques"), (*_TORSION, "springs")):
+        for index, entry in draft.raw_entries(*keys):
+            yield from _check_reference(entry, (*keys, index, "rotor"), "rotor", rotors)
     for index, output in draft.raw_entries("operation", "output"):
         shafts = rotors or gears
         yield from _check_reference(output, ("operation", "output", index, "rotor"), "rotor", shafts)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
+from gearwhine.case.analysis import HarmonicTorque, Probe, TorsionProbe, TorsionSpring
 from gearwhine.case.draft import Draft
 from gearwhine.case.housing import Seat
 from gearwhine.case.problems import Finding, Location
@@ -35,11 +36,11 @@ def check_shafts(draft: Draft) -> Iterator[Finding]:
             for place, at in enumerate(places):
                 yield from check_station(rotor, at, ("rotor", index, kind, place, "at"))
         yield from _check_bow(index, rotor)
-    for place, probe in enumerate(draft.analysis.unbalance_response.probes if draft.analysis is not None else ()):
-        watched = draft.rotor(probe.rotor)
-        if watched is not None:
-            location = ("rotor_analysis", "unbalance_response", "probes", place, "at")
-            yield from check_station(watched, probe.at, location)
+    for keys, entries in _analysed(draft):
+        for place, entry in enumerate(entries):
+            watched = draft.rotor(entry.rotor)
+            if watched is not None:
+                yield from check_station(watched, entry.at, ("rotor_analysis", *keys, place, "at"))
     for index, bearing in draft.bearings:
         supported = draft.rotor(bearing.rotor)
         if supported is None:
@@ -52,6 +53,20 @@ def check_shafts(draft: Draft) -> Iterator[Finding]:
         carrier = draft.rotor(gear.rotor)
         if carrier is not None and gear.at is not None:
             yield from check_station(carrier, gear.at, ("gear", index, "at"))
+
+
+def _analysed(
+    draft: Draft,
+) -> Iterator[tuple[tuple[str, str], Sequence[Probe | HarmonicTorque | TorsionSpring | TorsionProbe]]]:
+    """Yield what an analysis of rotors puts on their stations, with its keys."""
+    if draft.analysis is None:
+        return
+    yield ("unbalance_response", "probes"), draft.analysis.unbalance_response.probes
+    torsion = draft.analysis.torsional_response
+    if torsion is not None:
+        yield ("torsional_response", "torques"), torsion.torques
+        yield ("torsional_response", "springs"), torsion.springs
+        yield ("torsional_response", "probes"), torsion.probes
 
 
 def check_station(rotor: Rotor, at: float, location: Location) -> Iterator[Finding]:

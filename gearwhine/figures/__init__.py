@@ -33,6 +33,7 @@ from .sweep import draw_sweep
 from .system import draw_system
 from .system_campbell import draw_system_campbell
 from .tooth_pair import draw_tooth_pair
+from .torsional_response import TorsionalReading, draw_torsional_response
 from .transient import draw_transient
 from .transmissibility import draw_transmissibility
 from .transmission_error import draw_transmission_error
@@ -46,6 +47,7 @@ __all__ = [
     "ProbeResponse",
     "RotorAssembly",
     "ShapePair",
+    "TorsionalReading",
     "draw_campbell",
     "draw_comparison",
     "draw_contact_path",
@@ -71,6 +73,7 @@ __all__ = [
     "draw_system_campbell",
     "draw_tooth_pair",
     "draw_torsional_modes",
+    "draw_torsional_response",
     "draw_transient",
     "draw_transmissibility",
     "draw_transmission_error",

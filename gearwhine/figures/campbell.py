@@ -30,6 +30,7 @@ def draw_campbell(
     *,
     critical_speeds: npt.ArrayLike = (),
     critical_directions: npt.ArrayLike = (),
+    critical_orders: npt.ArrayLike = 1.0,
     orders: Sequence[float] = (1.0,),
     operating_speed: float | None = None,
     frequency_limit: float | None = None,
@@ -49,7 +50,9 @@ def draw_campbell(
     damping_ratios
         (s, w): ζ; negative is unstable.
     critical_speeds, critical_directions
-        (c,): rad/s, and 1 forward to −1 backward in the sense of rotation; marked on the line of 1×.
+        (c,): rad/s, and 1 forward to −1 backward in the sense of rotation.
+    critical_orders
+        (c,), or one of all: the multiple of the speed on whose line they are marked.
     orders
         Multiples of the speed of rotation that are drawn as lines.
     operating_speed
@@ -82,9 +85,13 @@ def draw_campbell(
     shown = np.flatnonzero((np.nan_to_num(values, nan=np.inf) < top).any(axis=0))
     values, ratios, senses = values[:, shown], ratios[:, shown], senses[:, shown]
 
-    criticals = _criticals(critical_speeds, critical_directions, low, min(high, top))
+    multiples = np.broadcast_to(critical_orders, np.shape(np.atleast_1d(critical_speeds)))
+    criticals = _criticals(critical_speeds, critical_directions, multiples, low, high, top)
     onset = stability_onset(turning, ratios)
-    labels = [Label(f"{RPM * speed:.4g}", RPM * speed, speed / _HERTZ, sense.color) for speed, sense in criticals]
+    labels = [
+        Label(f"{RPM * speed:.4g}", RPM * speed, multiple * speed / _HERTZ, sense.color)
+        for speed, sense, multiple in criticals
+    ]
     if onset is not None:
         speed, branch = onset
         height = float(np.interp(speed, turning, values[:, branch])) / _HERTZ
@@ -101,11 +108,10 @@ def draw_campbell(
     met = _draw_branches(axes, turning, values / _HERTZ, senses)
     for multiple in orders:
         _draw_order(axes, multiple, low, high, top)
-    for speed, sense in criticals:
+    for speed, sense, multiple in criticals:
         face = sense.color if sense.name == "forward" else "white"
-        axes.plot(
-            RPM * speed, speed / _HERTZ, marker="o", ms=4.5, color=sense.color, mfc=face, zorder=4, label="critical"
-        )
+        height = multiple * speed / _HERTZ
+        axes.plot(RPM * speed, height, marker="o", ms=4.5, color=sense.color, mfc=face, zorder=4, label="critical")
     draw_row(axes, row, _HEIGHT + 1.0)
     lowest = axes
     if is_damped:
@@ -157,9 +163,16 @@ def _top(speeds: FloatArray, frequencies: FloatArray, orders: Sequence[float]) -
     return min(wanted, 1.05 * float(highest[-1]))
 
 
-def _criticals(speeds: npt.ArrayLike, directions: npt.ArrayLike, low: float, high: float) -> list[tuple[float, Sense]]:
-    pairs = zip(np.atleast_1d(speeds).tolist(), np.atleast_1d(directions).tolist(), strict=True)
-    return [(speed, sense_of(direction)) for speed, direction in pairs if low <= speed <= high]
+def _criticals(
+    speeds: npt.ArrayLike, directions: npt.ArrayLike, orders: npt.ArrayLike, low: float, high: float, top: float
+) -> list[tuple[float, Sense, float]]:
+    """Critical speeds within the diagram, each with its sense and the order that it is of."""
+    rows = zip(*(np.atleast_1d(values).tolist() for values in (speeds, directions, orders)), strict=True)
+    return [
+        (speed, sense_of(direction), order)
+        for speed, direction, order in rows
+        if low <= speed <= high and order * speed <= top
+    ]
 
 
 def _runs(senses: list[Sense]) -> Iterator[tuple[slice, Sense]]:

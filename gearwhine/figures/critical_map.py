@@ -6,17 +6,34 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from gearwhine.figures.labels import Label, arrange, draw_row
-from gearwhine.figures.style import BLUE, FOOT, HEAD, INK, PANEL_WIDTH, RPM, SERIES, legend, panel, sheet, shortened
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    HEAD,
+    INK,
+    MM_PER_INCH,
+    NOTE,
+    PANEL_WIDTH,
+    RPM,
+    SERIES,
+    legend,
+    panel,
+    sheet,
+    shortened,
+)
 from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT = 92.0  # of the panel [mm of paper]
 _SAMPLES = 80  # of a bearing's table over speed
+_VALUE = np.array([9.0, 2.8])  # what a value takes [mm of paper]
+_POINTS_PER_MM = 72.0 / MM_PER_INCH
 _LINES = (("k_xx", "-"), ("k_yy", (0, (5, 2))))
 
 
@@ -38,8 +55,12 @@ def draw_critical_map(
     *,
     bearings: Sequence[Bearing] = (),
     operating_speed: float | None = None,
+    whirl: str = "forward",
 ) -> Figure:
-    """Draw critical speeds over bearing stiffness on logarithmic axes; where a bearing's own line meets them is marked.
+    """Draw critical speeds over bearing stiffness on logarithmic axes.
+
+    Where a bearing's own line meets a critical speed, that is marked with its value; and so is the stiffness at which
+    operation would be critical.
 
     Parameters
     ----------
@@ -53,6 +74,8 @@ def draw_critical_map(
         Whose k_xx and k_yy, over speed where they have tables, are laid over the map.
     operating_speed
         rad/s, drawn as a line.
+    whirl
+        Which the critical speeds are of, "forward" or "backward".
 
     Raises
     ------
@@ -74,25 +97,33 @@ def draw_critical_map(
     span = np.log(springs[-1] / springs[0])
     row = arrange(inside, [PANEL_WIDTH * np.log(label.x / springs[0]) / span for label in inside], PANEL_WIDTH)
 
-    note = "undamped critical speeds, all bearings of one stiffness; ○ where a bearing's own stiffness meets them"
-    figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + FOOT, title, note if curves else note.partition(";")[0])
+    notes = [f"{whirl} whirl, all bearings of one stiffness"]
+    notes += ["○ at a bearing's own stiffness, in rpm"] * bool(curves)
+    notes += ["● where operation is critical"] * (operating_speed is not None)
+    figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + FOOT, title, "; ".join(notes))
     axes = panel(figure, FOOT, _HEIGHT)
     axes.set(xscale="log", yscale="log", xlim=(springs[0], springs[-1]), ylim=(RPM * low, RPM * high))
     axes.set(xlabel="bearing stiffness [N/m]", ylabel="critical speed [rpm]")
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.yaxis.set_minor_formatter(NullFormatter())
-    for branch in speeds.T:
+    for number, branch in enumerate(speeds.T, start=1):
         axes.plot(springs, RPM * branch, color=BLUE, lw=1.2, zorder=3, label="critical speed")
+        _number(axes, springs, branch, number)
+    marked = []
     for curve in curves:
         axes.plot(curve.own, RPM * curve.turning, color=curve.color, ls=curve.line, lw=1.0, zorder=2, label=curve.name)
         for stiffness, speed in meetings(springs, speeds, curve.turning, curve.own):
             axes.plot(
                 stiffness, RPM * speed, marker="o", ms=4.0, color=curve.color, mfc="white", zorder=4, label="meeting"
             )
+            marked.append(Label(f"{RPM * speed:.0f}", stiffness, RPM * speed, curve.color))
+    _write_beside(axes, marked)
     if operating_speed is not None:
-        at = RPM * abs(operating_speed)
-        line = axes.axhline(at, color=INK, lw=0.8, ls=":", zorder=1, label="operation")
+        at = abs(operating_speed)
+        line = axes.axhline(RPM * at, color=INK, lw=0.8, ls=":", zorder=1, label="operation")
+        for stiffness in _reached(springs, speeds, at):
+            axes.plot(stiffness, RPM * at, marker="o", ms=4.0, color=INK, zorder=4, label="operation is critical")
         legend(figure, [line])
     draw_row(axes, row, _HEIGHT + 1.0)
     return figure
@@ -113,15 +144,70 @@ def meetings(
         (n,): ascending speeds (rad/s) and the bearing's stiffness (N/m) at them.
     """
     met = []
+    ends = np.log(turning[[0, -1]])
     for branch in critical_speeds.T:
         known = np.flatnonzero(branch > 0.0)
         x, y = np.log(stiffnesses[known]), np.log(branch[known])
+        # A table may end between two points of the branch, and beyond it nothing is known.
+        rising = known.size > 0 and bool((np.diff(y) >= 0.0).all())
+        inside = ends[(ends > y[0]) & (ends < y[-1])] if rising else np.empty(0)
+        x, y = np.append(x, np.interp(inside, y, x)) if inside.size else x, np.append(y, inside)
+        order = np.argsort(x, kind="stable")
+        x, y = x[order], y[order]
         # How much stiffer the bearing is, at a critical speed, than that speed supposes.
         excess = np.interp(y, np.log(turning), np.log(own), left=np.nan, right=np.nan) - x
         for index in np.flatnonzero((excess[1:] <= 0.0) & (excess[:-1] > 0.0)):
             part = excess[index] / (excess[index] - excess[index + 1])
             met.append(tuple(np.exp(line[index] + part * (line[index + 1] - line[index])).item() for line in (x, y)))
     return met
+
+
+def _reached(stiffnesses: FloatArray, critical_speeds: FloatArray, speed: float) -> list[float]:
+    """Stiffnesses (N/m) at which a critical speed is the one given, rad/s; lines are straight on logarithmic axes."""
+    reached = []
+    for branch in critical_speeds.T:
+        known = np.flatnonzero(branch > 0.0)
+        x, gap = (
+            np.log(stiffnesses[known]),
+            np.log(branch[known]) - np.log(speed) if speed > 0.0 else np.ones(known.size),
+        )
+        for index in np.flatnonzero((gap[1:] > 0.0) != (gap[:-1] > 0.0)):
+            part = gap[index] / (gap[index] - gap[index + 1])
+            reached.append(float(np.exp(x[index] + part * (x[index + 1] - x[index]))))
+    return reached
+
+
+def _number(axes: Axes, stiffnesses: FloatArray, branch: FloatArray, number: int) -> None:
+    """Which critical speed a branch is, where it begins."""
+    known = np.flatnonzero(branch > 0.0)
+    if known.size:
+        place = (float(stiffnesses[known[0]]), RPM * float(branch[known[0]]))
+        axes.annotate(f"{number}", place, (2.0, 2.0), textcoords="offset points", fontsize=NOTE, color=BLUE)
+
+
+def _write_beside(axes: Axes, marked: Sequence[Label]) -> None:
+    """Write values below their marks to the right, else above to the left; where both would touch others, nowhere."""
+    per_mm = axes.figure.dpi / MM_PER_INCH
+    places = [axes.transData.transform((label.x, label.y)) / per_mm for label in marked]
+    taken: list[FloatArray] = []
+    for label, place in sorted(zip(marked, places, strict=True), key=lambda pair: tuple(pair[1])):
+        for (right, up), side in (((1.2, -3.2), "left"), ((-1.2, 0.8), "right")):
+            middle = place + (right + (0.5 if side == "left" else -0.5) * _VALUE[0], up + 0.5 * _VALUE[1])
+            if all(bool((np.abs(middle - other) > _VALUE).any()) for other in taken):
+                offset = (right * _POINTS_PER_MM, up * _POINTS_PER_MM)
+                point = (label.x, label.y)
+                axes.annotate(
+                    label.text,
+                    point,
+                    offset,
+                    textcoords="offset points",
+                    fontsize=NOTE,
+                    color=label.color,
+                    ha=side,
+                    bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.3},
+                )
+                taken.append(middle)
+                break
 
 
 def _limits(speeds: FloatArray, operating: float | None) -> tuple[float, float]:

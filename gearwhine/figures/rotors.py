@@ -16,6 +16,7 @@ from gearwhine.figures.mode_shapes import draw_lateral_modes, draw_torsional_mod
 from gearwhine.figures.shaft import draw_shaft
 from gearwhine.figures.static_deflection import draw_static_deflection
 from gearwhine.figures.style import save, shortened
+from gearwhine.figures.torsional_response import TorsionalReading, draw_torsional_response
 from gearwhine.figures.unbalance import ProbeResponse, draw_unbalance_response
 from gearwhine.figures.whirl_shapes import draw_whirl_modes
 from gearwhine.output import file_stems
@@ -111,14 +112,17 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
     name = f"Rotor {shortened(one.rotor.name, 20)}"
     if one.campbell is not None and one.campbell.eigenvalues.size:
         eigenvalues = one.campbell.eigenvalues
+        crossed, senses, orders = _with_other_orders(one, critical, directions)
         campbell = draw_campbell(
             f"{name}: Campbell diagram",
             one.campbell.speeds,
             one.campbell.frequencies,
             one.campbell.direction,
             -eigenvalues.real / np.abs(eigenvalues),
-            critical_speeds=critical,
-            critical_directions=directions,
+            critical_speeds=crossed,
+            critical_directions=senses,
+            critical_orders=orders,
+            orders=sorted({1.0, *one.orders}),
             operating_speed=operation,
         )
         figures.append(("campbell", campbell))
@@ -129,8 +133,20 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
             one.stiffness_map.speeds,
             bearings=one.bearings,
             operating_speed=operation,
+            whirl="forward" if one.stiffness_map.direction > 0 else "backward",
         )
         figures.append(("critical-map", sheet))
+    if one.torsion is not None and one.torsion.response.frequencies.size > 1:
+        read = [
+            TorsionalReading(each.probe.name, np.abs(each.angle), np.abs(each.torque)) for each in one.torsion.readings
+        ]
+        swing = draw_torsional_response(
+            f"{name}: torsional response",
+            one.torsion.response.frequencies,
+            read,
+            natural_frequencies=one.torsional.frequencies[one.torsional.frequencies > 0.0],
+        )
+        figures.append(("torsional-response", swing))
     if one.response is not None and one.response.response.speeds.size > 1:
         readings = [ProbeResponse(read.probe.name, read.amplitude, read.major_axis) for read in one.response.readings]
         running = None if operation is None else (abs(operation), abs(operation))
@@ -148,6 +164,20 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
         sheet = draw_static_deflection(assembly, one.weight.places, one.weight.displacement.T, holding)
         figures.append(("static", sheet))
     return figures
+
+
+def _with_other_orders(
+    one: SolvedRotor, critical: FloatArray, directions: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Critical speeds of once a revolution, their senses and orders, followed by those of the other orders."""
+    assert one.campbell is not None
+    sense = -1.0 if one.campbell.speeds.min() < 0.0 else 1.0
+    more = [each for found in one.orders.values() if not isinstance(found, str) for each in found]
+    return (
+        np.array([*critical, *(abs(each.speed) for each in more)]),
+        np.array([*directions, *(sense * each.direction for each in more)]),
+        np.array([1.0] * critical.size + [each.order for each in more]),
+    )
 
 
 def _critical_speeds(one: SolvedRotor) -> tuple[FloatArray, FloatArray]:

@@ -160,6 +160,8 @@ def _analysis_lines(analysis: dict[str, Any]) -> Iterator[str]:
         if analysis[key] is not None:
             low, high, count = analysis[key]
             yield f"{analysis['rotor']}: {what} at {counted(count, 'speed')}, {low:.6g} to {high:.6g} rpm"
+    if analysis["torques"]:
+        yield f"{analysis['rotor']}: torsional response to {counted(analysis['torques'], 'torque')}"
 
 
 def _pair_lines(pair: dict[str, Any]) -> list[str]:

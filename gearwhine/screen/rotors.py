@@ -17,6 +17,7 @@ _MAP_ROWS = 5  # of the critical-speed map
 _REACH = 2.0  # critical speeds beyond so many times the speed of operation are only counted
 _PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 _NEUTRAL = 1e-9  # a damping ratio this near to zero neither grows nor decays
+_ROUNDING = 1e-9  # a torque that is no more than this part of the largest is none
 _SAME = 1e-9  # two frequencies nearer than this part of them are one that both planes have
 
 
@@ -34,6 +35,8 @@ def show_rotors(document: dict[str, Any]) -> None:
         _weight(console, rotor["static"])
         if rotor["unbalance_response"] is not None:
             _response(console, rotor["unbalance_response"])
+        if rotor["torsional_response"] is not None:
+            _torsion_response(console, rotor["torsional_response"])
         if rotor["stiffness_map"] is not None:
             _stiffness_map(console, rotor["stiffness_map"])
         if rotor["campbell"]:
@@ -78,14 +81,34 @@ def _whirl(console: Console, rotor: dict[str, Any]) -> None:
     whirl = rotor["whirl"][0 if rotor["operation_rpm"] is not None else -1]
     rows = []
     keys = ("frequency_hz", "direction", "log_decrement", "damping_ratio")
-    for frequency, direction, decrement, damping in zip(*(whirl[key] for key in keys), strict=True):
+    columns = zip(*(whirl[key] for key in keys), _strained_most(rotor["bearings"], whirl["strain_energy"]), strict=True)
+    for frequency, direction, decrement, damping, strained in columns:
         turning = math.copysign(1.0, whirl["speed_rpm"]) * direction
         state = "GROWS" if damping < -_NEUTRAL else "undamped" if damping <= _NEUTRAL else "decays"
         rows.append(
-            (f"{frequency:.5g}", _whirl_name(turning), "0" if state == "undamped" else f"{decrement:.3g}", state)
+            (
+                f"{frequency:.5g}",
+                _whirl_name(turning),
+                "0" if state == "undamped" else f"{decrement:.3g}",
+                state,
+                strained,
+            )
         )
-    head = ("frequency [Hz]", "whirl", "log decrement", "")
+    head = ("frequency [Hz]", "whirl", "log decrement", "", "most strain energy")
     _show(console, f"Turning at {whirl['speed_rpm']:.6g} rpm", head, rows[:_MOST])
+
+
+def _strained_most(bearings: Sequence[str], shares: dict[str, Any]) -> Iterator[str]:
+    """For each mode the part with the largest share of its strain energy; nothing for one that strains nothing."""
+    names = {
+        "segments": [f"segment {number}" for number in range(1, len((shares["segments"] or [[]])[0]) + 1)],
+        "bearings": list(bearings),
+        "pedestals": [f"pedestal of {name}" for name in bearings],
+    }
+    for mode in range(len(shares["segments"])):
+        parts = [part for kind, rows in shares.items() for part in zip(rows[mode], names[kind], strict=True)]
+        share, name = max(parts)
+        yield f"{100.0 * share:.0f} % {name}" if share > 0.0 else ""
 
 
 def _critical_speeds(console: Console, rotor: dict[str, Any]) -> None:
@@ -97,6 +120,26 @@ def _critical_speeds(console: Console, rotor: dict[str, Any]) -> None:
         _undamped(console, rotor)
         if campbell is not None:
             console.print(f"  No damped critical speeds: {campbell['why_no_critical_speeds']}")
+    if campbell is not None and campbell["orders"]:
+        _orders(console, campbell)
+
+
+def _orders(console: Console, campbell: dict[str, Any]) -> None:
+    """Where whirl has another multiple of the speed of rotation for its frequency."""
+    turning = -1.0 if min(campbell["speed_rpm"]) < 0.0 else 1.0
+    rows = []
+    for one in campbell["orders"]:
+        order = f"{one['order']:g}×"
+        if one["critical_speeds"] is None:
+            rows.append((order, one["why_no_critical_speeds"], ""))
+        rows += [
+            (order, f"{abs(each['speed_rpm']):.5g}", _whirl_name(turning * each["direction"]))
+            for each in one["critical_speeds"] or ()
+        ]
+    if rows:
+        _show(console, f"Other orders from {_span(campbell)}", ("order", "speed [rpm]", "whirl"), rows[: 2 * _MOST])
+    else:
+        console.print(f"  None of the other orders meets a whirl frequency from {_span(campbell)}")
 
 
 def _crossings(console: Console, rotor: dict[str, Any], campbell: dict[str, Any]) -> None:
@@ -202,15 +245,38 @@ def _response(console: Console, response: dict[str, Any]) -> None:
     )
 
 
+def _torsion_response(console: Console, response: dict[str, Any]) -> None:
+    """The largest angle and torque at each probe, and the largest torque of the whole shaft."""
+    nothing = _ROUNDING * response["largest_torque_n_m"]
+    rows = [
+        (
+            f"{probe['name']}, {1e3 * probe['at_m']:.5g} mm",
+            f"{1e3 * probe['largest_angle_rad']:.3g} at {probe['largest_angle_at_hz']:.5g} Hz",
+            f"{probe['largest_torque_n_m']:.4g} at {probe['largest_torque_at_hz']:.5g} Hz"
+            if probe["largest_torque_n_m"] > nothing
+            else "0",
+        )
+        for probe in response["probes"][:_MOST]
+    ]
+    low, high = response["frequency_hz"][0], response["frequency_hz"][-1]
+    title = f"Response to torques from {low:.5g} to {high:.5g} Hz"
+    _show(console, title, ("probe", "largest angle [mrad, peak]", "largest torque [N m, peak]"), rows)
+    console.print(
+        f"  The shaft carries most at {1e3 * response['largest_torque_at_m']:.5g} mm: "
+        f"{response['largest_torque_n_m']:.4g} N m at {response['largest_torque_at_hz']:.5g} Hz"
+    )
+
+
 def _stiffness_map(console: Console, given: dict[str, Any]) -> None:
-    """Forward critical speeds from the softest to the stiffest bearings; the rest is in the files."""
-    stiffnesses, speeds = given["stiffness_n_per_m"], given["forward_critical_speeds_rpm"]
+    """Critical speeds from the softest to the stiffest bearings; the rest is in the files."""
+    whirl = "forward" if "forward_critical_speeds_rpm" in given else "backward"
+    stiffnesses, speeds = given["stiffness_n_per_m"], given[f"{whirl}_critical_speeds_rpm"]
     chosen = sorted({round(part * (len(stiffnesses) - 1) / (_MAP_ROWS - 1)) for part in range(_MAP_ROWS)})
     rows = [
         (f"{stiffnesses[row]:.3g}", "  ".join(f"{speed:.5g}" for speed in speeds[row] if math.isfinite(speed)))
         for row in chosen
     ]
-    _show(console, "Over the stiffness of all bearings", ("stiffness [N/m]", "forward critical speeds [rpm]"), rows)
+    _show(console, "Over the stiffness of all bearings", ("stiffness [N/m]", f"{whirl} critical speeds [rpm]"), rows)
 
 
 def _beside(margin: float) -> str:

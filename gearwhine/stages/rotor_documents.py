@@ -8,6 +8,7 @@ import numpy.typing as npt
 import rotors as room
 from gearwhine.stages.rotor_loads import SolvedResponse
 from gearwhine.stages.rotors import SolvedRotor
+from gearwhine.stages.torsion import SolvedTorsion
 from rotors.rolling import RollingState
 
 FloatArray = npt.NDArray[np.float64]
@@ -27,12 +28,16 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "name": one.rotor.name,
                 "mass_kg": one.rotor.mass,
                 "length_m": one.rotor.length,
+                "bearings": [bearing.name for bearing in one.bearings],
                 "lateral_hz": (one.rest.frequencies / _HERTZ).tolist(),
                 "strain_energy": _strain_energy(one),
                 "torsional_hz": (one.torsional.frequencies / _HERTZ).tolist(),
                 "rest_bearings_at_rpm": _in_rpm(one.rest_speed),
                 "operation_rpm": _in_rpm(one.operation),
-                "whirl": [{"speed_rpm": whirl.speed * _RPM} | _modes(whirl) for whirl in one.whirl],
+                "whirl": [
+                    {"speed_rpm": whirl.speed * _RPM} | _modes(whirl) | {"strain_energy": _whirl_strain(one, whirl)}
+                    for whirl in one.whirl
+                ],
                 "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
                 "critical_directions": one.critical.direction.round(6).tolist(),
                 "critical_margins": _margins(one),
@@ -41,12 +46,8 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "unbalance_response": None if one.response is None else _response(one.response),
                 "rolling_bearings": [_rolling(name, state) for name, state in one.rolling.items()],
                 "damping": "of the bearings; the shaft's own acts in the coupled system",
-                "stiffness_map": None
-                if one.stiffness_map is None
-                else {
-                    "stiffness_n_per_m": one.stiffness_map.stiffnesses.tolist(),
-                    "forward_critical_speeds_rpm": (one.stiffness_map.speeds * _RPM).tolist(),
-                },
+                "torsional_response": None if one.torsion is None else _torsion(one.torsion),
+                "stiffness_map": None if one.stiffness_map is None else _stiffness_map(one.stiffness_map),
                 "certificate": _certificate(one),
             }
             for one in solved
@@ -61,6 +62,23 @@ def _strain_energy(one: SolvedRotor) -> dict[str, Any]:
         "frequency_hz": (one.lateral.frequencies / _HERTZ).tolist(),
         "segments": segments.tolist(),
         "bearings": bearings.tolist(),
+    }
+
+
+def _whirl_strain(one: SolvedRotor, whirl: room.WhirlModes) -> dict[str, Any]:
+    """Shares of each whirl mode's strain energy, in the mean of a cycle, a row for each mode."""
+    shares = whirl.strain_energy_shares(one.rotor.joints)
+    parts: dict[str, Any] = {"segments": shares.lengths.tolist(), "bearings": shares.bearings.tolist()}
+    if any(bearing.pedestal is not None for bearing in one.bearings):
+        parts["pedestals"] = shares.pedestals.tolist()
+    return parts
+
+
+def _stiffness_map(of: room.CriticalSpeedMap) -> dict[str, Any]:
+    whirl = "forward" if of.direction > 0 else "backward"
+    return {
+        "stiffness_n_per_m": of.stiffnesses.tolist(),
+        f"{whirl}_critical_speeds_rpm": (of.speeds * _RPM).tolist(),
     }
 
 
@@ -107,6 +125,14 @@ def _campbell(one: SolvedRotor) -> dict[str, Any] | None:
         "proved_at_rpm": (diagram.speeds[diagram.proved] * _RPM).tolist(),
         "critical_speeds": None if isinstance(crossings, str) else [_crossing(one, each) for each in crossings],
         "why_no_critical_speeds": crossings if isinstance(crossings, str) else None,
+        "orders": [
+            {
+                "order": order,
+                "critical_speeds": None if isinstance(found, str) else [_crossing(one, each) for each in found],
+                "why_no_critical_speeds": found if isinstance(found, str) else None,
+            }
+            for order, found in one.orders.items()
+        ],
     }
 
 
@@ -190,6 +216,38 @@ def _response(solved: SolvedResponse) -> dict[str, Any]:
         "bearings": [
             {"name": name, "force_n": forces[:, place].T.tolist()} for place, name in enumerate(response.bearings)
         ],
+    }
+
+
+def _torsion(solved: SolvedTorsion) -> dict[str, Any]:
+    """Angle and torque at each probe over frequency, and where the shaft carries most."""
+    frequencies = solved.response.frequencies / _HERTZ
+    rows = []
+    for reading in solved.readings:
+        angle, torque = np.abs(reading.angle), np.abs(reading.torque)
+        rows.append(
+            {
+                "name": reading.probe.name,
+                "at_m": reading.probe.at,
+                "angle_rad": angle.tolist(),
+                "angle_phase_deg": np.degrees(np.angle(reading.angle)).tolist(),
+                "torque_n_m": torque.tolist(),
+                "torque_phase_deg": np.degrees(np.angle(reading.torque)).tolist(),
+                "largest_angle_rad": float(angle.max()),
+                "largest_angle_at_hz": float(frequencies[angle.argmax()]),
+                "largest_torque_n_m": float(torque.max()),
+                "largest_torque_at_hz": float(frequencies[torque.argmax()]),
+            }
+        )
+    worst = int(solved.largest_torque.argmax())
+    return {
+        "frequency_hz": frequencies.tolist(),
+        "damping_ratio": solved.response.damping_ratio,
+        "amplitude_convention": "zero to peak",
+        "probes": rows,
+        "largest_torque_n_m": float(solved.largest_torque[worst]),
+        "largest_torque_at_m": float(solved.places[worst]),
+        "largest_torque_at_hz": float(solved.worst_frequency[worst]) / _HERTZ,
     }
 
 

@@ -11,9 +11,11 @@ from gearwhine.progress import Progress, silent
 from gearwhine.stages.bearings import build_bearings, rolling_states
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.rotor_loads import SolvedResponse, SolvedWeight, solve_response, solve_weight
+from gearwhine.stages.torsion import SolvedTorsion, solve_torsion
 from rotors.rolling import RollingState
 
 Bearings = tuple[room.Bearing, ...]
+Crossings = tuple[room.Crossing, ...] | str
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,9 @@ class SolvedRotor:
     campbell : rotors.Campbell or None
         None without speeds.
     crossings : tuple of rotors.Crossing or str
-        Damped critical speeds within the Campbell diagram; or why they are not known.
+        Damped critical speeds within the Campbell diagram, of once a revolution; or why they are not known.
+    orders : mapping of float to (tuple of rotors.Crossing or str)
+        The same of each other multiple of the speed that the case asks for.
     critical : rotors.CriticalSpeeds
         Undamped; with tables, within the speeds that they hold.
     operation : float or None
@@ -46,6 +50,8 @@ class SolvedRotor:
         Deflection under gravity at operation, else at rest; or why there is none.
     response : SolvedResponse or None
         To unbalance and bow; None where there is neither.
+    torsion : SolvedTorsion or None
+        Response to torques that swing; None where none does.
     stiffness_map : rotors.CriticalSpeedMap or None
         Where the case asks for it.
     rolling : mapping of str to rotors.rolling.RollingState
@@ -61,11 +67,13 @@ class SolvedRotor:
     torsional: room.TorsionalModes
     whirl: tuple[room.WhirlModes, ...]
     campbell: room.Campbell | None
-    crossings: tuple[room.Crossing, ...] | str
+    crossings: Crossings
+    orders: Mapping[float, Crossings]
     critical: room.CriticalSpeeds
     operation: float | None
     weight: SolvedWeight | str
     response: SolvedResponse | None
+    torsion: SolvedTorsion | None
     stiffness_map: room.CriticalSpeedMap | None
     rolling: Mapping[str, RollingState]
 
@@ -94,6 +102,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         diagram = campbell_speeds(case, given.name)
         campbell = room.campbell(rotor, bearings, diagram, count=analysis.modes) if diagram else None
         held = not isinstance(weight, str)
+        torsional = room.solve_torsional_modes(rotor)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
@@ -102,27 +111,38 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 rest_speed=lowest if any(bearing.speeds is not None for bearing in bearings) else None,
                 rest=room.rest_frequencies(rotor, resting, count=analysis.modes),
                 lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
-                torsional=room.solve_torsional_modes(rotor),
+                torsional=torsional,
                 whirl=tuple(room.solve_whirl(rotor, bearings, speed, count=analysis.modes) for speed in speeds),
                 campbell=campbell,
                 crossings=() if campbell is None else _crossings(campbell),
+                orders={}
+                if campbell is None
+                else {order: _crossings(campbell, order) for order in sorted(set(analysis.orders) - {1.0})},
                 critical=room.critical_speeds(rotor, bearings, count=analysis.modes),
                 operation=operation,
                 weight=weight,
                 response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
-                stiffness_map=None
-                if analysis.stiffness_map is None or not bearings
-                else room.critical_speed_map(rotor, bearings, analysis.stiffness_map.stiffnesses),
+                torsion=solve_torsion(analysis, given, rotor, torsional),
+                stiffness_map=_stiffness_map(analysis, rotor, bearings),
                 rolling=rolling_states(case, given.name),
             )
         )
     return tuple(solved)
 
 
-def _crossings(campbell: room.Campbell) -> tuple[room.Crossing, ...] | str:
+def _stiffness_map(analysis: RotorAnalysis, rotor: room.Rotor, bearings: Bearings) -> room.CriticalSpeedMap | None:
+    """Critical speeds over the stiffness of all bearings, where the case asks for them and there are any."""
+    wanted = analysis.stiffness_map
+    if wanted is None or not bearings:
+        return None
+    direction = 1 if wanted.whirl == "forward" else -1
+    return room.critical_speed_map(rotor, bearings, wanted.stiffnesses, count=wanted.modes, direction=direction)
+
+
+def _crossings(campbell: room.Campbell, order: float = 1.0) -> Crossings:
     """Damped critical speeds; a diagram of few speeds may not separate them, which is no reason to show nothing."""
     try:
-        return campbell.crossings()
+        return campbell.crossings(order)
     except room.IncompleteModesError as error:
         return str(error)
 

@@ -196,6 +196,8 @@ def _analysis(case: Case) -> list[dict[str, Any]]:
         response = response_speeds(case, rotor.name) if rotor.unbalance or rotor.bow else ()
         for key, speeds in (("campbell_rpm", campbell_speeds(case, rotor.name)), ("response_rpm", response)):
             row[key] = [min(speeds) * _RPM, max(speeds) * _RPM, len(speeds)] if speeds else None
+        torsion = None if case.rotor_analysis is None else case.rotor_analysis.torsional_response
+        row["torques"] = 0 if torsion is None else sum(torque.rotor == rotor.name for torque in torsion.torques)
         rows.append(row)
     return rows
 

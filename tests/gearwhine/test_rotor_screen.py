@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 from contextlib import redirect_stdout
 from typing import Any
 
@@ -49,11 +50,17 @@ def rotor(**more: Any) -> Document:
         "direction": [-0.9, 1.0, 0.0],
         "log_decrement": [0.25, -0.01, 1e-13],
         "damping_ratio": [0.04, -0.002, 1e-14],
+        "strain_energy": {
+            "segments": [[0.25], [0.6], [0.0]],
+            "bearings": [[0.3], [0.3], [0.0]],
+            "pedestals": [[0.45], [0.1], [0.0]],
+        },
     }
     return {
         "name": "shaft [left]",
         "mass_kg": 2.0,
         "length_m": 0.5,
+        "bearings": ["left"],
         "lateral_hz": [10.0, 10.0, 40.0, 45.0],
         "torsional_hz": [0.0, 30.0, 700.0],
         "rest_bearings_at_rpm": None,
@@ -65,6 +72,7 @@ def rotor(**more: Any) -> Document:
         "campbell": None,
         "static": STATIC,
         "unbalance_response": None,
+        "torsional_response": None,
         "stiffness_map": None,
         "rolling_bearings": [],
         "certificate": certificate,
@@ -72,7 +80,7 @@ def rotor(**more: Any) -> Document:
 
 
 def campbell(**more: Any) -> Document:
-    diagram = {"speed_rpm": [-1500.0, 0.0], "unstable_from_rpm": None, "why_no_critical_speeds": None}
+    diagram = {"speed_rpm": [-1500.0, 0.0], "unstable_from_rpm": None, "why_no_critical_speeds": None, "orders": []}
     return diagram | {"critical_speeds": CROSSINGS} | more
 
 
@@ -122,7 +130,8 @@ def test_tables_say_which_of_their_speeds_is_taken() -> None:
 
 def test_whirl_is_named_against_the_sense_of_rotation() -> None:
     expected = [["9", "backward", "0.25", "decays"], ["11", "forward", "-0.01", "GROWS"]]
-    assert rows(said(), "Turning at 1000 rpm") == [*expected, ["40", "in a plane", "0", "undamped"]]
+    shown = [row[:4] for row in rows(said(), "Turning at 1000 rpm")]
+    assert shown == [*expected, ["40", "in a plane", "0", "undamped"]]
     (whirl,) = rotor()["whirl"]
     clockwise = rows(said(whirl=[whirl | {"speed_rpm": -1000.0}]), "Turning at -1000 rpm")
     assert [row[1] for row in clockwise] == ["forward", "backward", "in a plane"]
@@ -203,6 +212,50 @@ def test_each_probe_has_its_reading_at_operation_and_its_largest() -> None:
     assert rows(said(unbalance_response={"probes": [at_rest]}), "Response to") == [
         ["disc, 250 mm, 45°", "80 at 600 rpm"]
     ]
+
+
+def test_whirl_says_where_it_strains_most() -> None:
+    lines = said().splitlines()
+    assert any("decays" in line and "45 % pedestal of left" in line for line in lines)
+    assert any("GROWS" in line and "60 % segment 1" in line for line in lines)
+    assert any("undamped" in line and "%" not in line for line in lines)
+
+
+def test_other_orders_are_listed_with_their_speeds_or_with_what_hinders_them() -> None:
+    orders = [
+        {"order": 2.0, "critical_speeds": CROSSINGS, "why_no_critical_speeds": None},
+        {"order": 0.5, "critical_speeds": None, "why_no_critical_speeds": "does not settle"},
+    ]
+    text = said(campbell=campbell(critical_speeds=CROSSINGS, orders=orders))
+    table = text[text.index("Other orders") :]
+    assert re.search(r"2×\s+600\s+forward", table)
+    assert re.search(r"2×\s+1080\s+backward", table)
+    assert re.search(r"0.5×\s+does not settle", table)
+    none = [{"order": 2.0, "critical_speeds": [], "why_no_critical_speeds": None}]
+    assert "None of the other orders" in said(campbell=campbell(critical_speeds=[], orders=none))
+
+
+def test_torsional_response_shows_its_largest() -> None:
+    probe = {
+        "name": "fan",
+        "at_m": 0.1,
+        "largest_angle_rad": 2e-3,
+        "largest_angle_at_hz": 44.0,
+        "largest_torque_n_m": 120.0,
+        "largest_torque_at_hz": 45.0,
+    }
+    end = probe | {"name": "end", "largest_torque_n_m": 1e-13}
+    response = {
+        "frequency_hz": [1.0, 50.0],
+        "probes": [probe, end],
+        "largest_torque_n_m": 150.0,
+        "largest_torque_at_m": 0.2,
+        "largest_torque_at_hz": 45.0,
+    }
+    text = said(torsional_response=response)
+    assert re.search(r"fan, 100 mm\s+2 at 44 Hz\s+120 at 45 Hz", text)
+    assert re.search(r"end, 100 mm\s+2 at 44 Hz\s+0\s", text)
+    assert "carries most at 200 mm: 150 N m at 45 Hz" in text
 
 
 def test_the_proof_is_told() -> None:

@@ -133,7 +133,8 @@ def test_critical_map_with_the_bearings_own_stiffness() -> None:
     assert x == pytest.approx(springs)
     assert y == pytest.approx(RPM * critical[:, 0])
     # Bearings alike are one line.
-    assert texts(figure) == {"left, right: k_xx = k_yy", "film: k_xx", "film: k_yy"}
+    values = {f"{RPM * math.sqrt(2.0 * k / mass):.0f}" for k in (1e6, 4e6, 8e6)}
+    assert texts(figure) == {"left, right: k_xx = k_yy", "film: k_xx", "film: k_yy", "1"} | values
     met = sorted(point[:, 0].tolist() for point in drawn(axes, "meeting"))
     assert np.array(met) == pytest.approx(
         np.array([[k, RPM * math.sqrt(2.0 * k / mass)] for k in (1e6, 4e6, 8e6)]), rel=1e-9
@@ -148,6 +149,34 @@ def test_meetings_with_a_stiffness_that_grows_with_speed() -> None:
     # Critical at √k, the bearing has 1e3 Ω: they meet at k = 1e6.
     (met,) = meetings(springs, np.sqrt(springs)[:, None], turning, 1e3 * turning)
     assert met == pytest.approx((1e6, 1e3))
+
+
+def test_meetings_up_to_the_end_of_a_table() -> None:
+    """Critical speeds √k and a bearing's table 3e7 / Ω: they meet at k³ = 9e14, between the last point and its end."""
+    springs = np.geomspace(1e4, 1e6, 8)
+    stiffness = 9e14 ** (1.0 / 3.0)
+    end = 1.02 * np.sqrt(stiffness)
+    assert not ((np.sqrt(springs) > np.sqrt(stiffness)) & (np.sqrt(springs) < end)).any()
+    turning = np.geomspace(50.0, end, 40)
+    (met,) = meetings(springs, np.sqrt(springs)[:, None], turning, 3e7 / turning)
+    assert met == pytest.approx((stiffness, np.sqrt(stiffness)), rel=1e-9)
+    short = np.geomspace(50.0, 0.98 * np.sqrt(stiffness), 40)
+    assert meetings(springs, np.sqrt(springs)[:, None], short, 3e7 / short) == []
+
+
+def test_the_map_marks_where_operation_is_critical_and_writes_what_its_marks_are() -> None:
+    springs = np.geomspace(1e4, 1e6, 9)
+    bearing = rotors.Bearing.isotropic("one", 0.0, 1e5)
+    figure = draw_critical_map(
+        "t", springs, np.sqrt(springs)[:, None] * [1.0, 3.0], bearings=[bearing], operating_speed=500.0
+    )
+    (axes,) = figure.axes
+    reached = [line for line in axes.lines if line.get_label() == "operation is critical"]
+    # 500 rad/s is √k at 2.5e5 N/m, and 3 √k at a ninth of it.
+    assert sorted(float(line.get_xdata()[0]) for line in reached) == pytest.approx([2.5e5 / 9.0, 2.5e5], rel=1e-9)
+    written = {text.get_text() for text in axes.texts}
+    assert {f"{RPM * factor * 1e5**0.5:.0f}" for factor in (1.0, 3.0)} <= written
+    assert {"1", "2"} <= written
 
 
 def test_critical_map_of_a_free_rotor_leaves_rigid_motions_out() -> None:

@@ -1,0 +1,193 @@
+"""Keys of `[rotor_analysis]` in `gearwhine rotors`: torsional response, orders, the map's whirl; strain of whirl."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from PIL import Image
+
+# A slender shaft, almost without inertia, between two discs; either end stands in a soft bearing.
+SHAFT = """
+title = "Two discs on a shaft"
+
+[material.light]
+youngs_modulus = "200 GPa"
+shear_modulus = "80 GPa"
+density = "1 kg/m^3"
+
+[[rotor]]
+name = "shaft"
+material = "light"
+damping_ratio = 0.01
+segments = [{ length = "400 mm", diameter = "20 mm" }, { length = "400 mm", diameter = "20 mm" }]
+discs = [
+    { at = "0 mm", mass = "5 kg", polar_inertia = "0.02 kg*m^2", diametral_inertia = "0.01 kg*m^2" },
+    { at = "800 mm", mass = "8 kg", polar_inertia = "0.05 kg*m^2", diametral_inertia = "0.03 kg*m^2" },
+]
+
+[[bearing]]
+name = "left"
+rotor = "shaft"
+at = "0 mm"
+stiffness = { xx = "1e5 N/m", yy = "1e5 N/m" }
+
+[[bearing]]
+name = "right"
+rotor = "shaft"
+at = "800 mm"
+stiffness = { xx = "3e5 N/m", yy = "2e5 N/m" }
+
+[operation]
+speed = "1000 rpm"
+
+[rotor_analysis]
+modes = 4
+speed = { from = "100 rpm", to = "3000 rpm", step = "100 rpm" }
+"""
+LEFT, RIGHT = 0.02, 0.05
+SPRING = 80e9 * math.pi / 32.0 * 0.02**4 / 0.8
+
+
+@pytest.fixture
+def shaft(tmp_path: Path) -> str:
+    (tmp_path / "shaft.toml").write_text(SHAFT.replace('shear_modulus = "80 GPa"', "poisson_ratio = 0.25"))
+    return "shaft.toml"
+
+
+def solved(gearwhine: Any, case: str, *settings: str) -> dict[str, Any]:
+    changes = [part for setting in settings for part in ("--set", setting)]
+    outcome = gearwhine("rotors", case, "--json", "-q", *changes)
+    assert outcome.code == 0, outcome.err
+    (rotor,) = outcome.document["rotors"]
+    return rotor
+
+
+TORQUE = "torques=[{rotor='shaft', at='0 mm', amplitude='3 N*m', phase='20 deg'}]"
+RANGE = "frequency={from='10 Hz', to='100 Hz', points=10}"
+
+
+def two_discs(hertz: float, ratio: float, spring: float = 0.0, dashpot: float = 0.0) -> tuple[complex, complex]:
+    """Angles of both discs under 3 N·m at 20° on the left one, k (1 + 2iζ) between them and a grounded right one."""
+    omega, between = 2.0 * math.pi * hertz, SPRING * (1.0 + 2j * ratio)
+    held = spring * (1.0 + 2j * ratio) + 1j * omega * dashpot
+    dynamic = np.array(
+        [[between - LEFT * omega**2, -between], [-between, between + held - RIGHT * omega**2]], dtype=complex
+    )
+    left, right = np.linalg.solve(dynamic, [3.0 * np.exp(1j * math.radians(20.0)), 0.0])
+    return complex(left), complex(right)
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_two_discs_answer_a_torque_as_they_must(gearwhine: Any, shaft: str, held: bool) -> None:
+    springs = "springs=[{rotor='shaft', at='800 mm', stiffness='900 N*m/rad', damping='2 N*m*s/rad'}]"
+    probes = "probes=[{name='l', rotor='shaft', at='0 mm'}, {name='r', rotor='shaft', at='800 mm'}]"
+    keys = [TORQUE, RANGE, "damping_ratio=0.03", probes, *([springs] if held else [])]
+    response = solved(gearwhine, shaft, f"rotor_analysis.torsional_response={{{','.join(keys)}}}")["torsional_response"]
+    assert response["frequency_hz"] == pytest.approx(np.linspace(10.0, 100.0, 10).tolist())
+    left, right = response["probes"]
+    for place, hertz in enumerate(response["frequency_hz"]):
+        one, other = two_discs(hertz, 0.03, *((900.0, 2.0) if held else ()))
+        # The shaft's own inertia is a part in 1e6 of the discs'.
+        assert left["angle_rad"][place] == pytest.approx(abs(one), rel=1e-4)
+        assert right["angle_rad"][place] == pytest.approx(abs(other), rel=1e-4)
+        assert math.remainder(left["angle_phase_deg"][place] - math.degrees(np.angle(one)), 360.0) == pytest.approx(
+            0.0, abs=0.05
+        )
+        twist = SPRING * (1.0 + 0.06j) * (other - one)
+        assert left["torque_n_m"][place] == pytest.approx(abs(twist), rel=1e-4)
+    assert left["largest_angle_rad"] == max(left["angle_rad"])
+    assert response["largest_torque_n_m"] == pytest.approx(max(left["torque_n_m"]), rel=1e-4)
+
+
+def test_torsion_is_looked_at_about_its_modes_unless_frequencies_are_given(gearwhine: Any, shaft: str) -> None:
+    """At the mode itself a ratio ζ leaves k (θ₁ − θ₂) = T J₂ / (J₁ + J₂) / 2ζ, the shaft's own ζ of 0.01 here."""
+    rotor = solved(gearwhine, shaft, f"rotor_analysis.torsional_response={{{TORQUE}}}")
+    response, elastic = rotor["torsional_response"], rotor["torsional_hz"][1]
+    assert elastic * 2.0 * math.pi == pytest.approx(math.sqrt(SPRING * (1 / LEFT + 1 / RIGHT)), rel=1e-4)
+    assert response["damping_ratio"] == 0.01
+    assert elastic in response["frequency_hz"]
+    assert response["frequency_hz"][-1] == pytest.approx(1.25 * rotor["torsional_hz"][3])
+    assert [probe["name"] for probe in response["probes"]] == ["torque 1", "right end"]
+    assert response["probes"][0]["largest_torque_at_hz"] == pytest.approx(elastic, rel=1e-3)
+    expected = 3.0 * RIGHT / (LEFT + RIGHT) / 0.02
+    assert response["probes"][0]["largest_torque_n_m"] == pytest.approx(expected, rel=1e-2)
+    assert solved(gearwhine, shaft)["torsional_response"] is None
+
+
+def test_torsional_response_is_drawn_and_kept(gearwhine: Any, shaft: str, tmp_path: Path) -> None:
+    settings = ("--set", f"rotor_analysis.torsional_response={{{TORQUE},{RANGE}}}")
+    outcome = gearwhine("rotors", shaft, "-o", "out", *settings)
+    assert outcome.code == 0, outcome.err
+    assert "Response to torques from 10 to 100 Hz" in outcome.out
+    with xr.open_dataset("out/results.nc") as data:
+        assert data.torsion_angle.dims == ("torsion_probe", "torsion_step")
+        assert data.torsion_torque.attrs["units"] == "N m"
+        assert data.torsion_frequency.values[0] == pytest.approx(np.linspace(10.0, 100.0, 10))
+        assert data.torsion_angle.sel(torsion_probe="shaft: torque 1").values[0] == pytest.approx(
+            abs(two_discs(10.0, 0.01)[0]), rel=1e-4
+        )
+        # Of whirl, the moment at a free end vanishes, and that of the first mode does not in the middle.
+        moment = data.rotor_whirl_moment.values[0]
+        assert moment.shape == (4, 101)
+        assert np.abs(moment[:, 50]).min() > 0.0
+    with Image.open(tmp_path / "out" / "rotor-shaft-torsional-response.png") as image:
+        assert len(image.convert("RGB").getcolors(maxcolors=1 << 24) or ()) > 50
+
+
+def test_orders_meet_whirl_at_their_own_speeds(gearwhine: Any, shaft: str) -> None:
+    campbell = solved(gearwhine, shaft, "rotor_analysis.orders=[1, 2, 0.5]")["campbell"]
+    assert [one["order"] for one in campbell["orders"]] == [0.5, 2.0]
+    speeds, frequencies = np.array(campbell["speed_rpm"]), np.array(campbell["frequency_hz"])
+    for one in campbell["orders"]:
+        gaps = frequencies - one["order"] * speeds[:, None] / 60.0
+        expected = []
+        for branch in gaps.T:
+            for left in np.flatnonzero((branch[1:] > 0.0) != (branch[:-1] > 0.0)):
+                part = branch[left] / (branch[left] - branch[left + 1])
+                expected.append(speeds[left] + part * 100.0)
+        found = [each["speed_rpm"] for each in one["critical_speeds"]]
+        assert len(found) == len(expected) > 0
+        np.testing.assert_allclose(found, np.sort(expected), rtol=1e-4)
+
+
+def test_the_map_of_backward_whirl_lies_below_that_of_forward(gearwhine: Any, shaft: str) -> None:
+    """Gyroscopic moments stiffen forward and soften backward whirl: each backward speed is the lower one."""
+    span = "from='1e5 N/m', to='1e6 N/m', points=2, modes=2"
+    forward, backward = (
+        solved(gearwhine, shaft, f"rotor_analysis.stiffness_map={{{span}, whirl='{whirl}'}}")["stiffness_map"]
+        for whirl in ("forward", "backward")
+    )
+    ahead, behind = forward["forward_critical_speeds_rpm"], backward["backward_critical_speeds_rpm"]
+    assert np.array(ahead).shape == np.array(behind).shape == (2, 2)
+    assert (np.array(behind) < np.array(ahead)).all()
+
+
+def test_whirl_says_where_it_strains_the_rotor(gearwhine: Any, shaft: str) -> None:
+    (whirl, *_) = (rotor := solved(gearwhine, shaft))["whirl"]
+    assert rotor["bearings"] == ["left", "right"]
+    shares = np.hstack([np.array(whirl["strain_energy"][part]) for part in ("segments", "bearings")])
+    assert shares.shape == (4, 4)
+    np.testing.assert_allclose(shares.sum(axis=1), 1.0, rtol=1e-9)
+    assert "pedestals" not in whirl["strain_energy"]
+    assert "most strain energy" in gearwhine("rotors", shaft, "-q").out
+
+
+@pytest.mark.parametrize(
+    ("setting", "said"),
+    [
+        ("torsional_response={torques=[]}", "torsional_response"),
+        ("torsional_response={torques=[{rotor='shift', at=0, amplitude=1}]}", "did you mean 'shaft'"),
+        ("torsional_response={torques=[{rotor='shaft', at=1, amplitude=1}]}", "800 mm long"),
+        ("torsional_response={torques=[{rotor='shaft', at=0, amplitude='1 N'}]}", "torque"),
+        ("torsional_response={torques=[{rotor='shaft', at=0, amplitude=1}], frequency={from=9, to=3}}", "above 'from'"),
+        ("orders=[0]", "orders"),
+        ("stiffness_map={from=1, to=2, whirl='up'}", "whirl"),
+    ],
+)
+def test_wrong_keys_are_told(gearwhine: Any, shaft: str, setting: str, said: str) -> None:
+    outcome = gearwhine("rotors", shaft, "-q", "--set", f"rotor_analysis.{setting}")
+    assert outcome.code == 2
+    assert said in outcome.err
