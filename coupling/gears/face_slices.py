@@ -216,7 +216,9 @@ def balance_faces(
     touched, stiffness = np.zeros(meshes), np.zeros(meshes)
     fixed, rising = _fields(slices, base, gap, touching)
     constant, slope = np.zeros(owner.size), np.zeros(owner.size)
-    changed, unsettled = np.arange(owner.size), np.arange(owner.size)
+    every = np.arange(owner.size)
+    changed: IntArray | slice = slice(None)
+    unsettled: IntArray | slice = slice(None)
     scale = slices.flattening * slices.width
     for _ in range(_MOST_ROUNDS):
         carrying = touching[changed]
@@ -236,9 +238,9 @@ def balance_faces(
         if none[whose].any():
             touches |= none[whose, None] & meeting[unsettled] & (gap[unsettled] <= nearest[whose, None])
         different = (touches != touching[unsettled]).any(axis=1)
-        changed = unsettled[different]
-        if not changed.size:
+        if not different.any():
             break
+        changed = every[unsettled][different]
         touching[changed] = touches[different]
         fixed[changed], rising[changed] = _fields(slices, base[changed], gap[changed], touches[different])
         moved = np.zeros(meshes, dtype=np.bool_)
