@@ -80,7 +80,7 @@ def face_state(slices: FaceSlices, kinds: tuple[PairCurves, ...], position: Floa
     start, end = kinds[0].stiffness.knots[[0, -1]]
     whole, gap = np.zeros(at.shape), np.zeros(at.shape)
     for number, curves in enumerate(kinds):
-        these = kind == number
+        these = kind == number if len(kinds) > 1 else slice(None)
         whole[these], gap[these] = curves.stiffness(at[these]), curves.deviation(at[these])
     return FaceState(whole, tooth_stiffness(slices, whole), gap + slices.gap, (at >= start) & (at <= end))
 

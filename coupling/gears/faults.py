@@ -128,20 +128,23 @@ class Spall:
 
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
         """See `Fault`."""
-        whole = self._part_of_face(gear) >= 1.0
-        return self.depth * self._inside(roll_angle) if whole else np.zeros_like(roll_angle)
+        return self.depth * self._inside(roll_angle) if self.across_face(gear) else np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
         """What the contact flattens more, ``4 (1 - nu^2) / (pi E b)`` over the whole face (Yang and Sun, 1985)."""
-        part = self._part_of_face(gear)
-        if part >= 1.0:
+        if self.across_face(gear):
             return np.zeros_like(roll_angle)
+        part = self._part_of_face(gear)
         flattening = 4.0 * (1.0 - gear.poisson_ratio**2) / (math.pi * gear.youngs_modulus * gear.face_width)
         return np.asarray(flattening * part / (1.0 - part) * self._inside(roll_angle), dtype=np.float64)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
         """Both ends of both edges."""
         return self._edges
+
+    def across_face(self, gear: Gear) -> bool:
+        """Whether nothing of the face is left to carry."""
+        return self._part_of_face(gear) >= 1.0
 
     def _part_of_face(self, gear: Gear) -> float:
         return 1.0 if self.width is None else self.width / gear.face_width

@@ -67,7 +67,8 @@ def harris_map(contact: ToothContact, forces: npt.ArrayLike, phases: npt.ArrayLi
     if loads.size == 0:
         raise GearError("Harris map: at least one load is needed")
     at = mesh_period_phases(contact, 200) if phases is None else np.atleast_1d(np.asarray(phases, dtype=np.float64))
-    errors = [static_transmission_error(contact, float(load), at).transmission_error for load in loads]
+    states = contact.pairs(at)
+    errors = [static_transmission_error(contact, float(load), at, states=states).transmission_error for load in loads]
     return HarrisMap(loads, at, np.array(errors))
 
 

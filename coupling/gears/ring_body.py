@@ -104,10 +104,10 @@ def root_flexibility(
     # int f_k cos(n t) dt for even k, int f_k sin(n t) dt for odd k, by Gauss and Chebyshev: many times faster than jv.
     # Shape times wave is even in t, so half the points do.
     phase = math.pi * (np.arange(_POINTS // 2) + 0.5) / _POINTS
-    argument, weight = np.outer(waves, half_angle * np.cos(phase)), 2.0 * math.pi * half_angle / _POINTS
+    turns, weight = _multiples(last, half_angle * np.cos(phase)), 2.0 * math.pi * half_angle / _POINTS
     content = [
-        weight * np.cos(np.outer(even, phase)) @ np.cos(argument).T,
-        weight * np.cos(np.outer(odd, phase)) @ np.sin(argument).T,
+        weight * np.cos(np.outer(even, phase)) @ turns.real.T,
+        weight * np.cos(np.outer(odd, phase)) @ turns.imag.T,
     ]
     # Beyond, J_k J_l averages to +-1 / (pi n theta) and the flexibility falls as 1/n: all terms of a block alike.
     tail = half_angle * last / (last + 0.5) * np.diagonal(flexibility[-1])
@@ -125,6 +125,14 @@ def root_flexibility(
     held = np.asarray(scale * _least_work(lateral, across), dtype=np.float64)
     held.setflags(write=False)
     return RootFlexibility(lateral=held, radial=float(scale * _least_work(radial, along)[0, 0]))
+
+
+def _multiples(last: int, angle: FloatArray) -> npt.NDArray[np.complex128]:
+    """``e^{i n angle}`` for n = 1 ... `last`, (last, points): products of few exponentials, which cost more."""
+    few = math.ceil(math.sqrt(last))
+    ones, tens = np.outer(np.arange(1, few + 1), angle), np.outer(few * np.arange(few), angle)
+    turns = np.exp(1j * tens)[:, None] * np.exp(1j * ones)
+    return np.asarray(turns.reshape(-1, angle.size)[:last], dtype=np.complex128)
 
 
 def _energy(

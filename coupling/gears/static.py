@@ -104,7 +104,9 @@ def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 
     return np.asarray((np.arange(periods)[:, None] + period).ravel(), dtype=np.float64)
 
 
-def static_transmission_error(contact: ToothContact, force: float, phases: npt.ArrayLike | None = None) -> StaticMesh:
+def static_transmission_error(
+    contact: ToothContact, force: float, phases: npt.ArrayLike | None = None, *, states: PairStates | None = None
+) -> StaticMesh:
     """Equilibrium of the mesh under a load, phase by phase.
 
     Parameters
@@ -115,6 +117,8 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
     phases : array_like, shape (n,), or None
         Mesh periods; None for one period, `mesh_period_phases`: with pitch deviations that in which teeth 0 enter,
         so that means over the hunting period need its phases given.
+    states : PairStates or None
+        ``contact.pairs(phases)``, from a caller with many loads at the same phases.
 
     Returns
     -------
@@ -130,7 +134,7 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
     if not (math.isfinite(force) and force >= 0.0):
         raise GearError(f"static mesh: the load must be at least 0 N, got {force!r}")
     at = mesh_period_phases(contact) if phases is None else np.atleast_1d(np.asarray(phases, dtype=np.float64))
-    states = contact.pairs(at)
+    states = contact.pairs(at) if states is None else states
     _require_teeth(states, at)
     if contact.faces is not None:
         return _balanced_faces(contact.faces, force, at, states)
@@ -150,7 +154,7 @@ def static_transmission_error(contact: ToothContact, force: float, phases: npt.A
     compression = candidate[rows, touching]
     tangent = sum_stiffness[rows, touching]
 
-    forces = contact.pair_forces(at, compression)
+    forces = states.stiffness * np.maximum(0.0, compression[:, None] - states.deviation)
     # Rounding of delta - d, times the stiffness, is the least that any solution leaves.
     rounding = 64.0 * np.finfo(np.float64).eps * (force + tangent * np.abs(compression))
     imbalance = np.abs(forces.sum(axis=1) - force)
@@ -199,11 +203,15 @@ def _balanced_faces(faces: FaceSlices, force: float, at: FloatArray, states: Pai
 
 def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
     """Stiffness of all pairs on the path of contact, as if none were relieved [N/m], at `phases` (n,)."""
-    states = contact.pairs(phases)
-    if contact.faces is not None:
-        return np.asarray(states.stiffness.sum(axis=1), dtype=np.float64)
-    on_path = (states.position >= 0.0) & (states.position < contact.contact_ratio)
-    return np.asarray(np.where(on_path, states.stiffness, 0.0).sum(axis=1), dtype=np.float64)
+    places = contact.places(phases)
+    shift = np.zeros(1) if contact.faces is None else contact.faces.shift
+    at = places.position[..., None] + shift
+    on_path = places.present[..., None] & (at >= 0.0) & (at < contact.contact_ratio)
+    total = np.zeros(at.shape[0])
+    for number, curves in enumerate(contact.kinds):
+        these = on_path & (places.kind == number)[..., None]
+        total += np.bincount(np.nonzero(these)[0], curves.stiffness(at[these]), total.size)
+    return np.asarray(total / shift.size, dtype=np.float64)
 
 
 def period_mean(phases: FloatArray, values: FloatArray) -> float:

@@ -53,8 +53,8 @@ KernelArguments = tuple[FloatArray, int]
 
 
 @dataclass(frozen=True, eq=False)
-class PairStates:
-    """The pairs of teeth at some phases, at most m of them at once.
+class PairPlaces:
+    """Where the pairs of teeth are at some phases, at most m of them at once.
 
     Attributes
     ----------
@@ -62,23 +62,36 @@ class PairStates:
         Position along the path of contact, base pitches.
     present : ndarray of bool, shape (n, m)
         Whether the pair is where it can touch.
-    stiffness : ndarray, shape (n, m)
-        [N/m], 0 where absent; of an uneven face, of the slices on the path of contact, each by itself.
-    deviation : ndarray, shape (n, m)
-        Gap by profile and pitch [m], infinite where absent; that of first touch where the face is not even.
     kind : ndarray of int, shape (n, m)
         Number of the kind of pair.
+    entered : ndarray of int, shape (n, m)
+        Phase at which the pair entered.
+    """
+
+    position: FloatArray
+    present: npt.NDArray[np.bool_]
+    kind: IntArray
+    entered: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class PairStates(PairPlaces):
+    """The same pairs, how stiff and how relieved they are.
+
+    Attributes
+    ----------
+    stiffness : ndarray, shape (n, m)
+        [N/m], 0 where absent, and of an uneven face, whose slices have theirs.
+    deviation : ndarray, shape (n, m)
+        Gap by profile and pitch [m], infinite where absent; that of first touch where the face is not even.
     pitch_gap : ndarray, shape (n, m)
         The part of the gap that pitch deviations make [m].
     faces : FaceState or None
         Where the face is not even, the slices of the pairs that are present, row by row, without their pitch gaps.
     """
 
-    position: FloatArray
-    present: npt.NDArray[np.bool_]
     stiffness: FloatArray
     deviation: FloatArray
-    kind: IntArray
     pitch_gap: FloatArray
     faces: FaceState | None = None
 
@@ -281,8 +294,8 @@ class ToothContact:
         """The same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
         return replace(self, damping=damping, damping_depth=depth)
 
-    def pairs(self, phases: npt.ArrayLike) -> PairStates:
-        """Where the pairs are at `phases` (n,), and how stiff and how relieved they are."""
+    def places(self, phases: npt.ArrayLike) -> PairPlaces:
+        """Where the pairs are at `phases` (n,)."""
         phase = np.atleast_1d(np.asarray(phases, dtype=np.float64))
         number = np.floor(phase)
         fraction = phase - number
@@ -294,6 +307,12 @@ class ToothContact:
         present = (position >= start) & (position < end)
         entered = number.astype(np.int64)[:, None] - behind
         kind = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
+        return PairPlaces(position, present, kind, entered)
+
+    def pairs(self, phases: npt.ArrayLike) -> PairStates:
+        """Where the pairs are at `phases` (n,), and how stiff and how relieved they are."""
+        places = self.places(phases)
+        position, present, kind, entered = places.position, places.present, places.kind, places.entered
         stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
         state = None
         if self.faces is None:
@@ -303,12 +322,9 @@ class ToothContact:
                 deviation[these] = curves.deviation(position[these])
         else:
             state = face_state(self.faces, self.kinds, position[present], kind[present])
-            at = position[present][:, None] + self.faces.shift
-            on_path = (at >= 0.0) & (at < self.contact_ratio)
-            stiffness[present] = np.where(on_path, state.whole / self.faces.z.size, 0.0).sum(axis=1)
             deviation[present] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
-        return PairStates(position, present, stiffness, deviation + gap, kind, gap, state)
+        return PairStates(position, present, kind, entered, stiffness, deviation + gap, gap, state)
 
     def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
         """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""

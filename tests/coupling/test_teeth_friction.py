@@ -1,6 +1,7 @@
 """Friction between the teeth in motion: forces and moments, where they turn, order of the steps, heat, refusals."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -37,10 +38,12 @@ from coupling.gears import (
     Gear,
     GearError,
     GearPairGeometry,
+    HelixDeviation,
     PotentialEnergyStiffness,
     SlidingFriction,
     TipRelief,
     ToothContact,
+    face_slices,
     mesh_friction,
     mesh_period_phases,
     piecewise,
@@ -159,6 +162,43 @@ def test_the_nominal_rotation_always_heats_the_flanks(phase: float, compression:
     np.testing.assert_allclose(
         a * begin + b * rise, (forces * np.abs(sliding)).sum() / forces.sum(), rtol=1e-9, atol=1e-12 * speed
     )
+
+
+@pytest.mark.parametrize("helix", [2.0, 15.0])
+def test_helical_faces_turn_slice_by_slice(helix: float) -> None:
+    """Force across and heat of the law against sums over the loaded slices, which no table is behind."""
+    from coupling.gears.friction_kernels import friction_shares
+
+    angle = np.radians(helix)
+    crowned = HelixDeviation(crowning=5e-6)
+    pinion = replace(PINION, helix_angle=angle, helix_deviation=crowned)
+    pair = GearPairGeometry(pinion, replace(WHEEL, helix_angle=-angle))
+    contact = tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True, faces=face_slices(pair))
+    force = 4000.0
+    mesh = static_transmission_error(contact, force, np.arange(48) / 48.0)
+    expected = mesh_friction(pair, contact, mesh, COEFFICIENT)
+    law = sliding_friction(pair, contact, COEFFICIENT)
+    assert law.event_phases == ()
+    shares = np.array(
+        [
+            friction_shares(phase, deep, law.shares, 0, True, law.pitch_point, law.path_end)
+            for phase, deep in zip(mesh.phases, mesh.transmission_error, strict=True)
+        ]
+    )
+    across = -law.coefficient * force * shares[:, 0]
+    np.testing.assert_allclose(across, expected.force, atol=0.02 * COEFFICIENT * force)
+    rolls = pair.driver_roll_angle([0.0, 1.0]) * pinion.base_radius
+    rolls = rolls - pair.driven_roll_angle([0.0, 1.0]) * pair.driven.base_radius / pair.ratio
+    lost = law.coefficient * force * (shares[:, 0] * rolls[0] + shares[:, 1] * (rolls[1] - rolls[0]))
+    assert lost.mean() == pytest.approx(expected.loss.mean(), rel=5e-4)
+    # The slopes, against differences.
+    step = 1e-9
+    phase, deep = 0.3, float(mesh.transmission_error[14])
+    below, here, above = (
+        friction_shares(phase, deep + change, law.shares, 0, True, law.pitch_point, law.path_end)
+        for change in (-step, 0.0, step)
+    )
+    np.testing.assert_allclose((np.array(above[:2]) - below[:2]) / (2.0 * step), here[2:], rtol=1e-3, atol=1.0)
 
 
 # ------------------------------------------------------------- a small system, against an integration of another kind
