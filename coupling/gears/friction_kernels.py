@@ -15,14 +15,14 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from coupling.compiled import uncounted
 from coupling.gears.kernels import face_force
 
 FloatArray = npt.NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted()
 def mean_turn(position: float, pitch_point: float, half_line: float, path_end: float) -> tuple[float, float]:
     """Means of sgn(x - s_C) and of x sgn(x - s_C) over the part of a contact line that lies on the path."""
     low, high = max(position - half_line, 0.0), min(position + half_line, path_end)
@@ -36,7 +36,7 @@ def mean_turn(position: float, pitch_point: float, half_line: float, path_end: f
     return (high + low - 2.0 * turn) / length, 0.5 * (high * high + low * low - 2.0 * turn * turn) / length
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted()
 def friction_shares(
     phase: float,
     compression: float,

@@ -16,13 +16,14 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from coupling.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 TangentForce = tuple[float, float, float, float, float, int]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"}, inline="always")
+@inner(fastmath={"contract"}, inline="always")
 def face_force(
     cells: FloatArray, kind: int, at: int, unit: float, per_unit: float, p: float, r: float
 ) -> tuple[float, float, float, float]:
@@ -70,7 +71,7 @@ def face_force(
     return force, tangent, energy, slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+@uncounted(fastmath={"contract"})
 def tooth_force(
     phase: float,
     compression: float,
@@ -194,7 +195,7 @@ def tooth_force(
     return force + damping * rate, tangent, damping, energy, slope, touching
 
 
-@njit(cache=True, nogil=True)
+@counted()
 def tooth_force_history(
     phase: FloatArray,
     compression: FloatArray,
