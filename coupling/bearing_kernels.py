@@ -15,14 +15,14 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from coupling.compiled import counted, inner, uncounted
 from coupling.kernel_arrays import BALLS, ROLLERS, Bearings
 
 FloatArray = npt.NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def _balls(
     shape: FloatArray, count: int, angle: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
@@ -30,8 +30,6 @@ def _balls(
     distance, start_r, start_z, before = shape[0], shape[1], shape[2], shape[3]
     reach, place, stiffness = shape[4], shape[5], shape[6]
     energy, slope = 0.0, 0.0
-    across, along = np.zeros(5), np.zeros(5)
-    along[2] = 1.0
     for ball in range(count):
         azimuth = angle + 2.0 * math.pi * ball / count
         c, s = math.cos(azimuth), math.sin(azimuth)
@@ -51,8 +49,7 @@ def _balls(
         k_rr, k_rz = steep * n_r * n_r + flat * n_z * n_z, (steep - flat) * n_r * n_z
         k_zz = steep * n_z * n_z + flat * n_r * n_r
         f_r, f_z = load * n_r, load * n_z
-        across[0], across[1], across[3], across[4] = c, s, -place * s, place * c
-        along[3], along[4] = reach * s, -reach * c
+        across, along = (c, s, 0.0, -place * s, place * c), (0.0, 0.0, 1.0, reach * s, -reach * c)
         for i in range(5):
             force[i] += f_r * across[i] + f_z * along[i]
             by_r, by_z = k_rr * across[i] + k_rz * along[i], k_rz * across[i] + k_zz * along[i]
@@ -63,7 +60,7 @@ def _balls(
     return energy, slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def _rollers(
     shape: FloatArray,
     slices: FloatArray,
@@ -114,7 +111,7 @@ def _rollers(
     return energy, slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def _gap(shape: FloatArray, q: FloatArray, force: FloatArray, tangent: FloatArray) -> float:
     """Add a gap that closes; its energy [J]."""
     unit, depth, exponent, gap = shape[0], shape[1], shape[2], shape[3]
@@ -137,7 +134,7 @@ def _gap(shape: FloatArray, q: FloatArray, force: FloatArray, tangent: FloatArra
     return float(push * deep / (exponent + 1.0))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted()
 def bearing_force(
     bearings: Bearings, number: int, turned: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
@@ -150,8 +147,10 @@ def bearing_force(
     slope : float
         Its derivative by the turned time [J/s]: the power of the turning cage at nominal speed.
     """
-    force[:] = 0.0
-    tangent[:] = 0.0
+    for i in range(5):
+        force[i] = 0.0
+        for j in range(5):
+            tangent[i, j] = 0.0
     energy, slope = 0.0, 0.0
     for row in range(bearings.first_row[number], bearings.first_row[number + 1]):
         kind, count, shape = bearings.kind[row], bearings.elements[row], bearings.shape[row]
@@ -169,7 +168,7 @@ def bearing_force(
     return energy - preload * q[2], slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted()
 def take_bearings(
     bearings: Bearings,
     offset: int,
@@ -181,10 +180,11 @@ def take_bearings(
 ) -> None:
     """What every bearing adds to its linear law at the deflections ``delta[offset:]``: f - K δ and its tangent.
 
-    Fills in the forces, tangents (b, 5, 5) with their leading d by d, and ``held``: energy [J] and its slope [J/s].
+    Fills in the forces, tangents (b, 5, 5) with their leading d by d, and ``held`` (8, 5): in row 0 energy [J] and its
+    slope [J/s]; the others are room for one bearing.
     """
-    held[0], held[1] = 0.0, 0.0
-    q, push, tangent = np.zeros(5), np.zeros(5), np.zeros((5, 5))
+    held[0, 0], held[0, 1] = 0.0, 0.0
+    q, push, tangent = held[1], held[2], held[3:]
     for number in range(bearings.preload.size):
         first, end = bearings.first[number], bearings.first[number + 1]
         for i in range(5):
@@ -200,11 +200,11 @@ def take_bearings(
                 tangents[number, k - first, j - first] = tangent[bearings.axis[k], bearings.axis[j]] - stiffness
             force[offset + k] = push[bearings.axis[k]] - linear
             energy -= 0.5 * delta[offset + k] * linear
-        held[0] += energy
-        held[1] += slope
+        held[0, 0] += energy
+        held[0, 1] += slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@counted()
 def bearing_history(bearings: Bearings, number: int, turned: FloatArray, deflection: FloatArray) -> FloatArray:
     """Force of the shaft on one bearing at every sample, shape (s, d), from its deflections (s, d)."""
     first, end = bearings.first[number], bearings.first[number + 1]

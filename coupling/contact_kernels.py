@@ -7,9 +7,9 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from coupling.bearing_kernels import take_bearings
+from coupling.compiled import inner
 from coupling.gears.friction_kernels import friction_shares
 from coupling.gears.kernels import tooth_force
 from coupling.kernel_arrays import Bearings, Contacts
@@ -23,7 +23,7 @@ _NEWTON_STEPS = 30
 FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE, TOUCHING = 0, 1, 2, 3, 4, 5
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def deviation_of(clearance: FloatArray, errors: FloatArray, k: int, turned: float, speed: float) -> tuple[float, float]:
     """What runout and clearance take from a contact's compression [m], and its rate [m/s]."""
     value, rate = clearance[k], 0.0
@@ -36,7 +36,7 @@ def deviation_of(clearance: FloatArray, errors: FloatArray, k: int, turned: floa
     return value, rate
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@inner(inline="always")
 def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
     """Fill in a row of the laws' table for a contact."""
     phase = contacts.phase[k] + contacts.rate[k] * turned
@@ -45,7 +45,7 @@ def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: floa
     laws[row, ENERGY], laws[row, PHASE_SLOPE], laws[row, TOUCHING] = law[3], law[4], law[5]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def take_friction(
     contacts: Contacts, k: int, turned: float, delta: float, laws: FloatArray, force: FloatArray, drag: FloatArray
 ) -> None:
@@ -70,7 +70,7 @@ def take_friction(
     drag[2], drag[3] = viscous * a, viscous * b
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def take_forces(
     contacts: Contacts,
     bearings: Bearings,
@@ -86,7 +86,7 @@ def take_forces(
     """All laws at some deflections: teeth, their friction, bearings.
 
     Fills in the laws' table, the force along every direction (k,), the friction's slopes (c, 4), the bearings' tangents
-    (b, 5, 5), and what energy the bearings hold (2,).
+    (b, 5, 5), and what energy the bearings hold, in the first row of (8, 5).
     """
     for k in range(contacts.phase.size):
         take_law(contacts, k, turned, delta[k], rate[k], laws, k)
@@ -97,7 +97,7 @@ def take_forces(
         take_bearings(bearings, contacts.phase.size, turned, delta, force, tangents, held)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@inner(inline="always")
 def settle(
     contacts: Contacts,
     bearings: Bearings,
@@ -125,7 +125,8 @@ def settle(
     """
     c, u, directions = contacts.phase.size, free.size, force.size
     per = by_velocity / by_displacement
-    delta[:] = free
+    for k in range(u):
+        delta[k] = free[k]
     for k in range(c, u):
         for j in range(directions):
             delta[k] -= by_displacement * flexibility[k, j] * force[j]

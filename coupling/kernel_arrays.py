@@ -46,7 +46,7 @@ class Dynamics(NamedTuple):
 
 
 class StepMatrices(NamedTuple):
-    """What the step needs for each of m step sizes; slot 0 is for sizes that occur once."""
+    """What the step needs for each of m step sizes."""
 
     size: FloatArray  # (m,) h [s]
     base: FloatArray  # (m, n) inverse of the diagonal of S
@@ -99,8 +99,25 @@ class Segments(NamedTuple):
     start: FloatArray  # (s,)
     end: FloatArray  # (s,)
     steps: IntArray  # (s,)
-    kind: IntArray  # (s,) which step matrices; -1: those of this stretch alone
+    kind: IntArray  # (s,) which step matrices
     turned: FloatArray  # (s, 3) s, s' and s'' at the start
+
+
+class Scratch(NamedTuple):
+    """Room for one march, w the gyroscopic blocks' width and e + c the number of deflections; zeros at its start."""
+
+    coordinates: FloatArray  # (9, n)
+    ties: FloatArray  # (8, r)
+    directions: FloatArray  # (6, k)
+    deflections: FloatArray  # (6, e + c)
+    laws: FloatArray  # (2, c, 6)
+    drag: FloatArray  # (c, 4) slopes of friction
+    jacobian: FloatArray  # (e + c, e + c)
+    residual: FloatArray  # (e + c, 1)
+    tangents: FloatArray  # (b, 5, 5) of bearings
+    held: FloatArray  # (8, 5): `coupling.bearing_kernels.take_bearings`
+    powers: FloatArray  # (2, 4) and those before
+    block: FloatArray  # (w,)
 
 
 class Outputs(NamedTuple):

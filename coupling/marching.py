@@ -26,7 +26,8 @@ from coupling.errors import CouplingError, TransientError
 from coupling.fingerprint import fingerprint
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.statics import coasting_velocity, static_equilibrium
-from coupling.step import KernelArrays, StepCache, cut, empty_samples, kernel_arrays
+from coupling.step import KernelArrays, StepCache, cut, empty_samples, kernel_arrays, scratch_room
+from coupling.stored_energy import stored_energy
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
 
@@ -276,7 +277,7 @@ class MarchRun:
         q, v = q.astype(np.float64), v.astype(np.float64)
         first = float(self.bounds(0)[1])
         turned, rates, _ = self.turning.at(1e-7 * first)
-        stored = self._stored(q, v, float(turned[0]), float(rates[0]))
+        stored = stored_energy(*self.arrays[:3], q, v, float(turned[0]), float(rates[0]))
         energy = self.held(q, v) + stored
         return Checkpoint(
             block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(5),
@@ -360,7 +361,7 @@ class MarchRun:
             q, v, arrays.dynamics, arrays.contacts, arrays.bearings, self.cache.matrices, segments, arrays.outputs,
         )  # fmt: skip
         sample, stored, curvature, acceleration, unsettled = kernel(
-            *head, samples, state.sample, state.stored, totals, contacts
+            *head, samples, state.sample, state.stored, totals, contacts, scratch_room(arrays)
         )
         moved = replace(state, q=q, v=v, totals=totals, contact_totals=contacts, sample=sample, stored=stored)
         return replace(moved, unsettled=state.unsettled + unsettled), curvature, acceleration
@@ -373,11 +374,6 @@ class MarchRun:
             tied = dynamics.ties @ q
             energy += 0.5 * tied @ dynamics.tie_stiffness[0] @ tied
         return float(energy)
-
-    def _stored(self, q: FloatArray, v: FloatArray, turned: float, rate: float) -> float:
-        from coupling.newmark import stored_energy
-
-        return float(stored_energy(*self.arrays[:3], q, v, turned, rate))
 
     def lost(self, begin: float, state: Checkpoint, now: float | None = None) -> str:
         """What happened where the motion grows beyond bounds, after a time and until now [s]."""

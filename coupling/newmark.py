@@ -23,8 +23,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from coupling.compiled import inner, uncounted
 from coupling.contact_kernels import (
     DAMPING,
     ENERGY,
@@ -43,10 +43,11 @@ from coupling.kernel_arrays import (
     Dynamics,
     Outputs,
     Samples,
+    Scratch,
     Segments,
     StepMatrices,
 )
-from coupling.step_kernels import add_gyroscopic, apply_base, build_step, project, tie_matrices
+from coupling.step_kernels import add_gyroscopic, apply_base, project
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -59,7 +60,7 @@ INSIDE = 1e-7
 IMPULSE, APART, PEAK, LAST_TOUCH = 0, 1, 2, 3
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted()
 def march(
     q: FloatArray,
     v: FloatArray,
@@ -74,6 +75,7 @@ def march(
     stored: float,
     totals: FloatArray,
     contact_totals: FloatArray,
+    scratch: Scratch,
 ) -> tuple[int, float, float, float, int]:
     """Carry the state through some segments; q and v are replaced by those at the end.
 
@@ -108,22 +110,23 @@ def march(
     r, n = dynamics.ties.shape
     c, directions = contacts.phase.size, contacts.direction.shape[0]
     u = c + bearings.axis.size
-    a, before, free, pushed = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    q0, v0, load, x, y = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
+    rows = scratch.coordinates
+    a, before, free, pushed, q0, v0 = rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]
+    load, x, y = rows[6], rows[7], rows[8]
     # What the ties see of q, v and a, and what the laws do.
-    tq, tv, ta, tq0, tv0 = np.zeros(r), np.zeros(r), np.zeros(r), np.zeros(r), np.zeros(r)
-    tie_push, seen_by_ties, response = np.zeros(r), np.zeros(r), np.zeros(r)
-    dq, dv, da, dq0 = np.zeros(directions), np.zeros(directions), np.zeros(directions), np.zeros(directions)
-    dv0, push = np.zeros(directions), np.zeros(directions)
-    delta, rate, delta_free, rate_free, slip = np.zeros(u), np.zeros(c), np.zeros(u), np.zeros(c), np.zeros(c)
-    laws, spare, jacobian, residual = np.zeros((c, 6)), np.zeros((c, 6)), np.zeros((u, u)), np.zeros((u, 1))
-    drag, tangents, held = np.zeros((c, 4)), np.zeros((bearings.preload.size, 5, 5)), np.zeros(2)
-    teeth = contacts.direction[:c]
-    force_before, work = np.zeros(c), np.zeros(dynamics.gyroscopic.shape[2])
-    powers, powers_before = np.zeros(4), np.zeros(4)
+    rows = scratch.ties
+    tq, tv, ta, tq0, tv0 = rows[0], rows[1], rows[2], rows[3], rows[4]
+    tie_push, seen_by_ties, response = rows[5], rows[6], rows[7]
+    rows = scratch.directions
+    dq, dv, da, dq0, dv0, push = rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]
+    rows = scratch.deflections
+    delta, rate, delta_free, rate_free, slip, force_before = rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]
+    laws, spare, jacobian, residual = scratch.laws[0], scratch.laws[1], scratch.jacobian, scratch.residual
+    drag, tangents, work, teeth = scratch.drag, scratch.tangents, scratch.block, contacts.direction[:c]
+    powers, powers_before, held = scratch.powers[0], scratch.powers[1], scratch.held
     curvature, acceleration, unsettled = 0.0, 0.0, 0
     beta, gamma = dynamics.beta, dynamics.gamma
-    # Taken out of their tuples here: a tuple that changes hands has each of its arrays counted, in and out.
+    # Taken out of their tuples here, once.
     gyroscopic, first, size = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size
     changing, has_skew = dynamics.tie_rates.size > 1, dynamics.has_skew
 
@@ -134,9 +137,6 @@ def march(
         inside = INSIDE * (t1 - t0)
         slot = segments.kind[segment]
         middle_speed = speed0 + 0.5 * swing * (t1 - t0)
-        if slot < 0:
-            slot = -1 - slot  # 0, in a form that is no constant: a constant would compile all anew
-            build_step(dynamics, contacts, h, middle_speed, swing, slot, matrices)
         stiffness, damping = matrices.tie_stiffness[slot], matrices.tie_damping[slot]
         between, link = matrices.between[slot], matrices.link[slot]
 
@@ -153,7 +153,7 @@ def march(
         for k in range(c, u):
             delta[k] = dq[k]
         take_forces(contacts, bearings, turned, delta, rate, laws, push, drag, tangents, held)
-        fresh = _stored(changing, stiffness, tq, laws) + held[0]
+        fresh = _stored(changing, stiffness, tq, laws) + held[0, 0]
         totals[2] += fresh - stored
         stored = fresh
         _load_at(dynamics, t0, turned0, speed0, swing, load)
@@ -193,7 +193,7 @@ def march(
         )
         if directions > u:
             _friction_power(contacts.friction_row, contacts.sliding, speed, dv, push, powers_before)
-        powers_before[2] += held[1] * speed
+        powers_before[2] += held[0, 1] * speed
         for k in range(c):
             force_before[k] = laws[k, FORCE]
 
@@ -316,7 +316,7 @@ def march(
 
             if swing != 0.0:
                 add_gyroscopic(gyroscopic, first, size, -swing, q, load, work)
-            stored = _stored(changing, stiffness, tq, laws) + held[0]
+            stored = _stored(changing, stiffness, tq, laws) + held[0, 0]
             _powers(
                 dynamics.damping,
                 contacts.rate,
@@ -335,7 +335,7 @@ def march(
             )
             if directions > u:
                 _friction_power(contacts.friction_row, contacts.sliding, speed, dv, push, powers)
-            powers[2] += held[1] * speed
+            powers[2] += held[0, 1] * speed
             totals[4] += 0.5 * h * (powers_before[3] + powers[3])
             powers_before[3] = powers[3]
             for k in range(3):
@@ -354,35 +354,7 @@ def march(
     return next_sample, stored, curvature, acceleration, unsettled
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def stored_energy(
-    dynamics: Dynamics,
-    contacts: Contacts,
-    bearings: Bearings,
-    q: FloatArray,
-    v: FloatArray,
-    turned: float,
-    speed: float,
-) -> float:
-    """Energy that :func:`march` calls stored [J], at a state."""
-    r, c, directions = dynamics.ties.shape[0], contacts.phase.size, contacts.direction.shape[0]
-    stiffness, damping, laws = np.zeros((r, r)), np.zeros((r, r)), np.zeros((c, 6))
-    push, drag, tangents = np.zeros(directions), np.zeros((c, 4)), np.zeros((bearings.preload.size, 5, 5))
-    held = np.zeros(2)
-    tie_matrices(dynamics, speed, stiffness, damping)
-    changing = dynamics.tie_rates.size > 1
-    tq, dq, dv = np.zeros(r), np.zeros(directions), np.zeros(directions)
-    project(dynamics.ties, q, tq)
-    project(contacts.direction, q, dq)
-    project(contacts.direction, v, dv)
-    for k in range(c):
-        gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
-        dq[k], dv[k] = dq[k] - gone, dv[k] - slip
-    take_forces(contacts, bearings, turned, dq, dv, laws, push, drag, tangents, held)
-    return float(_stored(changing, stiffness, tq, laws) + held[0])
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def _stored(changing: bool, stiffness: FloatArray, tq: FloatArray, laws: FloatArray) -> float:
     """Energy in the teeth, and in the ties where they change with the speed."""
     energy = 0.0
@@ -395,7 +367,7 @@ def _stored(changing: bool, stiffness: FloatArray, tq: FloatArray, laws: FloatAr
     return energy
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def _load_at(dynamics: Dynamics, time: float, turned: float, speed: float, swing: float, out: FloatArray) -> None:
     """All loads at a time."""
     n = out.size
@@ -427,7 +399,7 @@ def _load_at(dynamics: Dynamics, time: float, turned: float, speed: float, swing
             out[i] += value * dynamics.timed_rows[m, i]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def _powers(
     component_damping: FloatArray,
     phase_rate: FloatArray,
@@ -467,7 +439,7 @@ def _powers(
     out[0], out[1], out[2] = given, lost, turning
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def _friction_power(
     friction_row: IntArray, sliding: FloatArray, speed: float, dv: FloatArray, push: FloatArray, out: FloatArray
 ) -> None:
@@ -485,7 +457,7 @@ def _friction_power(
             out[3] += (push[row] * sliding[k, 0] + push[row + 1] * sliding[k, 1]) * speed
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def _sample(
     contacts: Contacts,
     teeth: FloatArray,

@@ -8,10 +8,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from coupling.compiled import uncounted
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
 from coupling.periodic.collocation import GAUSS, MONOMIALS, ORDER, PLACES
-from coupling.periodic.uncounted import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -51,7 +51,9 @@ def amplitudes_within(steps: Steps, trace: Trace, element: int, i: int, out: Flo
 
 
 @uncounted(fastmath=_SUMS)
-def add_powers(steps: Steps, trace: Trace, powers: Powers, free: FreeMotion, room: PowersRoom, totals: FloatArray) -> None:
+def add_powers(
+    steps: Steps, trace: Trace, powers: Powers, free: FreeMotion, room: PowersRoom, totals: FloatArray
+) -> None:
     """Add what the loads give and what damping without the teeth's takes [J], and keep the largest kinetic energy.
 
     ``totals`` (5,) are those of :class:`coupling.marching.Checkpoint`.

@@ -5,12 +5,13 @@ Importing this module imports numba.
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from coupling.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
     """Gaussian elimination with row exchanges; the columns of ``right`` (n, k) become the solutions."""
     n, columns = right.shape

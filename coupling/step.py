@@ -15,6 +15,7 @@ from coupling.kernel_arrays import (
     Dynamics,
     Outputs,
     Samples,
+    Scratch,
     Segments,
     StepMatrices,
 )
@@ -69,12 +70,33 @@ def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: i
     )
 
 
+def scratch_room(arrays: KernelArrays) -> Scratch:
+    """Room for one march."""
+    r, n = arrays.dynamics.ties.shape
+    c, k = arrays.contacts.phase.size, len(arrays.contacts.direction)
+    u, b = c + arrays.bearings.axis.size, arrays.bearings.preload.size
+    return Scratch(
+        coordinates=np.zeros((9, n)),
+        ties=np.zeros((8, r)),
+        directions=np.zeros((6, k)),
+        deflections=np.zeros((6, u)),
+        laws=np.zeros((2, c, 6)),
+        drag=np.zeros((c, 4)),
+        jacobian=np.zeros((u, u)),
+        residual=np.zeros((u, 1)),
+        tangents=np.zeros((b, 5, 5)),
+        held=np.zeros((8, 5)),
+        powers=np.zeros((2, 4)),
+        block=np.zeros(arrays.dynamics.gyroscopic.shape[2]),
+    )
+
+
 class StepCache:
     """The matrices of every step size met so far; see :mod:`coupling.step_kernels` for what they are.
 
     At steady speed few sizes occur: the stretches between events repeat with the mesh period. Sizes that agree to nine
-    digits are one. Where the speed varies no size occurs twice, and the kernel builds each in slot 0. Mesh periods that
-    have no common multiple make ever new sizes: beyond a limit all are forgotten, which changes no result, as a size
+    digits are one. Where the speed varies no size occurs twice, and each stretch has its own. Mesh periods that have no
+    common multiple make ever new sizes: beyond a limit all are forgotten, which changes no result, as a size
     met again is built anew just as it was.
     """
 
@@ -92,23 +114,29 @@ class StepCache:
         if len(self._kinds) + count > max(most, 2 * count):
             self._kinds.clear()
 
-    def kind(self, size: float) -> int:
-        """The number of a step size [s]."""
-        from coupling.step_kernels import build_step
-
+    def kinds(self, sizes: FloatArray, speeds: FloatArray, accelerations: FloatArray) -> IntArray:
+        """The numbers of some step sizes [s], at speeds s' and angular accelerations s'' that count where they vary."""
         if not self._steady:
-            return -1
-        key = float(f"{size:.9e}")
-        if key not in self._kinds:
-            slot = len(self._kinds) + 1
-            if slot == len(self.matrices.size):
-                larger = _room_for_steps(self._arrays, 2 * slot)
-                for old, new in zip(self.matrices, larger, strict=True):
-                    new[:slot] = old
-                self.matrices = larger
-            self._kinds[key] = slot
-            build_step(self._arrays.dynamics, self._arrays.contacts, key, 1.0, 0.0, slot, self.matrices)
-        return self._kinds[key]
+            self._build(range(len(sizes)), sizes, speeds, accelerations)
+            return np.arange(len(sizes), dtype=np.int64)
+        keys = [float(f"{size:.9e}") for size in sizes]
+        fresh = [key for key in dict.fromkeys(keys) if key not in self._kinds]
+        slots = range(len(self._kinds), len(self._kinds) + len(fresh))
+        self._build(slots, np.array(fresh), np.ones(len(fresh)), np.zeros(len(fresh)))
+        self._kinds.update(zip(fresh, slots, strict=True))
+        return np.array([self._kinds[key] for key in keys], dtype=np.int64)
+
+    def _build(self, slots: range, sizes: FloatArray, speeds: FloatArray, accelerations: FloatArray) -> None:
+        from coupling.step_kernels import build_steps
+
+        room = len(self.matrices.size)
+        if slots.stop > room:
+            larger = _room_for_steps(self._arrays, max(slots.stop, 2 * room))
+            for old, new in zip(self.matrices, larger, strict=True):
+                new[:room] = old
+            self.matrices = larger
+        into = np.arange(slots.start, slots.stop, dtype=np.int64)
+        build_steps(self._arrays.dynamics, self._arrays.contacts, sizes, speeds, accelerations, into, self.matrices)
 
 
 def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> Segments:
@@ -116,8 +144,9 @@ def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> 
     start, end = bounds[:-1], bounds[1:]
     counts = np.maximum(np.ceil((end - start) / step - 1e-9), 2).astype(np.int64)
     cache.make_room(len(counts))
-    kinds = np.array([cache.kind(float(size)) for size in (end - start) / counts], dtype=np.int64)
     turned = np.column_stack(turning.at(start)).reshape(-1, 3)
+    middle = turned[:, 1] + 0.5 * turned[:, 2] * (end - start)
+    kinds = cache.kinds((end - start) / counts, middle, np.ascontiguousarray(turned[:, 2]))
     return Segments(np.ascontiguousarray(start), np.ascontiguousarray(end), counts, kinds, turned)
 
 

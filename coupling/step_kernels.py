@@ -14,8 +14,8 @@ B = S₀⁻¹, by Sherman, Morrison and Woodbury,
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from coupling.compiled import counted, inner
 from coupling.kernel_arrays import Contacts, Dynamics, StepMatrices
 from coupling.small_systems import solve_in_place
 
@@ -23,7 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def tie_matrices(dynamics: Dynamics, speed: float, stiffness: FloatArray, damping: FloatArray) -> None:
     """K_t and C_t at a speed, linear between those at which they are given, into two arrays (r, r)."""
     rates, last = dynamics.tie_rates, dynamics.tie_rates.size - 1
@@ -43,7 +43,7 @@ def tie_matrices(dynamics: Dynamics, speed: float, stiffness: FloatArray, dampin
 
 
 # Sums may be taken in any order, so that they vectorise; the compiled order is always the same.
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@inner(fastmath={"reassoc", "contract", "nsz"})
 def project(rows: FloatArray, x: FloatArray, out: FloatArray) -> None:
     """Rows x, for a few rows (k, n)."""
     for j in range(rows.shape[0]):
@@ -53,14 +53,15 @@ def project(rows: FloatArray, x: FloatArray, out: FloatArray) -> None:
         out[j] = value
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def add_gyroscopic(
     blocks: FloatArray, first: IntArray, size: IntArray, factor: float, x: FloatArray, out: FloatArray, work: FloatArray
 ) -> None:
     """Add factor G x, by G's blocks; ``work`` (b,) is overwritten."""
     for g in range(first.size):
         # Of the padded width: loops of sixteen vectorise, those of the block's own size may not.
-        work[:] = 0.0
+        for i in range(work.size):
+            work[i] = 0.0
         for j in range(size[g]):
             value = factor * x[first[g] + j]
             for i in range(work.size):
@@ -69,7 +70,7 @@ def add_gyroscopic(
             out[first[g] + i] += work[i]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def apply_base(
     base: FloatArray,
     blocks: FloatArray,
@@ -85,7 +86,8 @@ def apply_base(
         out[i] = base[slot, i] * x[i]
     for g in range(first.size):
         begin, n = first[g], size[g]
-        work[:] = 0.0
+        for i in range(work.size):
+            work[i] = 0.0
         # Four columns at a time, so that what is added up is fetched and stored four times less.
         for j in range(0, n - n % 4, 4):
             x0, x1, x2, x3 = x[begin + j], x[begin + j + 1], x[begin + j + 2], x[begin + j + 3]
@@ -101,82 +103,88 @@ def apply_base(
             out[begin + i] = work[i]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def build_step(
+@counted()
+def build_steps(
     dynamics: Dynamics,
     contacts: Contacts,
-    h: float,
-    speed: float,
-    acceleration: float,
-    slot: int,
+    sizes: FloatArray,
+    speeds: FloatArray,
+    accelerations: FloatArray,
+    slots: IntArray,
     matrices: StepMatrices,
 ) -> None:
-    """Fill a slot for steps of size h at a speed s' and an angular acceleration s''."""
+    """Fill slots, each for steps of a size h at a speed s' and an angular acceleration s''."""
     r, n = dynamics.ties.shape
     c = contacts.direction.shape[0]
-    by_velocity, by_displacement = dynamics.gamma * h, dynamics.beta * h * h
-    matrices.size[slot] = h
-    for i in range(n):
-        diagonal = 1.0 + by_velocity * dynamics.damping[i] + by_displacement * dynamics.stiffness[i]
-        matrices.base[slot, i] = 1.0 / diagonal
-    turning = by_velocity * speed + by_displacement * acceleration
-    for g in range(dynamics.block_start.size):
-        first, size = dynamics.block_start[g], dynamics.block_size[g]
-        # Of the transposed block, whose inverse is the transposed inverse.
-        block, inverse = np.zeros((size, size)), np.eye(size)
-        for i in range(size):
-            for j in range(size):
-                block[i, j] = turning * dynamics.gyroscopic[g, i, j]
-            block[i, i] += 1.0 / matrices.base[slot, first + i]
-        solve_in_place(block, inverse)
-        for i in range(size):
-            for j in range(size):
-                matrices.blocks[slot, g, i, j] = inverse[i, j]
-
-    stiffness, damping = matrices.tie_stiffness[slot], matrices.tie_damping[slot]
-    tie_matrices(dynamics, speed, stiffness, damping)
-    tied, seen = np.zeros(r), np.zeros(c)
+    tied, seen, held = np.zeros(r), np.zeros(c), np.zeros(r)
     column, found, work = np.zeros(n), np.zeros(n), np.zeros(dynamics.gyroscopic.shape[2])
-    for k in range(r):
+    first_of, size_of = dynamics.block_start, dynamics.block_size
+    for one in range(slots.size):
+        h, speed, acceleration, slot = sizes[one], speeds[one], accelerations[one], slots[one]
+        by_velocity, by_displacement = dynamics.gamma * h, dynamics.beta * h * h
+        matrices.size[slot] = h
         for i in range(n):
-            column[i] = dynamics.ties[k, i]
-        apply_base(matrices.base, matrices.blocks, dynamics.block_start, dynamics.block_size, slot, column, found, work)
-        for i in range(n):
-            matrices.ties[slot, k, i] = found[i]
-        project(dynamics.ties, found, tied)
-        for j in range(r):
-            matrices.between[slot, j, k] = tied[j]
-    across, link = np.eye(r), np.zeros((r, r))
-    for i in range(r):
-        for j in range(r):
-            e = by_velocity * damping[i, j] + by_displacement * stiffness[i, j]
-            link[i, j] = e
-            for k in range(r):
-                across[i, k] += e * matrices.between[slot, j, k]
-    solve_in_place(across, link)
-    for i in range(r):
-        for j in range(r):
-            matrices.link[slot, i, j] = link[i, j]
+            diagonal = 1.0 + by_velocity * dynamics.damping[i] + by_displacement * dynamics.stiffness[i]
+            matrices.base[slot, i] = 1.0 / diagonal
+        turning = by_velocity * speed + by_displacement * acceleration
+        for g in range(first_of.size):
+            first, size = first_of[g], size_of[g]
+            # Of the transposed block, whose inverse is the transposed inverse.
+            block, inverse = np.zeros((size, size)), np.eye(size)
+            for i in range(size):
+                for j in range(size):
+                    block[i, j] = turning * dynamics.gyroscopic[g, i, j]
+                block[i, i] += 1.0 / matrices.base[slot, first + i]
+            solve_in_place(block, inverse)
+            for i in range(size):
+                for j in range(size):
+                    matrices.blocks[slot, g, i, j] = inverse[i, j]
 
-    held = np.zeros(r)
-    for k in range(c):
-        for i in range(n):
-            column[i] = contacts.direction[k, i]
-        apply_base(matrices.base, matrices.blocks, dynamics.block_start, dynamics.block_size, slot, column, found, work)
-        project(dynamics.ties, found, tied)
-        for j in range(r):
-            held[j] = 0.0
-            for i in range(r):
-                held[j] += link[j, i] * tied[i]
-        for j in range(r):
+        stiffness, damping = matrices.tie_stiffness[slot], matrices.tie_damping[slot]
+        tie_matrices(dynamics, speed, stiffness, damping)
+        for k in range(r):
             for i in range(n):
-                found[i] -= matrices.ties[slot, j, i] * held[j]
-            for i in range(r):
-                tied[i] -= matrices.between[slot, i, j] * held[j]
-        for i in range(n):
-            matrices.contact[slot, k, i] = found[i]
-        for j in range(r):
-            matrices.contact_ties[slot, k, j] = tied[j]
-        project(contacts.direction, found, seen)
-        for j in range(c):
-            matrices.flexibility[slot, j, k] = seen[j]
+                column[i] = dynamics.ties[k, i]
+            apply_base(
+                matrices.base, matrices.blocks, dynamics.block_start, dynamics.block_size, slot, column, found, work
+            )
+            for i in range(n):
+                matrices.ties[slot, k, i] = found[i]
+            project(dynamics.ties, found, tied)
+            for j in range(r):
+                matrices.between[slot, j, k] = tied[j]
+        across, link = np.eye(r), np.zeros((r, r))
+        for i in range(r):
+            for j in range(r):
+                e = by_velocity * damping[i, j] + by_displacement * stiffness[i, j]
+                link[i, j] = e
+                for k in range(r):
+                    across[i, k] += e * matrices.between[slot, j, k]
+        solve_in_place(across, link)
+        for i in range(r):
+            for j in range(r):
+                matrices.link[slot, i, j] = link[i, j]
+
+        for k in range(c):
+            for i in range(n):
+                column[i] = contacts.direction[k, i]
+            apply_base(
+                matrices.base, matrices.blocks, dynamics.block_start, dynamics.block_size, slot, column, found, work
+            )
+            project(dynamics.ties, found, tied)
+            for j in range(r):
+                held[j] = 0.0
+                for i in range(r):
+                    held[j] += link[j, i] * tied[i]
+            for j in range(r):
+                for i in range(n):
+                    found[i] -= matrices.ties[slot, j, i] * held[j]
+                for i in range(r):
+                    tied[i] -= matrices.between[slot, i, j] * held[j]
+            for i in range(n):
+                matrices.contact[slot, k, i] = found[i]
+            for j in range(r):
+                matrices.contact_ties[slot, k, j] = tied[j]
+            project(contacts.direction, found, seen)
+            for j in range(c):
+                matrices.flexibility[slot, j, k] = seen[j]

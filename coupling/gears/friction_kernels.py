@@ -19,8 +19,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from coupling.compiled import inner, uncounted
 from coupling.gears.face_table import CELL
 from coupling.gears.kernels import face_force, nearness, number_at, place
 from coupling.gears.law_table import (
@@ -39,7 +39,7 @@ from coupling.gears.law_table import (
 FloatArray = npt.NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner()
 def from_cells(law: FloatArray, at: int, here: int, u: float, approach: float) -> tuple[float, float]:
     """What the cells of a pair hold at a place, and its slope by the compression."""
     unit = number_at(law, at + DEPTH_UNIT)
@@ -52,7 +52,7 @@ def from_cells(law: FloatArray, at: int, here: int, u: float, approach: float) -
     return value, slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted()
 def friction_shares(
     phase: float, compression: float, law: FloatArray, at: int, by_slices: bool, pitch_point: float, path_end: float
 ) -> tuple[float, float, float, float]:

@@ -16,8 +16,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from coupling.compiled import counted, inner, uncounted
 from coupling.gears.face_table import CELL
 from coupling.gears.law_table import (
     CELLS_AT,
@@ -45,13 +45,13 @@ FloatArray = npt.NDArray[np.float64]
 TangentForce = tuple[float, float, float, float, float, int]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@inner(inline="always")
 def number_at(law: FloatArray, index: int) -> float:
     """A number of the law's, at an index that is not negative."""
-    return law[np.uint64(index)]
+    return float(law[np.uint64(index)])
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@inner(inline="always")
 def place(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, float]:
     """Periods gone, interval of the period, place in it from 0 to 1, and one over its width."""
     number = np.floor(phase)
@@ -68,7 +68,7 @@ def place(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, fl
     return number, interval, (x - number_at(law, here)) * per_width, per_width
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"}, inline="always")
+@inner(fastmath={"contract"}, inline="always")
 def nearness(
     law: FloatArray, at: int, hunting: int, entered: int, u: float, compression: float, here: int
 ) -> tuple[float, int]:
@@ -84,7 +84,7 @@ def nearness(
     return compression - g0 - u * (g1 + u * (number_at(law, here + 2) + u * number_at(law, here + 3))), here
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"}, inline="always")
+@inner(fastmath={"contract"}, inline="always")
 def face_force(
     law: FloatArray, cell: int, unit: float, per_unit: float, p: float, begin: float, rho: float
 ) -> tuple[float, float, float, float]:
@@ -129,7 +129,7 @@ def face_force(
     return force, tangent, energy, slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+@uncounted(fastmath={"contract"})
 def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, at: int) -> TangentForce:
     """Force of the tooth contact, its tangent, and its stored energy.
 
@@ -216,7 +216,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     return force + damping * rate, tangent, damping, energy, slope, touching
 
 
-@njit(cache=True, nogil=True)
+@counted()
 def tooth_force_history(
     phase: FloatArray, compression: FloatArray, rate: FloatArray, law: FloatArray, at: int
 ) -> FloatArray:

@@ -7,8 +7,8 @@ import cmath
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from coupling.compiled import counted
 from coupling.contact_kernels import FORCE
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Trace
@@ -22,7 +22,7 @@ FloatArray = npt.NDArray[np.float64]
 _EVEN = 1e-6  # part of the spacing by which times at even spacing may miss it
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@counted()
 def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> FloatArray:
     """Amplitudes at ascending times, shape (t, 2 m).
 
@@ -78,7 +78,7 @@ def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> Floa
     return out
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@counted()
 def forces_at(
     contacts: Contacts, times: FloatArray, delta: FloatArray, rate: FloatArray, work: Work, out: FloatArray
 ) -> None:

@@ -8,12 +8,12 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from coupling.compiled import uncounted
 from coupling.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, TOUCHING, take_law
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.collocation import AT_ENDS, BARYCENTRIC, INSIDE, MONOMIALS, ORDER, PLACES, POINTS
 from coupling.periodic.element_work import Work
-from coupling.periodic.uncounted import uncounted
 from coupling.small_systems import solve_in_place
 
 FloatArray = npt.NDArray[np.float64]

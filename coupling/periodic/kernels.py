@@ -27,6 +27,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from coupling.compiled import uncounted
 from coupling.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps, Trace
@@ -42,7 +43,6 @@ from coupling.periodic.element import (
 )
 from coupling.periodic.element_matrices import carry_on, end_matrices, fill_step
 from coupling.periodic.element_work import Work
-from coupling.periodic.uncounted import uncounted
 from coupling.periodic.variations import cross, jump_at, vary
 
 FloatArray = npt.NDArray[np.float64]

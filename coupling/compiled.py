@@ -1,0 +1,40 @@
+"""How the kernels are compiled: :func:`counted`, :func:`uncounted` or :func:`inner`.
+
+Importing this module imports numba.
+
+Numba counts every array that changes hands, in and out of each function, atomically; with tuples of a dozen arrays that
+costs several times the arithmetic of a step, and most of the time that compiling takes. Kernels that make no arrays
+need no counts: whoever calls the first of them holds all arrays meanwhile. numba refuses to compile one that does make
+an array, be it for the message of an error that ``a[:] = b`` could raise: write a loop.
+
+What a kernel calls is compiled on its own, then again with every kernel above it that it ends up in. Hence few kernels
+that call many, and no entrances from Python or C where only kernels call.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+from numba import njit
+
+Kernel = TypeVar("Kernel", bound=Callable[..., Any])
+
+_ALL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+
+
+def counted(**options: Any) -> Callable[[Kernel], Kernel]:
+    """Compile a function that makes arrays; further options are numba's."""
+
+    def compiled(function: Kernel) -> Kernel:
+        return cast(Kernel, njit(**(_ALL | options))(function))
+
+    return compiled
+
+
+def uncounted(**options: Any) -> Callable[[Kernel], Kernel]:
+    """Compile a function without counting references; Python may call it."""
+    return counted(_nrt=False, **options)
+
+
+def inner(**options: Any) -> Callable[[Kernel], Kernel]:
+    """The same for a function that kernels alone call."""
+    return uncounted(no_cpython_wrapper=True, **options)

@@ -1,0 +1,63 @@
+"""The energy that a machine holds at rest in what changes with time: asked for once in a march, so in plain Python."""
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.kernel_arrays import Bearings, Contacts, Dynamics
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def stored_energy(
+    dynamics: Dynamics, contacts: Contacts, bearings: Bearings, q: FloatArray, v: FloatArray, turned: float, rate: float
+) -> float:
+    """What :func:`coupling.newmark.march` calls stored [J]: in teeth, nonlinear bearings, and ties that change.
+
+    Parameters
+    ----------
+    q, v : ndarray, shape (n,)
+    turned : float
+        Turned time s [s].
+    rate : float
+        s'.
+    """
+    energy = _of_ties(dynamics, q, rate) if dynamics.tie_rates.size > 1 else 0.0
+    c = contacts.phase.size
+    delta, moved = contacts.direction @ q, contacts.direction[:c] @ v
+    amplitude, w, phase = np.moveaxis(contacts.errors, 2, 0)
+    angle = w * turned + phase
+    delta[:c] -= contacts.clearance + (amplitude * np.cos(angle)).sum(axis=1)
+    moved += (amplitude * w * rate * np.sin(angle)).sum(axis=1)
+    if c > 0:
+        energy += _of_teeth(contacts, delta, moved, turned)
+    if bearings.axis.size > 0:
+        energy += _of_bearings(bearings, c, delta, turned)
+    return float(energy)
+
+
+def _of_ties(dynamics: Dynamics, q: FloatArray, rate: float) -> float:
+    """½ qᵀ U K_t Uᵀ q, K_t linear between the speeds at which it is given."""
+    rates, tied = dynamics.tie_rates, dynamics.ties @ q
+    at = int(np.clip(np.searchsorted(rates, rate) - 1, 0, rates.size - 2))
+    part = float(np.clip((rate - rates[at]) / (rates[at + 1] - rates[at]), 0.0, 1.0))
+    stiffness = (1.0 - part) * dynamics.tie_stiffness[at] + part * dynamics.tie_stiffness[at + 1]
+    return float(0.5 * tied @ stiffness @ tied)
+
+
+def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, turned: float) -> float:
+    from coupling.gears.kernels import tooth_force
+
+    energy = 0.0
+    for k, at in enumerate(contacts.law_at):
+        phase = contacts.phase[k] + contacts.rate[k] * turned
+        energy += tooth_force(phase, delta[k], moved[k], contacts.law, at)[3]
+    return energy
+
+
+def _of_bearings(bearings: Bearings, first: int, delta: FloatArray, turned: float) -> float:
+    """Beside what their linear parts hold."""
+    from coupling.bearing_kernels import take_bearings
+
+    tangents, held = np.zeros((bearings.preload.size, 5, 5)), np.zeros((8, 5))
+    take_bearings(bearings, first, turned, delta, np.zeros_like(delta), tangents, held)
+    return float(held[0, 0])
