@@ -28,8 +28,8 @@ from .shapes import responses, rigid_states, shared_roots
 FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_COUNT = 12
-LEAST_MODES = 8
-SPARE_MODES = 4
+LEAST_MODES = 6
+SPARE_MODES = 3
 # The basis reaches this many times beyond the highest whirl frequency asked for: it gives starting values only.
 BASIS_REACH = 1.5
 

@@ -57,8 +57,8 @@ def whirl_basis(
 ) -> LateralModes:
     """Planar basis for whirl: modes at averaged stiffness, well beyond the need, and attachment vectors.
 
-    It holds every mode below ``frequency_limit`` and half as far again, or four more than half of ``count``, and at
-    least eight; behind them the static responses to a force at each bearing and to a moment at each disc, where
+    It holds every mode below ``frequency_limit`` and half as far again, or three more than half of ``count``, and at
+    least six; behind them the static responses to a force at each bearing and to a moment at each disc, where
     the compensation and gyroscopic terms act. Build it once to sweep the speed. Of tables over speed it holds
     the stiffness at the middle of the table.
 

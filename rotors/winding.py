@@ -43,7 +43,7 @@ ComplexArray = npt.NDArray[np.complex128]
 NONE = np.zeros(0, dtype=np.complex128)
 STEEPEST = 1.5
 MISFIT = 0.3
-SIDE_SAMPLES = 5
+SIDE_SAMPLES = 4
 # Known roots nearer to the contour than this, in ln λ, are not divided out.
 TOO_NEAR = 1e-4
 # The second step of a sample, as a part of the interval it was put into.

@@ -12,7 +12,16 @@ STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 
 
 def uniform(length: float, diameter: float, bore: float, pieces: int) -> Rotor:
-    return Rotor("uniform", [Segment(length / pieces, diameter, bore, STEEL)] * pieces)
+    """A shaft in pieces of one section that no two neighbours name alike: like ones would be made one span again."""
+    by_name = Segment(length / pieces, diameter, bore, STEEL)
+    section = by_name.section(0.0)
+    number = section.shear_stiffness / (STEEL.shear_modulus * math.pi * (diameter**2 - bore**2) / 4.0)
+    by_number = Segment(length / pieces, diameter, bore, STEEL, shear_coefficient=number)
+    return Rotor("uniform", [by_number if place % 2 else by_name for place in range(pieces)])
+
+
+def test_pieces_are_not_made_one_again() -> None:
+    assert all(uniform(*SHAFTS[0], pieces).free_lines.bending.kind.size == pieces for pieces in (1, 7, 400))
 
 
 def section(length: float, diameter: float, bore: float) -> tuple[float, float, float, float]:
