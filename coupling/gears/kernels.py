@@ -48,7 +48,8 @@ TangentForce = tuple[float, float, float, float, float, int]
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def number_at(law: FloatArray, index: int) -> float:
     """A number of the law's, at an index that is not negative."""
-    return law[np.uint64(index)]
+    value: float = law[np.uint64(index)]
+    return value
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
