@@ -41,6 +41,8 @@ DEFAULT_SLICES = 61
 FINE_SLICES = 241
 """Where steep edges cross the face. A slice is in a pit or out of it: as the edge goes on, the load on it steps by the
 share of one slice, a few per cent of the mesh's with `DEFAULT_SLICES`."""
+_NO_SPAN = 1e-6
+"""In base pitches: a line of contact that is no longer along the path enters and turns all at once."""
 _MOST_ROUNDS = 200
 _ALONE_ROUNDS = 8
 
@@ -79,8 +81,9 @@ class FaceSlices:
 
     @property
     def half_span(self) -> float:
-        """Half of what a slice spans along the path of contact [base pitches]; 0 for spur gears."""
-        return 0.5 * float(np.ptp(self.shift)) / max(self.z.size - 1, 1)
+        """Half of what a slice spans along the path of contact [base pitches]; 0 for one of a spur gear."""
+        span = float(np.ptp(self.shift))
+        return 0.5 * span / (self.z.size - 1) if span > _NO_SPAN else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,7 +227,8 @@ def balance_faces(
     nearest = np.full(meshes, np.inf)
     np.minimum.at(nearest, owner, np.where(meeting, gap, np.inf).min(axis=1, initial=np.inf))
     touching = _touching_alone(slices, base, gap, meeting, owner, force)
-    touched, stiffness = np.zeros(meshes), np.zeros(meshes)
+    touched: FloatArray = np.zeros(meshes)
+    stiffness: FloatArray = np.zeros(meshes)
     fixed, rising = _fields(slices, base, gap, touching)
     constant, slope = np.zeros(owner.size), np.zeros(owner.size)
     every = np.arange(owner.size)
@@ -235,7 +239,7 @@ def balance_faces(
         carrying = touching[changed]
         constant[changed] = -((gap[changed] + fixed[changed]) * carrying).sum(axis=1)
         slope[changed] = ((1.0 - rising[changed]) * carrying).sum(axis=1)
-        stiffness = scale * np.bincount(owner, slope, meshes)
+        stiffness = np.asarray(scale * np.bincount(owner, slope, meshes), dtype=np.float64)
         offset = scale * np.bincount(owner, constant, meshes)
         with np.errstate(divide="ignore", invalid="ignore"):
             touched = np.where(stiffness > 0.0, (force - offset) / stiffness, nearest)

@@ -48,7 +48,8 @@ TangentForce = tuple[float, float, float, float, float, int]
 @inner(inline="always")
 def number_at(law: FloatArray, index: int) -> float:
     """A number of the law's, at an index that is not negative."""
-    return float(law[np.uint64(index)])
+    value: float = law[np.uint64(index)]
+    return value
 
 
 @inner(inline="always")

@@ -204,13 +204,19 @@ def _balanced_faces(faces: FaceSlices, force: float, at: FloatArray, states: Pai
 def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
     """Stiffness of all pairs on the path of contact, as if none were relieved [N/m], at `phases` (n,)."""
     places = contact.places(phases)
-    shift = np.zeros(1) if contact.faces is None else contact.faces.shift
+    shift, half = (np.zeros(1), 0.0) if contact.faces is None else (contact.faces.shift, contact.faces.half_span)
     at = places.position[..., None] + shift
-    on_path = places.present[..., None] & (at >= 0.0) & (at < contact.contact_ratio)
+    end = contact.contact_ratio
+    if half > 0.0:
+        # What of a slice lies on the path.
+        part = (np.clip(at + half, 0.0, end) - np.clip(at - half, 0.0, end)) / (2.0 * half)
+    else:
+        part = ((at >= 0.0) & (at < end)).astype(np.float64)
+    part *= places.present[..., None]
     total = np.zeros(at.shape[0])
     for number, curves in enumerate(contact.kinds):
-        these = on_path & (places.kind == number)[..., None]
-        total += np.bincount(np.nonzero(these)[0], curves.stiffness(at[these]), total.size)
+        these = (part > 0.0) & (places.kind == number)[..., None]
+        total += np.bincount(np.nonzero(these)[0], part[these] * curves.stiffness(at[these]), total.size)
     return np.asarray(total / shift.size, dtype=np.float64)
 
 
