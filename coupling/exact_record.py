@@ -56,7 +56,9 @@ class Record:
         """From a state on."""
         rigid = self.part.rigid
         q, v = self.part.own_response(state.time)
-        return FreeMotion(np.array([state.time]), rigid.T @ (state.q - q), rigid.T @ (state.v - v), rigid.T @ self.load[:, -2])
+        return FreeMotion(
+            np.array([state.time]), rigid.T @ (state.q - q), rigid.T @ (state.v - v), rigid.T @ self.load[:, -2]
+        )
 
     def motion(self, z: FloatArray, free: FreeMotion, time: float) -> tuple[FloatArray, FloatArray]:
         """All coordinates and rates at a time, shape (n,) each."""

@@ -51,7 +51,9 @@ def amplitudes_within(steps: Steps, trace: Trace, element: int, i: int, out: Flo
 
 
 @uncounted(fastmath=_SUMS)
-def add_powers(steps: Steps, trace: Trace, powers: Powers, free: FreeMotion, room: PowersRoom, totals: FloatArray) -> None:
+def add_powers(
+    steps: Steps, trace: Trace, powers: Powers, free: FreeMotion, room: PowersRoom, totals: FloatArray
+) -> None:
     """Add what the loads give and what damping without the teeth's takes [J], and keep the largest kinetic energy.
 
     ``totals`` (5,) are those of :class:`coupling.marching.Checkpoint`.
