@@ -230,7 +230,7 @@ class ToothContact:
         """Mesh periods after which the law repeats: 1 where all pairs are alike."""
         return max(1, self.hunting_numbers)
 
-    @property
+    @cached_property
     def mean_stiffness(self) -> float:
         """Mean over a mesh period of the stiffness with all pairs on the path touching [N/m]."""
         inner = self.stiffness.knots[(self.stiffness.knots > 0.0) & (self.stiffness.knots < self.contact_ratio)]

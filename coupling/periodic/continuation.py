@@ -10,6 +10,9 @@ the tangent (x', p') of the state x and the speed p, a step ds along it is corre
 which is regular at folds. States are counted in a typical motion and speeds in the range asked for, r_p is a finite
 difference, and the step follows the number of corrections and the turn of the tangent.
 
+Away from folds the correction holds the speed that the tangent predicts: one machine serves the whole correction, its
+M as long as the closure falls fast, and what M costs over a long period is paid once or twice.
+
 - H. B. Keller, "Numerical solution of bifurcation and nonlinear eigenvalue problems", *Applications of Bifurcation
   Theory*, 1977.
 """
@@ -30,11 +33,18 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 
 _CORRECTIONS = 8
+_FEW = 7  # of them, after which the next step may be longer
 _CLOSED = 1e-10  # closure relative to the motion
-_DIFFERENCE = 1e-6  # of the speed range, for the derivative by speed
-_FARTHEST = 0.15  # part of the motion by which a step may change it ...
+_DIFFERENCE = 1e-7  # of the speed range, for the derivative by speed: flanks may begin to graze within a hair of it
+_STEEP = 0.05  # part of a tangent along the speed below which a fold may be near
+_FALLING = 0.3  # by which a correction has to lower the closure for M to serve again
+_MOST_HELD = 14  # corrections, most of them without M
+_ASIDE = 0.3  # part of a step by which a correction may move it: beyond, it is on its way to another branch
+_COARSER = 2  # levels below that of the first motion, which proves its monodromy too
+_FARTHEST = 0.3  # part of the motion by which a step may change it ...
 _STILL = 0.1  # ... motions below this part of the first one count as that
-_SHARPEST_TURN = 0.9  # least cosine between tangents of neighbouring points
+_SHARPEST_TURN = 0.9  # least cosine between tangents of neighbouring points where a fold may be near ...
+_SHARPEST_HELD = 0.8  # ... and elsewhere: the correction itself says whether the prediction was good
 _SHORTEST = 1e-3  # of the largest step, below which the branch is lost
 _LOCATIONS = 30  # steps in the location of a fold or a loss of stability
 _LOCATED = 1e-5  # of a step: the speed of a fold errs by the square
@@ -79,23 +89,78 @@ class _Branch:
         q, v = response.displacement[ready.kept], response.velocity[ready.kept]
         state = np.concatenate([q, v / ready.part.rate_unit])
         zero = np.zeros(len(state))
-        point = self._correct(ready, state, speed, zero, ahead, state, speed, 0.0)
-        if point is None:
-            raise PeriodicError(
-                f"the motion at {speed:g} does not hold with the elements that the branch is followed by"
-            )
-        return point
+        while True:
+            level = self.level
+            point = self._correct(ready, state, speed, zero, ahead, state, speed, 0.0)
+            if point is not None:
+                return point
+            if self.level == level:
+                raise PeriodicError(
+                    f"the motion at {speed:g} does not hold with the elements that the branch is followed by"
+                )
 
-    def step(self, origin: _Point, ds: float) -> _Point | None:
-        """The point of the branch a length further; None where the corrections do not come to an end."""
+    def step(self, origin: _Point, ds: float, *, hold: bool = True) -> _Point | None:
+        """The point of the branch a length further; None where the corrections do not come to an end.
+
+        Where the speed may be held, the length is that of the prediction.
+        """
         state = origin.state + ds * self.unit * origin.state_tangent
         speed = origin.speed + ds * self.span * origin.speed_tangent
         try:
             ready = self.ready(speed, origin.ready)
+            if hold and abs(origin.speed_tangent) > _STEEP:
+                level = self.level
+                point = self._hold(ready, state, speed, origin, ds)
+                if point is not None or self.level > level:
+                    return point
             tangent = (origin.state_tangent, origin.speed_tangent)
             return self._correct(ready, state, speed, *tangent, origin.state, origin.speed, ds)
         except PeriodicError:
             return None
+
+    def _hold(self, ready: Problem, state: FloatArray, speed: float, origin: _Point, ds: float) -> _Point | None:
+        """A prediction corrected at its speed."""
+        lift, elements = _lift(ready), ready.elements(self.level)
+        predicted = lift.T @ state - _own(ready)
+        # The last point's M first; one of its own where that does not bring the closure down.
+        among = lift.T @ _lift(origin.ready)
+        monodromy, fresh = among @ origin.found.monodromy @ among.T, False
+        found = one_pass(ready.part, ready.contacts, elements, predicted, varied=False)
+        best, turns = float(np.linalg.norm(found.closure)), 0
+        while best > _CLOSED * ready.scale(found.start):
+            if turns == _MOST_HELD:
+                return None
+            turns += 1
+            start = found.start - np.linalg.solve(monodromy - np.eye(len(predicted)), found.closure)
+            near = float(np.linalg.norm(start - predicted)) < _ASIDE * abs(ds) * self.unit
+            there = one_pass(ready.part, ready.contacts, elements, start, varied=False) if near else found
+            missing = float(np.linalg.norm(there.closure))
+            if missing <= _FALLING * best:
+                found, best, fresh = there, missing, False
+                continue
+            if fresh:
+                return None
+            if missing < best:
+                found, best = there, missing
+            found, fresh = one_pass(ready.part, ready.contacts, elements, found.start), True
+            monodromy = found.monodromy
+        if not fresh:
+            found = one_pass(ready.part, ready.contacts, elements, found.start)
+        state = lift @ (found.start + _own(ready))
+        by_speed = self._by_speed(ready, state, speed, lift @ found.closure)
+        matrix = self._bordered(ready, found, by_speed, origin.state_tangent, origin.speed_tangent)
+        return self._proved(ready, state, speed, found, *_tangent(ready, matrix), turns)
+
+    def _bordered(
+        self, ready: Problem, found: Pass, by_speed: FloatArray, along: FloatArray, along_speed: float
+    ) -> FloatArray:
+        """The matrix of a correction along the branch, shape (2 N + 1, 2 N + 1)."""
+        lift, size = _lift(ready), len(found.start)
+        matrix = np.zeros((size + 1, size + 1))
+        matrix[:size, :size] = found.monodromy - np.eye(size)
+        matrix[:size, size] = lift.T @ by_speed * (self.span / self.unit)
+        matrix[size, :size], matrix[size, size] = lift.T @ along, along_speed
+        return matrix
 
     def _correct(
         self,
@@ -120,15 +185,10 @@ class _Branch:
             behind = float(along @ (state - origin)) / self.unit
             behind += along_speed * (speed - origin_speed) / self.span - ds
             size = len(start)
-            matrix = np.zeros((size + 1, size + 1))
-            matrix[:size, :size] = found.monodromy - np.eye(size)
-            matrix[:size, size] = lift.T @ by_speed * (self.span / self.unit)
-            matrix[size, :size], matrix[size, size] = lift.T @ along, along_speed
+            matrix = self._bordered(ready, found, by_speed, along, along_speed)
             closed = np.linalg.norm(closure) <= _CLOSED * ready.scale(start)
             if closed and turn > 0 and abs(behind) < 1e-9:
-                tangent = np.linalg.solve(matrix, np.eye(size + 1)[size])
-                tangent /= np.linalg.norm(tangent)
-                return self._proved(ready, state, speed, found, lift @ tangent[:size], float(tangent[size]), turn)
+                return self._proved(ready, state, speed, found, *_tangent(ready, matrix), turn)
             right = -np.concatenate([lift.T @ closure / self.unit, [behind]])
             move = np.linalg.solve(matrix, right)
             if not np.all(np.isfinite(move)) or np.linalg.norm(move) > 10.0:
@@ -222,7 +282,7 @@ def response_curve(
     moving = np.concatenate([known.displacement[ready.kept], known.velocity[ready.kept] / ready.part.rate_unit])
     still = np.concatenate([ready.part.mean, np.zeros(len(ready.part.mean))])
     unit = max(float(np.linalg.norm(moving - still)), 0.1 * float(np.linalg.norm(still))) or 1.0
-    branch = _Branch(system_at, periods, abs(span), max(known.level - 1, 0), tolerance, unit)
+    branch = _Branch(system_at, periods, abs(span), max(known.level - 1 - _COARSER, 0), tolerance, unit)
     here = branch.first(known, start, np.sign(span))
     passed, events = [here], []
     largest = 1.0 / (points - 1)
@@ -233,7 +293,8 @@ def response_curve(
         if there is None and branch.level > level:
             continue
         turn = 0.0 if there is None else _cosine(here, there)
-        if there is None or turn < _SHARPEST_TURN:
+        near_fold = there is not None and min(abs(here.speed_tangent), abs(there.speed_tangent)) <= _STEEP
+        if there is None or turn < (_SHARPEST_TURN if near_fold else _SHARPEST_HELD):
             if ds > _SHORTEST * largest:
                 ds *= 0.5
                 continue
@@ -258,7 +319,7 @@ def response_curve(
         progress(min(max((there.speed - start) / span, 0.0), 1.0))
         if left or back:
             break
-        if there.response.newton_steps <= 4 and turn > 0.97:
+        if there.response.newton_steps <= _FEW and turn > (0.97 if near_fold else 0.9):
             ds *= 1.5
         ds = min(ds, _longest(branch, here, largest))
     return ResponseCurve(
@@ -276,6 +337,14 @@ def _lift(ready: Problem) -> FloatArray:
     lift = np.zeros((2 * k, 2 * half))
     lift[:k, :half] = lift[k:, half:] = ready.part.basis
     return lift
+
+
+def _tangent(ready: Problem, matrix: FloatArray) -> tuple[FloatArray, float]:
+    """Along the branch, by the matrix of a correction that is done."""
+    size = len(matrix) - 1
+    tangent = np.linalg.solve(matrix, np.eye(size + 1)[size])
+    tangent /= np.linalg.norm(tangent)
+    return _lift(ready) @ tangent[:size], float(tangent[size])
 
 
 def _own(ready: Problem) -> FloatArray:
@@ -342,7 +411,7 @@ def _event(branch: _Branch, here: _Point, there: _Point, ds: float) -> tuple[Eve
             # False position, and bisection every third time so that no side is kept for ever.
             part = 0.5 if turn % 3 == 2 else at_low / (at_low - at_high)
             middle = low + min(max(part, 0.01), 0.99) * (high - low)
-            point = branch.step(here, middle)
+            point = branch.step(here, middle, hold=False)
             if point is None:
                 break
             best, value = point, test(point)

@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 _ROOM_FOR_CUTS = 400
 _PER_CYCLE = 4  # coarsest elements in a mesh period or in the shortest cycle of a load
 _SAME_TIME = 1e-9  # part of the period within which two events are one
-_SAME_SIZE = 11  # digits to which elements of one size agree
+_SAME_SIZE = 1e-11  # parts of the largest element by which elements of one size may differ
 _LADDER = 1.1  # between the sizes of its rungs ...
 _RUNGS = 100  # ... so down to a ten-thousandth of the largest
 
@@ -95,18 +95,12 @@ def cut_period(part: LinearPart, period: float, largest: float) -> Elements:
     bounds = event_times(part.system, period)
     lengths = np.diff(bounds)
     counts = np.maximum(np.ceil(lengths / largest - 1e-9), 1.0).astype(np.int64)
-    starts = [a + (b - a) * np.arange(n) / n for a, b, n in zip(bounds[:-1], bounds[1:], counts, strict=True)]
-    sizes: dict[str, int] = {}
-    values: list[float] = []
-    slots = []
-    for size, count in zip(lengths / counts, counts, strict=True):
-        key = f"{size:.{_SAME_SIZE}e}"
-        if key not in sizes:
-            sizes[key] = len(values)
-            values.append(float(size))
-        slots += [sizes[key]] * int(count)
-    steps = element_sizes(part, np.array(values), max(values))
-    return Elements(np.concatenate(starts), np.repeat(lengths / counts, counts), np.array(slots, dtype=np.int64), steps)
+    size = np.repeat(lengths / counts, counts)
+    within = np.arange(len(size)) - np.repeat(np.cumsum(counts) - counts, counts)
+    # What rounding alone holds apart is one size.
+    _, first, slots = np.unique(np.rint(size / (_SAME_SIZE * largest)), return_index=True, return_inverse=True)
+    steps = element_sizes(part, size[first], float(size.max()))
+    return Elements(np.repeat(bounds[:-1], counts) + within * size, size, slots.astype(np.int64), steps)
 
 
 def element_sizes(part: LinearPart, values: FloatArray, largest: float, *, inner: bool = False) -> Steps:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from coupling.condensation import Condensed, condensed
 from coupling.errors import CouplingError, PeriodicError
 from coupling.kernel_arrays import Contacts
-from coupling.periodic.base_period import common_period
+from coupling.periodic.base_period import common_period, driving_frequencies
 from coupling.periodic.floquet import multipliers
 from coupling.periodic.linear_part import LinearPart, linear_part
 from coupling.periodic.orbit import Elements, Pass, coarsest_element, cut_period, one_pass
@@ -91,7 +91,9 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
         )
     length = common_period(system, period)
     followed = _followed(system)
-    part = linear_part(followed.system, 2.0 * np.pi / length, None if like is None else like.part)
+    # Rates are counted in the fastest drive's, so that a long period does not make them weigh more.
+    fastest = max([*driving_frequencies(system).values(), 1.0 / length])
+    part = linear_part(followed.system, 2.0 * np.pi * fastest, None if like is None else like.part)
     return Problem(system, followed.recovery, followed.kept, length, part, contact_arrays(followed.system))
 
 

@@ -35,8 +35,10 @@ def vary(
                 x * steps.flexibility[slot, row, column] + v * steps.flexibility[slot, n + row, column]
             )
         matrix[row, row] += 1.0
-        for i in range(count):
-            felt = x * steps.felt[slot, i, row] + v * steps.felt[slot, i, n + row]
+    # Disturbances are many: each row of them is read once.
+    for i in range(count):
+        for row in range(n):
+            felt = work.slope[row] * steps.felt[slot, i, row] + work.rate_slope[row] * steps.felt[slot, i, n + row]
             for k in range(p):
                 right[row, k] += felt * columns[i, k]
     solve_in_place(matrix, right)

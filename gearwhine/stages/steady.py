@@ -24,6 +24,9 @@ _LEAST_SAMPLES = 512
 _HARMONICS = 4.0  # of the mesh that are of interest where no housing says how far the model goes
 _LINES = 20  # that are told of each signal
 
+CURVE_TOLERANCE = 1e-5
+"""Of the points of a branch, relative: a tenth of what a transient is asked for by default."""
+
 
 @dataclass(frozen=True)
 class SteadyMotion:
@@ -133,6 +136,7 @@ def solve_steady(
         system_at,
         *((high, low) if downwards else (low, high)),
         points=points,
+        tolerance=CURVE_TOLERANCE,
         progress=lambda fraction: progress("following the motion over speed", fraction),
     )
 
