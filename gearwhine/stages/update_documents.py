@@ -108,7 +108,7 @@ def _pairs(solved: SolvedUpdate) -> list[dict[str, Any]]:
     strengths = solved.after.state.dominance.acceleration
     for place, measured in enumerate(solved.target.frequencies):
         error, old = float(after.errors[place]), float(before.errors[place])
-        mode, tuned = int(after.pairs[place]), int(solved.misfit_tuned.pairs[place])
+        mode = int(after.pairs[place])
         rows.append(
             {
                 "measured_hz": float(measured) / _HERTZ,
@@ -118,7 +118,7 @@ def _pairs(solved: SolvedUpdate) -> list[dict[str, Any]]:
                 "error_percent": 100.0 * float(np.expm1(error)),
                 "mode": None if mode == UNPAIRED else mode + 1,
                 "strength": None if mode == UNPAIRED else float(strengths[mode]),
-                "left_uncertain_percent": None if tuned == UNPAIRED else 100.0 * float(left[tuned]),
+                "left_uncertain_percent": None if mode == UNPAIRED else 100.0 * float(left[mode]),
             }
         )
     return rows

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
 from housing.errors import HousingError
-from housing.updating.misfit import GAP_SCALE, UNPAIRED, Misfit, Target, measure, residuals
+from housing.updating.misfit import UNPAIRED, Misfit, Target, measure, residuals
 from housing.updating.parameters import Parameter, coordinate_bounds
 from housing.updating.surrogate import ModalState, Surrogate
 
@@ -22,7 +22,6 @@ FloatArray = npt.NDArray[np.float64]
 _STEPS = 8  # of Gauss and Newton from each start
 _WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
-_PROBE = 1e-3  # step in z for the slope of the clearance
 
 
 class Design(Protocol):
@@ -227,10 +226,6 @@ def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: Fl
             break
         missed, slopes = residuals(target, misfit, near, penalties=True)
         rows, right = [slopes, np.eye(len(point))], [-missed, -point]
-        lacking = -misfit.clearance(target)
-        if lacking > 0.0:
-            rows.append(_clearance_slope(surrogate, target, point, misfit)[None] / GAP_SCALE)
-            right.append(np.array([lacking / GAP_SCALE]))
         room = np.stack([low - point, high - point]) + np.array([[-1e-12], [1e-12]])
         step = lsq_linear(np.vstack(rows), np.concatenate(right), bounds=room).x
         for part in _SHORTENED:
@@ -246,16 +241,6 @@ def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: Fl
         if settled:
             break
     return point, misfit.value
-
-
-def _clearance_slope(surrogate: Surrogate, target: Target, point: FloatArray, misfit: Misfit) -> FloatArray:
-    slope = np.empty(len(point))
-    for number in range(len(point)):
-        beside = point.copy()
-        beside[number] += _PROBE
-        clearance = measure(target, surrogate.at(beside).state, beside).clearance(target)
-        slope[number] = (clearance - misfit.clearance(target)) / _PROBE
-    return np.clip(slope, -10.0, 10.0)  # beside an exchange of 8th and 9th the gap has a kink
 
 
 def _region(point: FloatArray, bounds: FloatArray, trust: float) -> FloatArray:
