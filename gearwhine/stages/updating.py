@@ -13,15 +13,13 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.designs import HousingDesign, HousingDesigns
-from gearwhine.stages.measured import read_measured
 from gearwhine.stages.update_keys import FittedCase, fitted_case
-from housing.correlation import dominance_band
+from gearwhine.stages.update_target import measurement_of
 from housing.updating import (
     Effort,
     Found,
     HeldBack,
     Misfit,
-    ModeCount,
     NullFit,
     Posterior,
     Step,
@@ -36,10 +34,9 @@ from housing.updating import (
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
 _REFINED = 0.05  # trust region of the search that goes on with the finer mesh
 _FEW = 10  # solves of that search, and of each random set
-_MARGIN = 1.0 / 3.0  # of the least gap, for the two measures beside the one that decides
+_FIRM = 3.0  # how much less soft the penalties are there
 _STARTS = 16  # on the surrogate, where the search is made over and over
 
 
@@ -59,6 +56,8 @@ class SolvedUpdate:
     misfit_tuned : Misfit
         Its misfit there.
     target : Target
+    left_out : int
+        Measured degrees of freedom that took no part.
     posterior : Posterior
     steps : tuple of Step
         Every true solve of the search.
@@ -77,6 +76,7 @@ class SolvedUpdate:
     tuned: HousingDesign
     misfit_tuned: Misfit
     target: Target
+    left_out: int
     posterior: Posterior
     steps: tuple[Step, ...]
     held_back: list[HeldBack]
@@ -102,7 +102,8 @@ def update_housing(
     Raises
     ------
     CaseError
-        Where the case has no parameters or nothing measured, or a key leads to no number.
+        Where the case has no parameters or nothing measured, a key leads to no number, or random sets are asked for
+        beside measured shapes.
     housing.HousingError
         Where the model cannot be solved as it stands.
     """
@@ -110,14 +111,14 @@ def update_housing(
     given = case.update
     assert given is not None
     assert case.housing is not None
-    if not case.housing.seat:
-        raise CaseError(
-            [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
-        )
+    measured = measurement_of(case, progress)
+    target = measured.target
+    if null and target.shapes is not None:
+        expected = "0 where shapes were measured: random frequencies have none"
+        raise CaseError([Problem("--null", null, expected)])
     begin = time.perf_counter()
-    fine = HousingDesigns(fitted_case(case), given.modes, threads=threads)
+    fine = HousingDesigns(fitted_case(case), given.modes, measured.observer, threads=threads)
     coarse = replace(fine, case=fitted_case(case, given.mesh_size))
-    target = target_of(case)
     progress("solving the housing as it stands")
     start = coarse.solve(coarse.start)
     known: list[HousingDesign] = [start]
@@ -157,26 +158,12 @@ def update_housing(
         tuned=tuned,
         misfit_tuned=measure(target, tuned.state, tuned.coordinates, strict=True),
         target=target,
+        left_out=measured.left_out,
         posterior=spread,
         steps=found.steps,
         held_back=rows,
         null=fits,
         seconds=seconds,
-    )
-
-
-def target_of(case: Case) -> Target:
-    """What a case's housing is to meet."""
-    assert case.update is not None
-    measured = read_measured(case).frequencies
-    known = case.update.model_modes
-    return Target(
-        frequencies=measured,
-        noise=np.full(len(measured), case.update.frequency_noise),
-        band=dominance_band(measured),
-        gap=case.update.gap,
-        margin=_MARGIN * case.update.gap if case.update.gap else -np.inf,
-        count=None if known is None else ModeCount(_HERTZ * known.below, known.least, known.most),
     )
 
 
@@ -194,7 +181,8 @@ def _polished(
     progress("going on with the housing's own mesh")
     begin = fine.solve(found.design.coordinates)
     few = replace(effort, solves=_FEW, trust=_REFINED)
-    last = search(lambda point, near: fine.solve(point), target, fine.parameters, begin, few, progress)
+    firm = replace(target, firmness=_FIRM)
+    last = search(lambda point, near: fine.solve(point), firm, fine.parameters, begin, few, progress)
     return before, replace(last, steps=found.steps + last.steps)
 
 

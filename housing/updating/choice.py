@@ -29,7 +29,6 @@ BoolArray = npt.NDArray[np.bool_]
 GAP_SCALE = 0.02
 """How soft a least gap is: so much below it costs as much as an error of one σ."""
 
-_HALVES = GAP_SCALE / np.sqrt(2.0)  # either side of the threshold lacks half of the gap
 _CLEAR = 0.01  # ln ω by which a strong mode has to be beyond the end of the band, and how soft that is
 _CLEAR_SCALE = 0.005
 _TURNS = 8
@@ -74,23 +73,25 @@ class _Strengths:
     rows: IntArray
     logarithms: FloatArray  # (n_measures, n_modes)
     asked: FloatArray  # (n_measures,)
+    scale: float  # of ln strength; either side of a threshold lacks half of a gap
+    end_scale: float  # of ln ω
     beyond: FloatArray  # ln ω beyond the end of the band, negative inside; (n_modes,)
     upward: FloatArray  # 1 where that is the upper end, else -1; (n_modes,)
 
     @property
     def edge(self) -> FloatArray:
         """What each mode lacks to be clearly beyond the band, in units of what is soft."""
-        return np.maximum(_CLEAR - self.beyond, 0.0) / _CLEAR_SCALE
+        return np.maximum(_CLEAR - self.beyond, 0.0) / self.end_scale
 
     def below(self, thresholds: FloatArray) -> FloatArray:
         """What each mode lacks to be clearly above thresholds (..., n_measures), shape (..., n_measures, n_modes)."""
         lacks = thresholds[..., None] + 0.5 * self.asked[:, None] - self.logarithms
-        return np.asarray(np.maximum(lacks, 0.0) / _HALVES)
+        return np.asarray(np.maximum(lacks, 0.0) / self.scale)
 
     def above(self, thresholds: FloatArray) -> FloatArray:
         """What each mode lacks to be clearly below, of the same shape."""
         lacks = self.logarithms - thresholds[..., None] + 0.5 * self.asked[:, None]
-        return np.asarray(np.maximum(lacks, 0.0) / _HALVES)
+        return np.asarray(np.maximum(lacks, 0.0) / self.scale)
 
     def split(self, taken: BoolArray, thresholds: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """What the modes taken lack, those left for being weak, and those left for being beyond the band.
@@ -111,18 +112,33 @@ class _Strengths:
         return below, np.where(weak[..., None, :], above, 0.0), np.where(taken | weak, 0.0, self.edge)
 
 
-def _strengths(strengths: Dominance, band: tuple[float, float], gap: float, margin: float) -> _Strengths:
+def _strengths(
+    strengths: Dominance, band: tuple[float, float], gap: float, margin: float, firmness: float
+) -> _Strengths:
     every = np.array([strengths.acceleration, strengths.velocity, strengths.absolute])
     asked = np.array([gap, margin, margin])
     rows = np.flatnonzero(np.isfinite(asked))
     omega = np.log(np.maximum(strengths.frequencies, _FAINT))
     over, under = omega - np.log(band[1]), np.log(band[0]) - omega
     logarithms = np.log(np.maximum(every[rows], _FAINT))
-    return _Strengths(rows, logarithms, asked[rows], np.maximum(over, under), np.where(over >= under, 1.0, -1.0))
+    return _Strengths(
+        rows=rows,
+        logarithms=logarithms,
+        asked=asked[rows],
+        scale=GAP_SCALE / np.sqrt(2.0) / firmness,
+        end_scale=_CLEAR_SCALE / firmness,
+        beyond=np.maximum(over, under),
+        upward=np.where(over >= under, 1.0, -1.0),
+    )
 
 
 def lacking(
-    chosen: IntArray, strengths: Dominance, band: tuple[float, float], gap: float, margin: float = -np.inf
+    chosen: IntArray,
+    strengths: Dominance,
+    band: tuple[float, float],
+    gap: float,
+    margin: float = -np.inf,
+    firmness: float = 1.0,
 ) -> Lacking:
     """What a choice of modes lacks, with the thresholds that make it least.
 
@@ -136,8 +152,10 @@ def lacking(
         ln of the least ratio of taken and left by acceleration.
     margin : float
         The same by the other two measures; negative infinity where it is not asked for.
+    firmness : float
+        By how much all this is less soft.
     """
-    known = _strengths(strengths, band, gap, margin)
+    known = _strengths(strengths, band, gap, margin, firmness)
     taken = np.zeros(known.logarithms.shape[1], dtype=bool)
     taken[chosen] = True
     below, above, edge = known.split(taken, _settled(known, taken))
@@ -145,10 +163,10 @@ def lacking(
     for values, sign in ((below, -1.0), (above, 1.0)):
         rows, modes = np.nonzero(values)
         same = np.ones(len(rows))
-        parts.append((known.rows[rows], modes, sign * same, values[rows, modes], _HALVES * same))
+        parts.append((known.rows[rows], modes, sign * same, values[rows, modes], known.scale * same))
     (modes,) = np.nonzero(edge)
     same = np.ones(len(modes))
-    parts.append((np.full(len(modes), -1), modes, -known.upward[modes], edge[modes], _CLEAR_SCALE * same))
+    parts.append((np.full(len(modes), -1), modes, -known.upward[modes], edge[modes], known.end_scale * same))
     return Lacking(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
@@ -159,6 +177,7 @@ def choose(
     band: tuple[float, float],
     gap: float,
     margin: float = -np.inf,
+    firmness: float = 1.0,
 ) -> IntArray:
     """The modes of least cost for measured frequencies, ascending.
 
@@ -170,14 +189,14 @@ def choose(
         Relative standard deviation of each.
     strengths : Dominance
         Of all modes, of which more than ``n`` are in the band.
-    band, gap, margin
+    band, gap, margin, firmness
         See :func:`lacking`.
 
     Returns
     -------
     ndarray of int, shape (n,)
     """
-    known = _strengths(strengths, band, gap, margin)
+    known = _strengths(strengths, band, gap, margin, firmness)
     inside = np.flatnonzero(known.beyond <= 0.0)
     n = len(logarithms)
     # To begin with: thresholds between the n strongest and the rest, and some places up and down.
@@ -213,7 +232,7 @@ def _settled(known: _Strengths, taken: BoolArray) -> FloatArray:
     for _ in range(_TURNS):
         below, above, _ = known.split(taken, thresholds)
         active = np.count_nonzero(below, axis=-1) + np.count_nonzero(above, axis=-1)
-        step = _HALVES * (above.sum(axis=-1) - below.sum(axis=-1)) / np.maximum(active, 1)
+        step = known.scale * (above.sum(axis=-1) - below.sum(axis=-1)) / np.maximum(active, 1)
         thresholds = thresholds + step
         if np.abs(step).max(initial=0.0) < _SETTLED:
             break

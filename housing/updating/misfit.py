@@ -67,6 +67,9 @@ class Target:
     margin : float
         The same of the other two measures; not asked for by default.
     count : ModeCount, optional
+    firmness : float
+        How many times less soft than at first the penalties are. Soft ones lead a search past what is in its way, firm
+        ones leave nothing to be paid for at its end.
 
     Raises
     ------
@@ -82,6 +85,7 @@ class Target:
     gap: float = 0.0
     margin: float = -np.inf
     count: ModeCount | None = None
+    firmness: float = 1.0
 
     def __post_init__(self) -> None:
         measured = self.frequencies
@@ -139,13 +143,15 @@ class Misfit:
 
     @property
     def rms_percent(self) -> float:
-        """Root-mean-square error of the paired modes."""
-        return float(100.0 * np.sqrt(np.nanmean(np.expm1(self.errors) ** 2)))
+        """Root-mean-square error of the paired modes; infinite where none is."""
+        errors = np.expm1(self.errors[self.pairs != UNPAIRED])
+        return float(100.0 * np.sqrt(np.mean(errors**2))) if len(errors) else float("inf")
 
     @property
     def max_percent(self) -> float:
-        """Largest error of the paired modes."""
-        return float(100.0 * np.nanmax(np.abs(np.expm1(self.errors))))
+        """Largest error of the paired modes; infinite where none is."""
+        errors = np.expm1(self.errors[self.pairs != UNPAIRED])
+        return float(100.0 * np.abs(errors).max()) if len(errors) else float("inf")
 
 
 def measure(target: Target, state: ModalState, coordinates: FloatArray, *, strict: bool = False) -> Misfit:
@@ -169,9 +175,10 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
             hopeless = _HOPELESS * (n - len(pairs))
             return Misfit(hopeless + penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, 0.0, 0)
         if not strict:
-            pairs = choose(target.logarithms, target.noise, strengths, target.band, target.gap, target.margin)
+            asked = (target.gap, target.margin, target.firmness)
+            pairs = choose(target.logarithms, target.noise, strengths, target.band, *asked)
         gap, margin = strengths.gaps(pairs, target.band)
-        clear = lacking(pairs, strengths, target.band, target.gap, target.margin)
+        clear = lacking(pairs, strengths, target.band, target.gap, target.margin, target.firmness)
         penalty += clear.cost
     else:
         pairs, mac = pair_by_shape(target, state)
@@ -181,10 +188,10 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
     count = 0
     if target.count is not None:
         count = int(np.count_nonzero(state.frequencies < target.count.limit))
-        _, beyond = strays(target.count, state)
+        beyond = target.firmness * strays(target.count, state)[1]
         penalty += float(beyond @ beyond)
     errors = np.where(pairs == UNPAIRED, np.nan, np.log(state.frequencies[pairs]) - target.logarithms)
-    value = float(np.nansum((errors / target.noise) ** 2)) + penalty
+    value = float(np.nansum((errors / target.noise) ** 2) + penalty)
     return Misfit(value, pairs, errors, gap, margin, count, mac, clear)
 
 
@@ -245,8 +252,8 @@ def residuals(
     rows = [near.slopes[:, modes].T / target.noise[told, None]]
     if target.count is not None and penalties:
         lost, beyond = strays(target.count, near.state)
-        missed.append(beyond)
-        rows.append(near.slopes[:, lost].T / _COUNT_SCALE)
+        missed.append(target.firmness * beyond)
+        rows.append(target.firmness * near.slopes[:, lost].T / _COUNT_SCALE)
     if misfit.lacking is not None and penalties:
         missed.append(misfit.lacking.values)
         rows.append(_lacking_slopes(misfit.lacking, near))

@@ -22,6 +22,9 @@ FloatArray = npt.NDArray[np.float64]
 _STEPS = 8  # of Gauss and Newton from each start
 _WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
+_DRAWN = 8  # from the prior for each other start that is solved
+_APART = 1.0  # least distance of two starts, in standard deviations of the prior
+_HEAT = 3  # solves of each start before the better half goes on
 
 
 class Design(Protocol):
@@ -164,39 +167,59 @@ def explore(
     count: int,
     progress: Callable[[str], None] = lambda message: None,
 ) -> Found[AnyDesign]:
-    """Search from the start and from the best of some designs drawn from the prior, and go on from the better end.
+    """Search from the start and from several other designs, and go on with those that come further.
 
     A choice of dominant modes that is clear on all measures parts the designs into basins, and a search from one start
-    ends in the nearest. Each of two searches has half the solves.
+    ends in the nearest. The other starts are drawn from the prior and brought down on the start's own surrogate; the
+    best of them that lie apart are solved. Each has a few solves, the better half of them goes on, and so forth.
 
     Parameters
     ----------
     count : int
-        Designs drawn; none of them where 0, and the search has all the solves.
+        Other starts; none where 0, and the search from the start has all the solves.
     """
     if count == 0:
         return search(solve, target, parameters, start, effort, progress)
-    half = replace(effort, solves=max(1, effort.solves // 2))
-    bounds, generator = coordinate_bounds(parameters), np.random.default_rng(effort.seed)
-    best, least, steps = start, np.inf, list[Step]()
-    for number in range(count):
-        point = np.clip(generator.normal(size=bounds.shape[1]), *bounds)
+    begun: list[Found[AnyDesign]] = [Found(start, measure(target, start.state, start.coordinates), ())]
+    for point in _others(start, target, parameters, count, effort.seed):
         try:
-            drawn = solve(point, start)
+            design = solve(point, start)
         except HousingError as error:
-            progress(f"design {number + 1} of {count} drawn from the prior is no sound housing ({error})")
+            progress(f"another start is no sound housing ({error})")
             continue
-        misfit = measure(target, drawn.state, point)
-        # The prior is where they come from: what they miss beside it tells which is worth going on from.
-        missed = misfit.value - float(point @ point)
-        progress(f"design {number + 1} of {count} drawn from the prior: misfit {misfit.value:.4g}")
-        if missed < least:
-            best, least = drawn, missed
+        begun.append(Found(design, measure(target, design.state, design.coordinates), ()))
+        progress(f"start {len(begun)}: misfit {begun[-1].misfit.value:.4g}")
+    few = replace(effort, solves=_HEAT)
+    while True:
+        going = []
+        for number, found in enumerate(begun):
+            if len(begun) > 1:
+                progress(f"search {number + 1} of {len(begun)}")
+            spent = sum(len(other.steps) for other in begun)
+            own = few if len(begun) > 1 else replace(effort, solves=max(_HEAT, effort.solves - spent))
+            further = search(solve, target, parameters, found.design, own, progress)
+            going.append(replace(further, steps=found.steps + further.steps))
+        if len(going) == 1:
+            return going[0]
+        # What the prior holds against a start is small beside what an early search misses.
+        begun = sorted(going, key=lambda found: found.misfit.value)[: (len(going) + 1) // 2]
+
+
+def _others(
+    start: AnyDesign, target: Target, parameters: Sequence[Parameter], count: int, seed: int
+) -> list[FloatArray]:
+    """Coordinates of the best designs, apart from each other, that the start's surrogate leads to from the prior."""
+    bounds, generator = coordinate_bounds(parameters), np.random.default_rng(seed)
+    surrogate = start.surrogate()
     ends = []
-    for begin in [start] if best is start else [start, best]:
-        ends.append(search(solve, target, parameters, begin, half, progress))
-        steps += ends[-1].steps
-    return replace(min(ends, key=lambda found: found.misfit.value), steps=tuple(steps))
+    for _ in range(_DRAWN * count):
+        drawn = np.clip(generator.normal(size=bounds.shape[1]), *bounds)
+        ends.append(_descend(surrogate, target, drawn, bounds))
+    apart = list[FloatArray]()
+    for point, _ in sorted(ends, key=lambda end: end[1]):
+        if all(np.linalg.norm(point - other) > _APART for other in [start.coordinates, *apart]):
+            apart.append(point)
+    return apart[:count]
 
 
 def search_surrogate(
@@ -227,7 +250,7 @@ def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: Fl
         missed, slopes = residuals(target, misfit, near, penalties=True)
         rows, right = [slopes, np.eye(len(point))], [-missed, -point]
         room = np.stack([low - point, high - point]) + np.array([[-1e-12], [1e-12]])
-        step = lsq_linear(np.vstack(rows), np.concatenate(right), bounds=room).x
+        step = lsq_linear(np.vstack(rows), np.concatenate(right), bounds=room, method="bvls").x
         for part in _SHORTENED:
             trial = np.clip(point + part * step, low, high)
             at_trial = surrogate.at(trial)

@@ -80,6 +80,7 @@ def test_a_clear_choice_lacks_nothing_and_one_pair_lacks_what_it_lacks() -> None
     assert alone.cost == pytest.approx(1.0)
     assert sorted(zip(alone.modes.tolist(), alone.sign.tolist(), strict=True)) == [(1, 1.0), (2, -1.0)]
     assert alone.values == pytest.approx(np.sqrt([0.5, 0.5]))
+    assert lacking(np.array([0, 2]), strengths, BAND, 0.32, firmness=3.0).cost == pytest.approx(9.0)
 
 
 def test_a_strong_mode_beyond_the_band_costs_what_it_lacks_to_be_clearly_beyond() -> None:
