@@ -32,6 +32,7 @@ UNPAIRED = -1
 
 _LEAST_MAC = 0.5  # below it two shapes are no pair
 _COUNT_SCALE = 0.01  # how soft the number of modes is: in ln ω of the mode that has to lie beyond the limit or below
+_COUNT_CLEAR = 0.005  # how clearly it has to, lest the next mesh decides
 _HOPELESS = 1e6  # J of a design with too few modes to pair
 _LOOSE = 25.0  # J of each measured mode that finds no partner: as much as an error of five σ
 
@@ -196,19 +197,20 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
 
 
 def strays(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
-    """The modes that make the number wrong: those that should lie on the other side of the limit.
+    """The modes that make the number wrong or nearly so: those that should lie clearly on one side of the limit.
 
     Returns
     -------
     modes : ndarray of int, shape (n,)
     beyond : ndarray, shape (n,)
-        How far each is on the wrong side, in units of what is soft: positive above the limit, negative below.
+        What each lacks to be clearly on its side, in units of what is soft: positive above it, negative below.
     """
-    wrong = np.zeros(len(state.frequencies), dtype=bool)
-    wrong[: known.least] = state.frequencies[: known.least] > known.limit
-    wrong[known.most :] = state.frequencies[known.most :] < known.limit
-    modes = np.flatnonzero(wrong)
-    return modes, np.log(state.frequencies[modes] / known.limit) / _COUNT_SCALE
+    beyond = np.log(state.frequencies / known.limit)
+    lacks = np.zeros(len(beyond))
+    lacks[: known.least] = np.maximum(beyond[: known.least] + _COUNT_CLEAR, 0.0)
+    lacks[known.most :] = np.minimum(beyond[known.most :] - _COUNT_CLEAR, 0.0)
+    modes = np.flatnonzero(lacks)
+    return modes, lacks[modes] / _COUNT_SCALE
 
 
 def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArray]:

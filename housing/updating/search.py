@@ -22,7 +22,8 @@ FloatArray = npt.NDArray[np.float64]
 _STEPS = 8  # of Gauss and Newton from each start
 _WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
-_DRAWN = 8  # from the prior for each other start that is solved
+_FAR_STEPS = 40  # of the same where they begin far away
+_DRAWN = 24  # from the prior for each other start that is solved
 _APART = 1.0  # least distance of two starts, in standard deviations of the prior
 _HEAT = 3  # solves of each start before the better half goes on
 
@@ -189,20 +190,18 @@ def explore(
             continue
         begun.append(Found(design, measure(target, design.state, design.coordinates), ()))
         progress(f"start {len(begun)}: misfit {begun[-1].misfit.value:.4g}")
-    few = replace(effort, solves=_HEAT)
-    while True:
+    steps = list[Step]()
+    while len(begun) > 1:
         going = []
         for number, found in enumerate(begun):
-            if len(begun) > 1:
-                progress(f"search {number + 1} of {len(begun)}")
-            spent = sum(len(other.steps) for other in begun)
-            own = few if len(begun) > 1 else replace(effort, solves=max(_HEAT, effort.solves - spent))
-            further = search(solve, target, parameters, found.design, own, progress)
-            going.append(replace(further, steps=found.steps + further.steps))
-        if len(going) == 1:
-            return going[0]
-        # What the prior holds against a start is small beside what an early search misses.
-        begun = sorted(going, key=lambda found: found.misfit.value)[: (len(going) + 1) // 2]
+            progress(f"search {number + 1} of {len(begun)}")
+            own = replace(effort, solves=_HEAT, trust=effort.trust if not found.steps else found.steps[-1].trust)
+            going.append(search(solve, target, parameters, found.design, own, progress))
+            steps += going[-1].steps
+        begun = sorted(going, key=lambda found: found.misfit.value)[: len(going) // 2]
+    left = replace(effort, solves=max(_HEAT, effort.solves - len(steps)))
+    found = search(solve, target, parameters, begun[0].design, left, progress)
+    return replace(found, steps=(*steps, *found.steps))
 
 
 def _others(
@@ -214,7 +213,7 @@ def _others(
     ends = []
     for _ in range(_DRAWN * count):
         drawn = np.clip(generator.normal(size=bounds.shape[1]), *bounds)
-        ends.append(_descend(surrogate, target, drawn, bounds))
+        ends.append(_descend(surrogate, target, drawn, bounds, _FAR_STEPS))
     apart = list[FloatArray]()
     for point, _ in sorted(ends, key=lambda end: end[1]):
         if all(np.linalg.norm(point - other) > _APART for other in [start.coordinates, *apart]):
@@ -239,12 +238,14 @@ def search_surrogate(
     return best_point, best
 
 
-def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: FloatArray) -> tuple[FloatArray, float]:
+def _descend(
+    surrogate: Surrogate, target: Target, point: FloatArray, region: FloatArray, steps: int = _STEPS
+) -> tuple[FloatArray, float]:
     """Gauss and Newton's steps on the surrogate from a start, kept within the region."""
     low, high = region
     near = surrogate.at(point)
     misfit = measure(target, near.state, point)
-    for _ in range(_STEPS):
+    for _ in range(steps):
         if (misfit.pairs == UNPAIRED).all():
             break
         missed, slopes = residuals(target, misfit, near, penalties=True)
