@@ -146,7 +146,7 @@ def update_housing(
         seconds["held_back"] = time.perf_counter() - begin
     if null:
         begin = time.perf_counter()
-        few = replace(effort, solves=_FEW, starts=_STARTS)
+        few = replace(effort, solves=min(given.solves, _FEW), starts=_STARTS)
         fits = null_fits(coarse.solve, target, coarse.parameters, _thinned(known), few, null, progress=progress)
         seconds["null"] = time.perf_counter() - begin
     return SolvedUpdate(
