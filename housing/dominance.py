@@ -52,19 +52,19 @@ class Dominance:
         ranked = np.sort(self.acceleration[inside])[::-1]
         return float(np.log(ranked[count - 1] / ranked[count])) if len(ranked) > count else float("inf")
 
-    def margin(self, count: int, band: tuple[float, float]) -> float:
-        """The least gap of the other two measures between the modes chosen by acceleration and those left out.
+    def gaps(self, chosen: IntArray, band: tuple[float, float]) -> tuple[float, float]:
+        """How clearly some modes stand above the others in a band: by acceleration, and the less of the other two.
 
-        ln(weakest chosen / strongest left out), the less of velocity and absolute; negative where one of them would
-        choose other modes, infinite where there are no others.
+        ln(weakest chosen / strongest left out); negative where the measure would choose other modes, infinite where
+        there are no others.
         """
         inside = np.flatnonzero((self.frequencies >= band[0]) & (self.frequencies <= band[1]))
-        chosen = self.strongest(count, band)
         left = np.setdiff1d(inside, chosen)
         if not len(left):
-            return float("inf")
-        measures = (self.velocity, self.absolute)
-        return min(float(np.log(measure[chosen].min() / measure[left].max())) for measure in measures)
+            return float("inf"), float("inf")
+        measures = (self.acceleration, self.velocity, self.absolute)
+        deciding, *others = (float(np.log(measure[chosen].min() / measure[left].max())) for measure in measures)
+        return deciding, min(others)
 
     def measures_agree(self, count: int, band: tuple[float, float]) -> bool:
         """Whether all three measures choose the same modes."""

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -95,14 +96,19 @@ def render_shapes(
     The colours are titled by the quantity of the first.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    files = []
-    with Scene(housing, view, size, quantity=shapes[0].quantity) as scene:
-        for shape in shapes:
+    files = [folder / f"{shape.name}.png" for shape in shapes]
+    saving: Future[None] | None = None
+    # While one picture is shrunk and written, the next is drawn.
+    with Scene(housing, view, size, quantity=shapes[0].quantity) as scene, ThreadPoolExecutor(1) as pool:
+        for shape, path in zip(shapes, files, strict=True):
             progress(f"drawing {shape.title}")
-            path = folder / f"{shape.name}.png"
             scene.show(shape)
-            _save(scene.picture(shape), path)
-            files.append(path)
+            drawn = scene.drawn(shape)
+            if saving is not None:
+                saving.result()
+            saving = pool.submit(_shrink_and_save, scene, drawn, path)
+        if saving is not None:
+            saving.result()
     return files
 
 
@@ -127,6 +133,10 @@ def render_sheet(
     sheet[rows * height :] = colour_strip(columns * width)
     _save(sheet, path)
     return path
+
+
+def _shrink_and_save(scene: Scene, drawn: npt.NDArray[np.uint8], path: Path) -> None:
+    _save(scene.shrunk(drawn), path)
 
 
 def _save(image: npt.NDArray[np.uint8], path: Path) -> None:

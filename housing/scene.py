@@ -105,15 +105,22 @@ class Scene:
 
     def picture(self, shape: DrawnShape, angle: float = 0.0) -> Image:
         """The shape that is shown at a phase angle [rad], as pixels of shape (height, width, 3)."""
-        from PIL import Image as Pillow
+        return self.shrunk(self.drawn(shape, angle))
 
+    def drawn(self, shape: DrawnShape, angle: float = 0.0) -> Image:
+        """The same as large as it is drawn."""
         reach = DRAWN_SCALE * self._housing.diagonal
         points = (self._housing.rest + reach * shape.at(angle))[self._origin]
         self._solid.points = points
         self._solid.point_data.active_normals = self._skin.normals(points)
         self._plotter.render_window.Render()  # a screenshot alone shows what was drawn before
-        drawn = Pillow.fromarray(np.asarray(self._plotter.screenshot(None, return_img=True)))
-        return np.array(drawn.resize(self._size, Pillow.Resampling.HAMMING))
+        return np.asarray(self._plotter.screenshot(None, return_img=True))
+
+    def shrunk(self, drawn: Image) -> Image:
+        """What was drawn, at the picture's own size."""
+        from PIL import Image as Pillow
+
+        return np.array(Pillow.fromarray(drawn).resize(self._size, Pillow.Resampling.HAMMING))
 
     def _furnish(self, outline: Any, tile: bool, quantity: str) -> None:
         plotter = self._plotter
@@ -130,6 +137,8 @@ class Scene:
             diffuse=0.75,
             show_scalar_bar=False,
         )
+        # The far side of a closed skin is never seen, and costs a third of the drawing.
+        self._actor.prop.culling = "back"
         plotter.add_mesh(outline, color="#707070", line_width=self._finer)
         grown = self._finer * (self._size[0] / _FULL) ** _GROWTH
         letters = 15.0 * grown, 10.0 * grown

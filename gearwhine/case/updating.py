@@ -101,13 +101,15 @@ class Update(Table):
     """`[update]`: the parameters, how well frequencies were measured, and what else the model has to meet.
 
     `frequency_noise` is the relative standard deviation of a measured frequency together with what a perfect model
-    would still miss. The search is made with elements of `mesh_size` (None: the box's own) and the box's own decide.
-    `gap` is the least gap of dominance, `modes` how many are taken along, `solves` how many designs are solved at
-    most.
+    would still miss; `shape_noise` that of each motion of a measured shape, as a part of the shape's root-mean-square.
+    The search is made with elements of `mesh_size` (None: the box's own) and the box's own decide. `gap` is the least
+    gap of dominance, `modes` how many are taken along, `solves` how many designs are solved at most, `explore` how
+    many other starts there are.
     """
 
     parameter: tuple[UpdateParameter, ...] = Field(min_length=1, max_length=200)
     frequency_noise: Annotated[float, Quantity(units.RATIO, above=0.0, below=1.0)] = 0.005
+    shape_noise: Annotated[float, Quantity(units.RATIO, above=0.0, below=1.0)] = 0.05
     mesh_size: PositiveLength | None = None
     gap: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = 0.15
     model_modes: ModelModes | None = None

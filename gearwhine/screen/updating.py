@@ -20,7 +20,8 @@ def show_update(document: dict[str, Any]) -> None:
     if "null" in document:
         _null(console, document)
     else:
-        console.print("How often random frequencies are fitted as well: --null 20. Modes held back: --held-back.")
+        random = "How often random frequencies are fitted as well: --null 20. " if document["gap"] is not None else ""
+        console.print(random + "Modes held back: --held-back.")
     for warning in document.get("warnings", ()):
         console.print(f"Mind: {warning['message']}.")
     show_written(console, document)
@@ -46,27 +47,40 @@ def _modes(console: Console, document: dict[str, Any]) -> None:
         column.justify = "right"
     for pair in document["pairs"]:
         table.add_row(
-            str(pair["mode"]),
+            "none" if pair["mode"] is None else str(pair["mode"]),
             f"{pair['measured_hz']:.0f}",
-            f"{pair['before_hz']:.1f}",
-            f"{pair['before_error_percent']:+.2f} %",
-            f"{pair['model_hz']:.1f}",
-            f"{pair['error_percent']:+.2f} %",
+            _known(pair["before_hz"], ".1f"),
+            _known(pair["before_error_percent"], "+.2f", " %"),
+            _known(pair["model_hz"], ".1f"),
+            _known(pair["error_percent"], "+.2f", " %"),
         )
     console.print(table)
-    agree = "agree" if document["measures_agree"] else "do not all agree"
     counts = document.get("model_modes")
     count = "" if counts is None else f"; {counted(counts['count'], 'model mode')} below {counts['below_hz']:.0f} Hz"
     console.print(
         f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, rms "
-        f"{document['rms_error_percent']:.2f} % (before: {document['before']['rms_error_percent']:.2f} %){count}; gap "
-        f"{document['gap']:.2f}, the three measures of dominance {agree}."
+        f"{document['rms_error_percent']:.2f} % (before: {document['before']['rms_error_percent']:.2f} %){count}; "
+        f"{_choice(document)}."
     )
     solved, mesh = document["search"], document["mesh"]
     console.print(
         f"{counted(len(solved['steps']), 'design')} solved with {solved['mesh_dofs']} degrees of freedom, verified "
         f"with {mesh['dofs']}; {document['seconds']['total']:.0f} s."
     )
+
+
+def _known(value: float | None, form: str, unit: str = "") -> str:
+    return "none" if value is None else f"{value:{form}}{unit}"
+
+
+def _choice(document: dict[str, Any]) -> str:
+    """How clearly the modes paired are the ones that were measured."""
+    if document["gap"] is None:
+        values = [pair["mac"] for pair in document["pairs"]]
+        alone = f", {document['wrong_pairs']} without a partner" if document["wrong_pairs"] else ""
+        return f"MAC from {min(values):.2f} to {max(values):.2f}{alone}"
+    agree = "agree" if document["measures_agree"] else "do not all agree"
+    return f"gap {document['gap']:.2f}, the three measures of dominance {agree}"
 
 
 def _identifiability(console: Console, told: dict[str, Any]) -> None:

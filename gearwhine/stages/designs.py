@@ -119,6 +119,10 @@ class HousingDesign:
 
     def surrogate(self) -> Surrogate:
         """Its neighbourhood, by the exact rates of stiffness and mass."""
+        return self._surrogate
+
+    @cached_property
+    def _surrogate(self) -> Surrogate:
         parted, material, materials = materials_of(self.case, self.mesh)
         constants = element_constants(parted, material, materials)
         rates = modal_rates(self.mesh, constants, self.modes.shapes, self.rates())

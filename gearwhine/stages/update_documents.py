@@ -9,7 +9,6 @@ from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.check_provenance import without_changed
 from gearwhine.case.problems import Location, key_of
 from gearwhine.case.units import amount
-from gearwhine.stages.measured import read_measured
 from gearwhine.stages.update_keys import FittedNumber, with_entry
 from gearwhine.stages.updating import SolvedUpdate
 from housing.updating import UNPAIRED, HeldBack, Misfit, NullFit
@@ -29,9 +28,8 @@ def update_document(case: Case, solved: SolvedUpdate) -> dict[str, Any]:
         "pairs": _pairs(solved),
         "rms_error_percent": fine.rms_percent,
         "max_error_percent": fine.max_percent,
-        "pairing": "dominance in order of frequency",
-        "gap": fine.gap,
-        "measures_agree": fine.measures_agree,
+        "pairing": "dominance in order of frequency" if target.shapes is None else "MAC, best assignment",
+        **_choice(fine),
         "wrong_pairs": len(fine.pairs) - len(paired),
         "before": _misfit(solved.misfit_before),
         "search": {
@@ -52,8 +50,8 @@ def update_document(case: Case, solved: SolvedUpdate) -> dict[str, Any]:
         "identifiability": _identifiability(solved),
         "seconds": {**solved.seconds, "total": sum(solved.seconds.values())},
     }
-    if case.measured is not None and read_measured(case).shapes is not None:
-        message = "the measured shapes were not used: modes are paired by dominance; 'gearwhine compare' pairs by shape"
+    if solved.left_out:
+        message = f"{solved.left_out} degrees of freedom were not measured in every mode and took no part"
         document["warnings"] = [{"name": "shapes", "message": message}]
     if target.count is not None:
         document["model_modes"] = {"below_hz": target.count.limit / _HERTZ, "count": fine.count}
@@ -69,10 +67,16 @@ def _misfit(misfit: Misfit) -> dict[str, Any]:
         "misfit": misfit.value,
         "rms_error_percent": misfit.rms_percent,
         "max_error_percent": misfit.max_percent,
-        "gap": misfit.gap,
-        "measures_agree": misfit.measures_agree,
+        **_choice(misfit),
         "model_modes": misfit.count,
     }
+
+
+def _choice(misfit: Misfit) -> dict[str, Any]:
+    """How clearly the modes paired are the dominant ones; null where shapes pair them."""
+    if misfit.mac is not None:
+        return {"gap": None, "measures_agree": None}
+    return {"gap": misfit.gap, "measures_agree": misfit.measures_agree}
 
 
 def _parameters(solved: SolvedUpdate) -> list[dict[str, Any]]:
@@ -94,7 +98,7 @@ def _parameters(solved: SolvedUpdate) -> list[dict[str, Any]]:
                 "standard_deviation": deviation,
                 "prior": {"nominal": parameter.nominal, "spread": parameter.spread},
                 "range": [parameter.low, parameter.high],
-                "at_end_of_range": after - parameter.low < slack or parameter.high - after < slack,
+                "at_end_of_range": bool(after - parameter.low < slack or parameter.high - after < slack),
                 "left_of_prior_spread": float(solved.posterior.deviations[place]),
             }
         )
@@ -108,20 +112,27 @@ def _pairs(solved: SolvedUpdate) -> list[dict[str, Any]]:
     strengths = solved.after.state.dominance.acceleration
     for place, measured in enumerate(solved.target.frequencies):
         error, old = float(after.errors[place]), float(before.errors[place])
-        mode, tuned = int(after.pairs[place]), int(solved.misfit_tuned.pairs[place])
+        mode = int(after.pairs[place])
         rows.append(
             {
                 "measured_hz": float(measured) / _HERTZ,
-                "before_hz": float(measured * np.exp(old)) / _HERTZ,
-                "model_hz": float(measured * np.exp(error)) / _HERTZ,
-                "before_error_percent": 100.0 * float(np.expm1(old)),
-                "error_percent": 100.0 * float(np.expm1(error)),
+                "before_hz": _known(measured * np.exp(old) / _HERTZ),
+                "model_hz": _known(measured * np.exp(error) / _HERTZ),
+                "before_error_percent": _known(100.0 * np.expm1(old)),
+                "error_percent": _known(100.0 * np.expm1(error)),
                 "mode": None if mode == UNPAIRED else mode + 1,
+                "mac": None if after.mac is None else float(after.mac[place]),
+                "before_mac": None if before.mac is None else float(before.mac[place]),
                 "strength": None if mode == UNPAIRED else float(strengths[mode]),
-                "left_uncertain_percent": None if tuned == UNPAIRED else 100.0 * float(left[tuned]),
+                "left_uncertain_percent": None if mode == UNPAIRED else 100.0 * float(left[mode]),
             }
         )
     return rows
+
+
+def _known(value: float) -> float | None:
+    """None for what an unpaired mode has not."""
+    return float(value) if np.isfinite(value) else None
 
 
 def _identifiability(solved: SolvedUpdate) -> dict[str, Any]:
@@ -198,7 +209,7 @@ def updated_case(case: Case, solved: SolvedUpdate) -> str:
     remarks = [
         f"# Updated to {len(fine.pairs)} measured frequencies by 'gearwhine update'; errors:",
         f"#   before: rms {old.rms_percent:.2f} %, largest {old.max_percent:.2f} %",
-        f"#   after:  rms {fine.rms_percent:.2f} %, largest {fine.max_percent:.2f} %, gap of dominance {fine.gap:.2f}",
+        f"#   after:  rms {fine.rms_percent:.2f} %, largest {fine.max_percent:.2f} %, {_clear(fine)}",
         "# Each parameter before and after, with one standard deviation of what prior and measurement leave of it:",
     ]
     prior: dict[int, dict[str, Any]] = {}
@@ -222,6 +233,12 @@ def updated_case(case: Case, solved: SolvedUpdate) -> str:
     document = without_changed(dict(document), before, changed)
     document["provenance"] = {**document.get("provenance", {}), **provenance}
     return "\n".join(remarks) + "\n\n" + tomli_w.dumps(document)
+
+
+def _clear(misfit: Misfit) -> str:
+    if misfit.mac is not None:
+        return f"least MAC {misfit.mac.min():.2f}"
+    return f"gap of dominance {misfit.gap:.2f}"
 
 
 def _prior(number: FittedNumber) -> dict[str, Any]:

@@ -1,8 +1,7 @@
 """Updating a case's housing: its `[update]` numbers fitted to the measured modes, and what the fit is worth.
 
-The search is made on a mesh of its own, coarse enough for many solves. The box's own mesh decides: the difference that
-it makes to each paired mode is taken into the target, and the search goes on until the finer mesh's misfit no longer
-falls.
+The search is made on a mesh of its own, coarse enough for many solves, that moves with the box. The box's own mesh
+decides: the search goes on there with a few designs more, each meshed anew.
 """
 
 import time
@@ -14,21 +13,17 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.designs import HousingDesign, HousingDesigns
-from gearwhine.stages.measured import read_measured
 from gearwhine.stages.update_keys import FittedCase, fitted_case
-from housing.correlation import dominance_band
+from gearwhine.stages.update_target import measurement_of
 from housing.updating import (
     Effort,
     Found,
     HeldBack,
     Misfit,
-    ModeCount,
     NullFit,
     Posterior,
-    Solve,
     Step,
     Target,
-    counterparts,
     explore,
     hold_back,
     measure,
@@ -39,11 +34,9 @@ from housing.updating import (
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
-_ROUNDS = 4  # of correcting the target by the finer mesh
-_REFINED = 0.05  # trust region of a search that goes on after such a correction
-_FEW = 10  # solves of each such search, and of each random set
-_MARGIN = 1.0 / 3.0  # of the least gap, for the two measures beside the one that decides
+_REFINED = 0.05  # trust region of the search that goes on with the finer mesh
+_FEW = 10  # solves of that search, and of each random set
+_FIRM = 3.0  # how much less soft the penalties are there
 _STARTS = 16  # on the surrogate, where the search is made over and over
 
 
@@ -59,11 +52,12 @@ class SolvedUpdate:
     misfit_before, misfit_after : Misfit
         Theirs.
     tuned : HousingDesign
-        On the mesh of the search.
+        Where the search on the coarser mesh came to.
     misfit_tuned : Misfit
-        Its misfit, corrected by the finer mesh.
+        Its misfit there.
     target : Target
-        With the correction.
+    left_out : int
+        Measured degrees of freedom that took no part.
     posterior : Posterior
     steps : tuple of Step
         Every true solve of the search.
@@ -82,6 +76,7 @@ class SolvedUpdate:
     tuned: HousingDesign
     misfit_tuned: Misfit
     target: Target
+    left_out: int
     posterior: Posterior
     steps: tuple[Step, ...]
     held_back: list[HeldBack]
@@ -107,7 +102,8 @@ def update_housing(
     Raises
     ------
     CaseError
-        Where the case has no parameters or nothing measured, or a key leads to no number.
+        Where the case has no parameters or nothing measured, a key leads to no number, or random sets are asked for
+        beside measured shapes.
     housing.HousingError
         Where the model cannot be solved as it stands.
     """
@@ -115,14 +111,14 @@ def update_housing(
     given = case.update
     assert given is not None
     assert case.housing is not None
-    if not case.housing.seat:
-        raise CaseError(
-            [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
-        )
+    measured = measurement_of(case, progress)
+    target = measured.target
+    if null and target.shapes is not None:
+        expected = "0 where shapes were measured: random frequencies have none"
+        raise CaseError([Problem("--null", null, expected)])
     begin = time.perf_counter()
-    fine = HousingDesigns(fitted_case(case), given.modes, threads=threads)
+    fine = HousingDesigns(fitted_case(case), given.modes, measured.observer, threads=threads)
     coarse = replace(fine, case=fitted_case(case, given.mesh_size))
-    target = target_of(case)
     progress("solving the housing as it stands")
     start = coarse.solve(coarse.start)
     known: list[HousingDesign] = [start]
@@ -137,10 +133,11 @@ def update_housing(
     found = explore(solve, target, coarse.parameters, start, effort, given.explore, progress)
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
-    before, after, found, target = _corrected(fine, found, target, start, solve, effort, progress)
-    seconds["correction"] = time.perf_counter() - begin
     tuned = found.design
-    spread = posterior(target, found.misfit, tuned.coordinates, tuned.surrogate().at(tuned.coordinates))
+    before, found = _polished(fine, found, target, effort, progress)
+    seconds["own_mesh"] = time.perf_counter() - begin
+    after = found.design
+    spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
     rows: list[HeldBack] = []
     fits: list[NullFit] = []
     if held_back:
@@ -149,19 +146,19 @@ def update_housing(
         seconds["held_back"] = time.perf_counter() - begin
     if null:
         begin = time.perf_counter()
-        few = replace(effort, solves=_FEW, starts=_STARTS)
+        few = replace(effort, solves=min(given.solves, _FEW), starts=_STARTS)
         fits = null_fits(coarse.solve, target, coarse.parameters, _thinned(known), few, null, progress=progress)
         seconds["null"] = time.perf_counter() - begin
-    own = target_of(case)
     return SolvedUpdate(
         fitted=fine.case,
         before=before,
         after=after,
-        misfit_before=measure(own, before.state, before.coordinates),
-        misfit_after=measure(own, after.state, after.coordinates),
+        misfit_before=measure(target, before.state, before.coordinates, strict=True),
+        misfit_after=measure(target, after.state, after.coordinates, strict=True),
         tuned=tuned,
-        misfit_tuned=found.misfit,
+        misfit_tuned=measure(target, tuned.state, tuned.coordinates, strict=True),
         target=target,
+        left_out=measured.left_out,
         posterior=spread,
         steps=found.steps,
         held_back=rows,
@@ -170,69 +167,23 @@ def update_housing(
     )
 
 
-def target_of(case: Case) -> Target:
-    """What a case's housing is to meet."""
-    assert case.update is not None
-    measured = read_measured(case).frequencies
-    known = case.update.model_modes
-    return Target(
-        frequencies=measured,
-        noise=np.full(len(measured), case.update.frequency_noise),
-        band=dominance_band(measured),
-        gap=case.update.gap,
-        margin=_MARGIN * case.update.gap if case.update.gap else -np.inf,
-        count=None if known is None else ModeCount(_HERTZ * known.below, known.least, known.most),
-    )
+def _polished(
+    fine: HousingDesigns, found: Found[HousingDesign], target: Target, effort: Effort, progress: Progress
+) -> tuple[HousingDesign, Found[HousingDesign]]:
+    """The start on the housing's own mesh, and the search that goes on there from where it came to on a coarser one.
 
-
-def _corrected(
-    fine: HousingDesigns,
-    found: Found[HousingDesign],
-    target: Target,
-    start: HousingDesign,
-    solve: Solve[HousingDesign],
-    effort: Effort,
-    progress: Progress,
-) -> tuple[HousingDesign, HousingDesign, Found[HousingDesign], Target]:
-    """The start and the best design on the finer mesh, the search that led there, and its corrected target."""
-    if start.designs.case.document == fine.case.document:
-        return start, found.design, found, target
+    Each design is meshed anew: what a moved mesh has and a new one has not is no property of the housing.
+    """
+    if found.design.designs.case.document == fine.case.document:
+        return found.design.designs.solve(fine.start), found
     progress("solving the housing as it stands on its own mesh")
     before = fine.solve(fine.start)
-    best: tuple[float, HousingDesign, Found[HousingDesign], Target] | None = None
-    own, steps = target, found.steps
-    for _ in range(_ROUNDS):
-        progress("solving on the housing's own mesh")
-        after = fine.solve(found.design.coordinates)
-        misfit = measure(own, after.state, after.coordinates)
-        progress(
-            f"on its own mesh: rms {misfit.rms_percent:.2f} %, max {misfit.max_percent:.2f} %, gap {misfit.gap:.2f}, "
-            f"margin {misfit.margin:.2f}"
-        )
-        coarse = measure(own, found.design.state, found.design.coordinates)
-        # Of the very modes that the search has paired: the finer mesh may pair others, which is the gap's and the
-        # margin's matter and no error of discretisation.
-        told = np.maximum(coarse.pairs, 0)
-        same = counterparts(told, found.design.state, after.state)
-        corrected = replace(
-            target,
-            bias=np.log(after.state.frequencies[same] / found.design.state.frequencies[told]),
-            gap=own.gap + (max(coarse.gap - misfit.gap, 0.0) if own.gap else 0.0),
-            margin=own.margin + (max(coarse.margin - misfit.margin, 0.0) if own.gap else 0.0),
-        )
-        here = replace(found, misfit=measure(corrected, found.design.state, found.design.coordinates))
-        if best is not None and misfit.value > best[0] * (1.0 - _REFINED):
-            if misfit.value < best[0]:
-                best = (misfit.value, after, here, corrected)
-            break
-        best, target = (misfit.value, after, here, corrected), corrected
-        few = replace(effort, solves=_FEW, trust=_REFINED)
-        found = search(solve, target, start.designs.parameters, found.design, few, progress)
-        steps += found.steps
-        if found.design is here.design:
-            break
-    assert best is not None
-    return before, best[1], replace(best[2], steps=steps), best[3]
+    progress("going on with the housing's own mesh")
+    begin = fine.solve(found.design.coordinates)
+    few = replace(effort, solves=_FEW, trust=_REFINED)
+    firm = replace(target, firmness=_FIRM)
+    last = search(lambda point, near: fine.solve(point), firm, fine.parameters, begin, few, progress)
+    return before, replace(last, steps=found.steps + last.steps)
 
 
 def _thinned(designs: list[HousingDesign]) -> list[HousingDesign]:

@@ -10,7 +10,7 @@ it
 fitted.
 """
 
-from housing.updating.misfit import UNPAIRED, Misfit, ModeCount, Target, counterparts, measure, residuals
+from housing.updating.misfit import UNPAIRED, Misfit, ModeCount, Target, measure, residuals
 from housing.updating.parameters import Parameter, coordinate_bounds, values_at
 from housing.updating.posterior import Posterior, posterior
 from housing.updating.rates import ModalRates, ModelRate, modal_rates
@@ -38,7 +38,6 @@ __all__ = [
     "Surrogate",
     "Target",
     "coordinate_bounds",
-    "counterparts",
     "explore",
     "hold_back",
     "measure",

@@ -8,8 +8,9 @@ normal one (Mottershead and Friswell 1993; Beck and Katafygiotis 1998).
 Penalties keep out what a good sum would hide: a choice of dominant modes that is a coin toss, measures that choose
 differently, and a number of modes that is not the one known.
 
-Modes are paired as they are when model and measurement are compared: the dominant ones in order of frequency, or where
-shapes were measured by the assignment of greatest MAC.
+Where shapes were measured, modes are paired by the assignment of greatest MAC, else in order of frequency: with the
+modes of least cost while a search is on its way (:mod:`housing.updating.choice`), which where it ends well are the
+dominant ones; with these, whatever they miss, where a model is judged.
 """
 
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ from scipy.optimize import linear_sum_assignment
 
 from housing.correlation import mac
 from housing.errors import HousingError
+from housing.updating.choice import Lacking, choose, lacking
 from housing.updating.surrogate import ModalState, Neighbour
 
 FloatArray = npt.NDArray[np.float64]
@@ -28,11 +30,9 @@ IntArray = npt.NDArray[np.int64]
 UNPAIRED = -1
 """Stands for the partner of a measured mode that has none."""
 
-GAP_SCALE = 0.02
-"""How soft the least gap is: so much below it costs as much as an error of one σ."""
-
 _LEAST_MAC = 0.5  # below it two shapes are no pair
 _COUNT_SCALE = 0.01  # how soft the number of modes is: in ln ω of the mode that has to lie beyond the limit or below
+_COUNT_CLEAR = 0.005  # how clearly it has to, lest the next mesh decides
 _HOPELESS = 1e6  # J of a design with too few modes to pair
 _LOOSE = 25.0  # J of each measured mode that finds no partner: as much as an error of five σ
 
@@ -64,13 +64,13 @@ class Target:
         Standard deviation of each of their motions, as a part of the shape's root-mean-square; infinite where shapes
         are to decide the pairs and nothing else.
     gap : float
-        Least gap ln(strength of the last chosen / first left out); not asked for where shapes were measured.
+        Least gap ln(strength of the weakest chosen / strongest left out); not asked for where shapes were measured.
     margin : float
-        Least gap of the other two measures between the modes chosen and those left out, below 0 where they choose
-        others; not asked for by default.
+        The same of the other two measures; not asked for by default.
     count : ModeCount, optional
-    bias : ndarray, shape (n,), optional
-        ln of (a finer mesh's frequencies / this mesh's), which the fit takes for constant.
+    firmness : float
+        How many times less soft than at first the penalties are. Soft ones lead a search past what is in its way, firm
+        ones leave nothing to be paid for at its end.
 
     Raises
     ------
@@ -86,7 +86,7 @@ class Target:
     gap: float = 0.0
     margin: float = -np.inf
     count: ModeCount | None = None
-    bias: FloatArray | None = None
+    firmness: float = 1.0
 
     def __post_init__(self) -> None:
         measured = self.frequencies
@@ -99,9 +99,8 @@ class Target:
 
     @property
     def logarithms(self) -> FloatArray:
-        """ln ω that the model should have on its own mesh, shape (n,)."""
-        wanted = np.log(self.frequencies)
-        return wanted if self.bias is None else wanted - self.bias
+        """ln ω, shape (n,)."""
+        return np.log(self.frequencies)
 
 
 @dataclass(frozen=True)
@@ -115,15 +114,18 @@ class Misfit:
     pairs : ndarray of int, shape (n,)
         The model's mode for each measured one, from 0; :data:`UNPAIRED` where it has none.
     errors : ndarray, shape (n,)
-        ln(model / measured) on this mesh, its bias taken into account; NaN where unpaired.
+        ln(model / measured); NaN where unpaired.
     gap : float
-        Infinite where shapes decide.
+        ln(strength of the weakest paired / strongest of the others in the band): negative where the modes paired are
+        not the dominant ones, infinite where shapes decide.
     margin : float
-        The least gap of the other two measures of dominance for the same choice; likewise.
+        The least of the same by the other two measures of dominance.
     count : int
         Modes below the limit of :class:`ModeCount`; 0 where none is given.
     mac : ndarray, shape (n,), or None
         Of each pair, where shapes were measured.
+    lacking : Lacking, or None
+        What the choice of modes lacks to be a clear one, where shapes do not decide.
     """
 
     value: float
@@ -133,40 +135,52 @@ class Misfit:
     margin: float
     count: int
     mac: FloatArray | None = None
+    lacking: Lacking | None = None
 
     @property
     def measures_agree(self) -> bool:
-        """Whether all three measures of dominance choose the same modes."""
-        return self.margin > 0.0
-
-    def clearance(self, target: Target) -> float:
-        """By how much the choice of modes is clearer than asked for; negative where it is not clear enough."""
-        return min(self.gap - target.gap, self.margin - target.margin)
+        """Whether all three measures of dominance choose the modes that were paired."""
+        return min(self.gap, self.margin) > 0.0
 
     @property
     def rms_percent(self) -> float:
-        """Root-mean-square error of the paired modes."""
-        return float(100.0 * np.sqrt(np.nanmean(np.expm1(self.errors) ** 2)))
+        """Root-mean-square error of the paired modes; infinite where none is."""
+        errors = np.expm1(self.errors[self.pairs != UNPAIRED])
+        return float(100.0 * np.sqrt(np.mean(errors**2))) if len(errors) else float("inf")
 
     @property
     def max_percent(self) -> float:
-        """Largest error of the paired modes."""
-        return float(100.0 * np.nanmax(np.abs(np.expm1(self.errors))))
+        """Largest error of the paired modes; infinite where none is."""
+        errors = np.expm1(self.errors[self.pairs != UNPAIRED])
+        return float(100.0 * np.abs(errors).max()) if len(errors) else float("inf")
 
 
-def measure(target: Target, state: ModalState, coordinates: FloatArray) -> Misfit:
-    """Pair the modes of a design with the measured ones and sum up what they miss."""
+def measure(target: Target, state: ModalState, coordinates: FloatArray, *, strict: bool = False) -> Misfit:
+    """Pair the modes of a design with the measured ones and sum up what they miss.
+
+    Parameters
+    ----------
+    target : Target
+    state : ModalState
+    coordinates : ndarray, shape (n_parameters,)
+    strict : bool
+        Whether only the dominant modes are paired, as a model is judged, rather than those of least cost.
+    """
     n = len(target.frequencies)
     penalty = float(coordinates @ coordinates)
-    mac, gap, margin = None, float("inf"), float("inf")
+    mac, gap, margin, clear = None, float("inf"), float("inf"), None
     if target.shapes is None:
         strengths = state.dominance
         pairs = strengths.strongest(n, target.band)
         if len(pairs) < n:
-            lacking = _HOPELESS * (n - len(pairs))
-            return Misfit(lacking + penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, 0.0, 0)
-        gap, margin = strengths.gap(n, target.band), strengths.margin(n, target.band)
-        penalty += (max(target.gap - gap, target.margin - margin, 0.0) / GAP_SCALE) ** 2
+            hopeless = _HOPELESS * (n - len(pairs))
+            return Misfit(hopeless + penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, 0.0, 0)
+        if not strict:
+            asked = (target.gap, target.margin, target.firmness)
+            pairs = choose(target.logarithms, target.noise, strengths, target.band, *asked)
+        gap, margin = strengths.gaps(pairs, target.band)
+        clear = lacking(pairs, strengths, target.band, target.gap, target.margin, target.firmness)
+        penalty += clear.cost
     else:
         pairs, mac = pair_by_shape(target, state)
         told = (pairs != UNPAIRED) & np.isfinite(target.noise)
@@ -175,27 +189,28 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray) -> Misfi
     count = 0
     if target.count is not None:
         count = int(np.count_nonzero(state.frequencies < target.count.limit))
-        _, beyond = strays(target.count, state)
+        beyond = target.firmness * strays(target.count, state)[1]
         penalty += float(beyond @ beyond)
     errors = np.where(pairs == UNPAIRED, np.nan, np.log(state.frequencies[pairs]) - target.logarithms)
-    value = float(np.nansum((errors / target.noise) ** 2)) + penalty
-    return Misfit(value, pairs, errors, gap, margin, count, mac)
+    value = float(np.nansum((errors / target.noise) ** 2) + penalty)
+    return Misfit(value, pairs, errors, gap, margin, count, mac, clear)
 
 
 def strays(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
-    """The modes that make the number wrong: those that should lie on the other side of the limit.
+    """The modes that make the number wrong or nearly so: those that should lie clearly on one side of the limit.
 
     Returns
     -------
     modes : ndarray of int, shape (n,)
     beyond : ndarray, shape (n,)
-        How far each is on the wrong side, in units of what is soft: positive above the limit, negative below.
+        What each lacks to be clearly on its side, in units of what is soft: positive above it, negative below.
     """
-    wrong = np.zeros(len(state.frequencies), dtype=bool)
-    wrong[: known.least] = state.frequencies[: known.least] > known.limit
-    wrong[known.most :] = state.frequencies[known.most :] < known.limit
-    modes = np.flatnonzero(wrong)
-    return modes, np.log(state.frequencies[modes] / known.limit) / _COUNT_SCALE
+    beyond = np.log(state.frequencies / known.limit)
+    lacks = np.zeros(len(beyond))
+    lacks[: known.least] = np.maximum(beyond[: known.least] + _COUNT_CLEAR, 0.0)
+    lacks[known.most :] = np.minimum(beyond[known.most :] - _COUNT_CLEAR, 0.0)
+    modes = np.flatnonzero(lacks)
+    return modes, lacks[modes] / _COUNT_SCALE
 
 
 def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArray]:
@@ -219,21 +234,13 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
     return pairs, values
 
 
-def counterparts(modes: IntArray, state: ModalState, other: ModalState) -> IntArray:
-    """The other design's modes that move seats and skin as some of one's modes do, whatever their order there."""
-    motions = [np.hstack([of.seats.reshape(len(of.seats), -1), of.skin]) for of in (state, other)]
-    rows, columns = linear_sum_assignment(-mac(motions[0][modes], motions[1]))
-    assert (rows == np.arange(len(modes))).all()
-    return np.asarray(columns)
-
-
 def residuals(
     target: Target, misfit: Misfit, near: Neighbour, *, penalties: bool = False
 ) -> tuple[FloatArray, FloatArray]:
     """What a neighbour misses in units of the noise, and how that changes with the coordinates.
 
-    With ``penalties`` also how far modes lie on the wrong side of the limit of the number known: a search takes that
-    along, but it is no measurement.
+    With ``penalties`` also how far modes lie on the wrong side of the limit of the number known, and what the choice of
+    modes lacks to be clear: a search takes these along, but they are no measurement.
 
     Returns
     -------
@@ -247,8 +254,11 @@ def residuals(
     rows = [near.slopes[:, modes].T / target.noise[told, None]]
     if target.count is not None and penalties:
         lost, beyond = strays(target.count, near.state)
-        missed.append(beyond)
-        rows.append(near.slopes[:, lost].T / _COUNT_SCALE)
+        missed.append(target.firmness * beyond)
+        rows.append(target.firmness * near.slopes[:, lost].T / _COUNT_SCALE)
+    if misfit.lacking is not None and penalties:
+        missed.append(misfit.lacking.values)
+        rows.append(_lacking_slopes(misfit.lacking, near))
     if target.shapes is not None and np.isfinite(target.shape_noise) and near.state.measured is not None:
         scale = np.sqrt(target.shapes.shape[1]) / target.shape_noise
         model, turning = near.state.measured[modes], near.measured_slopes(modes)
@@ -263,3 +273,19 @@ def residuals(
         change = np.einsum("pmd,md->pm", turning, unit)[..., None] * own + along * turning
         rows.append(scale * change.reshape(len(change), -1).T)
     return np.concatenate(missed), np.concatenate(rows)
+
+
+def _lacking_slopes(lacks: Lacking, near: Neighbour) -> FloatArray:
+    """Slopes of what a choice of modes lacks, its thresholds following, shape (n, n_parameters)."""
+    weight = lacks.sign / lacks.scale
+    modes, place = np.unique(lacks.modes, return_inverse=True)
+    strengths = near.strength_slopes(modes)  # (3, n_parameters, n)
+    edge = lacks.measure < 0
+    slopes = np.where(edge, near.slopes[:, lacks.modes], strengths[lacks.measure, :, place].T).T * weight[:, None]
+    for measure in range(len(strengths)):
+        # The threshold is free: what all strengths of one measure do together costs nothing.
+        mine = lacks.measure == measure
+        if mine.any():
+            free = lacks.sign[mine] / np.linalg.norm(lacks.sign[mine])
+            slopes[mine] -= np.outer(free, free @ slopes[mine])
+    return np.asarray(slopes)

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
 from housing.errors import HousingError
-from housing.updating.misfit import GAP_SCALE, UNPAIRED, Misfit, Target, measure, residuals
+from housing.updating.misfit import UNPAIRED, Misfit, Target, measure, residuals
 from housing.updating.parameters import Parameter, coordinate_bounds
 from housing.updating.surrogate import ModalState, Surrogate
 
@@ -22,7 +22,10 @@ FloatArray = npt.NDArray[np.float64]
 _STEPS = 8  # of Gauss and Newton from each start
 _WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
-_PROBE = 1e-3  # step in z for the slope of the clearance
+_FAR_STEPS = 40  # of the same where they begin far away
+_DRAWN = 24  # from the prior for each other start that is solved
+_APART = 1.0  # least distance of two starts, in standard deviations of the prior
+_HEAT = 3  # solves of each start before the better half goes on
 
 
 class Design(Protocol):
@@ -165,39 +168,57 @@ def explore(
     count: int,
     progress: Callable[[str], None] = lambda message: None,
 ) -> Found[AnyDesign]:
-    """Search from the start and from the best of some designs drawn from the prior, and go on from the better end.
+    """Search from the start and from several other designs, and go on with those that come further.
 
     A choice of dominant modes that is clear on all measures parts the designs into basins, and a search from one start
-    ends in the nearest. Each of two searches has half the solves.
+    ends in the nearest. The other starts are drawn from the prior and brought down on the start's own surrogate; the
+    best of them that lie apart are solved. Each has a few solves, the better half of them goes on, and so forth.
 
     Parameters
     ----------
     count : int
-        Designs drawn; none of them where 0, and the search has all the solves.
+        Other starts; none where 0, and the search from the start has all the solves.
     """
     if count == 0:
         return search(solve, target, parameters, start, effort, progress)
-    half = replace(effort, solves=max(1, effort.solves // 2))
-    bounds, generator = coordinate_bounds(parameters), np.random.default_rng(effort.seed)
-    best, least, steps = start, np.inf, list[Step]()
-    for number in range(count):
-        point = np.clip(generator.normal(size=bounds.shape[1]), *bounds)
+    begun: list[Found[AnyDesign]] = [Found(start, measure(target, start.state, start.coordinates), ())]
+    for point in _others(start, target, parameters, count, effort.seed):
         try:
-            drawn = solve(point, start)
+            design = solve(point, start)
         except HousingError as error:
-            progress(f"design {number + 1} of {count} drawn from the prior is no sound housing ({error})")
+            progress(f"another start is no sound housing ({error})")
             continue
-        misfit = measure(target, drawn.state, point)
-        # The prior is where they come from: what they miss beside it tells which is worth going on from.
-        missed = misfit.value - float(point @ point)
-        progress(f"design {number + 1} of {count} drawn from the prior: misfit {misfit.value:.4g}")
-        if missed < least:
-            best, least = drawn, missed
+        begun.append(Found(design, measure(target, design.state, design.coordinates), ()))
+        progress(f"start {len(begun)}: misfit {begun[-1].misfit.value:.4g}")
+    steps = list[Step]()
+    while len(begun) > 1:
+        going = []
+        for number, found in enumerate(begun):
+            progress(f"search {number + 1} of {len(begun)}")
+            own = replace(effort, solves=_HEAT, trust=effort.trust if not found.steps else found.steps[-1].trust)
+            going.append(search(solve, target, parameters, found.design, own, progress))
+            steps += going[-1].steps
+        begun = sorted(going, key=lambda found: found.misfit.value)[: len(going) // 2]
+    left = replace(effort, solves=max(_HEAT, effort.solves - len(steps)))
+    found = search(solve, target, parameters, begun[0].design, left, progress)
+    return replace(found, steps=(*steps, *found.steps))
+
+
+def _others(
+    start: AnyDesign, target: Target, parameters: Sequence[Parameter], count: int, seed: int
+) -> list[FloatArray]:
+    """Coordinates of the best designs, apart from each other, that the start's surrogate leads to from the prior."""
+    bounds, generator = coordinate_bounds(parameters), np.random.default_rng(seed)
+    surrogate = start.surrogate()
     ends = []
-    for begin in [start] if best is start else [start, best]:
-        ends.append(search(solve, target, parameters, begin, half, progress))
-        steps += ends[-1].steps
-    return replace(min(ends, key=lambda found: found.misfit.value), steps=tuple(steps))
+    for _ in range(_DRAWN * count):
+        drawn = np.clip(generator.normal(size=bounds.shape[1]), *bounds)
+        ends.append(_descend(surrogate, target, drawn, bounds, _FAR_STEPS))
+    apart = list[FloatArray]()
+    for point, _ in sorted(ends, key=lambda end: end[1]):
+        if all(np.linalg.norm(point - other) > _APART for other in [start.coordinates, *apart]):
+            apart.append(point)
+    return apart[:count]
 
 
 def search_surrogate(
@@ -217,22 +238,20 @@ def search_surrogate(
     return best_point, best
 
 
-def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: FloatArray) -> tuple[FloatArray, float]:
+def _descend(
+    surrogate: Surrogate, target: Target, point: FloatArray, region: FloatArray, steps: int = _STEPS
+) -> tuple[FloatArray, float]:
     """Gauss and Newton's steps on the surrogate from a start, kept within the region."""
     low, high = region
     near = surrogate.at(point)
     misfit = measure(target, near.state, point)
-    for _ in range(_STEPS):
+    for _ in range(steps):
         if (misfit.pairs == UNPAIRED).all():
             break
         missed, slopes = residuals(target, misfit, near, penalties=True)
         rows, right = [slopes, np.eye(len(point))], [-missed, -point]
-        lacking = -misfit.clearance(target)
-        if lacking > 0.0:
-            rows.append(_clearance_slope(surrogate, target, point, misfit)[None] / GAP_SCALE)
-            right.append(np.array([lacking / GAP_SCALE]))
         room = np.stack([low - point, high - point]) + np.array([[-1e-12], [1e-12]])
-        step = lsq_linear(np.vstack(rows), np.concatenate(right), bounds=room).x
+        step = lsq_linear(np.vstack(rows), np.concatenate(right), bounds=room, method="bvls").x
         for part in _SHORTENED:
             trial = np.clip(point + part * step, low, high)
             at_trial = surrogate.at(trial)
@@ -246,16 +265,6 @@ def _descend(surrogate: Surrogate, target: Target, point: FloatArray, region: Fl
         if settled:
             break
     return point, misfit.value
-
-
-def _clearance_slope(surrogate: Surrogate, target: Target, point: FloatArray, misfit: Misfit) -> FloatArray:
-    slope = np.empty(len(point))
-    for number in range(len(point)):
-        beside = point.copy()
-        beside[number] += _PROBE
-        clearance = measure(target, surrogate.at(beside).state, beside).clearance(target)
-        slope[number] = (clearance - misfit.clearance(target)) / _PROBE
-    return np.clip(slope, -10.0, 10.0)  # beside an exchange of 8th and 9th the gap has a kink
 
 
 def _region(point: FloatArray, bounds: FloatArray, trust: float) -> FloatArray:

@@ -23,6 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _TOGETHER = 1e-9  # difference of ln λ below which two modes are one
+_STILL = 1e-300  # motion of seats and skin that stand still
 _RIGID = 1e-6  # part of the highest eigenvalue at hand below which a mode is rigid and left out
 
 
@@ -77,13 +78,31 @@ class Neighbour:
     mixture: FloatArray
 
     def measured_slopes(self, modes: IntArray) -> FloatArray:
-        """Rates of some modes' motions where shapes were measured, shape (n_parameters, n_modes, n_dofs) [1/√kg].
+        """Rates of some modes' motions where shapes were measured, shape (n_parameters, n_modes, n_dofs) [1/√kg]."""
+        assert self.surrogate.state.measured is not None
+        return np.asarray(self._turning(modes) @ self.surrogate.state.measured)
+
+    def strength_slopes(self, modes: IntArray) -> FloatArray:
+        """d ln strength of some modes by acceleration, velocity and absolute, shape (3, n_parameters, n_modes)."""
+        own, base, turning = self.state, self.surrogate.state, self._turning(modes)
+        seats, skin = own.seats[modes], own.skin[modes]
+        seats_rate = (turning @ base.seats.reshape(len(base.seats), -1)).reshape(len(turning), *seats.shape)
+        skin_rate = turning @ base.skin
+        along = (seats * seats_rate).sum(axis=3)  # radial motion times its rate, (n_parameters, n_modes, n_seats)
+        radial = np.maximum(np.linalg.norm(seats, axis=2), _STILL)
+        squares = along.sum(axis=2) / (radial**2).sum(axis=1)
+        squares += (skin * skin_rate).sum(axis=2) / np.maximum((skin**2).sum(axis=1), _STILL)
+        means = (along / radial).sum(axis=2) / radial.sum(axis=1)
+        means += (np.sign(skin) * skin_rate).sum(axis=2) / np.maximum(np.abs(skin).sum(axis=1), _STILL)
+        return np.array([squares, squares - self.slopes[:, modes], means])
+
+    def _turning(self, modes: IntArray) -> FloatArray:
+        """Rates of some modes as mixtures of the design's own, shape (n_parameters, n_modes, n_own).
 
         The eigenvectors of H turn by dC = C R, R_ab = (Cᵀ H_j C)_ab / (μ_b - μ_a) for the coordinate j, with
         μ = ln λ, and the mass adds -½ Φᵀ dM_j Φ C.
         """
         surrogate, mixture = self.surrogate, self.mixture
-        assert surrogate.state.measured is not None
         logarithms = 2.0 * np.log(self.state.frequencies)
         apart = logarithms[modes] - logarithms[:, None]
         # Modes of one frequency have no shapes of their own, and those of each do not turn into themselves.
@@ -91,7 +110,7 @@ class Neighbour:
         turned = mixture @ ((mixture.T @ (surrogate.rates @ mixture[:, modes])) * inverse)
         whole = turned - 0.5 * np.tensordot(self.step, surrogate.mass, axes=1) @ turned
         whole -= 0.5 * surrogate.mass @ mixture[:, modes]
-        return np.asarray(whole.transpose(0, 2, 1) @ surrogate.state.measured)
+        return np.asarray(whole.transpose(0, 2, 1))
 
 
 @dataclass(frozen=True)

@@ -129,7 +129,7 @@ def null_fits(
     fits = []
     for number in range(count):
         drawn = random_frequencies(target.frequencies, generator)
-        null = replace(target, frequencies=drawn, bias=None)
+        null = replace(target, frequencies=drawn)
         start = min(starts, key=lambda design: measure(null, design.state, design.coordinates).value)
         found = search(solve, null, parameters, start, replace(effort, seed=effort.seed + number))
         fits.append(_null_fit(drawn, found.misfit))

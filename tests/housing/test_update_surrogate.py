@@ -102,3 +102,17 @@ def test_rigid_modes_are_left_out() -> None:
     state = ModalState(np.array([0.0, 1e-4, 100.0, 200.0]), np.zeros((4, 1, 2)), np.ones((4, 3)))
     surrogate = Surrogate.about(np.zeros(1), state, ModalRates(np.zeros((1, 4, 4)), np.zeros((1, 4, 4))))
     assert surrogate.state.frequencies.tolist() == [100.0, 200.0]
+
+
+def test_slopes_of_strengths_are_those_of_differences() -> None:
+    surrogate = surrogate_about(np.zeros(P))
+    z = np.array([0.05, -0.08, 0.03])
+    modes = np.array([1, 3, 8])
+    slopes = surrogate.at(z).strength_slopes(modes)
+    for number, way in enumerate(np.eye(P)):
+        above, below = (surrogate.at(z + step * way).state.dominance for step in (1e-5, -1e-5))
+        measures = ((above.acceleration, below.acceleration), (above.velocity, below.velocity))
+        measures += ((above.absolute, below.absolute),)
+        for measure, (one, other) in enumerate(measures):
+            difference = np.log(one / other)[modes] / 2e-5
+            assert slopes[measure, number] == pytest.approx(difference, rel=1e-5, abs=1e-6)
