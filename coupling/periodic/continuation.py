@@ -113,7 +113,7 @@ class _Branch:
             if hold and abs(origin.speed_tangent) > _STEEP:
                 level = self.level
                 point = self._hold(ready, state, speed, origin, ds)
-                # Far from folds a shorter step is cheaper than one along the branch, whose every correction moves the speed.
+                # Far from folds a shorter step is cheaper than one whose every correction moves the speed.
                 if point is not None or self.level > level or abs(origin.speed_tangent) > _LEVEL:
                     return point
             tangent = (origin.state_tangent, origin.speed_tangent)

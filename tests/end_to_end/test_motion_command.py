@@ -51,7 +51,7 @@ def test_the_exact_march_says_why_it_does_not_apply(gearwhine: Any) -> None:
 
 
 def test_friction_over_time(gearwhine: Any, tmp_path: Path) -> None:
-    """The power's history sums up to what the march counted itself, step by step; the force turns at the pitch point."""
+    """The power's history sums up to what the march counted step by step; the force turns at the pitch point."""
     two = ("--set", "transient.revolutions=2", "--set", "transient.discard=0")
     rubbing = (*FEW, *two, "--set", "gear_pair.0.friction=0.06")
     outcome = gearwhine("run", "spur-pair", *rubbing, "--json", "-q", "-o", "out")
