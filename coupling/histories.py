@@ -11,6 +11,7 @@ from coupling.bearing_arrays import bearing_arrays
 from coupling.connector import LinearConnector, NonlinearConnector
 from coupling.machine import Machine, MountedGear
 from coupling.settings import TransientOutputs
+from coupling.sliding import friction_of
 from coupling.system import embed
 from coupling.turning import Turning
 
@@ -52,6 +53,9 @@ class Histories:
         Force along the line of action [N], drive flanks and back flanks apart.
     mesh_compression : dict of str to ndarray, shape (s,)
         [m].
+    mesh_friction : dict of str to ndarray, shape (s, 2)
+        Of every contact with friction: its force across the line of action [N], and the power that it takes from the
+        nominal rotation [W]; see :func:`coupling.sliding.friction_of`.
     """
 
     times: FloatArray
@@ -60,6 +64,7 @@ class Histories:
     tie_force: dict[str, FloatArray]
     mesh_force: dict[str, FloatArray]
     mesh_compression: dict[str, FloatArray]
+    mesh_friction: dict[str, FloatArray]
 
     @property
     def bearing_force(self) -> dict[str, FloatArray]:
@@ -156,6 +161,11 @@ def histories(machine: Machine, result: Recorded, turning: Turning | None = None
         tie_force=forces,
         mesh_force={name: result.force[:, i] for i, name in enumerate(contacts)},
         mesh_compression={name: result.compression[:, i] for i, name in enumerate(contacts)},
+        mesh_friction={
+            contact.name: friction_of(contact, turned, rates, result.compression[:, i], result.force[:, i])
+            for i, contact in enumerate(machine.system.contacts)
+            if contact.sliding is not None
+        },
     )
 
 

@@ -74,6 +74,51 @@ def sliding_flanks(
     return Sliding(friction, directions, nominal)
 
 
+def friction_of(
+    contact: ContactConnector, turned: FloatArray, rates: FloatArray, compression: FloatArray, force: FloatArray
+) -> FloatArray:
+    """What friction between the teeth of a contact does, sample by sample; zeros where there is none.
+
+    Parameters
+    ----------
+    contact : ContactConnector
+    turned, rates : ndarray, shape (s,)
+        Turned time [s], and speed as a part of the nominal one.
+    compression, force : ndarray, shape (s,)
+        Of the contact [m], [N].
+
+    Returns
+    -------
+    ndarray, shape (s, 2)
+        Force across the line of action, positive where it opposes the sliding of a pair that recedes from the pitch
+        point [N], and the power that it takes from the nominal rotation [W], μ F (W_a A + W_b B) by the speed.
+    """
+    if contact.sliding is None:
+        return np.zeros((len(force), 2))
+    from coupling.gears.friction_kernels import friction_history
+
+    law, nominal = contact.sliding.friction, contact.sliding.nominal
+    start, end, parts, table, _, _, entering, cells, depth = contact.contact.kernel_arguments
+    shares = friction_history(
+        contact.phase + contact.rate * turned,
+        np.ascontiguousarray(compression),
+        start,
+        end,
+        parts,
+        table,
+        entering,
+        cells,
+        depth,
+        law.pitch_point,
+        law.half_line,
+        law.path_end,
+    )
+    pushed = law.coefficient * force
+    # A pair slides one way before the pitch point and the other way behind it, so the sense of turning cancels here.
+    power = np.sign(nominal[1]) * pushed * (shares @ nominal) * rates
+    return np.column_stack([pushed * shares[:, 0], power])
+
+
 def held_at_speed(system: CoupledSystem) -> CoupledSystem:
     """The system with friction that does nothing to motions which nothing resists."""
     if all(contact.sliding is None for contact in system.contacts):

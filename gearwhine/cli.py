@@ -179,6 +179,13 @@ def system(
             help="Also the modes over speed: over the case's [sweep], else up to half again the speed of operation.",
         ),
     ] = False,
+    sidebands: Annotated[
+        int,
+        Parameter(
+            help="Of this many on either side of each mesh order, by the shafts' turning, the diagram has lines too.",
+            validator=Number(gte=0, lte=20),
+        ),
+    ] = 0,
     mesh_phase: Annotated[
         float | None,
         Parameter(help="About the contact with the first pair's teeth at this part of their period, not its mean."),
@@ -191,7 +198,15 @@ def system(
     from gearwhine.work import system_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return system_case(given, common.output, progress, mesh_phase=mesh_phase, over_speed=campbell, fresh=fresh)
+        return system_case(
+            given,
+            common.output,
+            progress,
+            mesh_phase=mesh_phase,
+            over_speed=campbell or sidebands > 0,
+            sidebands=sidebands,
+            fresh=fresh,
+        )
 
     _on_case(case, common, work, show_system)
 

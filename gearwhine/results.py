@@ -10,10 +10,11 @@ from gearwhine import __version__
 from gearwhine.case import Case, dump_case
 from gearwhine.gear_results import write_gears
 from gearwhine.rotor_results import Variables, write_rotors
-from gearwhine.signature_results import write_signature
+from gearwhine.signature_results import write_run_signature, write_signature
 from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.rotors import SolvedRotor
+from gearwhine.stages.run_up import RunSignature
 from gearwhine.stages.signature import SolvedSignature
 from gearwhine.stages.steady import SolvedSteady
 from gearwhine.stages.system import SolvedSystem
@@ -37,6 +38,7 @@ def write(
     transient: SolvedTransient | None,
     signature: SolvedSignature | None = None,
     steady: SolvedSteady | None = None,
+    run: RunSignature | None = None,
 ) -> None:
     """Write what was solved; the rest is left out."""
     variables: Variables = {}
@@ -53,6 +55,8 @@ def write(
         write_transient(transient, variables, coordinates)
     if transient is not None and signature is not None:
         write_signature(transient, signature, variables, coordinates)
+    if run is not None:
+        write_run_signature(run, variables, coordinates)
     if steady is not None:
         write_steady(steady, variables, coordinates)
     if case.operation is not None:

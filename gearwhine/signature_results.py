@@ -6,6 +6,7 @@ import numpy.typing as npt
 
 import coupling as room
 from gearwhine.rotor_results import Variables
+from gearwhine.stages.run_up import RunSignature
 from gearwhine.stages.signature import SolvedSignature
 from gearwhine.stages.transient import SolvedTransient
 from gearwhine.transient_results import MODAL_COORDINATE
@@ -31,6 +32,27 @@ def write_signature(
         _lines(found, variables, coordinates)
     if found.housing is not None:
         _housing(found.housing, transient.trusted_limit, variables, coordinates)
+
+
+def write_run_signature(found: RunSignature, variables: Variables, coordinates: Variables) -> None:
+    """Add the spectra along a run and the orders over its speed, of all signals."""
+    spectra, orders = list(found.spectra.values()), list(found.orders.values())
+    coordinates["run_signal"] = ("run_signal", list(found.spectra), {})
+    coordinates["run_speed"] = ("run_speed", found.speeds_rpm, _unit("rpm", "speed in the middle of each stretch"))
+    coordinates["run_frequency"] = ("run_frequency", spectra[0].frequencies, _unit("Hz", "frequency"))
+    coordinates["order_speed"] = (
+        "order_speed",
+        60.0 * orders[0].speeds,
+        _unit("rpm", "speed of the leading shaft over each window of whole turns"),
+    )
+    coordinates["order"] = ("order", orders[0].orders, _unit("1", "cycles each turn of the leading shaft"))
+    variables["run_unit"] = ("run_signal", list(found.units.values()), {"long_name": "unit of the signal's amplitudes"})
+    for name, dimensions, tables, what in (
+        ("run_spectrum", ("run_signal", "run_speed", "run_frequency"), spectra, "of stretches along the run"),
+        ("run_orders", ("run_signal", "order_speed", "order"), orders, "by order along the run"),
+    ):
+        amplitude = np.array([table.amplitude for table in tables], dtype=np.float32)
+        variables[name] = (dimensions, amplitude, {"long_name": f"peak amplitude {what}", "window": "hann"})
 
 
 def _coordinates(transient: SolvedTransient, variables: Variables, coordinates: Variables) -> None:

@@ -37,6 +37,14 @@ def _rotation(signals: Signals) -> dict[str, FloatArray]:
     return {name: motion[:, 2] for name, motion in signals.histories.gear_motion.items()}
 
 
+def _friction_force(signals: Signals) -> dict[str, FloatArray]:
+    return {name: friction[:, 0] for name, friction in signals.histories.mesh_friction.items()}
+
+
+def _friction_power(signals: Signals) -> dict[str, FloatArray]:
+    return {name: friction[:, 1] for name, friction in signals.histories.mesh_friction.items()}
+
+
 _QUANTITIES = (
     _Quantity(
         "sensor_acceleration",
@@ -65,6 +73,20 @@ _QUANTITIES = (
         lambda signals: signals.histories.mesh_compression,
         "m",
         "compression of the mesh along the line of action",
+    ),
+    _Quantity(
+        "friction_force",
+        ("friction_contact", "time"),
+        _friction_force,
+        "N",
+        "friction between the teeth, across the line of action",
+    ),
+    _Quantity(
+        "friction_power",
+        ("friction_contact", "time"),
+        _friction_power,
+        "W",
+        "power that friction between the teeth takes from the nominal rotation",
     ),
     _Quantity("gear_displacement", ("gear", "time", "axis"), _displacement, "m", "motion of the gear's centre"),
     _Quantity("gear_rotation", ("gear", "time"), _rotation, "rad", "rotation of the gear beside the steady one"),

@@ -40,6 +40,7 @@ from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import measured as measured_stage
 from gearwhine.stages import rotors as rotor_stage
+from gearwhine.stages import run_up as run_up_stage
 from gearwhine.stages import signature as signature_stage
 from gearwhine.stages import steady as steady_stage
 from gearwhine.stages import system as system_stage
@@ -97,7 +98,7 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
             comparison = comparison_stage.compare_housing(case, housing, progress)
             document["compare"] = comparison_documents.comparison_document(comparison, housing)
 
-    transient, system, signature = None, None, None
+    transient, system, signature, run = None, None, None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
         machine = machine_stage.build_machine(case, housing, pairs, progress)
@@ -124,6 +125,9 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
                 signature_stage.add_signature(document, transient, signature)
+            run = run_up_stage.solve_run_signature(case, transient)
+            if run is not None:
+                document["run_signature"] = run_up_stage.run_signature_document(run)
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
@@ -131,13 +135,15 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
     with staging(folder, replacing=True) as place:
         progress("writing results")
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
-        results.write(place / "results.nc", case, housing, rotors, analysed, system, transient, signature)
+        results.write(place / "results.nc", case, housing, rotors, analysed, system, transient, signature, run=run)
         if analysed:
             figures.draw_gear_pairs(place, analysed, progress)
         if system is not None:
             figures.draw_system(place, case, system)
         if transient is not None:
             figures.draw_transient(place, case, transient, signature, housing, comparison)
+        if run is not None:
+            figures.draw_run(place, case, run, housing)
         if housing is not None:
             results.write_shapes(place / "modes.vtu", housing)
             keep_modes(place, housing)
@@ -234,13 +240,14 @@ def system_case(
     *,
     mesh_phase: float | None = None,
     over_speed: bool = False,
+    sidebands: int = 0,
     fresh: bool = False,
 ) -> dict[str, Any]:
     """The coupled modes, over speed too where the case sweeps or it is asked for; with a folder, also as pictures."""
     housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
     solved = system_stage.solve_system(
-        case, machine, housing, progress, mesh_phase=mesh_phase, over_speed=over_speed or swept
+        case, machine, housing, progress, mesh_phase=mesh_phase, over_speed=over_speed or swept, sidebands=sidebands
     )
     document = system_document(case, solved, housing)
 

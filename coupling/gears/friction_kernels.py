@@ -108,3 +108,38 @@ def friction_shares(
         return 0.0, 0.0, 0.0, 0.0
     a, b = across / elastic, by_place / elastic
     return a, b, (across_slope - a * stiff) / elastic, (by_place_slope - b * stiff) / elastic
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def friction_history(
+    phase: FloatArray,
+    compression: FloatArray,
+    start: float,
+    end: float,
+    parts: float,
+    table: FloatArray,
+    entering: FloatArray,
+    faces: FloatArray,
+    face_depth: float,
+    pitch_point: float,
+    half_line: float,
+    path_end: float,
+) -> FloatArray:
+    """A and B of `friction_shares` at every sample of a history, shape (t, 2); phases and compressions (t,)."""
+    history = np.empty((phase.size, 2))
+    for i in range(phase.size):
+        history[i, 0], history[i, 1], _, _ = friction_shares(
+            phase[i],
+            compression[i],
+            start,
+            end,
+            parts,
+            table,
+            entering,
+            faces,
+            face_depth,
+            pitch_point,
+            half_line,
+            path_end,
+        )
+    return history

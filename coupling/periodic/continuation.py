@@ -37,6 +37,7 @@ _FEW = 7  # of them, after which the next step may be longer
 _CLOSED = 1e-10  # closure relative to the motion
 _DIFFERENCE = 1e-7  # of the speed range, for the derivative by speed: flanks may begin to graze within a hair of it
 _STEEP = 0.05  # part of a tangent along the speed below which a fold may be near
+_LEVEL = 0.2  # and beyond which none is
 _FALLING = 0.3  # by which a correction has to lower the closure for M to serve again
 _MOST_HELD = 14  # corrections, most of them without M
 _ASIDE = 0.3  # part of a step by which a correction may move it: beyond, it is on its way to another branch
@@ -44,7 +45,8 @@ _COARSER = 2  # levels below that of the first motion, which proves its monodrom
 _FARTHEST = 0.3  # part of the motion by which a step may change it ...
 _STILL = 0.1  # ... motions below this part of the first one count as that
 _SHARPEST_TURN = 0.9  # least cosine between tangents of neighbouring points where a fold may be near ...
-_SHARPEST_HELD = 0.8  # ... and elsewhere: the correction itself says whether the prediction was good
+_SHARPEST_HELD = 0.6  # ... and elsewhere: the correction itself says whether the prediction was good
+_TURNING = 0.8  # cosine below which the next step is shorter by as much
 _SHORTEST = 1e-3  # of the largest step, below which the branch is lost
 _LOCATIONS = 30  # steps in the location of a fold or a loss of stability
 _LOCATED = 1e-5  # of a step: the speed of a fold errs by the square
@@ -111,7 +113,8 @@ class _Branch:
             if hold and abs(origin.speed_tangent) > _STEEP:
                 level = self.level
                 point = self._hold(ready, state, speed, origin, ds)
-                if point is not None or self.level > level:
+                # Far from folds a shorter step is cheaper than one whose every correction moves the speed.
+                if point is not None or self.level > level or abs(origin.speed_tangent) > _LEVEL:
                     return point
             tangent = (origin.state_tangent, origin.speed_tangent)
             return self._correct(ready, state, speed, *tangent, origin.state, origin.speed, ds)
@@ -321,6 +324,8 @@ def response_curve(
             break
         if there.response.newton_steps <= _FEW and turn > (0.97 if near_fold else 0.9):
             ds *= 1.5
+        elif turn < _TURNING:
+            ds *= _TURNING
         ds = min(ds, _longest(branch, here, largest))
     return ResponseCurve(
         speeds=np.array([point.speed for point in passed]),

@@ -24,7 +24,7 @@ from .measured_shapes import ShapePair, draw_measured_shapes
 from .mesh_stiffness import draw_mesh_stiffness
 from .mode_shapes import draw_lateral_modes, draw_torsional_modes
 from .rotors import draw_rotors
-from .run_up import draw_order_slices, draw_run_up_waterfall
+from .run_up import draw_order_slices, draw_run, draw_run_up_waterfall
 from .shaft import draw_shaft
 from .static_deflection import draw_static_deflection
 from .steady import draw_response_curve, draw_steady
@@ -64,6 +64,7 @@ __all__ = [
     "draw_order_slices",
     "draw_response_curve",
     "draw_rotors",
+    "draw_run",
     "draw_run_up_waterfall",
     "draw_shaft",
     "draw_static_deflection",

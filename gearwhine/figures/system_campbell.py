@@ -36,6 +36,7 @@ KIND_COLORS = {
     "pedestal": SERIES[7],
     "residual": "#c9ced3",
 }
+_PALE_GREY = "#c3c9ce"
 _HERTZ = 2.0 * np.pi
 _HEIGHT = 105.0  # of the panel [mm]
 _LARGEST = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
@@ -57,10 +58,13 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
         "lines: shaft orders (dotted), mesh orders (dashed); ● where a mesh order meets a mode, larger the more of its "
         "strain energy is in the teeth; ○ where a shaft order meets a bending mode"
     )
+    if any(line.kind == "sideband" for line in campbell.lines):
+        note = note.replace("mesh orders (dashed)", "mesh orders (dashed), their sidebands (pale)")
     speeds = RPM * np.abs(campbell.speeds)
     top, low, high = campbell.limit / _HERTZ, float(speeds[0]), float(speeds[-1])
     # Orders that leave the panel at its top are named above it, the others at its right end.
-    leaving = [(line, 60.0 * top / line.order) for line in campbell.lines if low < 60.0 * top / line.order < high]
+    named = [line for line in campbell.lines if line.kind != "sideband"]
+    leaving = [(line, 60.0 * top / line.order) for line in named if low < 60.0 * top / line.order < high]
     labels = [Label(line.name, speed, top, GREY) for line, speed in leaving]
     row = arrange(labels, [(speed - low) / (high - low) * PANEL_WIDTH for _, speed in leaving], PANEL_WIDTH)
     figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + FOOT, title, note)
@@ -101,6 +105,9 @@ def _draw_branches(axes: Axes, speeds: FloatArray, campbell: SystemCampbell) -> 
 def _draw_line(axes: Axes, line: ExcitationLine, last: float, top: float) -> None:
     """An order, named at its end where that is at the right of the panel."""
     slope = line.order / 60.0
+    if line.kind == "sideband":
+        axes.plot([0.0, last], [0.0, slope * last], color=_PALE_GREY, lw=0.5, zorder=1.5, label=line.name)
+        return
     style = ":" if line.kind == "shaft" else (0, (5, 3))
     axes.plot([0.0, last], [0.0, slope * last], color=GREY, lw=0.8, ls=style, zorder=2, label=line.name)
     if slope * last < top:

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from gearwhine.case import Case, mesh_frequencies
 from gearwhine.figures.contributions import draw_contributions
+from gearwhine.figures.friction import draw_friction
 from gearwhine.figures.modal_coordinates import draw_modal_coordinates
 from gearwhine.figures.orbits import draw_orbits
 from gearwhine.figures.sensor_spectra import draw_sensor_spectra
@@ -50,6 +51,10 @@ def draw_transient(
         files.append(save(parts, folder / "contributions.png"))
     if solved.force_spectra:
         files.append(save(_mesh_force(case, solved, meshes), folder / "mesh-force.png"))
+    carrying = [contact for contact in solved.machine.system.contacts if contact.name in solved.histories.mesh_friction]
+    if rates := {contact.name: abs(contact.rate) for contact in carrying if contact.drives and contact.rate}:
+        heading = f"{case.title}: friction between the teeth at {_speed(case)}"
+        files.append(save(draw_friction(heading, solved.histories, rates), folder / "friction.png"))
     if solved.histories.gear_motion:
         motions = solved.histories.gear_motion
         if solved.record.sampling.is_long:

@@ -89,7 +89,16 @@ _MESHES = (
     Column("mean_force_n", "mean force [N]", ".0f"),
     Column("peak_force_n", "largest force [N]", ".0f"),
     Column("contact_loss_fraction", "apart [%]", ".2f", 100.0),
+    Column("friction.mean_power_w", "friction takes [W]", ".3g"),
     Column("rms_compression_m", "a.c. compression [µm rms]", ".3g", 1e6),
+)
+_ORDERS = (
+    Column("signal", "signal"),
+    Column("name", "order"),
+    Column("highest_amplitude", "highest [peak]", ".3g"),
+    Column("unit", "unit"),
+    Column("at_rpm", "at [rpm]", ".0f"),
+    Column("frequency_hz", "that is [Hz]", ".0f"),
 )
 _LINES = (
     Column("sensor", "sensor"),
@@ -237,7 +246,18 @@ def _transient(document: Document) -> Section:
     tables = _table(_MESHES, document.get("gear_pairs", ()), "Gear meshes")
     tables += _table(_LINES, [*_lines(document, "peaks")], "Highest lines of each sensor")
     tables += _table(_BEARINGS, document.get("bearings", ()), "Bearings")
-    pictures = ("spectrum", "contributions", "mesh-force", "orbits", "modal-coordinates", "waterfall", "sweep")
+    tables += _table(_ORDERS, document.get("run_signature", {}).get("orders", ()), "Orders along the run")
+    pictures = (
+        "spectrum",
+        "contributions",
+        "mesh-force",
+        "orbits",
+        "modal-coordinates",
+        "friction",
+        "run-up",
+        "waterfall",
+        "sweep",
+    )
     return Section("Motion", tuple(sentences), tables, pictures)
 
 

@@ -25,6 +25,8 @@ def show_run(document: dict[str, Any]) -> None:
             f"Gear mesh {pair['driver']} → {pair['driven']}: mean force {pair['mean_force_n']:.0f} N, "
             f"peak {pair['peak_force_n']:.0f} N, apart {percent(pair['contact_loss_fraction'])} of the time"
         )
+        if pair.get("friction"):
+            console.print(f"  friction between its teeth takes {pair['friction']['mean_power_w']:.3g} W")
     if document.get("sensors"):
         _sensors(console, document)
     if "steps" in document:

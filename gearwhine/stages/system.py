@@ -66,6 +66,7 @@ def solve_system(
     *,
     mesh_phase: float | None = None,
     over_speed: bool = False,
+    sidebands: int = 0,
 ) -> SolvedSystem:
     """Modes, stability and frequency responses at the speed of operation; where asked, the modes over speed.
 
@@ -79,6 +80,8 @@ def solve_system(
         At which the teeth of the first pair stand, 0 to 1; the mean contact where not given.
     over_speed
         Whether the Campbell diagram and the response to unbalance are wanted.
+    sidebands
+        How many the diagram shows on either side of each mesh order, at the distance of either gear's shaft order.
 
     Raises
     ------
@@ -93,7 +96,7 @@ def solve_system(
     modes = room.coupled_modes(system, contact)
     responses, error = _mesh_responses(case, machine, housing, modes, contact)
     solved = SolvedSystem(machine, mesh_phase, modes, room.stability(modes), responses, error)
-    return _over_speed(case, solved, housing, progress) if over_speed else solved
+    return _over_speed(case, solved, housing, progress, sidebands) if over_speed else solved
 
 
 def diagram_speeds(case: Case) -> tuple[float, ...]:
@@ -174,10 +177,12 @@ def _frequency_limit(case: Case, housing: SolvedHousing | None) -> float:
     return _HARMONICS * max(mesh_frequencies(case)) if max(mesh_frequencies(case)) > 0.0 else 1000.0
 
 
-def _over_speed(case: Case, solved: SolvedSystem, housing: SolvedHousing | None, progress: Progress) -> SolvedSystem:
+def _over_speed(
+    case: Case, solved: SolvedSystem, housing: SolvedHousing | None, progress: Progress, sidebands: int
+) -> SolvedSystem:
     machine = solved.machine
     speeds = diagram_speeds(case)
-    lines = room.excitation_lines(machine)
+    lines = room.excitation_lines(machine, sidebands=sidebands)
     if housing is not None:
         limit = housing.modes.certificate.limit
     else:

@@ -213,6 +213,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
                 "mean_force_n": float(result.mean_force[number]),
                 "peak_force_n": float(result.peak_force[number]),
                 "contact_loss_fraction": float(result.contact_loss[number]),
+                "friction": _friction_document(solved, number),
                 "back_flank_peak_force_n": _back_flank_peak(solved, number, drives),
                 "force_peaks": [
                     {"frequency_hz": peak.frequency, "amplitude_n": peak.amplitude} for peak in force_peaks(spectrum)
@@ -291,6 +292,18 @@ def sensor_peaks(solved: SolvedTransient, sensor: str) -> list[room.Peak]:
 def force_peaks(spectrum: room.Spectrum) -> list[room.Peak]:
     """The lines of a gear-mesh force that are told of, highest first."""
     return room.spectrum_peaks(spectrum, count=8)
+
+
+def _friction_document(solved: SolvedTransient, number: int) -> dict[str, float] | None:
+    """Friction of a mesh over the record; None where it has none."""
+    found = solved.histories.mesh_friction.get(solved.machine.system.contacts[number].name)
+    if found is None:
+        return None
+    return {
+        "mean_power_w": float(found[:, 1].mean()),
+        "peak_power_w": float(found[:, 1].max()),
+        "peak_force_n": float(np.abs(found[:, 0]).max()),
+    }
 
 
 def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float | None:

@@ -1,0 +1,140 @@
+"""The signature of a run-up or a run-down: spectra along the run, and orders over the speed."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling as room
+from coupling import signature
+from gearwhine.case import Case, speed_ratios
+from gearwhine.stages.transient import SolvedTransient
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_SLOWEST = 0.1  # part of the highest speed below which nothing is looked at: a turn would take samples without end
+_ROWS = 28  # of the waterfall; its stretches overlap by half
+_WINDOWS = 60  # of the order map, about, each overlapping the next by half
+_HARMONICS = 3  # of each mesh that are followed
+_ABOVE = 1.25  # orders up to this over the highest of interest are kept
+_BEYOND_LIMIT = 2.5  # samples for each cycle of the highest frequency at the lowest speed
+
+
+@dataclass(frozen=True)
+class RunSignature:
+    """What the signals of a run show, by their names.
+
+    Attributes
+    ----------
+    units : dict of str to str
+    spectra : dict of str to coupling.signature.Spectrogram
+        Of stretches along the run, up to the trusted limit.
+    speeds_rpm : ndarray, shape (t,)
+        Of the leading shaft in the middle of each stretch.
+    orders : dict of str to coupling.signature.OrderMap
+        By cycles each turn of the leading shaft.
+    named : dict of str to float
+        Orders that have names: shafts and harmonics of the meshes.
+    """
+
+    units: dict[str, str]
+    spectra: dict[str, signature.Spectrogram]
+    speeds_rpm: FloatArray
+    orders: dict[str, signature.OrderMap]
+    named: dict[str, float]
+
+
+def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | None:
+    """Spectra and orders of sensors and mesh forces along a run, as far as it is held in memory.
+
+    None at steady speed, and where the run has too few turns to tell orders apart.
+    """
+    turning, times = solved.turning, solved.histories.times
+    if turning is None or case.operation is None or not case.gear_pair:
+        return None
+    span = _turning_span(turning.at(times)[1])
+    times = times[span]
+    if len(times) < 2 * _ROWS:
+        return None
+    interval = float(times[1] - times[0])
+    turns_per_second = abs(case.operation.speed) / _HERTZ
+    rates = turning.at(times)[1]
+    named = _named_orders(case, solved)
+    # Windows hold whole turns of every shaft, so that every order is a line of theirs.
+    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    total = math.floor(turns_per_second * float(np.diff(turning.at(times[[0, -1]])[0])[0]) - 1.0)
+    turns = whole * max(1, 2 * total // (_WINDOWS * whole), math.ceil(2 / whole))
+    if total < 2 * turns:
+        return None
+    slowest = turns_per_second * float(rates.min())
+    per_turn = math.ceil(min(_BEYOND_LIMIT * solved.trusted_limit / slowest, 1.0 / (slowest * interval)))
+    per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * max(named.values())))
+    length = 2 * len(times) // (_ROWS + 1)
+    units, spectra, orders = {}, {}, {}
+    signals = {name: (signal, "m/s²") for name, signal in solved.histories.sensor_acceleration.items()}
+    for mesh in solved.machine.system.contacts[: len(solved.machine.meshes)]:
+        signals[mesh.name] = solved.histories.mesh_force[mesh.name], "N"
+    for name, (signal, unit) in signals.items():
+        found = signature.spectrogram(signal[span], interval, length, length // 2, start=float(times[0]))
+        turned = signature.order_resampled(signal[span], times, turning, turns_per_second, per_turn=per_turn)
+        units[name], spectra[name] = unit, _up_to(found, solved.trusted_limit)
+        mapped = signature.order_map(turned, turns=turns, step=max(turns // 2, 1))
+        orders[name] = _orders_up_to(mapped, _ABOVE * max(named.values()))
+    middles = next(iter(spectra.values())).times
+    return RunSignature(units, spectra, 60.0 * turns_per_second * turning.at(middles)[1], orders, named)
+
+
+def run_signature_document(found: RunSignature) -> dict[str, Any]:
+    """The orders of a run as the command's JSON: where each of them is highest."""
+    rows = []
+    for name, orders in found.orders.items():
+        for what, order in found.named.items():
+            along = orders.order_slice(order)
+            highest = int(np.argmax(along))
+            rows.append(
+                {
+                    "signal": name,
+                    "unit": found.units[name],
+                    "name": what,
+                    "order": order,
+                    "highest_amplitude": float(along[highest]),
+                    "at_rpm": float(60.0 * orders.speeds[highest]),
+                    "frequency_hz": float(order * orders.speeds[highest]),
+                }
+            )
+    return {
+        "from_rpm": float(found.speeds_rpm[0]),
+        "to_rpm": float(found.speeds_rpm[-1]),
+        "stretches": len(found.speeds_rpm),
+        "orders": rows,
+    }
+
+
+def _turning_span(rates: FloatArray) -> slice:
+    """The longest stretch of samples in which the machine turns fast enough."""
+    fast = np.concatenate([[0], (rates >= _SLOWEST * rates.max()).astype(np.int64), [0]])
+    changes = np.diff(fast)
+    begins, ends = np.flatnonzero(changes == 1), np.flatnonzero(changes == -1)
+    longest = int(np.argmax(ends - begins))
+    return slice(int(begins[longest]), int(ends[longest]))
+
+
+def _named_orders(case: Case, solved: SolvedTransient) -> dict[str, float]:
+    """Shafts and harmonics of the meshes, by the turns of the leading shaft."""
+    lines = room.excitation_lines(solved.machine, shaft_orders=(1.0,), mesh_harmonics=tuple(range(1, _HARMONICS + 1)))
+    # Exact fractions: the machine's speeds are rounded.
+    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    return {line.name: round(line.order * whole) / whole for line in lines}
+
+
+def _up_to(found: signature.Spectrogram, limit: float) -> signature.Spectrogram:
+    kept = found.frequencies <= limit * (1.0 + 1e-9)
+    return signature.Spectrogram(found.times, found.frequencies[kept], found.amplitude[:, kept], found.window)
+
+
+def _orders_up_to(found: signature.OrderMap, limit: float) -> signature.OrderMap:
+    kept = found.orders <= limit
+    return signature.OrderMap(found.times, found.speeds, found.orders[kept], found.amplitude[:, kept], found.window)

@@ -1,0 +1,120 @@
+"""The machine in motion by the command: methods of marching, friction's history, signatures of a run-up."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+FEW = ("--set", "rotor.input.modes=2", "--set", "rotor.output.modes=2")
+SHORT = (*FEW, "--set", "transient.revolutions=3", "--set", "transient.discard=1")
+RUN = (
+    *("--set", "transient.run={ from = '1500 rpm', to = '4500 rpm', time = '0.6 s' }"),
+    *("--set", "transient.revolutions=", "--set", "transient.discard=0"),
+)
+
+
+@pytest.mark.parametrize(("asked", "marched"), [("newmark", "newmark"), ("exact", "exact"), ("auto", "exact")])
+def test_the_method_that_the_case_asks_for(answer: Any, asked: str, marched: str) -> None:
+    """By either method the same machine: forces whose mean is the torque over the base radius."""
+    method = ("--set", f"transient.method='{asked}'")
+    document = answer("run", "spur-pair", *SHORT, *method, "--json", "-q").document
+    assert document["method"] == marched
+    assert document["energy_error"] < 1e-3
+    expected = 71.77 / (0.5 * 28 * 3.175e-3 * np.cos(np.radians(20.0)))
+    assert document["gear_pairs"][0]["mean_force_n"] == pytest.approx(expected, rel=2e-3)
+    assert document["gear_pairs"][0]["contact_loss_fraction"] == 0.0
+    # Newmark's steps resolve the modes, elements only what the teeth do.
+    assert (document["steps"] < 5000) == (marched == "exact")
+
+
+def test_methods_agree(answer: Any) -> None:
+    """Lines of the mesh force by the exact march and by Newmark's: as far as the latter's tolerance goes."""
+    found = {}
+    for method in ("newmark", "exact"):
+        document = answer("run", "spur-pair", *SHORT, "--set", f"transient.method='{method}'", "--json", "-q").document
+        found[method] = document["gear_pairs"][0]
+    assert found["exact"]["peak_force_n"] == pytest.approx(found["newmark"]["peak_force_n"], rel=5e-3)
+    lines = [[line["amplitude_n"] for line in pair["force_peaks"][:4]] for pair in found.values()]
+    assert lines[1] == pytest.approx(lines[0], rel=2e-2)
+
+
+def test_the_exact_march_says_why_it_does_not_apply(gearwhine: Any) -> None:
+    exact = ("--set", "transient.method='exact'")
+    outcome = gearwhine("run", "spur-pair", *SHORT, *exact, "--set", "gear_pair.0.friction=0.05", "-q")
+    assert outcome.code == 1
+    assert "friction between the teeth" in outcome.err
+    outcome = gearwhine("run", "spur-pair", *FEW, *exact, *RUN, "-q")
+    assert outcome.code == 1
+    assert "the speed varies" in outcome.err
+
+
+def test_friction_over_time(gearwhine: Any, tmp_path: Path) -> None:
+    """The power's history sums up to what the march counted step by step; the force turns at the pitch point."""
+    two = ("--set", "transient.revolutions=2", "--set", "transient.discard=0")
+    rubbing = (*FEW, *two, "--set", "gear_pair.0.friction=0.06")
+    outcome = gearwhine("run", "spur-pair", *rubbing, "--json", "-q", "-o", "out")
+    assert outcome.code == 0, outcome.err
+    document = outcome.document
+    friction = document["gear_pairs"][0]["friction"]
+    seconds = 2 * 60.0 / 5500.0
+    assert friction["mean_power_w"] * seconds == pytest.approx(document["energy_j"]["friction"], rel=5e-3)
+    assert "friction.png" in document["files"]
+    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as data:
+        force, power = data["friction_force"].values[0], data["friction_power"].values[0]
+        pressed = data["mesh_force"].values[0]
+        assert data["friction_power"].attrs["units"] == "W"
+    assert np.all(power >= -1e-6 * power.max())
+    assert force.min() < 0.0 < force.max()
+    assert np.all(np.abs(force) <= 0.06 * pressed * (1.0 + 1e-5))
+    # One pair alone carries the force, on one side of the pitch point: all of mu F.
+    assert np.abs(force / pressed).max() == pytest.approx(0.06, rel=1e-5)
+
+
+def test_a_run_up_shows_its_orders(gearwhine: Any, tmp_path: Path) -> None:
+    """The mesh order over speed, against a projection of the mesh force on the turned angle, window by window."""
+    loose = ("--set", "transient.tolerance=1e-2")
+    outcome = gearwhine("run", "spur-pair", *FEW, *RUN, *loose, "--json", "-q", "-o", "out")
+    assert outcome.code == 0, outcome.err
+    document = outcome.document
+    rows = {(row["signal"], row["name"]): row for row in document["run_signature"]["orders"]}
+    mesh = next(row for (_, name), row in rows.items() if name.startswith("1× pinion"))
+    assert mesh["order"] == 28.0
+    assert mesh["frequency_hz"] == pytest.approx(28.0 * mesh["at_rpm"] / 60.0)
+    files = set(document["files"])
+    assert {"run-up-waterfall-pinion-wheel.png", "run-up-orders-pinion-wheel.png"} <= files
+    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as data:
+        times, force = data["time"].values, data["mesh_force"].values[0].astype(np.float64)
+        signal = list(data["run_signal"].values).index(mesh["signal"])
+        speeds, orders = data["order_speed"].values, data["order"].values
+        map_of = data["run_orders"].values[signal]
+    along = map_of[:, np.argmin(np.abs(orders - 28.0))]
+    # Speed rises evenly: n turns are done at the time that solves n = (a t + b t²/2) / 2π.
+    begin, rise = 25.0, 50.0 / 0.6
+    angle = begin * times + 0.5 * rise * times**2
+    for number in (len(along) // 3, len(along) - 2):
+        at = (speeds[number] / 60.0 - begin) / rise
+        middle = begin * at + 0.5 * rise * at**2
+        found = []
+        for width in (0.5, 1.0, 1.5):
+            span = np.abs(angle - middle) < width
+            hann = 0.5 + 0.5 * np.cos(np.pi * (angle[span] - middle) / width)
+            share = hann * np.gradient(angle[span])
+            found.append(
+                2.0 * abs(np.sum(share * force[span] * np.exp(-2j * np.pi * 28.0 * angle[span]))) / share.sum()
+            )
+        assert min(abs(one / along[number] - 1.0) for one in found) < 0.1
+    report = gearwhine("report", "spur-pair", "-o", "out", "-q")
+    assert report.code == 0
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "Orders along the run" in page
+    assert "run up waterfall" in page
+
+
+def test_sidebands_in_the_diagram_over_speed(answer: Any) -> None:
+    document = answer("system", "spur-pair", *FEW, "--campbell", "--sidebands", "1", "--json", "-q").document
+    kinds = {(line["kind"], line["order"]) for line in document["campbell"]["lines"]}
+    assert {("mesh", 28.0), ("sideband", 27.0), ("sideband", 29.0)} <= {
+        (kind, round(order, 9)) for kind, order in kinds
+    }
