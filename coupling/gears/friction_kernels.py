@@ -16,8 +16,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import uncounted
 from coupling.gears.kernels import face_force
+from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 

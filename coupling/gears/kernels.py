@@ -17,7 +17,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import counted, inner, uncounted
+from rotors.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 TangentForce = tuple[float, float, float, float, float, int]
