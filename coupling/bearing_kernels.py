@@ -16,8 +16,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import counted, inner, uncounted
 from coupling.kernel_arrays import BALLS, ROLLERS, Bearings
+from rotors.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 

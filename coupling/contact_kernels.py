@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.bearing_kernels import take_bearings
-from coupling.compiled import inner
 from coupling.gears.friction_kernels import friction_shares
 from coupling.gears.kernels import tooth_force
 from coupling.kernel_arrays import Bearings, Contacts
 from coupling.small_systems import solve_in_place
+from rotors.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -24,7 +24,6 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import inner, uncounted
 from coupling.contact_kernels import (
     DAMPING,
     ENERGY,
@@ -48,6 +47,7 @@ from coupling.kernel_arrays import (
     StepMatrices,
 )
 from coupling.step_kernels import add_gyroscopic, apply_base, project
+from rotors.compiled import inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import uncounted
+from rotors.compiled import uncounted
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
 from coupling.periodic.collocation import GAUSS, MONOMIALS, ORDER, PLACES

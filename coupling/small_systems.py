@@ -6,7 +6,7 @@ Importing this module imports numba.
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import inner
+from rotors.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -15,9 +15,9 @@ B = S₀⁻¹, by Sherman, Morrison and Woodbury,
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import counted, inner
 from coupling.kernel_arrays import Contacts, Dynamics, StepMatrices
 from coupling.small_systems import solve_in_place
+from rotors.compiled import counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

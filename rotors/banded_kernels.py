@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from .compiled import counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -17,10 +18,12 @@ IntArray = npt.NDArray[np.intp]
 TINY = 1e-18
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def fill(rows: IntArray, columns: IntArray, lower: int, values: ComplexArray, matrix: ComplexArray) -> float:
     """Put the entries into a band; returns the largest modulus."""
-    matrix[:] = 0.0
+    for row in range(matrix.shape[0]):
+        for column in range(matrix.shape[1]):
+            matrix[row, column] = 0.0
     largest = 0.0
     for entry in range(rows.size):
         row, value = rows[entry], values[entry]
@@ -29,7 +32,7 @@ def fill(rows: IntArray, columns: IntArray, lower: int, values: ComplexArray, ma
     return math.sqrt(largest)
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def factor(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, least: float
 ) -> complex:
@@ -41,7 +44,8 @@ def factor(
     order = matrix.shape[0]
     logarithm = 0.0
     phase = 1.0 + 0.0j
-    ends[:] = envelope[:, 1]
+    for k in range(order):
+        ends[k] = envelope[k, 1]
     for k in range(order):
         chosen = k
         head = matrix[k, lower]
@@ -85,7 +89,7 @@ def factor(
     return complex(logarithm, math.atan2(phase.imag, phase.real))
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def forward_back(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, side: ComplexArray
 ) -> None:
@@ -106,7 +110,7 @@ def forward_back(
         side[k] = total / matrix[k, lower]
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def adjoint(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, side: ComplexArray
 ) -> None:
@@ -127,7 +131,14 @@ def adjoint(
             side[chosen] = total
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
+def put(given: ComplexArray, out: ComplexArray) -> None:
+    """Copy a vector; as a loop, since ``out[:] = given`` brings numba's message for lengths that differ with it."""
+    for i in range(out.size):
+        out[i] = given[i]
+
+
+@inner(error_model="python")
 def orthonormalise(vectors: ComplexArray) -> None:
     """Gram and Schmidt, twice, on the rows in place."""
     for k in range(vectors.shape[0]):
@@ -150,7 +161,7 @@ def orthonormalise(vectors: ComplexArray) -> None:
                 vectors[k, i] /= norm
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def solve(
     rows: IntArray,
     columns: IntArray,
@@ -171,7 +182,7 @@ def solve(
             forward_back(matrix, lower, envelope, pivots, ends, sides[b, k])
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def null_vectors(
     rows: IntArray,
     columns: IntArray,
@@ -192,20 +203,20 @@ def null_vectors(
         factor(matrix, lower, envelope, pivots, ends, TINY * largest)
         for _ in range(rounds):
             for k in range(right.shape[1]):
-                left[b, k] = right[b, k]
+                put(right[b, k], left[b, k])
                 adjoint(matrix, lower, envelope, pivots, ends, left[b, k])
             orthonormalise(left[b])
             for k in range(right.shape[1]):
-                right[b, k] = left[b, k]
+                put(left[b, k], right[b, k])
                 forward_back(matrix, lower, envelope, pivots, ends, right[b, k])
             orthonormalise(right[b])
         for k in range(right.shape[1]):
-            left[b, k] = right[b, k]
+            put(right[b, k], left[b, k])
             adjoint(matrix, lower, envelope, pivots, ends, left[b, k])
         orthonormalise(left[b])
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def forms(
     rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexArray, right: ComplexArray
 ) -> ComplexArray:

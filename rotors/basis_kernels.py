@@ -7,12 +7,13 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from .compiled import inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _product(motion: FloatArray, one: int, other: int, mass: FloatArray) -> float:
     total = 0.0
     for i in range(mass.size):
@@ -20,7 +21,7 @@ def _product(motion: FloatArray, one: int, other: int, mass: FloatArray) -> floa
     return total
 
 
-@njit(cache=True, nogil=True)
+@uncounted(error_model="python")
 def mass_orthonormal(motion: FloatArray, strain: FloatArray, shapes: FloatArray, mass: FloatArray, least: float) -> int:
     """Make rows of ``motion`` (k, g) orthonormal under the weights ``mass`` (g,) in place, and the others with them.
 

@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from .compiled import counted, inner
 from .piece_kernels import table_transfers
 
 FloatArray = npt.NDArray[np.float64]
@@ -17,7 +17,7 @@ IntArray = npt.NDArray[np.intp]
 State = tuple[float, float, float, float]
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _combined(c: float, one: State, s: float, other: State) -> State:
     return (
         c * one[0] + s * other[0],
@@ -27,12 +27,12 @@ def _combined(c: float, one: State, s: float, other: State) -> State:
     )
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _inner(one: State, other: State) -> float:
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2] + one[3] * other[3]
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _orthonormal(first: State, second: State) -> tuple[State, State]:
     """The same span and orientation, by Gram and Schmidt."""
     first = _combined(1.0 / math.sqrt(_inner(first, first)), first, 0.0, first)
@@ -40,7 +40,7 @@ def _orthonormal(first: State, second: State) -> tuple[State, State]:
     return first, _combined(1.0 / math.sqrt(_inner(second, second)), second, 0.0, second)
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _moved(transfer: FloatArray, y: State) -> State:
     return (
         transfer[0, 0] * y[0] + transfer[0, 1] * y[1] + transfer[0, 2] * y[2] + transfer[0, 3] * y[3],
@@ -50,7 +50,7 @@ def _moved(transfer: FloatArray, y: State) -> State:
     )
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _with_term(first: State, second: State, row: int, term: float) -> tuple[State, State, float]:
     """States after a node's spring or inertia on displacement ``row``, and the first's share of it."""
     size = math.hypot(first[row], second[row])
@@ -71,7 +71,7 @@ def _with_term(first: State, second: State, row: int, term: float) -> tuple[Stat
     return first, second, size
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _beam_count(
     squared: float, transfers: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
 ) -> tuple[int, float]:
@@ -118,7 +118,7 @@ def _beam_count(
     return total, closing * scale
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _rod_count(
     squared: float, transfers: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
 ) -> tuple[int, float]:
@@ -147,7 +147,7 @@ def _rod_count(
     return total, (-1.0 if total % 2 else 1.0) * abs(f) / math.hypot(u, f) * scale
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python", no_cpython_wrapper=True)
 def count_at(
     frequency: float,
     lengths: FloatArray,
@@ -166,7 +166,7 @@ def count_at(
     return _rod_count(squared, transfers[0, :, 0], element, stiffness, inertia)
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def count_of(
     frequency: float,
     lengths: FloatArray,

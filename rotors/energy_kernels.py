@@ -7,15 +7,15 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from .compiled import counted
 from .piece_kernels import piece_transfers
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def energy_weights(
     fractions: FloatArray,
     weights: FloatArray,
@@ -67,7 +67,7 @@ def energy_weights(
     return mass, turning, strain
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def energy_rows(
     squared: FloatArray,
     states: FloatArray,
@@ -100,12 +100,14 @@ def energy_rows(
                     state[row] = 0.0
                     for column in range(size):
                         state[row] += transfer[row, column] * states[k, piece, column]
-                motion[k, at_motion : at_motion + n] = state[:n]
-                strain[k, at_strain : at_strain + size - 1] = state[1:]
+                for row in range(n):
+                    motion[k, at_motion + row] = state[row]
+                for row in range(1, size):
+                    strain[k, at_strain + row - 1] = state[row]
                 at_motion += n
                 at_strain += size - 1
         for node in range(pieces + 1):
-            motion[k, at_motion : at_motion + n] = states[k, node, :n]
-            strain[k, at_strain : at_strain + n] = states[k, node, :n]
+            for row in range(n):
+                motion[k, at_motion + row] = strain[k, at_strain + row] = states[k, node, row]
             at_motion += n
             at_strain += n

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from .banded_kernels import TINY, factor, fill
+from .compiled import counted
 from .piece_kernels import piece_transfers
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,7 +23,7 @@ Table = tuple[IntArray, Pieces, Pieces, ComplexArray, FloatArray]
 Pattern = tuple[IntArray, IntArray, IntArray, int, int]
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python", no_cpython_wrapper=True)
 def _put_pieces(
     pieces: Pieces, translation: complex, rotation: complex, scale: float, transfers: Any, out: ComplexArray
 ) -> int:
@@ -46,7 +46,7 @@ def _put_pieces(
     return entry
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python", no_cpython_wrapper=True)
 def put_entries(
     at: complex, speed: complex, scale: float, table: Table, beams: ComplexArray, rods: ComplexArray, out: ComplexArray
 ) -> None:
@@ -65,7 +65,7 @@ def put_entries(
         out[first + term] = top / (denominators[term, 0] * scale + denominators[term, 1])
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def entries(at: ComplexArray, speeds: ComplexArray, scale: FloatArray, table: Table, out: ComplexArray) -> None:
     """Entries at every λ, (b, nnz)."""
     beams = np.empty((table[1][0].size, 1, 4, 4), dtype=np.complex128)
@@ -74,7 +74,7 @@ def entries(at: ComplexArray, speeds: ComplexArray, scale: FloatArray, table: Ta
         put_entries(at[b], speeds[b], scale[b], table, beams, rods, out[b])
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def determinants(
     at: ComplexArray, speeds: ComplexArray, scale: FloatArray, table: Table, pattern: Pattern
 ) -> ComplexArray:

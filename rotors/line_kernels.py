@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from .compiled import counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -16,7 +17,7 @@ BoolArray = npt.NDArray[np.bool_]
 PieceArrays = tuple[FloatArray, IntArray, IntArray, IntArray, FloatArray, FloatArray, FloatArray]
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def longest_piece(squared: float, stiffness: FloatArray, inertia: FloatArray, force: float) -> float:
     """Longest piece of one kind, clamped ends of which have no root below ω²; m."""
     mass = squared * inertia[0]
@@ -34,7 +35,7 @@ def longest_piece(squared: float, stiffness: FloatArray, inertia: FloatArray, fo
     return math.pi * math.sqrt(min(by_shear, by_bending))
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def piece_counts(
     highest: float,
     margin: float,
@@ -54,7 +55,7 @@ def piece_counts(
     return counts
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def cut_spans(
     counts: IntArray,
     nodes: FloatArray,

@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
-from .banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise
+from .banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
+from .compiled import counted, inner
 from .entry_kernels import Pattern, Table, put_entries
 from .exact_roots import ACCEPTED, MOST_STEPS, SETTLED, SLOPE_STEP
 
@@ -24,7 +24,7 @@ STALE = 1e-4
 LONGEST_STEP = 0.3
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def form(rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexArray, right: ComplexArray) -> complex:
     """yᴴ A x of one matrix."""
     total = 0.0j
@@ -33,7 +33,7 @@ def form(rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexA
     return total
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def newton(
     roots: ComplexArray,
     vectors: ComplexArray,
@@ -77,13 +77,13 @@ def newton(
             largest = fill(rows, columns, lower, values, matrix)
             factor(matrix, lower, envelope, pivots, ends, TINY * largest)
             for _ in range(2 if step == 0 else 1):
-                left[0] = right[0]
+                put(right[0], left[0])
                 adjoint(matrix, lower, envelope, pivots, ends, left[0])
                 orthonormalise(left)
-                right[0] = left[0]
+                put(left[0], right[0])
                 forward_back(matrix, lower, envelope, pivots, ends, right[0])
                 orthonormalise(right)
-            left[0] = right[0]
+            put(right[0], left[0])
             adjoint(matrix, lower, envelope, pivots, ends, left[0])
             orthonormalise(left)
             top = form(rows, columns, values, left[0], right[0])

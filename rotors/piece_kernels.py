@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from .compiled import counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -40,7 +41,7 @@ MOST_TERMS = 80
 NEGLIGIBLE = 1e-18
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, out: NumberArray) -> None:
     """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `rotors.timoshenko.PieceTable`."""
     a, b, k = given[0] * h, given[1] * h, given[4] * h
@@ -78,7 +79,7 @@ def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, o
     out[3, 1] = -c1 * j + c3 * (bj * j + km * k)
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def uniform_rod(h: float, given: FloatArray, translation: Any, out: NumberArray) -> None:
     """T of a uniform rod of length h: cos and sin, as their series."""
     twist, swing = given[0] * h, translation * given[1] * h
@@ -93,7 +94,7 @@ def uniform_rod(h: float, given: FloatArray, translation: Any, out: NumberArray)
     out[1, 0] = -sine * swing
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def taper_series(h: float, given: FloatArray, translation: Any, rotation: Any, series: NumberArray) -> int:
     """Power series of the fundamental matrix about the middle of a tapering piece; returns its number of terms.
 
@@ -134,7 +135,7 @@ def taper_series(h: float, given: FloatArray, translation: Any, rotation: Any, s
     return MOST_TERMS
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def series_at(series: NumberArray, terms: int, place: float, out: NumberArray) -> None:
     """Value of the power series of a fundamental matrix at s."""
     size = out.shape[0]
@@ -146,7 +147,7 @@ def series_at(series: NumberArray, terms: int, place: float, out: NumberArray) -
             out[row, column] = value
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def symplectic_inverse(matrix: NumberArray, out: NumberArray) -> None:
     """Inverse of a fundamental matrix, which reciprocity makes symplectic: −J Mᵀ J."""
     n = matrix.shape[0] // 2
@@ -158,7 +159,7 @@ def symplectic_inverse(matrix: NumberArray, out: NumberArray) -> None:
             out[n + row, n + column] = matrix[column, row]
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python", no_cpython_wrapper=True)
 def piece_transfers(
     h: float, given: FloatArray, translation: Any, rotation: Any, fractions: FloatArray, out: NumberArray
 ) -> None:
@@ -181,12 +182,12 @@ def piece_transfers(
         for row in range(size):
             for column in range(size):
                 total = value[row, 0] * inverse[0, column]
-                for inner in range(1, size):
-                    total += value[row, inner] * inverse[inner, column]
+                for middle in range(1, size):
+                    total += value[row, middle] * inverse[middle, column]
                 out[k, row, column] = total
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def table_transfers(
     lengths: FloatArray,
     given: FloatArray,
@@ -201,7 +202,7 @@ def table_transfers(
             piece_transfers(lengths[e], given[e], translation[b], rotation[b], fractions, out[b, e])
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def place_transfers(
     lengths: FloatArray,
     given: FloatArray,

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from .compiled import counted
 from .count_kernels import count_at
 
 FloatArray = npt.NDArray[np.float64]
@@ -20,7 +20,7 @@ LAST_STEP = 5e-15
 MOST_STEPS = 200
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def lowest_roots(
     wanted: int,
     zeros: int,

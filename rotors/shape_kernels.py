@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from .compiled import counted, inner
 from .piece_kernels import table_transfers
 
 FloatArray = npt.NDArray[np.float64]
@@ -20,7 +20,7 @@ INVERSE_ITERATIONS = 2
 LEAST_PIVOT = 1e-30
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def shooting_band(
     squared: float,
     transfers: FloatArray,
@@ -36,7 +36,10 @@ def shooting_band(
     """
     n, nodes = stiffness.shape[1], stiffness.shape[0]
     width = 3 * n - 1
-    band[:], scale[:] = 0.0, 1.0
+    for row in range(band.shape[0]):
+        scale[row] = 1.0
+        for column in range(band.shape[1]):
+            band[row, column] = 0.0
     for node in range(nodes):
         for i in range(2 * n):
             # The first node has no piece to its left, hence no equations for its displacements.
@@ -63,7 +66,7 @@ def shooting_band(
         band[2 * n * nodes - n + i, width] = 1.0
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def factor_band(band: FloatArray, pivots: IntArray) -> None:
     """LU factors in place, with row interchanges."""
     order, width = band.shape[0], (band.shape[1] - 1) // 3
@@ -88,7 +91,7 @@ def factor_band(band: FloatArray, pivots: IntArray) -> None:
                     band[i, j - i + width] -= factor * band[k, j - k + width]
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def solve_band(band: FloatArray, pivots: IntArray, x: FloatArray) -> None:
     """Solve with the factors in place, for one right-hand side (order,)."""
     order, width = band.shape[0], (band.shape[1] - 1) // 3
@@ -103,7 +106,7 @@ def solve_band(band: FloatArray, pivots: IntArray, x: FloatArray) -> None:
         x[k] = value / band[k, width]
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def solve_band_transposed(band: FloatArray, pivots: IntArray, x: FloatArray) -> None:
     """The same with the transposed equations."""
     order, width = band.shape[0], (band.shape[1] - 1) // 3
@@ -118,7 +121,7 @@ def solve_band_transposed(band: FloatArray, pivots: IntArray, x: FloatArray) -> 
         x[k], x[pivots[k]] = x[pivots[k]], x[k]
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _orthonormalise(vectors: FloatArray) -> None:
     """Rows made orthonormal in place; twice, because nearly parallel ones leave rounding of their size.
 
@@ -145,7 +148,7 @@ def _orthonormalise(vectors: FloatArray) -> None:
                 row[i] /= norm
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def null_states(
     squared: FloatArray,
     lengths: FloatArray,
@@ -188,7 +191,7 @@ def null_states(
     return states.reshape(number, nodes, 2 * n)
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def shooting_responses(
     squared: float,
     loads: FloatArray,
@@ -207,7 +210,9 @@ def shooting_responses(
     table_transfers(lengths, given, at, at, np.ones(1), transfers)
     shooting_band(squared, transfers[0, :, 0], element, stiffness, inertia, band, scale)
     factor_band(band, pivots)
-    states = loads / scale
+    states = np.empty(loads.shape)
     for k in range(loads.shape[0]):
+        for i in range(order):
+            states[k, i] = loads[k, i] / scale[i]
         solve_band(band, pivots, states[k])
     return states.reshape(loads.shape[0], nodes, 2 * n)

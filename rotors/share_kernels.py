@@ -5,8 +5,8 @@ Importing this module imports numba.
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from .compiled import counted
 from .entry_kernels import Pieces
 from .piece_kernels import piece_transfers
 
@@ -14,7 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def inertia_shares(
     pieces: Pieces,
     translation: ComplexArray,

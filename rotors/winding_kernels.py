@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from .banded_kernels import TINY, factor, fill
+from .compiled import counted, inner
 from .entry_kernels import Pattern, Table, put_entries
 
 FloatArray = npt.NDArray[np.float64]
@@ -20,7 +20,7 @@ ComplexArray = npt.NDArray[np.complex128]
 SMALL, LARGE = 1e-100, 1e100
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _logarithm_of_product(at: complex, divided: ComplexArray) -> complex:
     """ln Π (λ − μ_k), but for whole turns."""
     total, product = 0.0j, 1.0 + 0.0j
@@ -33,14 +33,14 @@ def _logarithm_of_product(at: complex, divided: ComplexArray) -> complex:
     return total + cmath.log(product)
 
 
-@njit(cache=True, nogil=True)
+@inner(error_model="python")
 def _principal(difference: complex) -> complex:
     """A difference of logarithms with the imaginary part brought into (−π, π]."""
     turns = math.floor(difference.imag / (2.0 * math.pi) + 0.5)
     return complex(difference.real, difference.imag - 2.0 * math.pi * turns)
 
 
-@njit(cache=True, nogil=True)
+@counted(error_model="python")
 def walk(
     edge: ComplexArray,
     speed: ComplexArray,

@@ -20,7 +20,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import inner, uncounted
+from rotors.compiled import inner, uncounted
 from coupling.gears.face_table import CELL
 from coupling.gears.kernels import face_force, nearness, number_at, place
 from coupling.gears.law_table import (

@@ -17,7 +17,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import counted, inner, uncounted
+from rotors.compiled import counted, inner, uncounted
 from coupling.gears.face_table import CELL
 from coupling.gears.law_table import (
     CELLS_AT,

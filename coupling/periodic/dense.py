@@ -8,7 +8,7 @@ import cmath
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import counted
+from rotors.compiled import counted
 from coupling.contact_kernels import FORCE
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Trace

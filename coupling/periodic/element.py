@@ -8,13 +8,13 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import uncounted
 from coupling.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, TOUCHING, take_law
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.collocation import AT_ENDS, BARYCENTRIC, INSIDE, MONOMIALS, ORDER, PLACES, POINTS
 from coupling.periodic.element_work import Work
 from coupling.small_systems import solve_in_place
+from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -9,9 +9,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import uncounted
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.collocation import AT_END, MISSING, MONOMIALS, ORDER, PLACES
+from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -27,7 +27,6 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import uncounted
 from coupling.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps, Trace
@@ -44,6 +43,7 @@ from coupling.periodic.element import (
 from coupling.periodic.element_matrices import carry_on, end_matrices, fill_step
 from coupling.periodic.element_work import Work
 from coupling.periodic.variations import cross, jump_at, vary
+from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

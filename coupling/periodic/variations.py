@@ -6,13 +6,13 @@ Importing this module imports numba. p disturbances are the columns of an array 
 import numpy as np
 import numpy.typing as npt
 
-from coupling.compiled import uncounted
 from coupling.contact_kernels import DAMPING, FORCE, TOUCHING
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.element import law
 from coupling.periodic.element_work import Work
 from coupling.small_systems import solve_in_place
+from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

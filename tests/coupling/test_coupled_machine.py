@@ -1,6 +1,7 @@
 """A machine of rotors, housing, bearings and gears: equal and opposite forces, directions, frames, static balance."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -66,8 +67,10 @@ def free_rotor(name: str, disc: float, *, along: bool = False) -> RotorComponent
     return rotor_component(name, ModalRotor(lateral, solve_torsional_modes(shaft, count=4), axial), start=START[name])
 
 
-ROTORS = (free_rotor("input", 2.0), free_rotor("output", 5.0))
-THRUST_ROTORS = (free_rotor("input", 2.0, along=True), free_rotor("output", 5.0, along=True))
+@cache
+def both_rotors(*, along: bool = False) -> tuple[RotorComponent, RotorComponent]:
+    """Solved when a test asks, not on import: every process that shares the tests would compile for it at once."""
+    return free_rotor("input", 2.0, along=along), free_rotor("output", 5.0, along=along)
 
 
 # Over x, y, z and the rotations about x and y, positive definite, with an arm between forces and moments.
@@ -111,7 +114,7 @@ def machine(
 ) -> Machine:
     """Two rotors; the line of centres from driver to driven at an angle psi, the torque with the rotation."""
     matrix = 5e7 * np.eye(2) if stiffness is None else stiffness
-    rotors = ROTORS if matrix.shape == (2, 2) else THRUST_ROTORS
+    rotors = both_rotors(along=matrix.shape != (2, 2))
     axes = {"input": np.zeros(2), "output": DISTANCE * np.array([np.cos(psi), np.sin(psi)])}
     bearings, centres = [], {}
     for rotor in rotors:
@@ -192,7 +195,7 @@ def test_free_machine_has_its_rigid_motions(matrix: FloatArray | None) -> None:
 
 def rolling(parts: Machine) -> FloatArray:
     """The two shafts turning with their tooth ratio."""
-    driver, driven = ROTORS[0], ROTORS[1]
+    driver, driven = both_rotors()
     rows = np.zeros((2, parts.system.size))
     rows[0, : driver.size] = driver.rotation(GEAR_AT["input"])
     rows[1, driver.size : driver.size + driven.size] = driven.rotation(GEAR_AT["output"])
@@ -272,7 +275,7 @@ def test_torque_balance(psi: float, sense: int) -> None:
     np.testing.assert_allclose(forces["output"], expected, rtol=1e-8)
     np.testing.assert_allclose(forces["input"], -expected, rtol=1e-8)
     # A shaft under one torque at its end and its gear's torque twists against the latter.
-    driver = ROTORS[0]
+    driver = both_rotors()[0]
     twist = (driver.rotation(0.0) - driver.rotation(GEAR_AT["input"])) @ q[: driver.size]
     assert np.sign(twist) == sense
 
@@ -304,7 +307,7 @@ def test_gap_in_between() -> None:
     q = static_equilibrium(parts.system)
     np.testing.assert_allclose(q, 0.0, atol=1e-20)
     # Turning the driver alone through the gap closes the back flanks and opens the drive flanks by as much.
-    driver = ROTORS[0]
+    driver = both_rotors()[0]
     first = 2 * driver.modal.lateral.count
     q[first] = -BACKLASH / PAIR.driver.base_radius / driver.rotation(GEAR_AT["input"])[first]
     np.testing.assert_allclose(compression(parts, q), [-BACKLASH, 0.0], atol=1e-18)
@@ -314,7 +317,7 @@ def test_torques_that_do_not_balance() -> None:
     parts = machine(torque=90.0)
     for factor in (0.9, 1.001, -1.0):
         load = parts.system.load.copy()
-        load[ROTORS[0].size :] *= factor
+        load[both_rotors()[0].size :] *= factor
         with pytest.raises(CouplingError, match="do not balance"):
             static_equilibrium(replace(parts.system, load=load))
 
@@ -329,7 +332,7 @@ def test_unbalance_turns_with_the_shaft() -> None:
             force = (load.amplitude * np.exp(1j * load.frequency * time)).real
             angle = sense * SPEED * time + 0.4
             radial = 3e-5 * SPEED**2 * np.array([np.cos(angle), np.sin(angle)])
-            rotor = ROTORS[0]
+            rotor = both_rotors()[0]
             expected = radial[0] * rotor.direction(0.2, 0) + radial[1] * rotor.direction(0.2, 1)
             np.testing.assert_allclose(force[: rotor.size], expected, rtol=1e-9, atol=1e-9)
             np.testing.assert_array_equal(force[rotor.size :], 0.0)
@@ -339,14 +342,14 @@ def test_wrong_names() -> None:
     bearing = Bearing.isotropic("front", 0.0, 1e7)
     speeds = {"input": 1.0, "output": -1.0}
     with pytest.raises(CouplingError, match="no rotor is named 'middle'"):
-        couple(ROTORS, None, speeds=speeds, bearings=[MountedBearing(bearing, "middle", None)])
+        couple(both_rotors(), None, speeds=speeds, bearings=[MountedBearing(bearing, "middle", None)])
     with pytest.raises(CouplingError, match="no seat 'hole'"):
-        couple(ROTORS, None, speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")])
+        couple(both_rotors(), None, speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")])
     with pytest.raises(CouplingError, match="no seat 'hole'"):
-        couple(ROTORS, rigid_housing({}), speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")])
+        couple(both_rotors(), rigid_housing({}), speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")])
     with pytest.raises(CouplingError, match="no rotor is named 'middle'"):
-        couple(ROTORS, None, speeds=speeds, torques=[Torque("middle", 0.0, 1.0)])
+        couple(both_rotors(), None, speeds=speeds, torques=[Torque("middle", 0.0, 1.0)])
     with pytest.raises(CouplingError, match="no speed for output"):
-        couple(ROTORS, None, speeds={"input": 1.0})
+        couple(both_rotors(), None, speeds={"input": 1.0})
     with pytest.raises(CouplingError, match="expected each name once"):
-        couple([ROTORS[0], ROTORS[0]], None, speeds=speeds)
+        couple([both_rotors()[0], both_rotors()[0]], None, speeds=speeds)

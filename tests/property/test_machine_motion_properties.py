@@ -4,6 +4,8 @@ Two geared rotors with gyroscopic discs on unsymmetric bearings in a free rigid 
 :func:`coupling.couple` and marched in time, teeth entering and leaving contact.
 """
 
+from functools import cache
+
 import numpy as np
 import numpy.typing as npt
 from hypothesis import given, settings
@@ -58,7 +60,10 @@ def free_rotor(name: str, disc: float) -> RotorComponent:
     return rotor_component(name, modal, start=-0.15, damping_ratio=0.01)
 
 
-ROTORS = (free_rotor("input", 2.0), free_rotor("output", 5.0))
+@cache
+def both_rotors() -> tuple[RotorComponent, RotorComponent]:
+    """Solved when a test asks, not on import: every process that shares the tests would compile for it at once."""
+    return free_rotor("input", 2.0), free_rotor("output", 5.0)
 
 
 def pair(turned: float) -> GearPairGeometry:
@@ -91,7 +96,7 @@ def machine(seed: int, sense: int, psi: float, *, turned: float = 0.0, unbalance
     line = geometry.working_centre_distance * np.array([np.cos(psi), np.sin(psi)])
     axes = {"input": turn @ centre, "output": turn @ (centre + line)}
     bearings, seats = [], {}
-    for rotor in ROTORS:
+    for rotor in both_rotors():
         for end, at in (("front", 0.0), ("back", LENGTH)):
             name = f"{rotor.name} {end}"
             seats[name] = np.array([*axes[rotor.name], rotor.start + at])
@@ -106,7 +111,7 @@ def machine(seed: int, sense: int, psi: float, *, turned: float = 0.0, unbalance
     motions = {name: seat(place) for name, place in seats.items()}
     masses = (Unbalance("input", 0.2, 3e-5, 0.4 + turned), Unbalance("output", 0.1, 8e-5, -2.0 + turned))
     return couple(
-        ROTORS,
+        both_rotors(),
         HousingComponent("housing", kinds, zeros, zeros, zeros, motions, seat_z, {}),
         speeds={"input": sense * SPEED, "output": -sense * SPEED / geometry.ratio},
         bearings=bearings,
