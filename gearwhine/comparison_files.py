@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.stages.response_comparison import ResponseLikeness
 from housing import Comparison, ShapeCorrelation
 from housing.measured import MeasuredGeometry
 
@@ -52,6 +53,17 @@ def write_comparison(
         if comparison.shapes.comac is not None:
             files += _write_coordinates(folder, title, comparison.shapes, geometry)
     return files
+
+
+def write_likeness(folder: Path, likeness: ResponseLikeness) -> str:
+    """Write ``frac.csv``, a row for each degree of freedom and a column for each force; the file's name."""
+    heads = ["response", *dof_names(likeness.references)]
+    rows = [
+        [name, *("" if np.isnan(value) else _short(value) for value in values)]
+        for name, values in zip(dof_names(likeness.geometry), likeness.frac, strict=True)
+    ]
+    _write_table(folder / "frac.csv", heads, rows)
+    return "frac.csv"
 
 
 def dof_names(geometry: MeasuredGeometry) -> list[str]:

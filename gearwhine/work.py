@@ -18,7 +18,7 @@ from gearwhine.case import (
     require,
     swept_keys,
 )
-from gearwhine.comparison_files import write_comparison
+from gearwhine.comparison_files import write_comparison, write_likeness
 from gearwhine.drawings import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.march_files import kept_march
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
@@ -31,6 +31,7 @@ from gearwhine.stages import (
     gear_torques,
     housing_documents,
     mesh_health,
+    response_comparison,
     rotor_documents,
     survey_plan,
 )
@@ -331,13 +332,19 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
     comparison, survey = comparison_stage.compare_with_survey(case, housing, progress)
     document = comparison_documents.comparison_document(comparison, housing)
+    likeness = None
     if survey is not None:
         document["survey"] = measured_stage.survey_document(survey)
+        progress("comparing responses")
+        likeness, told = response_comparison.responses_beside(case, housing, survey)
+        document |= {} if told is None else {"responses": told}
 
     def write(place: Path) -> None:
         progress("writing results")
         geometry = None if survey is None else survey.geometry
         write_comparison(place, case.title, comparison, housing.modes.frequencies, geometry)
+        if likeness is not None:
+            write_likeness(place, likeness)
 
     return _kept(document | housing_documents.origin_document(housing), case, folder, write, housing)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, PrivateAttr, StrictBool, Tag, model_validator
 
+from gearwhine.case import units
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     CaseFile,
@@ -16,6 +17,7 @@ from gearwhine.case.fields import (
     Point,
     PositiveFrequency,
     PositiveLength,
+    Quantity,
     Table,
     wrong,
 )
@@ -52,6 +54,20 @@ class Align(Table):
         return self
 
 
+class Pairing(Table):
+    """`[measured.pairing]`: what makes a pair of a measured shape and a model's; see `housing.PairingRule`.
+
+    `least_mac` is the MAC below which a measured mode stays alone, `frequency_spread` the relative spread of frequency
+    that a pair may well have, `closeness` within which neighbours are close modes, and `duplicate_mac` from which on
+    two measured modes may be one.
+    """
+
+    least_mac: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1.0)] = 0.5
+    frequency_spread: Annotated[float, Quantity(units.RATIO, above=0.0)] = 0.2
+    closeness: Annotated[float, Quantity(units.RATIO, at_least=0.0, below=1.0)] = 0.01
+    duplicate_mac: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1.0)] = 0.9
+
+
 def _table_or_flag(value: Any) -> str:
     return "~table" if isinstance(value, (dict, Table)) else "~flag"
 
@@ -61,7 +77,7 @@ FlagOrAlign = Annotated[
 ]
 """Whether to align, or by what."""
 
-_OF_A_FILE = ("unit", "shape_frame", "align", "tolerance")
+_OF_A_FILE = ("unit", "shape_frame", "align", "tolerance", "pairing")
 """Keys that say how a file is read and laid on the model."""
 
 
@@ -71,7 +87,7 @@ class Measured(Table):
     The file is a universal file or a table, see `housing.measured`; `unit` is that of its lengths where it states none
     or a wrong one, `shape_frame` that of its shapes. With `align` the survey is brought on to the model, by the
     surface (true) or by landmarks; else it stands in the model's frame. Points farther from the surface than the
-    `tolerance` [m] are named (None: 2 % of the housing's diagonal).
+    `tolerance` [m] are named (None: 2 % of the housing's diagonal). `pairing` says what makes a pair of shapes.
     """
 
     frequencies: tuple[PositiveFrequency, ...] | None = Field(default=None, min_length=1, max_length=MOST_ENTRIES)
@@ -81,6 +97,7 @@ class Measured(Table):
     shape_frame: Literal["local", "global"] = "local"
     align: FlagOrAlign = False
     tolerance: PositiveLength | None = None
+    pairing: Pairing = Pairing()
 
     _content: _Content | None = PrivateAttr(default=None)
 

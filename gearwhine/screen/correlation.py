@@ -57,8 +57,23 @@ def show_shapes(console: Console, document: dict[str, Any]) -> None:
     bent = [number for number, value in enumerate(document["phase_collinearity"], start=1) if value < _REAL]
     if bent:
         console.print(f"Complex shapes (phase collinearity below {_REAL:g}): measured {_listed(bent)}.")
+    _show_responses(console, document.get("responses"))
     if document["cross_orthogonality"]["missing_because"]:
         console.print(f"No cross-orthogonality: {document['cross_orthogonality']['missing_because']}.")
+
+
+def _show_responses(console: Console, responses: dict[str, Any] | None) -> None:
+    if responses is None:
+        return
+    if "missing_because" in responses:
+        console.print(f"No likeness of responses: {responses['missing_because']}.")
+    elif responses["mean"] is not None:
+        values = [value for row in responses["frac"] for value in row if value is not None]
+        console.print(
+            f"Likeness of {counted(len(values), 'response')} over {responses['lines']} lines from "
+            f"{responses['from_hz']:.0f} to {responses['to_hz']:.0f} Hz (FRAC): mean {responses['mean']:.2f}, from "
+            f"{min(values):.2f} to {max(values):.2f}; a resonance a few per cent off costs most of it."
+        )
 
 
 def _both(pair: dict[str, Any]) -> str:

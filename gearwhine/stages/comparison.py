@@ -4,7 +4,7 @@ from gearwhine.case import Case
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.housing import SolvedHousing, pair_modes
 from gearwhine.stages.measured import map_measured, mapped_shapes, read_measured
-from housing import Comparison
+from housing import Comparison, PairingRule
 from housing.measured import MappedSurvey
 
 
@@ -34,4 +34,6 @@ def compare_with_survey(
     if measured.geometry is None:
         return pair_modes(solved, measured), None
     survey = map_measured(case, solved.mesh, measured.geometry)
-    return pair_modes(solved, measured, mapped_shapes(solved, survey)), survey
+    assert case.measured is not None
+    rule = PairingRule(**case.measured.pairing.model_dump())
+    return pair_modes(solved, measured, mapped_shapes(solved, survey), rule), survey

@@ -80,11 +80,11 @@ def _with_shapes(case: Case, target: Target, measured: MeasuredModes) -> Measure
     assert measured.shapes is not None
     geometry = measured.geometry
     assert geometry is not None
-    shared = ~np.isnan(measured.shapes).any(axis=0)
-    if np.count_nonzero(shared) <= len(measured.shapes):
+    shared = np.flatnonzero(~np.isnan(measured.shapes).any(axis=0))
+    if len(shared) <= len(measured.shapes):
         expected = (
             f"shapes that share more than {len(measured.shapes)} degrees of freedom, as many as there are modes; "
-            f"{np.count_nonzero(shared)} were measured in all of them"
+            f"{len(shared)} were measured in all of them"
         )
         raise CaseError([Problem("measured.file", UNSAID, expected)])
     # Aligned once: an alignment that followed each design would hide its changes of size.
@@ -103,4 +103,4 @@ def _with_shapes(case: Case, target: Target, measured: MeasuredModes) -> Measure
         shape_noise=case.update.shape_noise,
         count=target.count,
     )
-    return Measurement(with_shapes, observer, int(np.count_nonzero(~shared)))
+    return Measurement(with_shapes, observer, measured.shapes.shape[1] - len(shared))

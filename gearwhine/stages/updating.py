@@ -36,6 +36,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _REFINED = 0.05  # trust region of the search that goes on with the finer mesh
 _FEW = 10  # solves of that search, and of each random set
+_SOFT, _WIDE = 0.4, 0.25  # firmness of the penalties and trust region to begin with
 _FIRM = 3.0  # how much less soft the penalties are there
 _STARTS = 16  # on the surrogate, where the search is made over and over
 
@@ -130,11 +131,17 @@ def update_housing(
         return solved
 
     effort = Effort(solves=given.solves)
-    found = explore(solve, target, coarse.parameters, start, effort, given.explore, progress)
+    # Soft penalties lead past what is in the way; then the housing is meshed anew, and they count in full.
+    half = replace(effort, solves=max(1, given.solves // 2), trust=_WIDE)
+    found = explore(solve, replace(target, firmness=_SOFT), coarse.parameters, start, half, given.explore, progress)
+    left = replace(effort, solves=max(1, given.solves - len(found.steps)))
+    anew = found.design if found.design is start else solve(found.design.coordinates, None)
+    full = search(solve, target, coarse.parameters, anew, left, progress)
+    found = replace(full, steps=found.steps + full.steps)
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
     tuned = found.design
-    before, found = _polished(fine, found, target, effort, progress)
+    before, found = _polished(fine, start, found, target, effort, progress)
     seconds["own_mesh"] = time.perf_counter() - begin
     after = found.design
     spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
@@ -168,18 +175,24 @@ def update_housing(
 
 
 def _polished(
-    fine: HousingDesigns, found: Found[HousingDesign], target: Target, effort: Effort, progress: Progress
+    fine: HousingDesigns,
+    start: HousingDesign,
+    found: Found[HousingDesign],
+    target: Target,
+    effort: Effort,
+    progress: Progress,
 ) -> tuple[HousingDesign, Found[HousingDesign]]:
     """The start on the housing's own mesh, and the search that goes on there from where it came to on a coarser one.
 
-    Each design is meshed anew: what a moved mesh has and a new one has not is no property of the housing.
+    Penalties are firm now: what was bent to get here has to be straight in the end. Each design is meshed anew: what a
+    moved mesh has and a new one has not is no property of the housing.
     """
-    if found.design.designs.case.document == fine.case.document:
-        return found.design.designs.solve(fine.start), found
-    progress("solving the housing as it stands on its own mesh")
-    before = fine.solve(fine.start)
-    progress("going on with the housing's own mesh")
-    begin = fine.solve(found.design.coordinates)
+    before, begin = start, found.design
+    if start.case != fine.case_at(fine.start):
+        progress("solving the housing as it stands on its own mesh")
+        before = fine.solve(fine.start)
+        progress("going on with the housing's own mesh")
+        begin = fine.solve(found.design.coordinates)
     few = replace(effort, solves=_FEW, trust=_REFINED)
     firm = replace(target, firmness=_FIRM)
     last = search(lambda point, near: fine.solve(point), firm, fine.parameters, begin, few, progress)

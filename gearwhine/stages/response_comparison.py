@@ -1,0 +1,116 @@
+"""Measured frequency responses against those that the model has at the same points: likeness line by line."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import Case
+from gearwhine.stages.housing import SolvedHousing
+from housing import HousingError
+from housing.correlation import frac, synthesised_responses
+from housing.measured import MappedSurvey, MeasuredGeometry, MeasuredResponses, map_survey
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class ResponseLikeness:
+    """FRAC of every measured response; see :func:`housing.correlation.frac`.
+
+    Attributes
+    ----------
+    geometry : MeasuredGeometry
+        Of the motions.
+    references : MeasuredGeometry
+        Of the forces.
+    band : tuple of float
+        First and last line compared [rad/s].
+    n_lines : int
+    frac : ndarray, shape (n_dofs, n_references)
+        NaN where a pair was not measured.
+    """
+
+    geometry: MeasuredGeometry
+    references: MeasuredGeometry
+    band: tuple[float, float]
+    n_lines: int
+    frac: FloatArray
+
+
+def compare_responses(
+    case: Case, solved: SolvedHousing, survey: MappedSurvey, responses: MeasuredResponses
+) -> ResponseLikeness:
+    """The model's responses with its own damping beside the measured ones, up to where its modes are all known.
+
+    Parameters
+    ----------
+    case : Case
+    solved : SolvedHousing
+    survey : MappedSurvey
+        The motions' degrees of freedom on the model.
+    responses : MeasuredResponses
+
+    Raises
+    ------
+    housing.HousingError
+        Where no two lines are left, a force was applied off the surface, or a mode has no damping at its own frequency.
+    """
+    limit = solved.modes.certificate.limit
+    lines = np.flatnonzero((responses.frequencies > 0.0) & (responses.frequencies <= limit))
+    if len(lines) < 2:
+        raise HousingError(
+            f"the responses have {len(lines)} lines between 0 and {limit / _HERTZ:.0f} Hz, up to where the model's "
+            "modes are known: expected two at least"
+        )
+    forces = replace(
+        responses.geometry, points=responses.reference_points, directions=responses.reference_directions, lines=()
+    )
+    given = case.measured
+    tolerance = None if given is None else given.tolerance
+    driven = map_survey(solved.mesh, forces, alignment=survey.alignment, tolerance=tolerance)
+    frequencies = responses.frequencies[lines]
+    model = synthesised_responses(
+        solved.modes, solved.total_damping_ratios, driven.matrix, survey.matrix, frequencies, responses.motion
+    )
+    return ResponseLikeness(
+        geometry=responses.geometry,
+        references=forces,
+        band=(float(frequencies[0]), float(frequencies[-1])),
+        n_lines=len(lines),
+        frac=frac(model, responses.values[:, :, lines]),
+    )
+
+
+def responses_beside(
+    case: Case, solved: SolvedHousing, survey: MappedSurvey
+) -> tuple[ResponseLikeness | None, dict[str, Any] | None]:
+    """The likeness of a case's responses and the command's JSON of it; that says why where there is none.
+
+    Both are None where no responses were measured.
+    """
+    given = case.measured
+    responses = None if given is None or given.survey is None else given.survey.responses
+    if responses is None:
+        return None, None
+    try:
+        likeness = compare_responses(case, solved, survey, responses)
+    except HousingError as error:  # of the responses: the pairs of modes stand without them
+        return None, {"missing_because": str(error)}
+    return likeness, _document(likeness)
+
+
+def _document(likeness: ResponseLikeness) -> dict[str, Any]:
+    known = np.isfinite(likeness.frac)
+    return {
+        "criterion": "FRAC",
+        "lines": likeness.n_lines,
+        "from_hz": likeness.band[0] / _HERTZ,
+        "to_hz": likeness.band[1] / _HERTZ,
+        "measured": int(np.count_nonzero(known)),
+        "mean": float(likeness.frac[known].mean()) if known.any() else None,
+        "frac": [[float(value) if np.isfinite(value) else None for value in row] for row in likeness.frac],
+    }
