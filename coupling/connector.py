@@ -168,6 +168,12 @@ class ContactConnector:
     drives: bool = True
     sliding: Sliding | None = None
 
+    @property
+    def friction_law(self) -> tuple[FloatArray, bool]:
+        """The numbers by which the pairs share friction, and whether these go by slices of the face."""
+        shares = np.zeros(0) if self.sliding is None else self.sliding.friction.shares
+        return (shares, True) if shares.size else (self.contact.kernel_arguments[0], False)
+
     def event_times(self, start: float, end: float) -> FloatArray:
         """Times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
 

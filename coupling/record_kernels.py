@@ -8,10 +8,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from rotors.compiled import uncounted
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
 from coupling.periodic.collocation import GAUSS, MONOMIALS, ORDER, PLACES
+from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 

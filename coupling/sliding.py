@@ -97,23 +97,17 @@ def friction_of(
         return np.zeros((len(force), 2))
     from coupling.gears.friction_kernels import friction_history
 
-    law, nominal = contact.sliding.friction, contact.sliding.nominal
-    start, end, parts, table, _, _, entering, cells, depth = contact.contact.kernel_arguments
+    friction, nominal = contact.sliding.friction, contact.sliding.nominal
+    law, by_slices = contact.friction_law
     shares = friction_history(
         contact.phase + contact.rate * turned,
         np.ascontiguousarray(compression),
-        start,
-        end,
-        parts,
-        table,
-        entering,
-        cells,
-        depth,
-        law.pitch_point,
-        law.half_line,
-        law.path_end,
+        law,
+        by_slices,
+        friction.pitch_point,
+        friction.path_end,
     )
-    pushed = law.coefficient * force
+    pushed = friction.coefficient * force
     # A pair slides one way before the pitch point and the other way behind it, so the sense of turning cancels here.
     power = np.sign(nominal[1]) * pushed * (shares @ nominal) * rates
     return np.column_stack([pushed * shares[:, 0], power])

@@ -115,8 +115,7 @@ def friction_push(
     if force <= 0.0:
         return np.zeros_like(contact.direction), np.zeros_like(contact.direction)
     friction = contact.sliding.friction
-    by_slices = bool(friction.shares.size)
-    law = friction.shares if by_slices else contact.contact.kernel_arguments[0]
+    law, by_slices = contact.friction_law
     a, b, a_slope, b_slope = friction_shares(
         phase, compression, law, 0, by_slices, friction.pitch_point, friction.path_end
     )

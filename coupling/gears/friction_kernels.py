@@ -20,7 +20,6 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from rotors.compiled import inner, uncounted
 from coupling.gears.face_table import CELL
 from coupling.gears.kernels import face_force, nearness, number_at, place
 from coupling.gears.law_table import (
@@ -35,6 +34,7 @@ from coupling.gears.law_table import (
     PAIRS,
     PAIRS_AT,
 )
+from rotors.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -110,36 +110,19 @@ def friction_shares(
     return a, b, (across_slope - a * stiff) / elastic, (by_place_slope - b * stiff) / elastic
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@counted()
 def friction_history(
     phase: FloatArray,
     compression: FloatArray,
-    start: float,
-    end: float,
-    parts: float,
-    table: FloatArray,
-    entering: FloatArray,
-    faces: FloatArray,
-    face_depth: float,
+    law: FloatArray,
+    by_slices: bool,
     pitch_point: float,
-    half_line: float,
     path_end: float,
 ) -> FloatArray:
     """A and B of `friction_shares` at every sample of a history, shape (t, 2); phases and compressions (t,)."""
     history = np.empty((phase.size, 2))
     for i in range(phase.size):
         history[i, 0], history[i, 1], _, _ = friction_shares(
-            phase[i],
-            compression[i],
-            start,
-            end,
-            parts,
-            table,
-            entering,
-            faces,
-            face_depth,
-            pitch_point,
-            half_line,
-            path_end,
+            phase[i], compression[i], law, 0, by_slices, pitch_point, path_end
         )
     return history

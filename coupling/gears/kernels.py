@@ -17,7 +17,6 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from rotors.compiled import counted, inner, uncounted
 from coupling.gears.face_table import CELL
 from coupling.gears.law_table import (
     CELLS_AT,
@@ -40,6 +39,7 @@ from coupling.gears.law_table import (
     PAIRS_AT,
     PARTS,
 )
+from rotors.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 TangentForce = tuple[float, float, float, float, float, int]

@@ -8,7 +8,6 @@ import cmath
 import numpy as np
 import numpy.typing as npt
 
-from rotors.compiled import counted
 from coupling.contact_kernels import FORCE
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Trace
@@ -16,6 +15,7 @@ from coupling.periodic.collocation import BINOMIAL, MONOMIALS, ORDER
 from coupling.periodic.element import law
 from coupling.periodic.element_matrices import advance_to, moments
 from coupling.periodic.element_work import Work
+from rotors.compiled import counted
 
 FloatArray = npt.NDArray[np.float64]
 
