@@ -10,11 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from .compiled import counted, inner
-from .piece_kernels import table_transfers
+from .piece_kernels import piece_transfers
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 State = tuple[float, float, float, float]
+
+# The whole of a piece, as a fraction of it.
+WHOLE = np.ones(1)
 
 
 @inner(error_model="python")
@@ -157,13 +160,13 @@ def count_at(
     inertia: FloatArray,
     transfers: FloatArray,
 ) -> tuple[int, float]:
-    """Roots below a frequency and the determinant there; ``transfers`` (1, e, 1, 2n, 2n) is for scratch."""
+    """Roots below a frequency and the determinant there; ``transfers`` (e, 1, 2n, 2n) is for scratch."""
     squared = frequency * frequency
-    at = np.full(1, squared)
-    table_transfers(lengths, given, at, at, np.ones(1), transfers)
+    for e in range(lengths.size):
+        piece_transfers(lengths[e], given[e], squared, squared, WHOLE, transfers[e])
     if given.shape[1] == 6:
-        return _beam_count(squared, transfers[0, :, 0], element, stiffness, inertia)
-    return _rod_count(squared, transfers[0, :, 0], element, stiffness, inertia)
+        return _beam_count(squared, transfers[:, 0], element, stiffness, inertia)
+    return _rod_count(squared, transfers[:, 0], element, stiffness, inertia)
 
 
 @counted(error_model="python")
@@ -177,5 +180,5 @@ def count_of(
 ) -> int:
     """Number of roots below a frequency."""
     size = 2 * stiffness.shape[1]
-    transfers = np.empty((1, lengths.size, 1, size, size))
+    transfers = np.empty((lengths.size, 1, size, size))
     return count_at(frequency, lengths, given, element, stiffness, inertia, transfers)[0]

@@ -18,6 +18,7 @@ IntArray = npt.NDArray[np.intp]
 RELATIVE_WIDTH = 2e-13
 LAST_STEP = 5e-15
 MOST_STEPS = 200
+FIRST_PART = 0.04
 
 
 @counted(error_model="python")
@@ -40,7 +41,7 @@ def lowest_roots(
     fall back to halving; the count, not the determinant, says on which side a step has come down. Others are halved.
     """
     size = 2 * stiffness.shape[1]
-    transfers = np.empty((1, lengths.size, 1, size, size))
+    transfers = np.empty((lengths.size, 1, size, size))
     number = wanted - zeros
     first, first_value = count_at(lowest, lengths, given, element, stiffness, inertia, transfers)
     last, last_value = count_at(limit, lengths, given, element, stiffness, inertia, transfers)
@@ -58,6 +59,9 @@ def lowest_roots(
             if (single and b <= 4.0 * a) or b - a <= RELATIVE_WIDTH * b:
                 break
             middle = math.sqrt(a) * math.sqrt(b) if b > 4.0 * a else 0.5 * (a + b)
+            if a == lowest and b == limit:
+                # The lowest frequency is seldom further below the limit than this.
+                middle = max(middle, FIRST_PART * limit)
             count, value = count_at(middle, lengths, given, element, stiffness, inertia, transfers)
             for k in range(root, number):
                 if count <= zeros + k:

@@ -181,4 +181,4 @@ def merged_positions(joints: FloatArray, others: Sequence[float]) -> FloatArray:
 
 def station_index(stations: FloatArray, at: float) -> int:
     """Index of the station at the position ``at`` (m), which must be one of them."""
-    return int(np.argmin(np.abs(stations - at)))
+    return int(np.abs(stations - at).argmin())
