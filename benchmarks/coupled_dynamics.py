@@ -230,9 +230,9 @@ def main() -> None:
         print(f"  {built.system.size:4d} coordinates: {speeds[modes][0]:12,.0f}   ({speeds[modes][1]} steps)")
     rubbing = two_shafts(6, corners=True, friction=FRICTION)
     rate, steps = steps_a_second(rubbing, 600)
-    told = f"{rate / speeds[6][0]:.2f} of those without"
+    share = f"{rate / speeds[6][0]:.2f} of those without"
     print(
-        f"  with friction between the teeth, {rubbing.system.size} coordinates: {rate:,.0f}   ({steps} steps), {told}"
+        f"  with friction between the teeth, {rubbing.system.size} coordinates: {rate:,.0f}   ({steps} steps), {share}"
     )
     theirs, freedoms = ross_steps_a_second(given.ross_steps)
     ours = speeds[6][0]
