@@ -104,7 +104,7 @@ class Update(Table):
     would still miss; `shape_noise` that of each motion of a measured shape, as a part of the shape's root-mean-square.
     The search is made with elements of `mesh_size` (None: the box's own) and the box's own decide. `gap` is the least
     gap of dominance, `modes` how many are taken along, `solves` how many designs are solved at most, `explore` how
-    many other starts there are.
+    many other starts there are, and `seed` that of the random starts on the surrogate.
     """
 
     parameter: tuple[UpdateParameter, ...] = Field(min_length=1, max_length=200)
@@ -116,6 +116,7 @@ class Update(Table):
     modes: Annotated[int, Whole(2, 1000)] = 48
     solves: Annotated[int, Whole(1, 10_000)] = 40
     explore: Annotated[int, Whole(0, 10_000)] = 0
+    seed: Annotated[int, Whole(0, 2**31 - 1)] = 1
 
     @model_validator(mode="after")
     def _named_once(self) -> Update:

@@ -130,7 +130,7 @@ def update_housing(
             known.append(solved)
         return solved
 
-    effort = Effort(solves=given.solves)
+    effort = Effort(solves=given.solves, seed=given.seed)
     # Soft penalties lead past what is in the way; then the housing is meshed anew, and they count in full.
     half = replace(effort, solves=max(1, given.solves // 2), trust=_WIDE)
     found = explore(solve, replace(target, firmness=_SOFT), coarse.parameters, start, half, given.explore, progress)
