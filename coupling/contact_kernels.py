@@ -70,7 +70,7 @@ def take_friction(
     drag[2], drag[3] = viscous * a, viscous * b
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def take_forces(
     contacts: Contacts,
     bearings: Bearings,
