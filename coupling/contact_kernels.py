@@ -70,7 +70,7 @@ def take_friction(
     drag[2], drag[3] = viscous * a, viscous * b
 
 
-@inner()
+@inner(inline="always")
 def take_forces(
     contacts: Contacts,
     bearings: Bearings,
