@@ -126,9 +126,8 @@ def carry_on(
             for j in range(ORDER):
                 coefficient[k, b] += power * AT_END[j, k] * excess[j * c + b]
         power *= part - 1.0
+    # The force adds to the first terms; each goes on from there.
     terms, size = ORDER, 1.0
-    for k in range(1, ORDER + 1):
-        size *= fastest / k
     while size > 1e-17:
         terms += 1
         size *= fastest / terms

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coupling.periodic.arrays import Reference
@@ -10,6 +10,7 @@ from coupling.periodic.collocation import MONOMIALS, ORDER, PLACES
 from coupling.periodic.element_matrices import advance_to, carry_on
 
 
+@settings(deadline=None)
 @given(
     part=st.floats(0.94, 1.06),
     fastest=st.floats(0.01, 40.0),
@@ -30,8 +31,8 @@ def test_from_the_end_as_from_the_start(part: float, fastest: float, damped: flo
     advance_to(reference, h, part, z, excess, expected, coefficient, integral)
     advance_to(reference, h, 1.0, z, excess, found, coefficient, integral)
     carry_on(reference, h, part, z, excess, found, coefficient, integral)
-    # The moments' recursion loses two digits where it begins, and the polynomials' coefficients three more.
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-10 * max(1.0, float(np.abs(expected).max())))
+    # The moments' recursion loses two digits where it begins, and the polynomials' coefficients two more.
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=5e-11 * max(1.0, float(np.abs(expected).max())))
 
 
 def test_a_slow_mode_gathers_the_force() -> None:
