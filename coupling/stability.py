@@ -8,6 +8,7 @@ from coupling.modes import CoupledModes
 from coupling.shares import Part
 
 _NEUTRAL = 1e-9  # damping ratios this small are rounding
+_ROUNDING = 1e-12  # so are eigenvalues this small beside the largest
 
 
 @dataclass(frozen=True)
@@ -72,10 +73,12 @@ def stability(modes: CoupledModes, tolerance: float = _NEUTRAL) -> Stability:
     ----------
     modes : CoupledModes
     tolerance : float
-        Damping ratios from -tolerance up are not growth.
+        Damping ratios from -tolerance up are not growth, nor is what the largest eigenvalue's rounding makes of none.
     """
     ratios = modes.damping_ratios
-    growing = [_growing(modes, int(i)) for i in np.flatnonzero(ratios < -tolerance)]
+    # The ratio of a motion that nothing resists is ±1 however small its eigenvalue.
+    still = np.abs(modes.eigenvalues) <= _ROUNDING * np.abs(modes.eigenvalues).max(initial=0.0)
+    growing = [_growing(modes, int(i)) for i in np.flatnonzero((ratios < -tolerance) & ~still)]
     swinging = np.flatnonzero(modes.eigenvalues.imag > 0.0)
     return Stability(
         growing=tuple(sorted(growing, key=lambda one: -one.eigenvalue.real)),

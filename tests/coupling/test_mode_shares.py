@@ -106,6 +106,14 @@ def test_lossless_is_stable_and_free_is_rigid() -> None:
     assert not modes.shares.damping[0].any()
 
 
+@pytest.mark.parametrize(("stiffness", "stable"), [(-1e-28, True), (-1e-10, False)])
+def test_what_rounding_makes_of_a_free_motion_is_no_growth(stiffness: float, stable: bool) -> None:
+    """λ² = 1e-28 beside λ² = -9: a real eigenvalue grows at its full ratio however small it is."""
+    held, magnet = spring("spring", [1.0, 0.0], 9.0, 0.0), spring("magnet", [0.0, 1.0], stiffness, 0.0)
+    modes = coupled_modes(CoupledSystem((mass("one"), mass("two")), (0.0, 0.0), (held, magnet)))
+    assert stability(modes).stable is stable
+
+
 def geared(load: float, backlash: float | None = None, relief: float = 0.0) -> CoupledSystem:
     """Two inertias in torsion on base radii of 1: pairs of 100 N/m, one and a half of them on average."""
     ratio = 1.5
