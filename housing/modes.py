@@ -19,6 +19,8 @@ from housing.search import MOST_MODES, Search, not_a_stiffness
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+_ALIKE = 1e-6  # part of the largest entry by which another may be smaller and count as large
+
 
 @dataclass(frozen=True)
 class ModeSet:
@@ -153,6 +155,10 @@ def solve_modes(
 
 
 def _oriented(vectors: FloatArray) -> FloatArray:
-    """The same vectors with their largest entry positive, so that equal input draws equal pictures."""
-    largest = vectors[np.argmax(np.abs(vectors), axis=0), np.arange(vectors.shape[1])]
-    return np.asarray(vectors * np.sign(largest))
+    """The same vectors with their largest entry positive, so that equal input draws equal pictures.
+
+    Of entries that symmetry makes equally large, the first counts, or rounding would choose.
+    """
+    size = np.abs(vectors)
+    largest = np.argmax(size >= (1.0 - _ALIKE) * size.max(axis=0), axis=0)
+    return np.asarray(vectors * np.sign(vectors[largest, np.arange(vectors.shape[1])]))
