@@ -111,9 +111,11 @@ def _draw_line(axes: Axes, line: ExcitationLine, last: float, top: float) -> Non
     style = ":" if line.kind == "shaft" else (0, (5, 3))
     axes.plot([0.0, last], [0.0, slope * last], color=GREY, lw=0.8, ls=style, zorder=2, label=line.name)
     if slope * last < top:
+        # Low orders lie close together: their names stand beside each other.
+        place = last * (0.86 if line.kind == "shaft" and round(line.order) % 2 == 0 else 1.0)
         axes.annotate(
             shortened(line.name, 34),
-            (last, slope * last),
+            (place, slope * place),
             (-2.0, 1.5),
             textcoords="offset points",
             fontsize=NOTE,
@@ -121,6 +123,7 @@ def _draw_line(axes: Axes, line: ExcitationLine, last: float, top: float) -> Non
             ha="right",
             va="bottom",
             parse_math=False,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
         )
 
 

@@ -53,7 +53,7 @@ def draw_transient(
         files.append(save(_mesh_force(case, solved, meshes), folder / "mesh-force.png"))
     carrying = [contact for contact in solved.machine.system.contacts if contact.name in solved.histories.mesh_friction]
     if rates := {contact.name: abs(contact.rate) for contact in carrying if contact.drives and contact.rate}:
-        heading = f"{case.title}: friction between the teeth at {_speed(case)}"
+        heading = f"{case.title}\nfriction between the teeth at {_speed(case)}"
         files.append(save(draw_friction(heading, solved.histories, rates), folder / "friction.png"))
     if solved.histories.gear_motion:
         motions = solved.histories.gear_motion
