@@ -1,6 +1,7 @@
 """The factorisation of a sparse symmetric matrix as an object: factor once, solve many, know the inertia."""
 
 import time
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
@@ -22,6 +23,8 @@ _ERROR_BOUND = 1e-2  # of a solution: 1e-8 is usual, and a singular matrix gives
 class _Solver(Protocol):
     """A sparse solver that knows the pattern of the matrices to come."""
 
+    def order(self, matrix: SymmetricMatrix) -> None: ...
+
     def factor(self, matrix: SymmetricMatrix) -> NumericFactor: ...
 
 
@@ -40,7 +43,8 @@ class Factorization:
         Negative eigenvalues of A. By Sylvester's law of inertia, for A = K - σM this is the number of
         eigenvalues of (K, M) below σ.
     seconds : float
-        Time taken by the factorisation [s]; the first of a :class:`Factorizer` includes finding the ordering.
+        Time taken by the factorisation [s]; the first of a :class:`Factorizer` includes finding the ordering, or what
+        was left to wait of it.
     """
 
     backend: Backend
@@ -81,6 +85,16 @@ class Factorizer:
             raise FactorizationError(f"the backend {self.backend} needs the package {module}, which is not installed")
         else:
             self._solver = RslabSolver(threads) if self.backend == "rslab" else PardisoSolver(threads)
+        self._ordering: Future[None] | None = None
+
+    def order_ahead(self, matrix: SymmetricMatrix) -> None:
+        """Begin to find the ordering for matrices of this one's pattern in a thread of its own; the caller goes on.
+
+        The first call of :meth:`factor` waits for it.
+        """
+        pool = ThreadPoolExecutor(1)
+        self._ordering = pool.submit(self._solver.order, matrix)
+        pool.shutdown(wait=False)
 
     def factor(self, matrix: SymmetricMatrix | sparse.csr_array) -> Factorization:
         """Factor a matrix and check that the factor solves.
@@ -94,6 +108,8 @@ class Factorizer:
             matrix = SymmetricMatrix.of(matrix)
         start = time.perf_counter()
         try:
+            if self._ordering is not None:
+                self._ordering.result()
             found = self._solver.factor(matrix)
         except RuntimeError as error:
             raise FactorizationError(

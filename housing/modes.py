@@ -117,7 +117,9 @@ def solve_modes(
     if frequency_limit is not None and frequency_limit <= 0.0:
         raise HousingError(f"frequency limit {frequency_limit} rad/s must be positive")
 
-    search = Search(system, Factorizer(backend=backend, threads=threads), system.floor(frequency_limit or 0.0))
+    factorizer = Factorizer(backend=backend, threads=threads)
+    factorizer.order_ahead(system.stiffness)
+    search = Search(system, factorizer, system.floor(frequency_limit or 0.0))
     found = (
         search.below(frequency_limit, progress) if frequency_limit is not None else search.lowest(count or 0, progress)
     )

@@ -50,6 +50,7 @@ class Search:
         self.seconds = {"factorisation": 0.0, "eigensolver": 0.0}
         self._system = system
         self._factorizer = factorizer
+        self._mass = system.mass  # made here, while another thread may be finding the ordering
 
     def below(self, limit: float, progress: Callable[[str], None]) -> Found:
         """All modes below a limit, which is itself the shift."""
@@ -133,7 +134,7 @@ class Search:
         system = self._system
         try:
             return shift_invert(
-                factor.solve, system.mass, shift, count, above=above, seed=attempt, threads=system.threads
+                factor.solve, self._mass, shift, count, above=above, seed=attempt, threads=system.threads
             )
         except IncompleteModesError:
             if attempt + 1 == _ATTEMPTS:

@@ -47,21 +47,25 @@ class RslabSolver:
         self._threads = threads
         self._symbolic: Any = None
 
-    def factor(self, matrix: SymmetricMatrix) -> "_RslabFactor":
-        """Factor; the first matrix gives the ordering."""
+    def order(self, matrix: SymmetricMatrix) -> None:
+        """Find the ordering."""
         import rslab
 
+        # Nested dissection outright: by default several orderings are tried, and on solids it always wins. Its
+        # refinement gives up sooner than by default: a third of its time for no more fill.
+        self._symbolic = rslab.analyze(
+            matrix.lower,
+            path="ldlt",
+            threads=self._threads,
+            ordering="metis",
+            nd_move_limit=100,
+            nd_init_trials=4,
+        )
+
+    def factor(self, matrix: SymmetricMatrix) -> "_RslabFactor":
+        """Factor in the ordering found, or in the first matrix's."""
         if self._symbolic is None:
-            # Nested dissection outright: by default several orderings are tried, and on solids it always wins. Its
-            # refinement gives up sooner than by default: a third of its time for no more fill.
-            self._symbolic = rslab.analyze(
-                matrix.lower,
-                path="ldlt",
-                threads=self._threads,
-                ordering="metis",
-                nd_move_limit=100,
-                nd_init_trials=4,
-            )
+            self.order(matrix)
         return _RslabFactor(self._symbolic.factor(matrix.values))
 
 
@@ -76,6 +80,9 @@ class _RslabFactor:
 
 class SuperluSolver:
     """scipy's SuperLU without row exchanges, so that the signs of U's diagonal are the inertia."""
+
+    def order(self, matrix: SymmetricMatrix) -> None:
+        """Nothing: SuperLU orders each matrix anew."""
 
     def factor(self, matrix: SymmetricMatrix) -> "_SuperluFactor":
         """Factor."""
@@ -104,6 +111,9 @@ class PardisoSolver:
 
     def __init__(self, threads: int) -> None:
         self._threads = threads
+
+    def order(self, matrix: SymmetricMatrix) -> None:
+        """Nothing: pypardiso orders each matrix anew."""
 
     def factor(self, matrix: SymmetricMatrix) -> "_PardisoFactor":
         """Factor."""
