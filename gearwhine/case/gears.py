@@ -146,7 +146,7 @@ class ToothStiffness(Table):
 
     model: Literal[
         "potential-energy", "elastic-ring", "cornell", "weber-banaschek", "iso6336", "constant", "square", "table"
-    ] = "potential-energy"
+    ] = "elastic-ring"
     value: PositiveStiffness | None = None
     file: CaseFile | None = None
 

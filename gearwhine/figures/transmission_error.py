@@ -77,9 +77,10 @@ def _draw_bars(axes: Axes, harmonics: dict[str, FloatArray]) -> None:
         axes.bar(order, _MICRO * row, _SLIM, color=BLUE if name == "loaded" else GREY, label=name)
         if name == "loaded" or len(harmonics) == 1:
             for x, amplitude in zip(order, row, strict=True):
-                text = f"{_MICRO * amplitude:.3g}"
-                place = (float(x), _MICRO * float(amplitude))
-                axes.annotate(text, place, (0, 1.5), textcoords="offset points", size=NOTE, color=INK, ha="center")
+                text = f"{_MICRO * amplitude:.2g}"
+                # From the bar's own left edge: another bar may stand higher beside it.
+                place = (float(x) - 0.5 * _SLIM, _MICRO * float(amplitude))
+                axes.annotate(text, place, (1, 1.5), textcoords="offset points", size=NOTE, color=INK, ha="left")
     axes.set(xlabel="multiple of the mesh frequency", ylabel="amplitude [µm, peak]")
     axes.set_ylim(0.0, 1.18 * _MICRO * largest or 1.0)
     axes.xaxis.set_major_locator(MultipleLocator(1.0))
