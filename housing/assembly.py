@@ -216,8 +216,8 @@ def _gradient_products(
     reference = shape_functions(kind.name, places)[1]
     jacobian = jacobians(mesh.points, nodes, reference)
     determinant = determinants(jacobian)
-    inverse = inverses(jacobian, determinant)
     scale = np.sqrt(_point_volumes(determinant, weights))
+    inverse = inverses(jacobian, determinant)
     # By components first, then as matrices (points, shape functions x components) for one product for each element.
     rooted = np.empty((*scale.shape, kind.n_nodes, 3))
     for i in range(3):
@@ -258,5 +258,9 @@ def _folded(mesh: Mesh) -> HousingError:
 
 
 def _folds(mesh: Mesh, block: ElementBlock) -> npt.NDArray[np.bool_]:
-    reference = shape_functions(block.kind, quadrature(block.kind, 2 * block.of.order)[0])[1]
-    return np.asarray((determinants(jacobians(mesh.points, block.nodes, reference)) <= 0.0).any(axis=1))
+    """Which elements have no positive volume at a point of the mass's or the stiffness's quadrature."""
+    folds = np.zeros(len(block), dtype=bool)
+    for degree in {2 * block.of.order, stiffness_degree(block.of, affine=False)}:
+        reference = shape_functions(block.kind, quadrature(block.kind, degree)[0])[1]
+        folds |= (determinants(jacobians(mesh.points, block.nodes, reference)) <= 0.0).any(axis=1)
+    return folds

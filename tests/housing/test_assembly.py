@@ -305,6 +305,23 @@ def test_folded_elements_are_refused(block: Callable[..., Mesh], steel: Material
         assemble(replace(mesh, points=points), steel)
 
 
+def test_barely_folded_elements_are_counted(block: Callable[..., Mesh], steel: Material) -> None:
+    """Stiffness and mass have points of their own, of which the first to lose its volume counts."""
+    mesh = block((1.0, 1.0, 1.0))
+    first = mesh.blocks[0].nodes[0]
+    toward = mesh.points[first[3]] - mesh.points[first[4]]
+    refused = []
+    for part in np.linspace(0.1, 1.0, 46):
+        points = mesh.points.copy()
+        points[first[4]] += part * toward
+        try:
+            assemble(replace(mesh, points=points), steel)
+        except HousingError as error:
+            refused.append(str(error))
+    assert 0 < len(refused) < 46
+    assert not [message for message in refused if message.startswith("0 ")]
+
+
 def test_nodes_without_elements_are_refused(block: Callable[..., Mesh], steel: Material) -> None:
     mesh = block((1.0, 1.0, 1.0))
     with pytest.raises(HousingError, match="1 of the mesh's 66 nodes belong to no element"):
