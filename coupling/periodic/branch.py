@@ -14,7 +14,7 @@ import numpy.typing as npt
 from coupling.errors import PeriodicError
 from coupling.periodic.orbit import Elements, Pass, one_pass
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.segments import bordered_correction, correction, product
+from coupling.periodic.segments import bordered_correction, correction
 from coupling.periodic.shooting import Problem, problem, response_of
 from coupling.system import CoupledSystem
 
@@ -22,10 +22,13 @@ FloatArray = npt.NDArray[np.float64]
 
 _CORRECTIONS = 8
 _CLOSED = 1e-10  # closure relative to the motion
+_HIGHEST = 4  # halvings of the elements beyond those that a branch began with
+_PATIENCE, _LONGEST_PATIENCE = (
+    3,
+    48,
+)  # points after which coarser ones are tried again: twice as many after each failure
+_TOO_GOOD = 1e-5  # part of the tolerance: elements twice as large err a thousand times as much
 _DIFFERENCE = 1e-7  # of the speed range, for the derivative by speed: flanks may begin to graze within a hair of it
-_FALLING = 0.3  # by which a correction has to lower the closure for its pieces to serve again
-_MOST_HELD = 14  # corrections, most of them without pieces of their own
-_FAST = 0.02  # by which the first correction is thought to lower the closure
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +71,7 @@ class Point:
         branch, found = self.branch, self.found
         change = self.change
         if change is None:
-            change = branch.by_speed(self.ready, self.states, self.speed, found)
+            change = branch.by_speed(self.ready, self.states, self.speed, found, self.response.level)
         zero, up = np.zeros_like(found.misses), lift(self.ready)
         along, pace = (zero, 1.0) if self.towards is None else (self.towards[0] @ up / len(zero), self.towards[1])
         by_speed = change * (branch.span / branch.unit)
@@ -92,6 +95,21 @@ class Branch:
     ) -> None:
         self.system_at, self.periods, self.span = system_at, periods, span
         self.level, self.tolerance, self.unit = level, tolerance, unit
+        self.lowest, self.calm, self.patience = level, 0, _PATIENCE
+
+    def _raise(self) -> None:
+        """Finer elements from here on: where a flank grazes, none are fine enough, and a shorter step passes it."""
+        if self.level < self.lowest + _HIGHEST:
+            self.level += 1
+            self.patience = min(2 * self.patience, _LONGEST_PATIENCE) if self.calm < self.patience else _PATIENCE
+            self.calm = 0
+
+    def settle(self, error: float) -> None:
+        """A point is accepted; after some of them, coarser elements are tried again, or where it is far too good."""
+        self.calm += 1
+        if self.level > self.lowest and (self.calm >= self.patience or error < _TOO_GOOD * self.tolerance):
+            self.level -= 1
+            self.calm = 0
 
     def ready(self, speed: float, like: Problem | None) -> Problem:
         """The machine at a speed, made ready."""
@@ -110,7 +128,7 @@ class Branch:
         states = np.concatenate([q[:, ready.kept], v[:, ready.kept] / ready.part.rate_unit], axis=1)
         while True:
             level = self.level
-            point = self._close(ready, states, speed, None, np.inf)
+            point = self._close(ready, states, speed, np.inf)
             if point is not None:
                 return point
             if self.level == level:
@@ -130,62 +148,51 @@ class Branch:
             if len(among) == 1:
                 along, pace = here.tangent
                 states = here.states + (self.unit * (speed - here.speed) / (self.span * pace)) * along
-                return self._close(ready, states, speed, here.found.pieces, within)
+                return self._close(ready, states, speed, within)
             weights = interpolation(np.array([point.speed for point in among]), speed)
-            states = np.tensordot(weights, [point.states for point in among], 1)
-            pieces = np.tensordot(weights, [_pieces(point, ready) for point in among], 1)
-            return self._close(ready, states, speed, pieces, within)
+            return self._close(ready, np.tensordot(weights, [point.states for point in among], 1), speed, within)
         except (PeriodicError, np.linalg.LinAlgError):
             return None
 
-    def _close(
-        self, ready: Problem, predicted: FloatArray, speed: float, pieces: FloatArray | None, within: float
-    ) -> Point | None:
-        """A prediction corrected at its speed."""
+    def _close(self, ready: Problem, predicted: FloatArray, speed: float, within: float) -> Point | None:
+        """A prediction corrected at its speed.
+
+        Between switches that come and go the misses are all but linear in the states: two corrections by pieces of the
+        prediction's own close most motions, where those of other speeds take many.
+        """
         elements, begin = ready.elements(self.level), below(ready, predicted)
         limit = within * self.unit * np.sqrt(len(predicted))
-        fresh = pieces is None
-        found = one_pass(ready.part, ready.contacts, elements, begin, varied=fresh)
-        if pieces is None:
-            pieces = found.pieces
-        monodromy = product(pieces)
-        closed = _CLOSED * ready.scale(found.start)
-        best, rate, turns = found.missing, _FAST, 0
-        while best > closed:
-            if turns == _MOST_HELD:
+        starts, before = begin, np.inf
+        pieces, monodromy = np.empty(0), np.empty(0)
+        for turn in range(_CORRECTIONS):
+            # After the first correction the same pieces serve once more, and the last ones are exact.
+            found = one_pass(ready.part, ready.contacts, elements, starts, varied=turn != 1)
+            closed = found.missing <= _CLOSED * ready.scale(found.start)
+            if closed and turn == 1:
+                found = one_pass(ready.part, ready.contacts, elements, starts)
+            if closed:
+                return self._proved(ready, above(ready, starts), speed, found, turn, predicted)
+            if found.missing > before:
                 return None
-            turns += 1
-            starts = found.starts + correction(pieces, found.misses, monodromy)
-            near = float(np.linalg.norm(starts - begin)) < limit
-            last = rate * best <= closed
-            there = one_pass(ready.part, ready.contacts, elements, starts, varied=last) if near else found
-            if near and last:
-                pieces, monodromy, fresh = there.pieces, there.monodromy, True
-            if there.missing <= _FALLING * best:
-                rate = there.missing / best
-                found, best, fresh = there, there.missing, near and last
-                continue
-            if fresh:
+            before = found.missing
+            if turn != 1:
+                pieces, monodromy = found.pieces, found.monodromy
+            starts = starts + correction(pieces, found.misses, monodromy)
+            if not float(np.linalg.norm(starts - begin)) < limit:
                 return None
-            if there.missing < best:
-                found, best = there, there.missing
-            found, fresh = one_pass(ready.part, ready.contacts, elements, found.starts), True
-            pieces, monodromy, rate = found.pieces, found.monodromy, _FAST
-        if found.pieces.shape[2] == 0:
-            found = one_pass(ready.part, ready.contacts, elements, found.starts)
-        return self._proved(ready, above(ready, found.starts), speed, found, turns, predicted)
+        return None
 
     def along(self, here: Point, ds: float) -> Point | None:
         """The point of the branch a length further; None where the corrections do not come to an end.
 
         A negative length goes against the tangent; that of the point found goes with the step.
         """
-        along, pace = here.tangent
-        if ds < 0.0:
-            along, pace, ds = -along, -pace, -ds
-        predicted = here.states + ds * self.unit * along
-        speed = here.speed + ds * self.span * pace
         try:
+            along, pace = here.tangent
+            if ds < 0.0:
+                along, pace, ds = -along, -pace, -ds
+            predicted = here.states + ds * self.unit * along
+            speed = here.speed + ds * self.span * pace
             return self._correct(here, predicted, speed, along, pace, ds)
         except (PeriodicError, np.linalg.LinAlgError):
             return None
@@ -201,13 +208,11 @@ class Branch:
             elements = ready.elements(self.level)
             found = one_pass(ready.part, ready.contacts, elements, below(ready, states))
             if by_speed is None:
-                by_speed = self.by_speed(ready, states, speed, found) @ lift(ready).T
+                by_speed = self.by_speed(ready, states, speed, found, self.level) @ lift(ready).T
             behind = float(np.sum(along * (states - here.states))) / (count * self.unit)
             behind += pace * (speed - here.speed) / self.span - ds
             if turn > 0 and abs(behind) < 1e-9 and found.missing <= _CLOSED * ready.scale(found.start):
-                return self._proved(
-                    ready, states, speed, found, turn, predicted, (along, pace), by_speed @ lift(ready)
-                )
+                return self._proved(ready, states, speed, found, turn, predicted, (along, pace), by_speed @ lift(ready))
             if found.missing > 10.0 * before:
                 return None
             before = found.missing
@@ -226,12 +231,15 @@ class Branch:
             ready = self.ready(speed, ready)
         return None
 
-    def by_speed(self, ready: Problem, states: FloatArray, speed: float, found: Pass) -> FloatArray:
-        """Derivative of the misses by speed, the states held, shape (K, 2 N)."""
+    def by_speed(self, ready: Problem, states: FloatArray, speed: float, found: Pass, level: int) -> FloatArray:
+        """Derivative of the misses by speed, the states held, shape (K, 2 N).
+
+        The elements are those of what was found: others would err by another amount, and that over a tiny difference.
+        """
         change = _DIFFERENCE * self.span
         other = self.ready(speed + change, ready)
         start = below(other, states)
-        there = one_pass(other.part, other.contacts, other.elements(self.level), start, varied=False)
+        there = one_pass(other.part, other.contacts, other.elements(level), start, varied=False)
         return np.asarray((there.misses @ (lift(other).T @ lift(ready)) - found.misses) / change)
 
     def _proved(
@@ -248,9 +256,9 @@ class Branch:
         """A corrected point, where elements half as large agree; else finer ones from here on."""
         elements: Elements = ready.elements(self.level + 1)
         finer = one_pass(ready.part, ready.contacts, elements, found.starts, varied=False)
-        error = float(np.linalg.norm(finer.ends - found.ends, axis=1).sum()) / ready.scale(found.start)
+        error = float(np.linalg.norm(finer.ends - found.ends)) / ready.scale(found.start)
         if error > self.tolerance:
-            self.level += 1
+            self._raise()
             return None
         response = response_of(ready, found, self.level, error, corrections)
         missed = self.distance(states, predicted)
@@ -286,11 +294,3 @@ def _own(ready: Problem) -> FloatArray:
     """The reference's own response at the nodes among these states, shape (K, 2 N)."""
     still = np.zeros(len(ready.part.mean))
     return np.array([-ready.part.state(still, still, time) for time in ready.nodes])
-
-
-def _pieces(point: Point, ready: Problem) -> FloatArray:
-    """The pieces of a point's monodromy on the coordinates of another."""
-    if point.ready.part.basis is ready.part.basis:
-        return point.found.pieces
-    among = lift(ready).T @ lift(point.ready)
-    return np.asarray(among @ point.found.pieces @ among.T)

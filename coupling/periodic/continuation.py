@@ -13,7 +13,8 @@ Where that does not get on, the branch is followed along its own length s (Kelle
     [ A    r_p ] [Δx]     [ r                                 ]
     [ x'ᵀ  p'  ] [Δp] = - [ x'ᵀ (x - x₀) + p' (p - p₀) - ds ],     r = misses of all segments,
 
-which is regular at folds; A is cyclic in the segments, see :mod:`coupling.periodic.segments`. r_p is a finite difference.
+which is regular at folds; A is cyclic in the segments, see :mod:`coupling.periodic.segments`. r_p is a finite
+difference.
 
 - H. B. Keller, "Numerical solution of bifurcation and nonlinear eigenvalue problems", *Applications of Bifurcation
   Theory*, 1977.
@@ -96,7 +97,7 @@ class _Follower:
         level = self.branch.level
         there = self.branch.hold(among, self.speed(min(max(position, 0.0), 1.0)), self._within(here))
         if there is None:
-            if self.branch.level == level:
+            if self.branch.level <= level:
                 self._failed()
             return None
         missed = max(there.missed / self._motion(there), 1e-12)
@@ -113,7 +114,11 @@ class _Follower:
         self.failures += 1
         if self.failures == _FAILURES or self.stride < _SMALL * self.largest:
             here = self.recent[-1]
-            pace = abs(here.tangent[1])
+            try:
+                pace = abs(here.tangent[1])
+            except (PeriodicError, np.linalg.LinAlgError):
+                # Beside it is no motion, or it stands at a fold: shorter steps alone are left.
+                pace = 1.0
             self.turning, self.failures = True, 0
             self.ds = min(self.stride / max(pace, 1e-9), _FARTHEST * self._motion(here))
 
@@ -148,6 +153,7 @@ class _Follower:
     def _accept(self, there: Point, along: bool) -> bool:
         """A point of the branch, after what happens on the way there; whether the branch turned."""
         here = self.recent[-1]
+        self.branch.settle(there.response.error)
         forwards = np.sign(self.end - self.start)
         turned = False
         if along and there.towards is not None:
@@ -156,7 +162,7 @@ class _Follower:
             self.sense = sense
         event, between = self._event(here, there, turned, along)
         if event is not None and between is not None:
-            self.events.append(Bifurcation(len(self.speeds), event, between.speed))
+            self.events.append(Bifurcation(len(self.speeds), event, float(between.speed)))
             self.speeds.append(between.speed)
             self.responses.append(between.response)
         self.speeds.append(there.speed)
@@ -244,7 +250,7 @@ def response_curve(
     first: tuple[FloatArray, FloatArray] | PeriodicResponse | None = None,
     points: int = 100,
     most_points: int = 2000,
-    most_tries: int = 4000,
+    most_tries: int = 3000,
     periods: int = 1,
     tolerance: float = 1e-6,
     progress: Callable[[float], None] = lambda fraction: None,

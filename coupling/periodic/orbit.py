@@ -104,7 +104,9 @@ def event_times(system: CoupledSystem, nodes: FloatArray) -> FloatArray:
     The last node is the period. What is all but a node is it.
     """
     period = float(nodes[-1])
-    times: FloatArray = np.unique(np.concatenate([contact.event_times(0.0, period) for contact in system.contacts] + [[]]))
+    times: FloatArray = np.unique(
+        np.concatenate([contact.event_times(0.0, period) for contact in system.contacts] + [[]])
+    )
     after = np.clip(np.searchsorted(nodes, times), 1, len(nodes) - 1)
     apart = np.minimum(np.abs(times - nodes[after - 1]), np.abs(times - nodes[after]))
     times = times[apart > _SAME_TIME * period]
@@ -160,24 +162,35 @@ def one_pass(
     starts, ends = np.empty((count, size)), np.empty((count, size))
     pieces = np.empty((count, size, size if varied else 0))
     trace = empty_trace(len(elements.starts) + _ROOM_FOR_CUTS, m, ORDER, c)
-    columns = np.zeros((2 * modes, size if varied else 0))
+    columns, begun = np.zeros((2 * modes, size if varied else 0)), np.empty((2 * modes, size if varied else 0))
+    if varied:
+        begun[0::2], begun[1::2] = part.left.real, part.left.imag
     work, rows = element_work(m, ORDER, c, columns.shape[1]), real_rows(part.right)
     length = switches = 0
     for k in range(count):
         starts[k] = start[k] if start.ndim == 2 else start if k == 0 else ends[k - 1]
         here = slice(elements.nodes[k], elements.nodes[k + 1])
         z = part.amplitudes_of(starts[k], elements.starts[here.start])
-        if varied:
-            columns[0::2], columns[1::2] = part.left.real, part.left.imag
-        rest = Trace._make(values[length:] for values in trace)
-        times, sizes, slots = elements.starts[here], elements.sizes[here], elements.slots[here]
+        columns[:] = begun
         held, cuts, wrong = march(
-            part.reference, contacts, elements.steps, times, sizes, slots, z, columns, modes, rest, work
+            part.reference,
+            contacts,
+            elements.steps,
+            elements.starts[here],
+            elements.sizes[here],
+            elements.slots[here],
+            z,
+            columns,
+            modes,
+            trace,
+            length,
+            work,
         )
         _require_marched(wrong)
         ends[k] = rows @ z[: 2 * modes]
-        pieces[k] = rows @ columns
-        length += int(held)
+        if varied:
+            np.matmul(rows, columns, out=pieces[k])
+        length = int(held)
         switches += int(cuts)
     if not np.all(np.isfinite(ends)):
         raise PeriodicError("the motion grew beyond all bounds within a period; look for unstable coupled modes")

@@ -153,7 +153,9 @@ class PeriodicResponse:
     def at_nodes(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Displacements and rates at as many even times from t = 0 on, shape (count, n) each."""
         amplitudes = self._amplitudes(self.period * np.arange(count) / count)
-        q, v = (amplitudes @ rows.T @ self.recovery.T for rows in (self.part.displacement_rows, self.part.velocity_rows))
+        q, v = (
+            amplitudes @ rows.T @ self.recovery.T for rows in (self.part.displacement_rows, self.part.velocity_rows)
+        )
         return q, v
 
     def _mean(self, values: FloatArray) -> FloatArray:

@@ -1,8 +1,8 @@
 r"""Newton's correction of a motion that is cut into segments: condensed to the state at its start.
 
 A period of many mesh periods is marched segment by segment, each from a state of its own (multiple shooting). With
-the pieces A_k = ∂(end of segment k) / ∂(its start) and the misses r_k = end of k - start of k + 1, the corrections d_k of
-the starts and a change p of the speed have
+the pieces A_k = ∂(end of segment k) / ∂(its start) and the misses r_k = end of k - start of k + 1, the corrections d_k
+of the starts and a change p of the speed have
 
     d_{k+1} = A_k d_k + r_k + s_k p,        d_K = d_0,
 
@@ -37,9 +37,7 @@ def carried(pieces: FloatArray, first: FloatArray, sources: FloatArray) -> Float
     return found
 
 
-def correction(
-    pieces: FloatArray, misses: FloatArray, monodromy: FloatArray, *, least: bool = False
-) -> FloatArray:
+def correction(pieces: FloatArray, misses: FloatArray, monodromy: FloatArray, *, least: bool = False) -> FloatArray:
     """What closes a motion at its speed, to the first order, shape (K, 2 N).
 
     The least one where a multiplier is 1, if so asked for; else

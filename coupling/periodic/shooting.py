@@ -7,7 +7,9 @@ included, Newton's step solves
     (M - I) Δ = x(0) - x(T).
 
 A period of many mesh periods is marched in segments, each from a state of its own, and all of them are corrected
-at once; see :mod:`coupling.periodic.segments`. While the same teeth touch the machine is linear with coefficients that vary in time, and one step is enough. Unstable
+at once; see :mod:`coupling.periodic.segments`.
+
+While the same teeth touch the machine is linear with coefficients that vary in time, and one step is enough. Unstable
 motions are found as well as stable ones.
 """
 

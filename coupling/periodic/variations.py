@@ -9,6 +9,7 @@ import numpy.typing as npt
 from coupling.contact_kernels import DAMPING, FORCE, TOUCHING
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
+from coupling.periodic.collocation import ORDER
 from coupling.periodic.element import law
 from coupling.periodic.element_work import Work
 from coupling.small_systems import solve_in_place
@@ -19,27 +20,65 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 @uncounted()
-def felt_by(steps: Steps, slot: int, row: int, columns: FloatArray, work: Work) -> None:
-    """What the disturbances make of one excess force, if the other forces stayed as they are."""
+def felt_by(steps: Steps, slot: int, columns: FloatArray, active: int, work: Work) -> None:
+    """What the disturbances make of the excess forces that they change, if the other forces stayed as they are."""
     count, p, n = columns.shape[0], columns.shape[1], work.excess.size
-    right, x, v = work.columns, work.slope[row], work.rate_slope[row]
-    for k in range(p):
-        right[row, k] = 0.0
-    # Four rows of them at a time: the sum is read and written less often. They are two to an amplitude.
+    right = work.columns
+    # Four rows of them at a time: they are read once, and the sums read and written less often.
     i = 0
-    while i + 4 <= count:
-        a = x * steps.felt[slot, i, row] + v * steps.felt[slot, i, n + row]
-        b = x * steps.felt[slot, i + 1, row] + v * steps.felt[slot, i + 1, n + row]
-        c = x * steps.felt[slot, i + 2, row] + v * steps.felt[slot, i + 2, n + row]
-        d = x * steps.felt[slot, i + 3, row] + v * steps.felt[slot, i + 3, n + row]
-        for k in range(p):
-            right[row, k] += a * columns[i, k] + b * columns[i + 1, k] + c * columns[i + 2, k] + d * columns[i + 3, k]
-        i += 4
     while i < count:
-        a = x * steps.felt[slot, i, row] + v * steps.felt[slot, i, n + row]
-        for k in range(p):
-            right[row, k] += a * columns[i, k]
-        i += 1
+        many = i + 4 <= count
+        for j in range(active):
+            row = work.active[j]
+            x, v = work.slope[row], work.rate_slope[row]
+            a = x * steps.felt[slot, i, row] + v * steps.felt[slot, i, n + row]
+            if not many:
+                for k in range(p):
+                    right[row, k] += a * columns[i, k]
+                continue
+            b = x * steps.felt[slot, i + 1, row] + v * steps.felt[slot, i + 1, n + row]
+            c = x * steps.felt[slot, i + 2, row] + v * steps.felt[slot, i + 2, n + row]
+            d = x * steps.felt[slot, i + 3, row] + v * steps.felt[slot, i + 3, n + row]
+            for k in range(p):
+                right[row, k] += (
+                    a * columns[i, k] + b * columns[i + 1, k] + c * columns[i + 2, k] + d * columns[i + 3, k]
+                )
+        i += 4 if many else 1
+
+
+@uncounted()
+def send(source: FloatArray, end: int, row: int, columns: FloatArray, work: Work) -> None:
+    """Take what one excess force sends to the end off the disturbances there."""
+    for i in range(columns.shape[0]):
+        a = source[end, row, i]
+        for k in range(columns.shape[1]):
+            columns[i, k] -= a * work.columns[row, k]
+
+
+@uncounted()
+def decay_and_send(
+    decay: ComplexArray, source: FloatArray, end: int, columns: FloatArray, active: int, work: Work
+) -> None:
+    """Disturbances at the end from those at the start and the excess forces, as many as one contact has at once."""
+    right, rows = work.columns, work.active
+    q, r, s, t, u = rows[0], rows[1], rows[2], rows[3], rows[4]
+    for m in range(columns.shape[0] // 2):
+        x, y, i, j = decay[end, m].real, decay[end, m].imag, 2 * m, 2 * m + 1
+        if active < ORDER:
+            for k in range(columns.shape[1]):
+                one, two = columns[i, k], columns[j, k]
+                columns[i, k], columns[j, k] = x * one - y * two, x * two + y * one
+            continue
+        a, b, c, d, e = source[end, q, i], source[end, r, i], source[end, s, i], source[end, t, i], source[end, u, i]
+        f, g, h, v, w = source[end, q, j], source[end, r, j], source[end, s, j], source[end, t, j], source[end, u, j]
+        for k in range(columns.shape[1]):
+            one, two = columns[i, k], columns[j, k]
+            sent = a * right[q, k] + b * right[r, k] + c * right[s, k] + d * right[t, k] + e * right[u, k]
+            felt = f * right[q, k] + g * right[r, k] + h * right[s, k] + v * right[t, k] + w * right[u, k]
+            columns[i, k] = x * one - y * two - sent
+            columns[j, k] = x * two + y * one - felt
+    for k in range(ORDER if active >= ORDER else 0, active):
+        send(source, end, rows[k], columns, work)
 
 
 @uncounted()
@@ -47,9 +86,8 @@ def vary(
     steps: Steps, slot: int, decay: ComplexArray, source: FloatArray, end: int, columns: FloatArray, work: Work
 ) -> None:
     """Carry the disturbances over an element of a slot's size, with the matrices ``end`` to where it ends."""
-    count, p = columns.shape[0], columns.shape[1]
     n = work.excess.size
-    matrix, right, moved = work.matrix, work.columns, work.moved
+    matrix, right = work.matrix, work.columns
     active = 0
     for row in range(n):
         x, v = work.slope[row], work.rate_slope[row]
@@ -58,43 +96,15 @@ def vary(
                 x * steps.flexibility[slot, row, column] + v * steps.flexibility[slot, n + row, column]
             )
         matrix[row, row] += 1.0
+        for k in range(columns.shape[1]):
+            right[row, k] = 0.0
         # Flanks that are apart, in the reference too, have no slope: no disturbance changes their force.
-        if x == 0.0 and v == 0.0:
-            for k in range(p):
-                right[row, k] = 0.0
-            continue
-        work.active[active] = row
-        active += 1
-        felt_by(steps, slot, row, columns, work)
+        if x != 0.0 or v != 0.0:
+            work.active[active] = row
+            active += 1
+    felt_by(steps, slot, columns, active, work)
     solve_in_place(matrix, right)
-    for m in range(count // 2):
-        x, y = decay[end, m].real, decay[end, m].imag
-        for k in range(p):
-            moved[k] = columns[2 * m, k]
-        for k in range(p):
-            columns[2 * m, k] = x * moved[k] - y * columns[2 * m + 1, k]
-        for k in range(p):
-            columns[2 * m + 1, k] = x * columns[2 * m + 1, k] + y * moved[k]
-    for i in range(count):
-        j = 0
-        while j + 5 <= active:
-            q, r, s, t, u = (
-                work.active[j],
-                work.active[j + 1],
-                work.active[j + 2],
-                work.active[j + 3],
-                work.active[j + 4],
-            )
-            a, b, c, d, e = source[end, q, i], source[end, r, i], source[end, s, i], source[end, t, i], source[end, u, i]
-            for k in range(p):
-                columns[i, k] -= a * right[q, k] + b * right[r, k] + c * right[s, k] + d * right[t, k] + e * right[u, k]
-            j += 5
-        while j < active:
-            q = work.active[j]
-            a = source[end, q, i]
-            for k in range(p):
-                columns[i, k] -= a * right[q, k]
-            j += 1
+    decay_and_send(decay, source, end, columns, active, work)
 
 
 @uncounted()

@@ -64,6 +64,8 @@ def _show_curve(console: Console, curve: dict[str, Any]) -> None:
         f"Followed from {speeds[0]:.0f} to {speeds[-1]:.0f} rpm in {counted(len(speeds), 'point')}, "
         f"{unstable} of them unstable"
     )
+    if curve["ending"] != "end":
+        console.print(f"[yellow]Left before the end of the range:[/yellow] {curve['account']}", highlight=False)
     for pair in curve["gear_pairs"]:
         worst = max(range(len(speeds)), key=pair["peak_force_n"].__getitem__)
         console.print(
