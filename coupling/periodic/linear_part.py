@@ -87,11 +87,10 @@ class LinearPart:
         half = len(state) // 2
         return q + self.basis @ state[:half], v + self.rate_unit * (self.basis @ state[half:])
 
-    def amplitudes_of(self, state: FloatArray, time: float = 0.0) -> FloatArray:
-        """A state as the kernels march it, with what rides along, shape (2 M,)."""
-        reference = self.reference
-        own = np.exp(reference.eigenvalue[len(self.eigenvalues) :] * time)
-        return np.concatenate([self.left @ state, own]).view(np.float64)
+    def amplitudes_of(self, state: FloatArray, time: float | FloatArray = 0.0) -> FloatArray:
+        """A state as the kernels march it, with what rides along, shape (2 M,); or (K, 2 M) of states at K times."""
+        own = np.exp(np.multiply.outer(time, self.reference.eigenvalue[len(self.eigenvalues) :]))
+        return np.concatenate([state @ self.left.T, own], axis=-1).view(np.float64)
 
     @cached_property
     def displacement_rows(self) -> FloatArray:

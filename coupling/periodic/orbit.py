@@ -18,7 +18,7 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROOM_FOR_CUTS = 400
+_ROOM_FOR_CUTS = 400  # at least; as many as there are elements, if these are more
 _PER_CYCLE = 4  # coarsest elements in a mesh period or in the shortest cycle of a load
 _SAME_TIME = 1e-9  # part of the period within which two events are one
 _SAME_SIZE = 1e-11  # parts of the largest element by which elements of one size may differ
@@ -161,16 +161,19 @@ def one_pass(
     size = start.shape[-1]
     starts, ends = np.empty((count, size)), np.empty((count, size))
     pieces = np.empty((count, size, size if varied else 0))
-    trace = empty_trace(len(elements.starts) + _ROOM_FOR_CUTS, m, ORDER, c)
+    room = max(_ROOM_FOR_CUTS, len(elements.starts))
+    trace = empty_trace(len(elements.starts) + room, m, ORDER, c)
     columns, begun = np.zeros((2 * modes, size if varied else 0)), np.empty((2 * modes, size if varied else 0))
     if varied:
         begun[0::2], begun[1::2] = part.left.real, part.left.imag
     work, rows = element_work(m, ORDER, c, columns.shape[1]), real_rows(part.right)
     length = switches = 0
+    times = elements.starts[elements.nodes[:-1]]
+    amplitudes = part.amplitudes_of(start, times) if start.ndim == 2 else None
     for k in range(count):
         starts[k] = start[k] if start.ndim == 2 else start if k == 0 else ends[k - 1]
         here = slice(elements.nodes[k], elements.nodes[k + 1])
-        z = part.amplitudes_of(starts[k], elements.starts[here.start])
+        z = part.amplitudes_of(starts[k], float(times[k])) if amplitudes is None else amplitudes[k]
         columns[:] = begun
         held, cuts, wrong = march(
             part.reference,
@@ -186,7 +189,8 @@ def one_pass(
             length,
             work,
         )
-        _require_marched(wrong)
+        if wrong:
+            _refuse(wrong, room)
         ends[k] = rows @ z[: 2 * modes]
         if varied:
             np.matmul(rows, columns, out=pieces[k])
@@ -199,12 +203,12 @@ def one_pass(
     return Pass(starts, ends, pieces, kept, switches)
 
 
-def _require_marched(wrong: int) -> None:
+def _refuse(wrong: int, room: int) -> None:
     from coupling.periodic.kernels import NO_BALANCE, NO_ROOM
 
     if wrong == NO_BALANCE:
         raise PeriodicError("the teeth's forces do not balance within an element of time; expected a law that grows")
-    if wrong == NO_ROOM:
-        raise PeriodicError(
-            f"more than {_ROOM_FOR_CUTS} changes of contact in a period: the flanks chatter; give the mesh some damping"
-        )
+    assert wrong == NO_ROOM
+    raise PeriodicError(
+        f"more than {room} changes of contact in a period: the flanks chatter; give the mesh some damping"
+    )
