@@ -27,7 +27,7 @@ def show_steady(document: dict[str, Any]) -> None:
     for number, motion in enumerate(motions, start=1):
         _show_motion(console, motion, f"Motion {number}: " if len(motions) > 1 else "")
     if curve := document.get("curve"):
-        _show_curve(console, curve)
+        show_curve(console, curve)
     show_origin(console, document)
     show_written(console, document)
 
@@ -57,7 +57,8 @@ def _show_motion(console: Console, motion: dict[str, Any], name: str) -> None:
         console.print(table)
 
 
-def _show_curve(console: Console, curve: dict[str, Any]) -> None:
+def show_curve(console: Console, curve: dict[str, Any]) -> None:
+    """The branch over speed: how far it was followed, the largest forces, what happens along it."""
     speeds = curve["speed_rpm"]
     unstable = sum(not stable for stable in curve["stable"])
     console.print(

@@ -7,7 +7,7 @@ import pytest
 from coupling import Component, ContactConnector, CoupledSystem, CouplingError, PeriodicError
 from coupling.gears import ToothContact, piecewise
 from coupling.periodic import periodic_response, response_curve
-from coupling.periodic.branch import interpolation
+from coupling.periodic.branch import Branch, interpolation
 from coupling.periodic.orbit import one_pass
 from coupling.periodic.segments import bordered_correction, correction, product
 from coupling.periodic.shooting import problem
@@ -113,6 +113,25 @@ def test_an_unstable_motion_of_many_mesh_periods_is_followed() -> None:
     assert middle.residual < 1e-9
     assert middle.rms_compression[0] == pytest.approx(alone.rms_compression[0], rel=1e-3)
     assert max(response.residual for response in often.responses) < 1e-9
+
+
+def test_the_tangent_is_the_difference_of_neighbours_whatever_the_elements_are_now() -> None:
+    """Misses of other elements differ by more than a tiny change of the speed makes them."""
+    speed, reach = 0.7, 1e-4
+    branch = Branch(runout, 1, 0.3, 1, 1e-6, 1.0)
+    point = branch.first(periodic_response(runout(speed)), speed)
+    branch.level = 0
+    states, pace = point.tangent
+    sides = [branch_states(speed + sign * reach) for sign in (1.0, -1.0)]
+    slope = (sides[0] - sides[1]) / (2.0 * reach)
+    np.testing.assert_allclose(states / (0.3 * pace), slope, atol=1e-4 * np.abs(slope).max())
+
+
+def branch_states(speed: float) -> FloatArray:
+    """At all nodes, rates in the mesh's."""
+    response = periodic_response(runout(speed))
+    q, v = response.at_nodes(CYCLES)
+    return np.concatenate([q, v / speed], axis=1)
 
 
 def test_a_motion_starts_from_all_nodes_or_one() -> None:
