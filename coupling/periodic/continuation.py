@@ -210,7 +210,8 @@ class _Follower:
         forwards = 1.0
         if turned and here.towards is None:
             forwards = float(np.sign(here.tangent[1] * -there.tangent[1]))
-        low, high = 0.0, self.ds if along else 1.0
+        whole = self.ds if along else 1.0
+        low, high = 0.0, whole
         at_low, at_high = forwards * test(here) if turned else test(here), test(there)
         best = there
         if at_low * at_high < 0.0:
@@ -228,7 +229,7 @@ class _Follower:
                 if point is None:
                     break
                 best, value = point, test(point)
-                if value == 0.0 or high - low <= _LOCATED * self.ds or abs(value) < 1e-8:
+                if value == 0.0 or high - low <= _LOCATED * whole or abs(value) < 1e-8:
                     break
                 if value * at_low < 0.0:
                     high, at_high = middle, value
