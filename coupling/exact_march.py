@@ -210,7 +210,7 @@ class ExactRun(MarchRun):
         slots = sizes.slots(length)
         none, work = np.zeros((2 * modes, 0)), element_work(m, ORDER, c)
         count, _, wrong = march(
-            reference, self.arrays.contacts, self._steps, starts, length, slots, end, none, modes, trace, work
+            reference, self.arrays.contacts, self._steps, starts, length, slots, end, none, modes, trace, 0, work
         )
         where = f"after t = {trace.start[max(int(count) - 1, 0)]:.6g} s"
         if wrong == NO_BALANCE:

@@ -51,7 +51,8 @@ def _branch(solved: SolvedSteady, sensors: list[str], variables: Variables, coor
     curve = solved.curve
     assert curve is not None
     point = "branch_point"
-    variables["branch_speed"] = (point, curve.speeds * _RPM, _unit("rpm", "speed of the first driver"))
+    told = {"ending": curve.ending, "account": curve.told(1.0 / _RPM, "rpm")}
+    variables["branch_speed"] = (point, curve.speeds * _RPM, _unit("rpm", "speed of the first driver") | told)
     variables["branch_stable"] = (point, curve.stable, {"long_name": "whether no small disturbance grows"})
     contacts = [contact.name for contact in solved.machine.system.contacts]
     if contacts:

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.int64]
 
 
 class Work(NamedTuple):
@@ -33,6 +34,7 @@ class Work(NamedTuple):
     coefficient: FloatArray  # (s, c) of the excess as a power series
     columns: FloatArray  # (n, p) of disturbances
     moved: FloatArray  # (p,)
+    active: IntArray  # (n,), or (s,) if more, rows of forces that disturbances change
 
 
 def element_work(m: int, s: int, c: int, p: int = 0) -> Work:
@@ -60,4 +62,5 @@ def element_work(m: int, s: int, c: int, p: int = 0) -> Work:
         coefficient=np.zeros((s, c)),
         columns=np.zeros((n, p)),
         moved=np.zeros(p),
+        active=np.zeros(max(n, s), dtype=np.int64),
     )

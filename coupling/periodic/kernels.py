@@ -120,14 +120,16 @@ def march(
     columns: FloatArray,
     modes: int,
     trace: Trace,
+    held: int,
     work: Work,
 ) -> tuple[int, int, int]:
     """Carry the amplitudes z and their disturbances through elements, each of a slot's size or, at -1, of any.
 
-    Returns how many elements the trace holds, how many cuts there were, and 0, ``NO_BALANCE`` or ``NO_ROOM``.
+    The trace holds ``held`` of them already. Returns how many it holds then, how many cuts there were, and 0,
+    ``NO_BALANCE`` or ``NO_ROOM``.
     """
     c = reference.stiffness.size
-    count, cuts = 0, 0
+    count, cuts = held, 0
     for element in range(starts.size):
         time, left = starts[element], sizes[element]
         whole, cuts_here = left, 0

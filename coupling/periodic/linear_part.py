@@ -87,11 +87,10 @@ class LinearPart:
         half = len(state) // 2
         return q + self.basis @ state[:half], v + self.rate_unit * (self.basis @ state[half:])
 
-    def amplitudes_of(self, state: FloatArray, time: float = 0.0) -> FloatArray:
-        """A state as the kernels march it, with what rides along, shape (2 M,)."""
-        reference = self.reference
-        own = np.exp(reference.eigenvalue[len(self.eigenvalues) :] * time)
-        return np.concatenate([self.left @ state, own]).view(np.float64)
+    def amplitudes_of(self, state: FloatArray, time: float | FloatArray = 0.0) -> FloatArray:
+        """A state as the kernels march it, with what rides along, shape (2 M,); or (K, 2 M) of states at K times."""
+        own = np.exp(np.multiply.outer(time, self.reference.eigenvalue[len(self.eigenvalues) :]))
+        return np.concatenate([state @ self.left.T, own], axis=-1).view(np.float64)
 
     @cached_property
     def displacement_rows(self) -> FloatArray:
@@ -158,7 +157,8 @@ def linear_part(
     rate_unit : float
         See :class:`LinearPart`.
     like : LinearPart, optional
-        Of the same machine at another speed: its eigenvectors serve again where its matrices are the same.
+        Of the same machine at another speed: its basis serves again where nothing resists the same motions, its
+        eigenvectors where its matrices are the same.
     repeats : bool
         Whether the motion is to repeat, and the loads on what nothing resists to balance. They have no part in
         the reference in either case.
@@ -176,7 +176,10 @@ def linear_part(
     stiffness = system.stiffness + (directions * k_mean) @ directions.T
     damping = system.damping + (directions * c_mean) @ directions.T
     same = like is not None and all(map(np.array_equal, like.matrices, (stiffness, damping)))
-    basis, rigid = (like.basis, like.rigid) if like is not None and same else _split(stiffness, damping, directions)
+    if like is not None and (same or _splits(like, stiffness, damping, directions)):
+        basis, rigid = like.basis, like.rigid
+    else:
+        basis, rigid = _split(stiffness, damping, directions)
 
     constant = system.load + directions @ (k_mean * [contact.clearance for contact in system.contacts])
     harmonics: dict[float, ComplexArray] = {}
@@ -237,6 +240,16 @@ def _split(stiffness: FloatArray, damping: FloatArray, directions: FloatArray) -
     # Soft motions are far above: a stiffness is the square of a frequency.
     free = values < _RIGID * values[0]
     return np.ascontiguousarray(rows[~free].T), np.ascontiguousarray(rows[free].T)
+
+
+def _splits(like: LinearPart, stiffness: FloatArray, damping: FloatArray, directions: FloatArray) -> bool:
+    """Whether what nothing resists at another speed is so here too; what is more shows in the stiffness of the rest."""
+    if like.rigid.shape[0] != len(stiffness):
+        return False
+    for part in (stiffness, stiffness.T, damping, damping.T, directions.T):
+        if np.abs(part @ like.rigid).max(initial=0.0) > _RIGID * np.abs(part).max(initial=0.0):
+            return False
+    return True
 
 
 def _eigenvectors(

@@ -1,6 +1,8 @@
-"""One pass over the period: from a state at t = 0 to that at its end, with the monodromy on the way."""
+"""One pass over the period: from the states at the starts of its segments to those at their ends, and the pieces of the
+monodromy on the way."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -11,11 +13,12 @@ from coupling.periodic.arrays import Steps, Trace, empty_steps, empty_trace, fir
 from coupling.periodic.collocation import ORDER
 from coupling.periodic.element_work import element_work
 from coupling.periodic.linear_part import LinearPart, real_rows
+from coupling.periodic.segments import product
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROOM_FOR_CUTS = 400
+_ROOM_FOR_CUTS = 400  # at least; as many as there are elements, if these are more
 _PER_CYCLE = 4  # coarsest elements in a mesh period or in the shortest cycle of a load
 _SAME_TIME = 1e-9  # part of the period within which two events are one
 _SAME_SIZE = 1e-11  # parts of the largest element by which elements of one size may differ
@@ -36,51 +39,79 @@ class Elements:
     slots : ndarray of int, shape (e,)
         Which size each has.
     steps : Steps
+    nodes : ndarray of int, shape (K + 1,)
+        The first element of each segment; e.
     """
 
     starts: FloatArray
     sizes: FloatArray
     slots: npt.NDArray[np.int64]
     steps: Steps
+    nodes: npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
 class Pass:
-    """A period of motion from some state.
+    """A period of motion, segment by segment.
 
     Attributes
     ----------
-    start, end : ndarray, shape (2 N,)
+    starts, ends : ndarray, shape (K, 2 N)
         States, see :class:`coupling.periodic.linear_part.LinearPart`.
-    monodromy : ndarray, shape (2 N, 2 N)
-        Of the end by the start; without columns where it was not asked for.
+    pieces : ndarray, shape (K, 2 N, 2 N)
+        Of each end by its start; without columns where they were not asked for.
     trace : Trace
         Cut to the elements that it holds.
     switches : int
         How often a contact changed its branch.
     """
 
-    start: FloatArray
-    end: FloatArray
-    monodromy: FloatArray
+    starts: FloatArray
+    ends: FloatArray
+    pieces: FloatArray
     trace: Trace
     switches: int
 
     @property
-    def closure(self) -> FloatArray:
-        """By which the end misses the start, shape (2 N,)."""
-        return self.end - self.start
+    def start(self) -> FloatArray:
+        """At t = 0, shape (2 N,)."""
+        return np.asarray(self.starts[0])
+
+    @property
+    def end(self) -> FloatArray:
+        """After the period, shape (2 N,)."""
+        return np.asarray(self.ends[-1])
+
+    @cached_property
+    def monodromy(self) -> FloatArray:
+        """Of the end by the start, shape (2 N, 2 N)."""
+        return product(self.pieces)
+
+    @cached_property
+    def misses(self) -> FloatArray:
+        """By which each end misses the next start, the last the first, shape (K, 2 N)."""
+        return self.ends - np.roll(self.starts, -1, axis=0)
+
+    @property
+    def missing(self) -> float:
+        """Norm of all of them."""
+        return float(np.linalg.norm(self.misses))
 
 
-def event_times(system: CoupledSystem, period: float) -> FloatArray:
-    """0, every time at which a pair of teeth comes or goes or a relief begins, and the period [s]."""
-    inner = [contact.event_times(0.0, period) for contact in system.contacts]
-    times: FloatArray = np.unique(np.concatenate([[0.0, period], *inner]))
-    times = times[np.concatenate([[True], np.diff(times) > _SAME_TIME * period])]
-    if period - times[-2] <= _SAME_TIME * period and len(times) > 2:
-        times = np.delete(times, -2)
-    times[-1] = period
-    return times
+def event_times(system: CoupledSystem, nodes: FloatArray) -> FloatArray:
+    """Every time at which a pair of teeth comes or goes or a relief begins, and the nodes [s].
+
+    The last node is the period. What is all but a node is it.
+    """
+    period = float(nodes[-1])
+    times: FloatArray = np.unique(
+        np.concatenate([contact.event_times(0.0, period) for contact in system.contacts] + [[]])
+    )
+    after = np.clip(np.searchsorted(nodes, times), 1, len(nodes) - 1)
+    apart = np.minimum(np.abs(times - nodes[after - 1]), np.abs(times - nodes[after]))
+    times = times[apart > _SAME_TIME * period]
+    times = times[np.diff(times, prepend=-period) > _SAME_TIME * period]
+    return np.sort(np.concatenate([nodes, times]))
 
 
 def coarsest_element(system: CoupledSystem, period: float) -> float:
@@ -90,9 +121,11 @@ def coarsest_element(system: CoupledSystem, period: float) -> float:
     return min(period, 1.0 / max([*rates, 1.0 / period])) / _PER_CYCLE
 
 
-def cut_period(part: LinearPart, period: float, largest: float) -> Elements:
-    """Elements no larger than a size [s]."""
-    bounds = event_times(part.system, period)
+def cut_period(part: LinearPart, period: float, largest: float, segments: int = 1) -> Elements:
+    """Elements no larger than a size [s], in as many segments of equal length."""
+    marks = period * np.arange(segments + 1) / segments
+    marks[-1] = period
+    bounds = event_times(part.system, marks)
     lengths = np.diff(bounds)
     counts = np.maximum(np.ceil(lengths / largest - 1e-9), 1.0).astype(np.int64)
     size = np.repeat(lengths / counts, counts)
@@ -100,7 +133,8 @@ def cut_period(part: LinearPart, period: float, largest: float) -> Elements:
     # What rounding alone holds apart is one size.
     _, first, slots = np.unique(np.rint(size / (_SAME_SIZE * largest)), return_index=True, return_inverse=True)
     steps = element_sizes(part, size[first], float(size.max()))
-    return Elements(np.repeat(bounds[:-1], counts) + within * size, size, slots.astype(np.int64), steps)
+    nodes = np.concatenate([[0], np.cumsum(counts)])[np.searchsorted(bounds, marks)]
+    return Elements(np.repeat(bounds[:-1], counts) + within * size, size, slots.astype(np.int64), steps, nodes)
 
 
 def element_sizes(part: LinearPart, values: FloatArray, largest: float, *, inner: bool = False) -> Steps:
@@ -113,45 +147,68 @@ def element_sizes(part: LinearPart, values: FloatArray, largest: float, *, inner
 def one_pass(
     part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, *, varied: bool = True
 ) -> Pass:
-    """March from a state through the period.
+    """March through the period from a state at t = 0, shape (2 N,), or each segment from its own, shape (K, 2 N).
 
     Raises
     ------
     PeriodicError
         Where the teeth's forces are not found, or their contact chatters without end.
     """
-    from coupling.periodic.kernels import NO_BALANCE, NO_ROOM, march
+    from coupling.periodic.kernels import march
 
-    z = part.amplitudes_of(start)
-    modes = len(part.eigenvalues)
-    columns = np.zeros((2 * modes, len(start) if varied else 0))
-    if varied:
-        columns[0::2], columns[1::2] = part.left.real, part.left.imag
+    modes, count = len(part.eigenvalues), len(elements.nodes) - 1
     m, c = part.reference.eigenvalue.size, len(part.system.contacts)
-    trace = empty_trace(len(elements.starts) + _ROOM_FOR_CUTS, m, ORDER, c)
-    count, cuts, wrong = march(
-        part.reference,
-        contacts,
-        elements.steps,
-        elements.starts,
-        elements.sizes,
-        elements.slots,
-        z,
-        columns,
-        modes,
-        trace,
-        element_work(m, ORDER, c, columns.shape[1]),
-    )
-    if wrong == NO_BALANCE:
-        raise PeriodicError("the teeth's forces do not balance within an element of time; expected a law that grows")
-    if wrong == NO_ROOM:
-        raise PeriodicError(
-            f"more than {_ROOM_FOR_CUTS} changes of contact in a period: the flanks chatter; give the mesh some damping"
+    size = start.shape[-1]
+    starts, ends = np.empty((count, size)), np.empty((count, size))
+    pieces = np.empty((count, size, size if varied else 0))
+    room = max(_ROOM_FOR_CUTS, len(elements.starts))
+    trace = empty_trace(len(elements.starts) + room, m, ORDER, c)
+    columns, begun = np.zeros((2 * modes, size if varied else 0)), np.empty((2 * modes, size if varied else 0))
+    if varied:
+        begun[0::2], begun[1::2] = part.left.real, part.left.imag
+    work, rows = element_work(m, ORDER, c, columns.shape[1]), real_rows(part.right)
+    length = switches = 0
+    times = elements.starts[elements.nodes[:-1]]
+    amplitudes = part.amplitudes_of(start, times) if start.ndim == 2 else None
+    for k in range(count):
+        starts[k] = start[k] if start.ndim == 2 else start if k == 0 else ends[k - 1]
+        here = slice(elements.nodes[k], elements.nodes[k + 1])
+        z = part.amplitudes_of(starts[k], float(times[k])) if amplitudes is None else amplitudes[k]
+        columns[:] = begun
+        held, cuts, wrong = march(
+            part.reference,
+            contacts,
+            elements.steps,
+            elements.starts[here],
+            elements.sizes[here],
+            elements.slots[here],
+            z,
+            columns,
+            modes,
+            trace,
+            length,
+            work,
         )
-    rows = real_rows(part.right)
-    end = rows @ z[: 2 * modes]
-    if not np.all(np.isfinite(end)):
+        if wrong:
+            _refuse(wrong, room)
+        ends[k] = rows @ z[: 2 * modes]
+        if varied:
+            np.matmul(rows, columns, out=pieces[k])
+        length = int(held)
+        switches += int(cuts)
+    if not np.all(np.isfinite(ends)):
         raise PeriodicError("the motion grew beyond all bounds within a period; look for unstable coupled modes")
     # What is kept has no room to spare.
-    kept = Trace._make(part.copy() for part in first_elements(trace, int(count)))
-    return Pass(start, end, rows @ columns, kept, int(cuts))
+    kept = Trace._make(values.copy() for values in first_elements(trace, length))
+    return Pass(starts, ends, pieces, kept, switches)
+
+
+def _refuse(wrong: int, room: int) -> None:
+    from coupling.periodic.kernels import NO_BALANCE, NO_ROOM
+
+    if wrong == NO_BALANCE:
+        raise PeriodicError("the teeth's forces do not balance within an element of time; expected a law that grows")
+    assert wrong == NO_ROOM
+    raise PeriodicError(
+        f"more than {room} changes of contact in a period: the flanks chatter; give the mesh some damping"
+    )

@@ -59,7 +59,8 @@ class PeriodicResponse:
     floquet : FloquetMultipliers
         Stability.
     residual : float
-        By which the state after the period misses that at its start, relative to the motion.
+        By which the state after the period misses that at its start, relative to the motion; and the state after each
+        of its segments that at the start of the next.
     error : float
         By which the last halving of the elements changed state or monodromy, relative; elements as they are now err
         by much less.
@@ -148,6 +149,14 @@ class PeriodicResponse:
             compression=compression,
             force=force,
         )
+
+    def at_nodes(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """Displacements and rates at as many even times from t = 0 on, shape (count, n) each."""
+        amplitudes = self._amplitudes(self.period * np.arange(count) / count)
+        q, v = (
+            amplitudes @ rows.T @ self.recovery.T for rows in (self.part.displacement_rows, self.part.velocity_rows)
+        )
+        return q, v
 
     def _mean(self, values: FloatArray) -> FloatArray:
         weights = weights_to(self.trace.part) * (self.trace.size / self.trace.part)[:, None]

@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.shooting import periodic_response
+from coupling.periodic.shooting import periodic_response, problem
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
+Ending = Literal["end", "start", "lost", "points", "tries"]
 Event = Literal["fold", "period doubling", "Neimark-Sacker", "branch point"]
 
 
@@ -47,6 +48,11 @@ class ResponseCurve:
         In the unit that ``system_at`` takes.
     responses : tuple of PeriodicResponse
     bifurcations : tuple of Bifurcation
+    ending : str
+        ``end`` where the branch came to the speed it was followed to, ``start`` where it came back to where it began;
+        ``lost`` where no next point was found, ``points`` and ``tries`` where it was left after as many as allowed.
+    aim : float
+        The speed it was followed to.
     """
 
     speeds: FloatArray
@@ -54,6 +60,30 @@ class ResponseCurve:
     bifurcations: tuple[Bifurcation, ...]
     system_at: Callable[[float], CoupledSystem] = field(repr=False)
     periods: int = 1
+    ending: Ending = "end"
+    aim: float = np.nan
+
+    @property
+    def account(self) -> str:
+        """What was followed and what not, in a sentence; speeds in the curve's own unit."""
+        return self.told()
+
+    def told(self, unit: float = 1.0, name: str = "") -> str:
+        """The same with speeds divided by a unit that has a name."""
+        start, last, aim = (value / unit for value in (self.speeds[0], self.speeds[-1], self.aim))
+        name = name and f" {name}"
+        way = f"followed from {start:.6g} to {last:.6g}{name}: {len(self.speeds)} points, {len(self.folds)} folds"
+        if self.ending == "end":
+            return way
+        sense = np.sign(self.aim - self.speeds[0])
+        farthest = self.speeds[0] + sense * (sense * (self.speeds - self.speeds[0])).max()
+        why = {
+            "start": "the branch came back to where it began",
+            "lost": "no next motion was found however near: the flanks may begin to graze there, or the motion ends",
+            "points": "as many points as were allowed",
+            "tries": "as many tries as were allowed",
+        }[self.ending]
+        return f"{way}; {why}. Between {farthest / unit:.6g} and {aim:.6g}{name} nothing was followed"
 
     @property
     def folds(self) -> tuple[Bifurcation, ...]:
@@ -96,11 +126,13 @@ class ResponseCurve:
         for i in np.flatnonzero(away[:-1] * away[1:] < 0.0):
             before, after = self.responses[i], self.responses[i + 1]
             part = away[i] / (away[i] - away[i + 1])
-            q = (1.0 - part) * before.displacement + part * after.displacement
             # Rates are compared in their own period.
-            ratio = (before.period + part * (after.period - before.period)) ** -1.0
-            v = ((1.0 - part) * before.velocity * before.period + part * after.velocity * after.period) * ratio
-            period = None if self.periods == 1 else 1.0 / ratio
+            length = 1.0 / (1.0 / before.period + part * (1.0 / after.period - 1.0 / before.period))
+            period = None if self.periods == 1 else length
+            segments = problem(system, period).segments
+            (q0, v0), (q1, v1) = before.at_nodes(segments), after.at_nodes(segments)
+            q = (1.0 - part) * q0 + part * q1
+            v = ((1.0 - part) * v0 * before.period + part * v1 * after.period) / length
             found.append((i + part, periodic_response(system, period=period, start=(q, v), tolerance=tolerance)))
         if not found:
             raise CouplingError(

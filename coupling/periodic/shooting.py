@@ -6,10 +6,14 @@ included, Newton's step solves
 
     (M - I) Δ = x(0) - x(T).
 
+A period of many mesh periods is marched in segments, each from a state of its own, and all of them are corrected
+at once; see :mod:`coupling.periodic.segments`.
+
 While the same teeth touch the machine is linear with coefficients that vary in time, and one step is enough. Unstable
 motions are found as well as stable ones.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +27,7 @@ from coupling.periodic.floquet import multipliers
 from coupling.periodic.linear_part import LinearPart, linear_part
 from coupling.periodic.orbit import Elements, Pass, coarsest_element, cut_period, one_pass
 from coupling.periodic.response import PeriodicResponse
+from coupling.periodic.segments import correction
 from coupling.step import contact_arrays
 from coupling.system import CoupledSystem
 
@@ -30,6 +35,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _NEWTON_STEPS = 25
 _SHORTEST_STEP = 1.0 / 64.0
+_MOST_SEGMENTS = 32
 _ROUNDING = 1e-11  # closure relative to the motion that is called closed
 _FINEST = 12  # halvings of the coarsest element
 _ROUNDS = 6  # of settling in time before giving up ...
@@ -54,6 +60,8 @@ class Problem:
         Of the system that is followed.
     contacts : Contacts
         What the kernels take of them.
+    segments : int
+        Of equal length, in which the period is marched.
     """
 
     system: CoupledSystem
@@ -62,10 +70,17 @@ class Problem:
     period: float
     part: LinearPart
     contacts: Contacts
+    segments: int
+
+    @property
+    def nodes(self) -> FloatArray:
+        """Where the segments start, shape (K,) [s]."""
+        return np.asarray(self.period * np.arange(self.segments) / self.segments)
 
     def elements(self, level: int) -> Elements:
         """The period cut into elements, halved so many times."""
-        return cut_period(self.part, self.period, coarsest_element(self.system, self.period) / 2.0**level)
+        largest = coarsest_element(self.system, self.period) / 2.0**level
+        return cut_period(self.part, self.period, largest, self.segments)
 
     def scale(self, state: FloatArray) -> float:
         """A motion that is not small, in the units of a state."""
@@ -94,7 +109,14 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
     # Rates are counted in the fastest drive's, so that a long period does not make them weigh more.
     fastest = max([*driving_frequencies(system).values(), 1.0 / length])
     part = linear_part(followed.system, 2.0 * np.pi * fastest, None if like is None else like.part)
-    return Problem(system, followed.recovery, followed.kept, length, part, contact_arrays(followed.system))
+    contacts = contact_arrays(followed.system)
+    return Problem(system, followed.recovery, followed.kept, length, part, contacts, _segments(system, length))
+
+
+def _segments(system: CoupledSystem, period: float) -> int:
+    """A mesh period each, or some of them where they are many."""
+    cycles = round(period * max([abs(contact.rate) for contact in system.contacts], default=0.0))
+    return max(1, math.ceil(cycles / math.ceil(cycles / _MOST_SEGMENTS))) if cycles else 1
 
 
 def _followed(system: CoupledSystem) -> Condensed:
@@ -121,9 +143,9 @@ def periodic_response(
         [s]; by default the shortest common one of mesh phases, runout errors and harmonic loads. A multiple of it
         finds subharmonic motions too.
     start : tuple of ndarray, or PeriodicResponse, optional
-        Displacements and rates at t = 0 to search from, shape (n,) each, or a motion of a neighbouring system: where
-        contact is lost several motions may exist, and this says which is meant. By default the response with the teeth
-        at their mean stiffness.
+        Displacements and rates at t = 0 to search from, shape (n,) each, or at the starts of all segments of the
+        period, shape (K, n); or a motion of a neighbouring system. Where contact is lost several motions may exist, and
+        this says which is meant. By default the response with the teeth at their mean stiffness.
     tolerance : float
         Of state and monodromy, relative: elements of time are halved until another halving changes neither by more.
 
@@ -141,30 +163,43 @@ def periodic_response(
     if not 0.0 < tolerance < 1.0:
         raise CouplingError(f"a tolerance of {tolerance}; expected a small positive number")
     ready = problem(system, period)
-    state = np.zeros(ready.part.states)
-    if start is not None:
-        q, v = (start.displacement, start.velocity) if isinstance(start, PeriodicResponse) else start
-        for what, given in (("displacements", q), ("rates", v)):
-            if np.shape(given) != (system.size,):
-                raise CouplingError(f"{what} of shape {np.shape(given)} to start from; expected ({system.size},)")
-        state = ready.part.state(np.asarray(q)[ready.kept], np.asarray(v)[ready.kept])
     level = 0 if not isinstance(start, PeriodicResponse) else max(start.level - 1, 0)
+    state = np.zeros((ready.segments, ready.part.states)) if start is None else _states(ready, start)
     found, steps = _search(ready, level, state)
     return refined(ready, found, level, tolerance, steps)
+
+
+def _states(ready: Problem, start: tuple[FloatArray, FloatArray] | PeriodicResponse) -> FloatArray:
+    """To begin from: at t = 0, shape (2 N,), or at all nodes, shape (K, 2 N)."""
+    size = ready.system.size
+    if isinstance(start, PeriodicResponse):
+        if start.system.size != size:
+            raise CouplingError(f"a motion of {start.system.size} coordinates to start from; expected {size}")
+        start = start.at_nodes(ready.segments)
+    q, v = np.asarray(start[0]), np.asarray(start[1])
+    for what, given in (("displacements", q), ("rates", v)):
+        if given.shape not in ((size,), (ready.segments, size)):
+            raise CouplingError(
+                f"{what} of shape {given.shape} to start from; expected ({size},) or ({ready.segments}, {size})"
+            )
+    if q.ndim == 1 or v.ndim == 1:
+        return ready.part.state(q[ready.kept], v[ready.kept])
+    rows = zip(q[:, ready.kept], v[:, ready.kept], ready.nodes, strict=True)
+    return np.array([ready.part.state(*row) for row in rows])
 
 
 def refined(ready: Problem, found: Pass, level: int, tolerance: float, steps: int) -> PeriodicResponse:
     """Halve the elements until neither state nor monodromy changes by more than the tolerance."""
     while level < _FINEST:
-        finer = close(ready, ready.elements(level + 1), found.start)
+        finer = close(ready, ready.elements(level + 1), found.starts)
         if finer is None:
-            again, more = _search(ready, level + 1, found.start)
+            again, more = _search(ready, level + 1, found.starts)
             finer = again, more
         better, more = finer
         steps += more
         level += 1
         # Rounding sets a floor to what a halving can show.
-        moved = float(np.linalg.norm(better.start - found.start)) / ready.scale(better.start)
+        moved = float(np.linalg.norm(better.starts - found.starts, axis=1).max()) / ready.scale(better.start)
         turned = float(np.abs(better.monodromy - found.monodromy).max(initial=0.0))
         turned /= max(float(np.abs(better.monodromy).max(initial=0.0)), 1.0)
         error = max(moved, turned)
@@ -180,14 +215,13 @@ def refined(ready: Problem, found: Pass, level: int, tolerance: float, steps: in
 def response_of(ready: Problem, found: Pass, level: int, error: float, steps: int) -> PeriodicResponse:
     """What was found, with its proof."""
     q, v = ready.part.motion(found.start)
-    closure = float(np.linalg.norm(found.closure)) / ready.scale(found.start)
     return PeriodicResponse(
         system=ready.system,
         period=ready.period,
         displacement=ready.recovery @ q,
         velocity=ready.recovery @ v,
         floquet=multipliers(found.monodromy, ready.period),
-        residual=closure,
+        residual=found.missing / ready.scale(found.start),
         error=error,
         elements=len(found.trace.start),
         switches=found.switches,
@@ -203,15 +237,15 @@ def response_of(ready: Problem, found: Pass, level: int, error: float, steps: in
 def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, int] | None:
     """Newton's method on the closure; None where it stands still."""
     here = one_pass(ready.part, ready.contacts, elements, state)
-    best = float(np.linalg.norm(here.closure))
+    best = here.missing
     for step in range(_NEWTON_STEPS):
         if best <= _ROUNDING * ready.scale(here.start):
             return here, step
-        move = np.linalg.lstsq(here.monodromy - np.eye(len(state)), -here.closure, rcond=1e-14)[0]
+        move = correction(here.pieces, here.misses, here.monodromy, least=True)
         part = 1.0
         while True:
-            there = one_pass(ready.part, ready.contacts, elements, here.start + part * move)
-            missing = float(np.linalg.norm(there.closure))
+            there = one_pass(ready.part, ready.contacts, elements, here.starts + part * move)
+            missing = there.missing
             if missing < (1.0 - 0.1 * part) * best:
                 break
             part *= 0.5
@@ -226,12 +260,13 @@ def _search(ready: Problem, level: int, state: FloatArray) -> tuple[Pass, int]:
     """Newton's method, and where it stands still some periods of marching before it is tried again."""
     elements = ready.elements(level)
     found = close(ready, elements, state)
+    here = state if state.ndim == 1 else state[0]
     for turn in range(_ROUNDS):
         if found is not None:
             return found
         for _ in range(_PERIODS * 2**turn):
-            state = one_pass(ready.part, ready.contacts, elements, state, varied=False).end
-        found = close(ready, elements, state)
+            here = one_pass(ready.part, ready.contacts, elements, here, varied=False).end
+        found = close(ready, elements, here)
     if found is not None:
         return found
     raise PeriodicError(

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from coupling.contact_kernels import DAMPING, FORCE, TOUCHING
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
+from coupling.periodic.collocation import ORDER
 from coupling.periodic.element import law
 from coupling.periodic.element_work import Work
 from coupling.small_systems import solve_in_place
@@ -19,40 +20,91 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 @uncounted()
+def felt_by(steps: Steps, slot: int, columns: FloatArray, active: int, work: Work) -> None:
+    """What the disturbances make of the excess forces that they change, if the other forces stayed as they are."""
+    count, p, n = columns.shape[0], columns.shape[1], work.excess.size
+    right = work.columns
+    # Four rows of them at a time: they are read once, and the sums read and written less often.
+    i = 0
+    while i < count:
+        many = i + 4 <= count
+        for j in range(active):
+            row = work.active[j]
+            x, v = work.slope[row], work.rate_slope[row]
+            a = x * steps.felt[slot, i, row] + v * steps.felt[slot, i, n + row]
+            if not many:
+                for k in range(p):
+                    right[row, k] += a * columns[i, k]
+                continue
+            b = x * steps.felt[slot, i + 1, row] + v * steps.felt[slot, i + 1, n + row]
+            c = x * steps.felt[slot, i + 2, row] + v * steps.felt[slot, i + 2, n + row]
+            d = x * steps.felt[slot, i + 3, row] + v * steps.felt[slot, i + 3, n + row]
+            for k in range(p):
+                right[row, k] += (
+                    a * columns[i, k] + b * columns[i + 1, k] + c * columns[i + 2, k] + d * columns[i + 3, k]
+                )
+        i += 4 if many else 1
+
+
+@uncounted()
+def send(source: FloatArray, end: int, row: int, columns: FloatArray, work: Work) -> None:
+    """Take what one excess force sends to the end off the disturbances there."""
+    for i in range(columns.shape[0]):
+        a = source[end, row, i]
+        for k in range(columns.shape[1]):
+            columns[i, k] -= a * work.columns[row, k]
+
+
+@uncounted()
+def decay_and_send(
+    decay: ComplexArray, source: FloatArray, end: int, columns: FloatArray, active: int, work: Work
+) -> None:
+    """Disturbances at the end from those at the start and the excess forces, as many as one contact has at once."""
+    right, rows = work.columns, work.active
+    q, r, s, t, u = rows[0], rows[1], rows[2], rows[3], rows[4]
+    for m in range(columns.shape[0] // 2):
+        x, y, i, j = decay[end, m].real, decay[end, m].imag, 2 * m, 2 * m + 1
+        if active < ORDER:
+            for k in range(columns.shape[1]):
+                one, two = columns[i, k], columns[j, k]
+                columns[i, k], columns[j, k] = x * one - y * two, x * two + y * one
+            continue
+        a, b, c, d, e = source[end, q, i], source[end, r, i], source[end, s, i], source[end, t, i], source[end, u, i]
+        f, g, h, v, w = source[end, q, j], source[end, r, j], source[end, s, j], source[end, t, j], source[end, u, j]
+        for k in range(columns.shape[1]):
+            one, two = columns[i, k], columns[j, k]
+            sent = a * right[q, k] + b * right[r, k] + c * right[s, k] + d * right[t, k] + e * right[u, k]
+            felt = f * right[q, k] + g * right[r, k] + h * right[s, k] + v * right[t, k] + w * right[u, k]
+            columns[i, k] = x * one - y * two - sent
+            columns[j, k] = x * two + y * one - felt
+    for k in range(ORDER if active >= ORDER else 0, active):
+        send(source, end, rows[k], columns, work)
+
+
+@uncounted()
 def vary(
     steps: Steps, slot: int, decay: ComplexArray, source: FloatArray, end: int, columns: FloatArray, work: Work
 ) -> None:
     """Carry the disturbances over an element of a slot's size, with the matrices ``end`` to where it ends."""
-    count, p = columns.shape[0], columns.shape[1]
     n = work.excess.size
     matrix, right = work.matrix, work.columns
+    active = 0
     for row in range(n):
         x, v = work.slope[row], work.rate_slope[row]
-        for k in range(p):
-            right[row, k] = 0.0
         for column in range(n):
             matrix[row, column] = (
                 x * steps.flexibility[slot, row, column] + v * steps.flexibility[slot, n + row, column]
             )
         matrix[row, row] += 1.0
-    # Disturbances are many: each row of them is read once.
-    for i in range(count):
-        for row in range(n):
-            felt = work.slope[row] * steps.felt[slot, i, row] + work.rate_slope[row] * steps.felt[slot, i, n + row]
-            for k in range(p):
-                right[row, k] += felt * columns[i, k]
+        for k in range(columns.shape[1]):
+            right[row, k] = 0.0
+        # Flanks that are apart, in the reference too, have no slope: no disturbance changes their force.
+        if x != 0.0 or v != 0.0:
+            work.active[active] = row
+            active += 1
+    felt_by(steps, slot, columns, active, work)
     solve_in_place(matrix, right)
-    for m in range(count // 2):
-        x, y = decay[end, m].real, decay[end, m].imag
-        for k in range(p):
-            kept = columns[2 * m, k]
-            columns[2 * m, k] = x * kept - y * columns[2 * m + 1, k]
-            columns[2 * m + 1, k] = x * columns[2 * m + 1, k] + y * kept
-    for i in range(count):
-        for row in range(n):
-            x = source[end, row, i]
-            for k in range(p):
-                columns[i, k] -= x * right[row, k]
+    decay_and_send(decay, source, end, columns, active, work)
 
 
 @uncounted()

@@ -66,6 +66,8 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve) 
         rms = {name: np.array([motion.sensor_rms[name] for motion in solved.branch]) for name in sensors}
         quantities.append(("acceleration, rms [m/s²]", rms))
     note = "full: stable, dashed: unstable; dash-dotted: operation"
+    if curve.ending != "end":
+        note += f"; left at {RPM * abs(curve.speeds[-1]):.4g} rpm"
     figure = sheet(HEAD + len(quantities) * (_HEIGHT + _BETWEEN) - _BETWEEN + FOOT, title, note)
     speeds = RPM * np.abs(curve.speeds)
     for number, (what, lines) in enumerate(reversed(quantities)):

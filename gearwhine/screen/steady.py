@@ -27,7 +27,7 @@ def show_steady(document: dict[str, Any]) -> None:
     for number, motion in enumerate(motions, start=1):
         _show_motion(console, motion, f"Motion {number}: " if len(motions) > 1 else "")
     if curve := document.get("curve"):
-        _show_curve(console, curve)
+        show_curve(console, curve)
     show_origin(console, document)
     show_written(console, document)
 
@@ -57,13 +57,16 @@ def _show_motion(console: Console, motion: dict[str, Any], name: str) -> None:
         console.print(table)
 
 
-def _show_curve(console: Console, curve: dict[str, Any]) -> None:
+def show_curve(console: Console, curve: dict[str, Any]) -> None:
+    """The branch over speed: how far it was followed, the largest forces, what happens along it."""
     speeds = curve["speed_rpm"]
     unstable = sum(not stable for stable in curve["stable"])
     console.print(
         f"Followed from {speeds[0]:.0f} to {speeds[-1]:.0f} rpm in {counted(len(speeds), 'point')}, "
         f"{unstable} of them unstable"
     )
+    if curve["ending"] != "end":
+        console.print(f"[yellow]Left before the end of the range:[/yellow] {curve['account']}", highlight=False)
     for pair in curve["gear_pairs"]:
         worst = max(range(len(speeds)), key=pair["peak_force_n"].__getitem__)
         console.print(

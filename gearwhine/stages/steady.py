@@ -113,7 +113,7 @@ def solve_steady(
     coupling.CouplingError
         Where the excitation does not repeat.
     coupling.PeriodicError
-        Where no motion is found, or a branch is lost.
+        Where no motion is found. A branch that is lost on its way is given as far as it was followed.
     """
     require(case, "rotor", "operation", command="steady")
     assert case.operation is not None
@@ -244,6 +244,8 @@ def _curve_document(solved: SolvedSteady, curve: room.ResponseCurve) -> dict[str
     return {
         "speed_rpm": (curve.speeds * _RPM).tolist(),
         "stable": curve.stable.tolist(),
+        "ending": curve.ending,
+        "account": curve.told(1.0 / _RPM, "rpm"),
         "gear_pairs": [
             {
                 "driver": mesh.driver.name,

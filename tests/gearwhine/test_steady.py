@@ -6,9 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from rich.console import Console
 
 from gearwhine.case import CaseError, load_case, mesh_frequencies
 from gearwhine.cli import run_command
+from gearwhine.screen.steady import show_curve
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
 from gearwhine.stages.steady import solve_steady
@@ -48,6 +50,8 @@ def test_the_command_follows_the_motion_over_speed(tmp_path: Path, capsys: pytes
     assert speeds[0] == pytest.approx(3000.0)
     assert speeds[-1] == pytest.approx(6000.0)
     assert len(speeds) >= 8
+    assert curve["ending"] == "end"
+    assert curve["account"] == f"followed from 3000 to 6000 rpm: {len(speeds)} points, 0 folds"
     assert motion["stable"]
     assert 1e3 * motion["period_s"] == pytest.approx(60e3 / 5500.0 / 28, rel=1e-12)
     # The mean force is the torque over the base radius, whatever the speed.
@@ -59,9 +63,25 @@ def test_the_command_follows_the_motion_over_speed(tmp_path: Path, capsys: pytes
     assert {"steady-motion.png", "steady-curve.png", "results.nc"} <= {path.name for path in tmp_path.iterdir()}
     with xr.open_dataset(tmp_path / "results.nc") as data:
         np.testing.assert_allclose(data["branch_speed"], speeds)
+        assert data["branch_speed"].attrs["ending"] == "end"
         assert data["branch_peak_force"].attrs["units"] == "N"
         moduli = np.hypot(*data["floquet_multiplier"].values[0].T)
         assert moduli.max() == pytest.approx(motion["largest_multiplier"], rel=1e-12)
+
+
+def test_a_branch_that_is_left_is_told_on_screen(capsys: pytest.CaptureFixture[str]) -> None:
+    left = {
+        "speed_rpm": [3000.0, 3500.0],
+        "stable": [True, True],
+        "ending": "tries",
+        "account": "followed from 3000 to 3500 rpm; as many tries as were allowed",
+        "gear_pairs": [],
+        "bifurcations": [],
+    }
+    show_curve(Console(width=200), left)
+    assert "Left before the end of the range: followed from 3000 to 3500 rpm; as many" in capsys.readouterr().out
+    show_curve(Console(width=200), left | {"ending": "end"})
+    assert "Left before" not in capsys.readouterr().out
 
 
 def test_what_stands_still_or_has_no_range_is_refused() -> None:
