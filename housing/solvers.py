@@ -44,16 +44,19 @@ class RslabSolver:
     """rslab: supernodal L D Lᵀ with pivots of order 1 and 2 (Bunch and Kaufman 1977), by threads."""
 
     def __init__(self, threads: int) -> None:
+        # Loaded here, not by a thread that finds an ordering: where the thread that loads the library ends, the
+        # process crashes at the library's next call (1.7.0).
+        import rslab
+
+        self._analyze = rslab.analyze
         self._threads = threads
         self._symbolic: Any = None
 
     def order(self, matrix: SymmetricMatrix) -> None:
         """Find the ordering."""
-        import rslab
-
         # Nested dissection outright: by default several orderings are tried, and on solids it always wins. Its
         # refinement gives up sooner than by default: a third of its time for no more fill.
-        self._symbolic = rslab.analyze(
+        self._symbolic = self._analyze(
             matrix.lower,
             path="ldlt",
             threads=self._threads,
