@@ -12,7 +12,7 @@ from gearwhine.figures.assembly import RotorAssembly
 from gearwhine.figures.labels import Label, LabelRow, arrange, draw_row
 from gearwhine.figures.shaft_outline import TINTS, draw_outline, materials
 from gearwhine.figures.shaft_view import MM, ShaftView, fitted
-from gearwhine.figures.style import FOOT, HEAD, INK, PANEL_WIDTH, RED, legend, panel, sheet, shortened
+from gearwhine.figures.style import FOOT, HEAD, INK, PANEL_WIDTH, RED, legend, name_in_legend, panel, sheet, shortened
 from gearwhine.figures.support_signs import depth, draw_support
 from rotors import Coupling
 
@@ -91,7 +91,7 @@ def draw_shaft(assembly: RotorAssembly) -> Figure:
         ]
         tints = [TINTS[index % len(TINTS)] for index in range(len(kinds))]
         patches = [
-            Patch(facecolor=tint, edgecolor=INK, lw=0.5, label=shortened(name, 20).replace("$", r"\$"))
+            Patch(facecolor=tint, edgecolor=INK, lw=0.5, label=name_in_legend(name, 20))
             for tint, name in zip(tints, names, strict=True)
         ]
         legend(figure, patches)

@@ -21,10 +21,10 @@ from gearwhine.figures.style import (
     RPM,
     SERIES,
     legend,
+    name_in_legend,
     panel,
     save,
     sheet,
-    shortened,
     tidy,
 )
 from gearwhine.stages.steady import SolvedSteady, SteadyMotion
@@ -98,7 +98,7 @@ def _draw_branch(axes: Axes, speeds: FloatArray, lines: dict[str, FloatArray], c
     stable = curve.stable
     for number, (name, values) in enumerate(lines.items()):
         color = SERIES[number % len(SERIES)]
-        label = shortened(name, 30).replace("$", r"\$")
+        label = name_in_legend(name, 30)
         start = 0
         for end in range(1, len(stable) + 1):
             if end < len(stable) and stable[end] == stable[start]:

@@ -20,6 +20,7 @@ NOTE, TICK, LABEL, TITLE = 6.5, 7.0, 7.5, 9.0  # letters on it [points]
 MM_PER_INCH = 25.4
 RPM = 9.549296585513721  # revolutions per minute of 1 rad/s
 
+_IN_HEAD = 4  # so many lines are explained beside the title
 _NOTE_LETTERS = 124  # of a note in one line
 _NAME_OF_AXIS = 11.2  # left of a panel [mm]
 _SCREEN_DPI, _PRINT_DPI = 130, 200
@@ -80,6 +81,19 @@ def legend(figure: Figure, handles: Sequence[Artist]) -> None:
             handlelength=2.0,
             columnspacing=1.2,
         )
+
+
+def legend_beside_title(figure: Figure, axes: Axes, handles: Sequence[Artist]) -> None:
+    """Explain a few lines beside the title, and more of them within the axes."""
+    if len(handles) <= _IN_HEAD:
+        legend(figure, handles)
+    else:
+        axes.legend(handles=handles, loc="best", ncols=2, framealpha=0.9, edgecolor="none", fontsize=NOTE)
+
+
+def name_in_legend(text: str, most: int = 16) -> str:
+    """A user's name on one line and cut, in which a dollar sign is one and not the beginning of a formula."""
+    return shortened(text, most).replace("$", r"\$")
 
 
 def shortened(text: str, most: int = 28) -> str:

@@ -13,13 +13,12 @@ from gearwhine.figures.style import (
     FOOT,
     GREY,
     HEAD,
-    NOTE,
     PANEL_WIDTH,
     SERIES,
-    legend,
+    legend_beside_title,
+    name_in_legend,
     panel,
     sheet,
-    shortened,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -27,7 +26,6 @@ FloatArray = npt.NDArray[np.float64]
 _HERTZ = 2.0 * np.pi
 _HEIGHT, _BETWEEN = 56.0, 4.0  # of each panel and the room between them [mm of paper]
 _DECADES = 6.0  # shown below the highest
-_IN_HEAD = 4  # so many lines are explained beside the title
 
 
 @dataclass(frozen=True)
@@ -98,7 +96,7 @@ def draw_torsional_response(
         for number, one in enumerate(readings):
             values = getattr(one, what)
             if values.max(initial=0.0) > 0.0:
-                label = shortened(one.name, 16).replace("$", r"\$")
+                label = name_in_legend(one.name)
                 color = SERIES[number % len(SERIES)]
                 lines += axes.plot(omega / _HERTZ, values, color=color, lw=1.2, zorder=3, label=label)
         if top > 0.0:
@@ -107,9 +105,6 @@ def draw_torsional_response(
         handles = max(handles, lines, key=len)
     upper.tick_params(labelbottom=False)
     lower.set_xlabel("frequency [Hz]")
-    if len(handles) <= _IN_HEAD:
-        legend(figure, handles)
-    else:
-        upper.legend(handles=handles, loc="best", ncols=2, framealpha=0.9, edgecolor="none", fontsize=NOTE)
+    legend_beside_title(figure, upper, handles)
     draw_row(upper, row, _HEIGHT + 1.0)
     return figure

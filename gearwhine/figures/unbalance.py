@@ -15,14 +15,13 @@ from gearwhine.figures.style import (
     GREY,
     HEAD,
     INK,
-    NOTE,
     PANEL_WIDTH,
     RPM,
     SERIES,
-    legend,
+    legend_beside_title,
+    name_in_legend,
     panel,
     sheet,
-    shortened,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -30,7 +29,6 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _AMPLITUDE, _PHASE, _BETWEEN = 70.0, 40.0, 4.0  # heights of the panels and the room between them [mm of paper]
 _PEAK_TO_PEAK = 2e6  # µm of a displacement amplitude of one metre
-_IN_HEAD = 4  # so many lines are explained beside the title
 _DECADES = 5.0  # of a logarithmic amplitude, below its highest
 
 
@@ -119,7 +117,7 @@ def draw_unbalance_response(
     for number, probe in enumerate(probes):
         color = SERIES[number % len(SERIES)]
         size = _PEAK_TO_PEAK * np.abs(probe.amplitude)
-        name = shortened(probe.name, 16).replace("$", r"\$")
+        name = name_in_legend(probe.name)
         handles += upper.plot(RPM * turning, size, color=color, lw=1.2, zorder=3, label=name)
         if probe.major_axis is not None:
             axis = _PEAK_TO_PEAK * np.asarray(probe.major_axis)
@@ -134,10 +132,7 @@ def draw_unbalance_response(
     upper.set_ylabel("amplitude [µm peak to peak]")
     lower.set(xlabel="speed of rotation [rpm]", ylabel="phase lag [°]")
     lower.yaxis.set_major_locator(MultipleLocator(90.0))
-    if len(handles) <= _IN_HEAD:
-        legend(figure, handles)
-    else:
-        upper.legend(handles=handles, loc="best", ncols=2, framealpha=0.9, edgecolor="none", fontsize=NOTE)
+    legend_beside_title(figure, upper, handles)
     draw_row(upper, row, _AMPLITUDE + 1.0)
     return figure
 

@@ -10,7 +10,8 @@ from typing import Any
 from gearwhine import __version__
 from gearwhine.case import CaseError, Problem
 from gearwhine.output import SUMMARY
-from gearwhine.report.sections import Section, Table, sections_of
+from gearwhine.report.sections import Section, sections_of
+from gearwhine.report.tables import Table
 
 _LARGEST_PICTURE = 8 << 20  # bytes: a larger file is no picture of ours
 _STYLE = """

@@ -45,6 +45,20 @@ def gearwhine(capfd: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: py
     return run
 
 
+@pytest.fixture
+def solved_rotor(gearwhine: Command) -> Callable[..., dict[str, Any]]:
+    """``solved_rotor(case, *settings)``: the one rotor of a case in the document of the command ``rotors``."""
+
+    def solve(case: str, *settings: str) -> dict[str, Any]:
+        changes = [part for setting in settings for part in ("--set", setting)]
+        outcome = gearwhine("rotors", case, "--json", "-q", *changes)
+        assert outcome.code == 0, outcome.err
+        (rotor,) = outcome.document["rotors"]
+        return rotor
+
+    return solve
+
+
 @pytest.fixture(scope="session")
 def _answers() -> dict[tuple[str, ...], Outcome]:
     return {}

@@ -57,14 +57,6 @@ def shaft(tmp_path: Path) -> str:
     return "shaft.toml"
 
 
-def solved(gearwhine: Any, case: str, *settings: str) -> dict[str, Any]:
-    changes = [part for setting in settings for part in ("--set", setting)]
-    outcome = gearwhine("rotors", case, "--json", "-q", *changes)
-    assert outcome.code == 0, outcome.err
-    (rotor,) = outcome.document["rotors"]
-    return rotor
-
-
 TORQUE = "torques=[{rotor='shaft', at='0 mm', amplitude='3 N*m', phase='20 deg'}]"
 RANGE = "frequency={from='10 Hz', to='100 Hz', points=10}"
 
@@ -81,11 +73,11 @@ def two_discs(hertz: float, ratio: float, spring: float = 0.0, dashpot: float = 
 
 
 @pytest.mark.parametrize("held", [False, True])
-def test_two_discs_answer_a_torque_as_they_must(gearwhine: Any, shaft: str, held: bool) -> None:
+def test_two_discs_answer_a_torque_as_they_must(solved_rotor: Any, shaft: str, held: bool) -> None:
     springs = "springs=[{rotor='shaft', at='800 mm', stiffness='900 N*m/rad', damping='2 N*m*s/rad'}]"
     probes = "probes=[{name='l', rotor='shaft', at='0 mm'}, {name='r', rotor='shaft', at='800 mm'}]"
     keys = [TORQUE, RANGE, "damping_ratio=0.03", probes, *([springs] if held else [])]
-    response = solved(gearwhine, shaft, f"rotor_analysis.torsional_response={{{','.join(keys)}}}")["torsional_response"]
+    response = solved_rotor(shaft, f"rotor_analysis.torsional_response={{{','.join(keys)}}}")["torsional_response"]
     assert response["frequency_hz"] == pytest.approx(np.linspace(10.0, 100.0, 10).tolist())
     left, right = response["probes"]
     for place, hertz in enumerate(response["frequency_hz"]):
@@ -102,9 +94,9 @@ def test_two_discs_answer_a_torque_as_they_must(gearwhine: Any, shaft: str, held
     assert response["largest_torque_n_m"] == pytest.approx(max(left["torque_n_m"]), rel=1e-4)
 
 
-def test_torsion_is_looked_at_about_its_modes_unless_frequencies_are_given(gearwhine: Any, shaft: str) -> None:
+def test_torsion_is_looked_at_about_its_modes_unless_frequencies_are_given(solved_rotor: Any, shaft: str) -> None:
     """At the mode itself a ratio ζ leaves k (θ₁ − θ₂) = T J₂ / (J₁ + J₂) / 2ζ, the shaft's own ζ of 0.01 here."""
-    rotor = solved(gearwhine, shaft, f"rotor_analysis.torsional_response={{{TORQUE}}}")
+    rotor = solved_rotor(shaft, f"rotor_analysis.torsional_response={{{TORQUE}}}")
     response, elastic = rotor["torsional_response"], rotor["torsional_hz"][1]
     assert elastic * 2.0 * math.pi == pytest.approx(math.sqrt(SPRING * (1 / LEFT + 1 / RIGHT)), rel=1e-4)
     assert response["damping_ratio"] == 0.01
@@ -114,7 +106,7 @@ def test_torsion_is_looked_at_about_its_modes_unless_frequencies_are_given(gearw
     assert response["probes"][0]["largest_torque_at_hz"] == pytest.approx(elastic, rel=1e-3)
     expected = 3.0 * RIGHT / (LEFT + RIGHT) / 0.02
     assert response["probes"][0]["largest_torque_n_m"] == pytest.approx(expected, rel=1e-2)
-    assert solved(gearwhine, shaft)["torsional_response"] is None
+    assert solved_rotor(shaft)["torsional_response"] is None
 
 
 def test_torsional_response_is_drawn_and_kept(gearwhine: Any, shaft: str, tmp_path: Path) -> None:
@@ -137,8 +129,8 @@ def test_torsional_response_is_drawn_and_kept(gearwhine: Any, shaft: str, tmp_pa
         assert len(image.convert("RGB").getcolors(maxcolors=1 << 24) or ()) > 50
 
 
-def test_orders_meet_whirl_at_their_own_speeds(gearwhine: Any, shaft: str) -> None:
-    campbell = solved(gearwhine, shaft, "rotor_analysis.orders=[1, 2, 0.5]")["campbell"]
+def test_orders_meet_whirl_at_their_own_speeds(solved_rotor: Any, shaft: str) -> None:
+    campbell = solved_rotor(shaft, "rotor_analysis.orders=[1, 2, 0.5]")["campbell"]
     assert [one["order"] for one in campbell["orders"]] == [0.5, 2.0]
     speeds, frequencies = np.array(campbell["speed_rpm"]), np.array(campbell["frequency_hz"])
     for one in campbell["orders"]:
@@ -153,11 +145,11 @@ def test_orders_meet_whirl_at_their_own_speeds(gearwhine: Any, shaft: str) -> No
         np.testing.assert_allclose(found, np.sort(expected), rtol=1e-4)
 
 
-def test_the_map_of_backward_whirl_lies_below_that_of_forward(gearwhine: Any, shaft: str) -> None:
+def test_the_map_of_backward_whirl_lies_below_that_of_forward(solved_rotor: Any, shaft: str) -> None:
     """Gyroscopic moments stiffen forward and soften backward whirl: each backward speed is the lower one."""
     span = "from='1e5 N/m', to='1e6 N/m', points=2, modes=2"
     forward, backward = (
-        solved(gearwhine, shaft, f"rotor_analysis.stiffness_map={{{span}, whirl='{whirl}'}}")["stiffness_map"]
+        solved_rotor(shaft, f"rotor_analysis.stiffness_map={{{span}, whirl='{whirl}'}}")["stiffness_map"]
         for whirl in ("forward", "backward")
     )
     ahead, behind = forward["forward_critical_speeds_rpm"], backward["backward_critical_speeds_rpm"]
@@ -165,8 +157,8 @@ def test_the_map_of_backward_whirl_lies_below_that_of_forward(gearwhine: Any, sh
     assert (np.array(behind) < np.array(ahead)).all()
 
 
-def test_whirl_says_where_it_strains_the_rotor(gearwhine: Any, shaft: str) -> None:
-    (whirl, *_) = (rotor := solved(gearwhine, shaft))["whirl"]
+def test_whirl_says_where_it_strains_the_rotor(gearwhine: Any, solved_rotor: Any, shaft: str) -> None:
+    (whirl, *_) = (rotor := solved_rotor(shaft))["whirl"]
     assert rotor["bearings"] == ["left", "right"]
     shares = np.hstack([np.array(whirl["strain_energy"][part]) for part in ("segments", "bearings")])
     assert shares.shape == (4, 4)

@@ -57,17 +57,9 @@ def jeffcott(tmp_path: Path) -> str:
     return "jeffcott.toml"
 
 
-def solved(gearwhine: Any, case: str, *settings: str) -> dict[str, Any]:
-    changes = [part for setting in settings for part in ("--set", setting)]
-    outcome = gearwhine("rotors", case, "--json", "-q", *changes)
-    assert outcome.code == 0, outcome.err
-    (rotor,) = outcome.document["rotors"]
-    return rotor
-
-
-def test_tables_hold_at_their_own_speeds(gearwhine: Any, jeffcott: str) -> None:
+def test_tables_hold_at_their_own_speeds(solved_rotor: Any, jeffcott: str) -> None:
     """Bouncing at ω² = 2k / m with k of the speed, damped by ζ = c / √(k m / 2) / 2 of two alike bearings."""
-    rotor = solved(gearwhine, jeffcott, "sweep={speed=['1000 rpm','3000 rpm']}")
+    rotor = solved_rotor(jeffcott, "sweep={speed=['1000 rpm','3000 rpm']}")
     for whirl, stiffness in zip(rotor["whirl"], (2e6, 1e6, 4e6), strict=True):
         frequency = math.sqrt(2.0 * stiffness / MASS)
         ratio = 2.0 * 200.0 / (2.0 * MASS * frequency)
@@ -82,49 +74,49 @@ def test_tables_hold_at_their_own_speeds(gearwhine: Any, jeffcott: str) -> None:
     assert rotor["lateral_hz"][0] * 2 * math.pi == pytest.approx(math.sqrt(2e6 / MASS), rel=1e-4)
 
 
-def test_a_campbell_diagram_stands_without_being_asked_for(gearwhine: Any, jeffcott: str) -> None:
-    campbell = solved(gearwhine, "friswell-rotor", "sweep=", "rotor_analysis.modes=2")["campbell"]
+def test_a_campbell_diagram_stands_without_being_asked_for(solved_rotor: Any, jeffcott: str) -> None:
+    campbell = solved_rotor("friswell-rotor", "sweep=", "rotor_analysis.modes=2")["campbell"]
     assert campbell["speed_rpm"] == pytest.approx(np.linspace(0.0, 6000.0, 51).tolist(), abs=1e-9)
     assert campbell["unstable_from_rpm"] is None
     assert len(campbell["frequency_hz"]) == len(campbell["log_decrement"]) == len(campbell["direction"]) == 51
-    assert solved(gearwhine, jeffcott, "operation=", "rotor_analysis.speed=")["campbell"] is None
-    chosen = solved(gearwhine, jeffcott)["campbell"]
+    assert solved_rotor(jeffcott, "operation=", "rotor_analysis.speed=")["campbell"] is None
+    chosen = solved_rotor(jeffcott)["campbell"]
     assert chosen["speed_rpm"] == pytest.approx([1000.0, 2000.0])
 
 
-def test_the_onset_of_instability_is_that_of_the_cross_coupled_jeffcott_rotor(gearwhine: Any, jeffcott: str) -> None:
+def test_the_onset_of_instability_is_that_of_the_cross_coupled_jeffcott_rotor(solved_rotor: Any, jeffcott: str) -> None:
     """Forward whirl of the bounce grows where the cross stiffness exceeds c ω, ω² = 2k / m."""
     threshold = 200.0 * math.sqrt(2.0 * 1e6 / MASS)
     cross = f"['{0.9 * threshold} N/m', '{0.9 * threshold} N/m', '{4.0 * threshold} N/m']"
     negative = cross.replace("['", "['-").replace(" '", " '-")
     springs = f"{{xx='1e6 N/m', yy='1e6 N/m', xy={cross}, yx={negative}}}"
     settings = [f"bearing.{name}.stiffness={springs}" for name in ("left", "right")]
-    loud = solved(gearwhine, jeffcott, *settings, "rotor_analysis.speed=['3000 rpm', '2000 rpm', '2900 rpm']")
+    loud = solved_rotor(jeffcott, *settings, "rotor_analysis.speed=['3000 rpm', '2000 rpm', '2900 rpm']")
     assert loud["campbell"]["unstable_from_rpm"] == pytest.approx(2900.0)
     assert [whirl["stable"] for whirl in loud["whirl"]] == [True]
-    assert solved(gearwhine, jeffcott, *settings)["campbell"]["unstable_from_rpm"] is None
+    assert solved_rotor(jeffcott, *settings)["campbell"]["unstable_from_rpm"] is None
 
 
-def test_bearings_carry_the_weight_in_equal_shares_and_sag_by_it(gearwhine: Any, jeffcott: str) -> None:
-    static = solved(gearwhine, jeffcott)["static"]
+def test_bearings_carry_the_weight_in_equal_shares_and_sag_by_it(solved_rotor: Any, jeffcott: str) -> None:
+    static = solved_rotor(jeffcott)["static"]
     share = MASS * 9.80665 / 2.0
     for bearing in static["bearings"]:
         assert bearing["load_n"] == pytest.approx([0.0, -share, 0.0], abs=1e-6)
     assert static["largest_deflection_m"] == pytest.approx(share / 2e6, rel=1e-4)
-    sideways = solved(gearwhine, jeffcott, "rotor_analysis.gravity=['9.81 m/s^2', 0, 0]")["static"]
+    sideways = solved_rotor(jeffcott, "rotor_analysis.gravity=['9.81 m/s^2', 0, 0]")["static"]
     assert sideways["bearings"][0]["load_n"] == pytest.approx([MASS * 9.81 / 2.0, 0.0, 0.0], abs=1e-6)
-    free = solved(gearwhine, "friswell-rotor", "bearing=[]", "provenance=", "rotor_analysis.modes=6")
+    free = solved_rotor("friswell-rotor", "bearing=[]", "provenance=", "rotor_analysis.modes=6")
     assert "free to move" in free["static"]["why_not"]
 
 
-def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(gearwhine: Any, jeffcott: str) -> None:
+def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(solved_rotor: Any, jeffcott: str) -> None:
     """m e Ω² / (2k − M Ω² + 2 i c Ω): amplitude and lag of a disc that does not tilt, through resonance."""
     settings = (
         "rotor.shaft.unbalance=[{at='50 mm', moment='1e-4 kg*m', phase='30 deg'}]",
         "rotor_analysis.unbalance_response={speed=['1000 rpm', '3000 rpm'], probes=["
         "{name='x', rotor='shaft', at='50 mm'}, {name='y', rotor='shaft', at='50 mm', angle='90 deg'}]}",
     )
-    response = solved(gearwhine, jeffcott, *settings)["unbalance_response"]
+    response = solved_rotor(jeffcott, *settings)["unbalance_response"]
     along_x, along_y = response["probes"]
 
     def expected(rpm: float, stiffness: float) -> complex:
@@ -141,12 +133,12 @@ def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(gearwhine: Any,
         force = abs(motion) * abs(stiffness + 200j * rpm * RPM)
         assert response["bearings"][0]["force_n"][0][place] == pytest.approx(force, rel=1e-4)
     assert along_x["operation_amplitude_m"] == pytest.approx(abs(expected(2000.0, 2e6)), rel=1e-4)
-    assert solved(gearwhine, jeffcott)["unbalance_response"] is None
+    assert solved_rotor(jeffcott)["unbalance_response"] is None
 
 
-def test_probes_stand_at_bearings_and_unbalances_unless_named(gearwhine: Any) -> None:
+def test_probes_stand_at_bearings_and_unbalances_unless_named(solved_rotor: Any) -> None:
     quick = ("rotor_analysis.modes=2", "sweep={speed=['1000 rpm', '2000 rpm']}")
-    response = solved(gearwhine, "friswell-rotor", *quick)["unbalance_response"]
+    response = solved_rotor("friswell-rotor", *quick)["unbalance_response"]
     assert [(probe["name"], probe["at_m"]) for probe in response["probes"]] == [
         ("left", 0.0),
         ("unbalance 1", 0.5),
@@ -155,22 +147,24 @@ def test_probes_stand_at_bearings_and_unbalances_unless_named(gearwhine: Any) ->
     assert len(response["speed_rpm"]) == 301
 
 
-def test_a_bow_is_read_as_it_is_where_the_rotor_turns_slowly(gearwhine: Any) -> None:
+def test_a_bow_is_read_as_it_is_where_the_rotor_turns_slowly(solved_rotor: Any) -> None:
     bow = "rotor.shaft.bow=[{at='0 m', amplitude=0}, {at='0.5 m', amplitude='10 um'}, {at='1.5 m', amplitude=0}]"
     slow = "rotor_analysis={modes=2, speed=['1 rpm', '2 rpm'], unbalance_response={speed=['1 rpm']}}"
-    response = solved(gearwhine, "friswell-rotor", "sweep=", bow, slow)["unbalance_response"]
+    response = solved_rotor("friswell-rotor", "sweep=", bow, slow)["unbalance_response"]
     reading = next(probe for probe in response["probes"] if probe["at_m"] == 0.5)
     assert reading["amplitude_m"][0] == pytest.approx(10e-6, rel=1e-4)
 
 
-def test_the_stiffness_map_of_a_rigid_rotor_rises_with_the_root_of_the_stiffness(gearwhine: Any, jeffcott: str) -> None:
+def test_the_stiffness_map_of_a_rigid_rotor_rises_with_the_root_of_the_stiffness(
+    solved_rotor: Any, jeffcott: str
+) -> None:
     """The bounce's √(2k / M) at every stiffness; the disc's polar inertia takes the forward tilting mode away."""
     settings = "rotor_analysis.stiffness_map={from='1e5 N/m', to='1e7 N/m', points=3}"
-    given = solved(gearwhine, jeffcott, settings)["stiffness_map"]
+    given = solved_rotor(jeffcott, settings)["stiffness_map"]
     assert given["stiffness_n_per_m"] == pytest.approx([1e5, 1e6, 1e7])
     for stiffness, speeds in zip(given["stiffness_n_per_m"], given["forward_critical_speeds_rpm"], strict=True):
         assert speeds[0] * RPM == pytest.approx(math.sqrt(2.0 * stiffness / MASS), rel=1e-4)
-    assert solved(gearwhine, jeffcott)["stiffness_map"] is None
+    assert solved_rotor(jeffcott)["stiffness_map"] is None
 
 
 def test_the_results_file_holds_diagram_and_response_with_units(gearwhine: Any) -> None:
@@ -188,15 +182,15 @@ def test_the_results_file_holds_diagram_and_response_with_units(gearwhine: Any) 
         assert data.response_speed.values[0].tolist() == rotor["unbalance_response"]["speed_rpm"]
 
 
-def test_margins_are_of_the_critical_speeds_beside_operation(gearwhine: Any) -> None:
-    rotor = solved(gearwhine, "friswell-rotor")
+def test_margins_are_of_the_critical_speeds_beside_operation(solved_rotor: Any) -> None:
+    rotor = solved_rotor("friswell-rotor")
     expected = np.array(rotor["critical_speeds_rpm"]) / 4000.0 - 1.0
     assert rotor["critical_margins"] == pytest.approx(expected.tolist(), rel=1e-9)
-    assert solved(gearwhine, "friswell-rotor", "operation=")["critical_margins"] is None
+    assert solved_rotor("friswell-rotor", "operation=")["critical_margins"] is None
 
 
-def test_as_many_lateral_modes_are_shown_as_are_asked_for(gearwhine: Any) -> None:
-    rotor = solved(gearwhine, "friswell-rotor", "rotor_analysis.modes=4")
+def test_as_many_lateral_modes_are_shown_as_are_asked_for(solved_rotor: Any) -> None:
+    rotor = solved_rotor("friswell-rotor", "rotor_analysis.modes=4")
     assert len(rotor["lateral_hz"]) == len(rotor["whirl"][0]["frequency_hz"]) == 4
     assert rotor["certificate"]["complete"] is True
 
@@ -219,7 +213,7 @@ def test_the_coupled_system_keeps_what_the_rotor_says(gearwhine: Any) -> None:
     assert high - low == 2
 
 
-def test_the_overhung_fan_has_all_of_it(gearwhine: Any) -> None:
+def test_the_overhung_fan_has_all_of_it(solved_rotor: Any) -> None:
     """Its bearings carry what it weighs, the fan side's more than the impeller; its modes are all found."""
     few = (
         "rotor_analysis.speed=['1000 rpm', '1400 rpm', '1800 rpm']",
@@ -227,7 +221,7 @@ def test_the_overhung_fan_has_all_of_it(gearwhine: Any) -> None:
         "rotor_analysis.unbalance_response.speed=['1000 rpm', '2000 rpm']",
         "rotor_analysis.modes=4",
     )
-    fan = solved(gearwhine, "overhung-fan", *few)
+    fan = solved_rotor("overhung-fan", *few)
     loads = {bearing["name"]: bearing["load_n"][1] for bearing in fan["static"]["bearings"]}
     assert sum(loads.values()) == pytest.approx(-fan["mass_kg"] * 9.80665, rel=1e-9)
     assert loads["fan side"] < -250.0 * 9.80665

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from gearwhine import cli
+from gearwhine.cli import command_line
 
 
 class Mortal:
@@ -25,9 +25,9 @@ def test_an_interruption_in_a_callback_ends_the_command(
         assert watched() is None
         time.sleep(10.0)
 
-    monkeypatch.setattr(cli, "app", work)
+    monkeypatch.setattr(command_line, "app", work)
     begin = time.perf_counter()
-    assert cli.run_command([]) == 130
+    assert command_line.run_command([]) == 130
     assert time.perf_counter() - begin < 9.0
     assert capsys.readouterr().err == "gearwhine: interrupted; the output folder holds no half-written file\n"
 
@@ -45,9 +45,9 @@ def test_an_import_is_not_cut_short(monkeypatch: pytest.MonkeyPatch, tmp_path: P
         assert slow_to_begin.whole
         time.sleep(10.0)
 
-    monkeypatch.setattr(cli, "app", work)
+    monkeypatch.setattr(command_line, "app", work)
     begin = time.perf_counter()
-    assert cli.run_command([]) == 130
+    assert command_line.run_command([]) == 130
     assert time.perf_counter() - begin < 9.0
     assert sys.modules.pop("slow_to_begin").whole
 
@@ -63,8 +63,8 @@ def test_what_falls_apart_by_an_interruption_is_not_told(
         def __del__(self) -> None:
             del self.handle
 
-    monkeypatch.setattr(cli, "app", lambda *_, **__: HalfBuilt())
-    assert cli.run_command([]) == 130
+    monkeypatch.setattr(command_line, "app", lambda *_, **__: HalfBuilt())
+    assert command_line.run_command([]) == 130
     assert "Traceback" not in capsys.readouterr().err
 
 
@@ -73,7 +73,7 @@ def test_the_handlers_are_given_back(monkeypatch: pytest.MonkeyPatch) -> None:
         return [signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM), sys.unraisablehook]
 
     before, within = handlers(), []
-    monkeypatch.setattr(cli, "app", lambda *_, **__: within.extend(handlers()))
-    assert cli.run_command([]) == 0
+    monkeypatch.setattr(command_line, "app", lambda *_, **__: within.extend(handlers()))
+    assert command_line.run_command([]) == 0
     assert handlers() == before
     assert not set(within) & set(before)

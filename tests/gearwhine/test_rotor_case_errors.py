@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import copy
 from typing import Any
 
 import pytest
+from broken_cases import GONE, broken, check_one_wrong, check_several_wrong, problems
 
-from gearwhine.case import CaseError, parse_case
+from gearwhine.case import parse_case
 
 COUPLING = {
     "lateral_stiffness": "2e7 N/m",
@@ -58,24 +58,6 @@ SOUND: dict[str, Any] = {
         "gravity": ["0 m/s^2", "-9.81 m/s^2", 0],
     },
 }
-GONE = object()
-
-
-def changed(*changes: tuple[str, Any]) -> dict[str, Any]:
-    """Return the sound case with values replaced, or taken away, at dotted paths."""
-    document = copy.deepcopy(SOUND)
-    for path, value in changes:
-        *way, last = [int(step) if step.isdecimal() else step for step in path.split(".")]
-        here: Any = document
-        for step in way:
-            here = here[step]
-        if value is GONE:
-            del here[last]
-        else:
-            here[last] = value
-    return document
-
-
 CONE, LINK, ROUND, POINT = (f"rotor.0.{part}" for part in ("segments.1", "segments.2", "discs.0", "discs.1"))
 LINK_AT = "rotor[0].segments[2].coupling"
 RESPONSE = "rotor_analysis.unbalance_response"
@@ -188,20 +170,9 @@ ONE_WRONG = {
 }
 
 
-def problems(document: dict[str, Any]) -> list[str]:
-    with pytest.raises(CaseError) as caught:
-        parse_case(document, source="case.toml")
-    return str(caught.value).splitlines()
-
-
 @pytest.mark.parametrize("kind", ONE_WRONG)
 def test_one_wrong_value_is_named_with_its_place_and_what_was_expected(kind: str) -> None:
-    path, value, key, expected = ONE_WRONG[kind]
-    report = problems(changed((path, value)))
-    lines = [line for line in report if line.startswith((f"case.toml: {key}:", f"case.toml: {key} ("))]
-    assert lines, report
-    assert expected in " ".join(lines)
-    assert "expected" in lines[0]
+    check_one_wrong(*ONE_WRONG[kind], sound=SOUND)
 
 
 def test_the_sound_case_is_sound() -> None:
@@ -230,19 +201,18 @@ SEVERAL_WRONG = {
 
 @pytest.mark.parametrize("kind", SEVERAL_WRONG)
 def test_what_does_not_go_together_is_named(kind: str) -> None:
-    changes, key, expected = SEVERAL_WRONG[kind]
-    report = problems(changed(*changes))
-    assert any(line.startswith(f"case.toml: {key}") and expected in line for line in report), report
+    check_several_wrong(*SEVERAL_WRONG[kind], sound=SOUND)
 
 
 def test_everything_wrong_comes_at_once() -> None:
     report = problems(
-        changed(
+        broken(
             (f"{CONE}.right_bore", "90 mm"),
             (f"{LINK}.coupling.mass", "-2 kg"),
             ("bearing.1.stiffness.xy", [1.0]),
             ("rotor_analysis.modes", 1.5),
             ("bearing.0.stiffness.yy", [1, 2]),
+            sound=SOUND,
         )
     )
     assert len(report) == 5

@@ -1,0 +1,59 @@
+"""Commands on a case as a whole, on the bundled ones and on a results folder."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
+
+from gearwhine.cli.on_case import hand_over, on_case, results_folder
+from gearwhine.cli.options import NONE_GIVEN, CaseName, Common, FreshRun
+
+if TYPE_CHECKING:
+    from gearwhine.case import Case
+    from gearwhine.progress import Progress
+
+
+def run(case: CaseName, *, fresh: FreshRun = False, common: Common = NONE_GIVEN) -> None:
+    """Everything the case asks for, start to end; results go to OUT (default: ./<case>-results).
+
+    A run that was interrupted or killed goes on from its last checkpoint when the same case is run into OUT again.
+    """
+    from gearwhine.screen import show_run
+    from gearwhine.work import run_case
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return run_case(given, results_folder(case, common), progress, fresh=fresh)
+
+    on_case(case, common, work, show_run)
+
+
+def check(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
+    """Read the case and say what it means; solves nothing."""
+    from gearwhine.screen import show_check
+    from gearwhine.stages.summary import check_document
+
+    on_case(case, common, check_document, show_check)
+
+
+def examples(
+    action: Annotated[Literal["list", "copy"], Parameter(help="What to do.")] = "list",
+    name: Annotated[str | None, Parameter(help="Which bundled case to copy.")] = None,
+    *,
+    common: Common = NONE_GIVEN,
+) -> None:
+    """List the bundled cases, or copy one here (or to OUT) to change it: examples copy NAME."""
+    from gearwhine.screen import show_examples, show_files
+    from gearwhine.work import copy_example, list_examples
+
+    if action == "list":
+        hand_over(list_examples(), common, show_examples)
+    else:
+        hand_over(copy_example(name, common.output or Path()), common, show_files)
+
+
+def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
+    """The results folder OUT (default: ./<case>-results) as one HTML page, report.html in it."""
+    from gearwhine.screen import show_files
+    from gearwhine.work import report_case
+
+    on_case(case, common, lambda given, progress: report_case(results_folder(case, common)), show_files)

@@ -1,0 +1,72 @@
+"""The application: every command by its name, and how it ends."""
+
+import sys
+
+from cyclopts import App, CycloptsError
+
+from gearwhine import __version__
+from gearwhine.cli import case, housing, machine
+from gearwhine.interruption import interruptible
+
+app = App(
+    name="gearwhine",
+    version=__version__,
+    help="Gearbox vibration: from the geometry of housing, rotors and gears to the spectrum at an accelerometer.",
+    help_epilogue="Try: gearwhine examples, then gearwhine run small-gearbox",
+    help_format="plaintext",
+    # An interruption unwinds to run_command, which has a sentence for it.
+    suppress_keyboard_interrupt=False,
+)
+for _command in (
+    case.run,
+    case.check,
+    housing.mesh,
+    housing.modes,
+    machine.rotors,
+    machine.gears,
+    machine.system,
+    machine.steady,
+    machine.sweep,
+    housing.compare,
+    housing.survey,
+    housing.update,
+    housing.render,
+    case.examples,
+    case.report,
+):
+    app.command(_command)
+
+
+def run_command(arguments: list[str]) -> int:
+    """Run the command line; 0 when done, 2 where the user's input is wrong, 1 for anything else.
+
+    Only what nobody foresaw leaves a traceback.
+    """
+    with interruptible():
+        return _run_command(arguments)
+
+
+def _run_command(arguments: list[str]) -> int:
+    from gearwhine.failures import explain
+
+    try:
+        app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+    except CycloptsError as error:
+        sys.stderr.write(f"gearwhine: {error}\nTry 'gearwhine --help'.\n")
+        return 2
+    except KeyboardInterrupt as stop:
+        sys.stderr.write("gearwhine: interrupted; the output folder holds no half-written file\n")
+        for note in getattr(stop, "__notes__", ()):
+            sys.stderr.write(f"gearwhine: {note}\n")
+        return 130
+    except BrokenPipeError:
+        return 1
+    except Exception as error:
+        code, message = explain(error)
+        if message is None:
+            raise
+        for note in getattr(error, "__notes__", ()):
+            sys.stderr.write(f"{note}\n")
+        sys.stderr.write(f"gearwhine: {message}\n")
+        return code
+    return 0

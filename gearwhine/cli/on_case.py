@@ -1,0 +1,65 @@
+"""How a command goes about a case: read it, work under a progress display, hand the document over."""
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gearwhine.cli.options import Common
+
+if TYPE_CHECKING:
+    from gearwhine.case import Case
+    from gearwhine.progress import Progress
+
+
+def on_case(
+    name: str,
+    common: Common,
+    work: Callable[["Case", "Progress"], dict[str, Any]],
+    show: Callable[[dict[str, Any]], None],
+) -> dict[str, Any]:
+    """Read the case, do the work under a progress display, hand the result over and return it."""
+    from gearwhine.case import load_case
+    from gearwhine.progress import shown
+
+    loaded = load_case(name, common.settings)
+    if common.output is not None:
+        _check_folder(common.output)
+    for warning in loaded.warnings:
+        sys.stderr.write(f"warning: {warning}\n")
+    with shown(quiet=common.quiet) as progress:
+        document = work(loaded.case, progress)
+    for warning in document.get("warnings", ()):
+        sys.stderr.write(f"warning: {warning['message']}\n")
+    hand_over(document, common, show)
+    return document
+
+
+def results_folder(case: str, common: Common) -> Path:
+    """The folder for a command that always writes, once it is known to take files."""
+    folder = common.output if common.output is not None else Path(f"{Path(case).stem}-results")
+    _check_folder(folder)
+    return folder
+
+
+def hand_over(document: dict[str, Any], common: Common, show: Callable[[dict[str, Any]], None]) -> None:
+    """Print a document: as JSON where that is asked for, else as ``show`` does for a person."""
+    from gearwhine.output import finite, json_text
+
+    if common.json:
+        sys.stdout.write(json_text(finite(document)) + "\n")
+    else:
+        show(document)
+
+
+def _check_folder(folder: Path) -> None:
+    """Refuse a place where no results can go before the work begins, and make nothing yet."""
+    from gearwhine.case import CaseError, Problem
+
+    place = folder
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    if not place.is_dir() or not os.access(place, os.W_OK):
+        what = "is a file" if place.is_file() else "cannot be written to"
+        raise CaseError([Problem("--output", str(folder), f"a folder for the results; {place} {what}")])

@@ -1,0 +1,37 @@
+"""The bundled cases, and a results folder as a page."""
+
+from pathlib import Path
+from typing import Any
+
+from gearwhine.case import CaseError, Problem, bundled_case, bundled_cases
+from gearwhine.output import staging
+
+
+def list_examples() -> dict[str, Any]:
+    """The bundled cases and their titles."""
+    return {"examples": [{"name": name, "title": title} for name, title in bundled_cases().items()]}
+
+
+def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
+    """Copy a bundled case into a folder; a file of that name there is left alone."""
+    known = ", ".join(bundled_cases())
+    source = bundled_case(name) if name is not None else None
+    if source is None:
+        raise CaseError([Problem("examples copy", name, f"one of: {known}")])
+    target = folder / source.name
+    if target.exists():
+        raise CaseError([Problem("examples copy", str(target), "a place where no file of that name stands yet")])
+    content = source.read_text(encoding="utf-8")
+    with staging(folder) as place:
+        (place / source.name).write_text(content, encoding="utf-8")
+    return {"folder": str(folder), "files": [source.name]}
+
+
+def report_case(folder: Path) -> dict[str, Any]:
+    """The results in a folder as one HTML page."""
+    from gearwhine.report import report_page
+
+    page = report_page(folder)
+    with staging(folder) as place:
+        (place / "report.html").write_text(page, encoding="utf-8")
+    return {"folder": str(folder), "files": ["report.html"]}

@@ -1,0 +1,132 @@
+"""What the command ``run`` does: every stage that the case asks for, and all their files."""
+
+import time
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from gearwhine.case import Case, dump_case, mesh_frequencies, require
+from gearwhine.comparison_files import write_comparison
+from gearwhine.drawings import draw_modes
+from gearwhine.march_files import kept_march
+from gearwhine.output import SUMMARY, finite, json_text, staging
+from gearwhine.progress import Progress
+from gearwhine.stages import comparison as comparison_stage
+from gearwhine.stages import comparison_documents, gear_analysis, gear_documents, housing_documents, rotor_documents
+from gearwhine.stages import gears as gear_stage
+from gearwhine.stages import housing as housing_stage
+from gearwhine.stages import machine as machine_stage
+from gearwhine.stages import rotors as rotor_stage
+from gearwhine.stages import run_up as run_up_stage
+from gearwhine.stages import signature as signature_stage
+from gearwhine.stages import system as system_stage
+from gearwhine.stages import transient as transient_stage
+from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
+from gearwhine.stages.system_documents import system_document
+from gearwhine.work.results_folder import files_in
+
+
+def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
+    """Everything that the case asks for, and the results folder.
+
+    What is marched of the transient is kept in the folder until the results are written: a run that dies goes on from
+    there when it is started again. ``fresh`` starts anew.
+    """
+    with ExitStack() as until_written:
+        return _run_case(case, folder, progress, until_written, fresh=fresh)
+
+
+def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitStack, *, fresh: bool) -> dict[str, Any]:
+    from gearwhine import figures, results
+    from housing.renderer import find_renderer
+
+    if case.transient is not None:
+        require(case, "rotor", "operation", command="run")
+    if case.housing is not None:
+        # Found out before the work, not after it.
+        find_renderer()
+    start = time.perf_counter()
+    seconds: dict[str, float] = {}
+    document: dict[str, Any] = {"title": case.title}
+
+    def timed(name: str, begin: float) -> None:
+        seconds[name] = time.perf_counter() - begin
+
+    begin = time.perf_counter()
+    rotors = rotor_stage.solve_rotors(case, progress) if case.rotor else ()
+    pairs = gear_stage.solve_gears(case, progress) if case.gear_pair else ()
+    analysed = gear_analysis.analyse_pairs(case, pairs)
+    timed("rotors_and_gears", begin)
+    begin = time.perf_counter()
+    housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
+    timed("housing", begin)
+    if rotors:
+        document |= rotor_documents.rotors_document(rotors)
+    if pairs:
+        document |= gear_documents.gears_document(analysed)
+    comparison = None
+    if housing is not None:
+        document["housing"] = housing_documents.modes_document(housing)
+        document |= housing_documents.origin_document(housing)
+        if case.measured is not None:
+            comparison = comparison_stage.compare_housing(case, housing, progress)
+            document["compare"] = comparison_documents.comparison_document(comparison, housing)
+
+    transient, system, signature, run = None, None, None, None
+    if case.rotor and case.operation:
+        begin = time.perf_counter()
+        machine = machine_stage.build_machine(case, housing, pairs, progress)
+        system = system_stage.solve_system(case, machine, housing, progress)
+        document["system"] = system_document(case, system, housing)
+        timed("system", begin)
+        if case.transient is not None:
+            if housing is not None and not housing.source_holds:
+                # Now, not with the results: who goes on with a long march need not solve them again.
+                with staging(folder) as place:
+                    keep_modes(place, housing)
+                housing = replace(housing, source=folder / MODES_FILE, source_holds=True)
+            begin = time.perf_counter()
+            transient = transient_stage.solve_transient(
+                case,
+                machine,
+                mesh_frequencies(case),
+                progress,
+                housing=housing,
+                keep=lambda key: until_written.enter_context(kept_march(folder, key, fresh=fresh)),
+            )
+            document |= transient_stage.transient_document(case, transient)
+            if transient_stage.is_traced(case):
+                frequencies = None if housing is None else housing.modes.frequencies_hz
+                signature = signature_stage.solve_signature(transient, system.modes, frequencies)
+                signature_stage.add_signature(document, transient, signature)
+            run = run_up_stage.solve_run_signature(case, transient)
+            if run is not None:
+                document["run_signature"] = run_up_stage.run_signature_document(run)
+            timed("transient", begin)
+            seconds["time_stepping"] = transient.result.seconds
+
+    begin = time.perf_counter()
+    with staging(folder, replacing=True) as place:
+        progress("writing results")
+        (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
+        results.write(place / "results.nc", case, housing, rotors, analysed, system, transient, signature, run=run)
+        if analysed:
+            figures.draw_gear_pairs(place, analysed, progress)
+        if system is not None:
+            figures.draw_system(place, case, system)
+        if transient is not None:
+            figures.draw_transient(place, case, transient, signature, housing, comparison)
+        if run is not None:
+            figures.draw_run(place, case, run, housing)
+        if housing is not None:
+            results.write_shapes(place / "modes.vtu", housing)
+            keep_modes(place, housing)
+            draw_modes(housing, comparison, "dominant", "iso", "png", place, progress)
+        if housing is not None and comparison is not None:
+            write_comparison(place, case.title, comparison, housing.modes.frequencies)
+        timed("writing", begin)
+        seconds["total"] = time.perf_counter() - start
+        document |= {"seconds": seconds, "folder": str(folder), "files": files_in(place, housing)}
+        (place / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
+    return document
