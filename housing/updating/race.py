@@ -67,15 +67,18 @@ class Runner:
 
     Attributes
     ----------
+    number : int
     coordinates : ndarray, shape (n_parameters,)
-    place, judged : ndarray, ModalState
-        Where the bias is known from, and what the fine mesh has there; None where there is one mesh only.
+    bias : MeshBias, or None
+        Of the design where the race began; None where there is one mesh only.
+    judged : ModalState, or None
+        What the fine mesh has here; None where it has not been asked yet.
     """
 
     number: int
     coordinates: FloatArray
-    place: FloatArray
-    judged: ModalState | None
+    bias: MeshBias | None
+    judged: ModalState | None = None
 
 
 @dataclass(frozen=True)
@@ -115,12 +118,11 @@ class _Run(Generic[AnyDesign]):
     def __call__(self, runner: Runner) -> tuple[Runner, float, tuple[Step, ...]]:
         """The runner where it has come to, its misfit there, and its steps; infinite where nothing is sound there."""
         try:
-            known = self.meshes.coarse(runner.place, None)
-            bias = None if runner.judged is None else MeshBias.between(known.state, runner.judged)
-            same = runner.coordinates is runner.place or np.array_equal(runner.coordinates, runner.place)
-            begin = known if same else self.meshes.coarse(runner.coordinates, None)
+            begin = self.meshes.coarse(runner.coordinates, None)
         except HousingError:
             return runner, np.inf, ()
+        # Learned on this very mesh where the fine one has been here, else what is known from where the race began.
+        bias = runner.bias if runner.judged is None else MeshBias.between(begin.state, runner.judged)
         effort = replace(self.effort, seed=self.effort.seed + runner.number)
         found = search(debiased(self.meshes.coarse, bias), self.target, self.parameters, Debiased(begin, bias), effort)
         return replace(runner, coordinates=found.design.coordinates), found.misfit.value, found.steps
@@ -175,8 +177,8 @@ def race(
     bias = None if judged is None else MeshBias.between(start.state, judged)
     soft = replace(target, firmness=_FIRMNESS[0])
     points = [start.coordinates]
-    points += _drawn(Debiased(start, bias).surrogate(), soft, parameters, count - 1, effort.seed)
-    runners = [Runner(number, point, start.coordinates, judged) for number, point in enumerate(points)]
+    points += _drawn(Debiased(start, bias).surrogate(), soft, parameters, count - 1, effort.seed, each)
+    runners = [Runner(number, point, bias) for number, point in enumerate(points)]
     best = _better(None, target, runners[0], start.state if judged is None else judged, lambda message: None)
     going = _going(count)
     solves = max(1, effort.solves // sum(going))
@@ -195,7 +197,7 @@ def race(
             if state is not None:
                 best = _better(best, target, runner, state, progress)
                 fine = None if meshes.fine is None else state
-                runners.append(Runner(runner.number, runner.coordinates, runner.coordinates, fine))
+                runners.append(replace(runner, judged=fine))
         if best.is_met or not runners:
             break
     return replace(best, steps=tuple(steps))
@@ -226,15 +228,27 @@ def _going(count: int) -> list[int]:
     return going
 
 
+@dataclass(frozen=True)
+class _Descent:
+    """From a draw of the prior down on a surrogate: where that leads to, and its misfit."""
+
+    surrogate: Surrogate
+    target: Target
+    bounds: FloatArray
+
+    def __call__(self, drawn: FloatArray) -> tuple[FloatArray, float]:
+        return descend(self.surrogate, self.target, drawn, self.bounds, _DESCENT)
+
+
 def _drawn(
-    surrogate: Surrogate, target: Target, parameters: Sequence[Parameter], count: int, seed: int
+    surrogate: Surrogate, target: Target, parameters: Sequence[Parameter], count: int, seed: int, each: Each
 ) -> list[FloatArray]:
     """Coordinates of the best designs, apart from each other, that a surrogate leads to from draws of the prior."""
+    if not count:
+        return []
     bounds, generator = coordinate_bounds(parameters), np.random.default_rng(seed)
-    ends = []
-    for _ in range(_DRAWN * count):
-        drawn = np.clip(generator.normal(size=bounds.shape[1]), *bounds)
-        ends.append(descend(surrogate, target, drawn, bounds, _DESCENT))
+    draws = np.clip(generator.normal(size=(_DRAWN * count, bounds.shape[1])), *bounds)
+    ends = each(_Descent(surrogate, target, bounds), list(draws))
     apart = [surrogate.center]
     for point, _ in sorted(ends, key=lambda end: end[1]):
         if all(np.linalg.norm(point - other) > _APART * np.sqrt(len(point)) for other in apart):
