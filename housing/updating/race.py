@@ -177,6 +177,8 @@ def race(
     bias = None if judged is None else MeshBias.between(start.state, judged)
     soft = replace(target, firmness=_FIRMNESS[0])
     points = [start.coordinates]
+    if count > 1:
+        progress(f"bringing {_DRAWN * (count - 1)} draws of the prior down")
     points += _drawn(Debiased(start, bias).surrogate(), soft, parameters, count - 1, effort.seed, each)
     runners = [Runner(number, point, bias) for number, point in enumerate(points)]
     best = _better(None, target, runners[0], start.state if judged is None else judged, lambda message: None)
