@@ -48,7 +48,7 @@ _FEW = 10  # solves of that search, and of each random set
 _LEFT = 3  # of that search where all is met already, so that the misfit is least there
 _FIRM = 3.0  # how much less soft the penalties are there
 _HELD = 20  # solves of each search that holds a mode back
-_KEPT = 6  # designs that random sets may begin at, beside the first and the last
+_KEPT = 7  # of the designs judged, that random sets may begin at
 _STARTS = 16  # on the surrogate, where the search is made over and over
 
 
@@ -149,19 +149,21 @@ def update_housing(
     spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
     rows: list[HeldBack] = []
     fits: list[NullFit] = []
-    solve = debiased(coarse.solve, bias)
+    near = Debiased(tuned, bias)
     if held_back:
         begin = time.perf_counter()
+        # By the bias at the start: that at the end has seen the mode that is held back.
+        first = Debiased(start, None if same else MeshBias.between(start.state, before.state))
         few = replace(effort, solves=_HELD, starts=_STARTS)
-        rows = hold_back(solve, target, coarse.parameters, Debiased(start, bias), few, progress)
+        rows = hold_back(debiased(coarse.solve, first.bias), target, coarse.parameters, first, few, progress)
         seconds["held_back"] = time.perf_counter() - begin
     if null:
         begin = time.perf_counter()
-        known = [Debiased(start, bias), *(solve(point, None) for point in _thinned(raced.seen)), Debiased(tuned, bias)]
+        solve = debiased(coarse.solve, bias)
+        known = [near, *(solve(point, None) for point in _thinned(raced.seen))]
         few = replace(effort, solves=_FEW, starts=_STARTS)
         fits = null_fits(solve, target, coarse.parameters, known, few, null, progress=progress)
         seconds["null"] = time.perf_counter() - begin
-    near = Debiased(tuned, bias)
     return SolvedUpdate(
         fitted=fine.case,
         before=before,
@@ -194,14 +196,14 @@ def _raced(
     One thread each, so that the same is found however many run side by side.
     """
     coarse = replace(start.designs, threads=1)
-    judge = _Judge(replace(fine, threads=1))
+    judge = _OwnMesh(replace(fine, threads=1))
     meshes = Meshes(coarse.solve, None if judged is None else judge)
     with side_by_side(min(count, fine.threads, default_workers())) as each:
         return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
 
 
 @dataclass(frozen=True)
-class _Judge:
+class _OwnMesh:
     """The housing's own mesh, of which only the modes are looked at."""
 
     designs: HousingDesigns
@@ -225,7 +227,5 @@ def _polished(
 
 def _thinned(points: Sequence[FloatArray]) -> list[FloatArray]:
     """The first, the last and some between."""
-    if not points:
-        return []
     chosen = np.unique(np.linspace(0, len(points) - 1, min(len(points), _KEPT)).round().astype(int))
     return [points[place] for place in chosen]
