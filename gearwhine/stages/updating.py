@@ -129,7 +129,7 @@ def update_housing(
         expected = "0 where shapes were measured: random frequencies have none"
         raise CaseError([Problem("--null", null, expected)])
     begin = time.perf_counter()
-    fine = HousingDesigns(fitted_case(case), given.modes, measured.observer, threads=threads)
+    fine = HousingDesigns(fitted_case(case), given.modes, measured.observer, threads=threads, as_written=True)
     coarse = replace(fine, case=fitted_case(case, given.mesh_size))
     progress("solving the housing as it stands")
     before = fine.solve(fine.start)

@@ -193,6 +193,8 @@ def race(
         told = ", ".join(f"{value:.4g}" for _, value, _ in ran)
         progress(f"heat {heat + 1} of {_HEATS}: {len(ran)} searches, misfits {told}")
         steps += [step for *_, own_steps in ran for step in own_steps]
+        if heat + 1 >= len(_FIRMNESS) and not any(step.accepted for *_, own_steps in ran for step in own_steps):
+            break  # and the fine mesh has judged them all
         kept = [runner for runner, value, _ in ran if np.isfinite(value)][:left]
         runners = []
         for runner, state in zip(kept, each(_Judge(meshes), kept), strict=True):
