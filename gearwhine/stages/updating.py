@@ -195,21 +195,10 @@ def _raced(
 
     One thread each, so that the same is found however many run side by side.
     """
-    coarse = replace(start.designs, threads=1)
-    judge = _OwnMesh(replace(fine, threads=1))
-    meshes = Meshes(coarse.solve, None if judged is None else judge)
+    coarse, own = (replace(designs, threads=1) for designs in (start.designs, fine))
+    meshes = Meshes(coarse.solve, None if judged is None else own.solve)
     with side_by_side(min(count, fine.threads, default_workers())) as each:
         return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
-
-
-@dataclass(frozen=True)
-class _OwnMesh:
-    """The housing's own mesh, of which only the modes are looked at."""
-
-    designs: HousingDesigns
-
-    def __call__(self, coordinates: FloatArray) -> ModalState:
-        return self.designs.solve(coordinates).state
 
 
 def _polished(

@@ -1,10 +1,12 @@
-"""A search from many starts on a coarse mesh that a fine one judges, the better half of them going on.
+"""A search from many starts on a coarse mesh, the better half of them going on, that ends on a fine one.
 
 What is asked of a choice of dominant modes parts the designs into basins, and a search from one start ends in the
-nearest. So many are begun, heat by heat. In each heat every runner is searched for with a few solves on the coarse
-mesh, the mesh's bias taken off (:mod:`housing.updating.bias`); the better half is then solved on the fine mesh, which
-judges them and tells the bias at each of them anew. Penalties grow from heat to heat (Jamieson and Talwalkar 2016 on
-successive halving). The race ends where a design meets all that is asked for on the fine mesh, or with its last heat.
+nearest. So many are begun, heat by heat, and the better half of each heat goes on (Jamieson and Talwalkar 2016 on
+successive halving). In the first heats every runner is searched for with a few solves on the coarse mesh, the mesh's
+bias taken off (:mod:`housing.updating.bias`), which the fine mesh tells anew at each design that goes on. A bias that
+was learned at one design is off by per cents some standard deviations away where walls are thin, so the last heats are
+run on the fine mesh itself. Penalties grow from heat to heat. The race ends where a design meets all that is asked for
+on the fine mesh, or with its last heat.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,10 +28,11 @@ FloatArray = npt.NDArray[np.float64]
 _DRAWN = 8  # from the prior for each start that is solved
 _DESCENT = 25  # steps of each on the surrogate
 _APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
-_HEATS = 6
+_COARSE, _FINE = 2, 2  # heats on either mesh
 _LAST = 2  # runners that are never parted
 _FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the last in all others
 _TRUST = (0.25, 0.15, 0.1)  # likewise
+_FINE_SOLVES = 4  # of each runner in each heat on the fine mesh
 _STARTS = 16  # on the surrogate
 
 
@@ -54,11 +57,15 @@ class Meshes(Generic[AnyDesign]):
     coarse : callable
         See :data:`housing.updating.Solve`.
     fine : callable
-        The modes at coordinates on the mesh that judges; None where there is one mesh only.
+        The same on the mesh that judges, made anew at each design; None where there is one mesh only.
     """
 
     coarse: Solve[AnyDesign]
-    fine: Callable[[FloatArray], ModalState] | None
+    fine: Solve[AnyDesign] | None
+
+    def judge(self, coordinates: FloatArray, near: AnyDesign | None = None) -> AnyDesign:
+        """A design on the mesh that judges, whatever is near."""
+        return (self.coarse if self.fine is None else self.fine)(coordinates, None)
 
 
 @dataclass(frozen=True)
@@ -94,7 +101,7 @@ class Raced:
     is_met : bool
         Whether it meets all that is asked for.
     steps : tuple of Step
-        Every solve on the coarse mesh.
+        Every solve of all searches.
     seen : tuple of ndarray
         Coordinates of every design that the fine mesh has judged.
     """
@@ -106,6 +113,9 @@ class Raced:
     seen: tuple[FloatArray, ...]
 
 
+Ran = tuple[Runner, float, tuple[Step, ...]]
+
+
 @dataclass(frozen=True)
 class _Run(Generic[AnyDesign]):
     """One runner's search in one heat: what a worker is told."""
@@ -114,18 +124,24 @@ class _Run(Generic[AnyDesign]):
     target: Target
     parameters: tuple[Parameter, ...]
     effort: Effort
+    on_fine: bool
 
-    def __call__(self, runner: Runner) -> tuple[Runner, float, tuple[Step, ...]]:
+    def __call__(self, runner: Runner) -> Ran:
         """The runner where it has come to, its misfit there, and its steps; infinite where nothing is sound there."""
+        solve = self.meshes.judge if self.on_fine else self.meshes.coarse
         try:
-            begin = self.meshes.coarse(runner.coordinates, None)
+            begin = solve(runner.coordinates, None)
         except HousingError:
             return runner, np.inf, ()
-        # Learned on this very mesh where the fine one has been here, else what is known from where the race began.
-        bias = runner.bias if runner.judged is None else MeshBias.between(begin.state, runner.judged)
+        bias = None
+        if not self.on_fine:
+            # Learned on this very mesh where the fine one has been here, else what is known from the race's start.
+            bias = runner.bias if runner.judged is None else MeshBias.between(begin.state, runner.judged)
         effort = replace(self.effort, seed=self.effort.seed + runner.number)
-        found = search(debiased(self.meshes.coarse, bias), self.target, self.parameters, Debiased(begin, bias), effort)
-        return replace(runner, coordinates=found.design.coordinates), found.misfit.value, found.steps
+        found = search(debiased(solve, bias), self.target, self.parameters, Debiased(begin, bias), effort)
+        judged = found.design.state if self.on_fine else None
+        ended = replace(runner, coordinates=found.design.coordinates, judged=judged)
+        return ended, found.misfit.value, found.steps
 
 
 @dataclass(frozen=True)
@@ -134,12 +150,10 @@ class _Judge(Generic[AnyDesign]):
 
     meshes: Meshes[AnyDesign]
 
-    def __call__(self, runner: Runner) -> ModalState | None:
-        """What it has there; None where it has nothing sound."""
+    def __call__(self, runner: Runner) -> Runner | None:
+        """The runner with what the fine mesh has there; None where it has nothing sound."""
         try:
-            if self.meshes.fine is None:
-                return self.meshes.coarse(runner.coordinates, None).state
-            return self.meshes.fine(runner.coordinates)
+            return replace(runner, judged=self.meshes.judge(runner.coordinates).state)
         except HousingError:
             return None
 
@@ -167,7 +181,7 @@ def race(
     judged : ModalState, or None
         The fine mesh's modes of the same; None where there is one mesh only.
     effort : Effort
-        Its solves are those of all runners in all heats.
+        Its solves are those of all runners in the heats on the coarse mesh.
     count : int
         Runners, the start among them.
     each : callable
@@ -181,37 +195,44 @@ def race(
         progress(f"bringing {_DRAWN * (count - 1)} draws of the prior down")
     points += _drawn(Debiased(start, bias).surrogate(), soft, parameters, count - 1, effort.seed, each)
     runners = [Runner(number, point, bias) for number, point in enumerate(points)]
-    best = _better(None, target, runners[0], start.state if judged is None else judged, lambda message: None)
+    first = replace(runners[0], judged=start.state if judged is None else judged)
+    best = _better(None, target, first, lambda message: None)
     going = _going(count)
-    solves = max(1, effort.solves // sum(going))
+    solves = max(1, effort.solves // sum(going[:_COARSE]))
     steps = list[Step]()
-    for heat, left in enumerate([*going[1:], going[-1]]):
-        firmness, trust = (values[min(heat, len(values) - 1)] for values in (_FIRMNESS, _TRUST))
-        own = replace(effort, solves=solves, trust=trust, starts=_STARTS)
-        ran = each(_Run(meshes, replace(target, firmness=firmness), tuple(parameters), own), runners)
-        ran.sort(key=lambda row: row[1])
-        told = ", ".join(f"{value:.4g}" for _, value, _ in ran)
-        progress(f"heat {heat + 1} of {_HEATS}: {len(ran)} searches, misfits {told}")
-        steps += [step for *_, own_steps in ran for step in own_steps]
-        if heat + 1 >= len(_FIRMNESS) and not any(step.accepted for *_, own_steps in ran for step in own_steps):
-            break  # and the fine mesh has judged them all
-        kept = [runner for runner, value, _ in ran if np.isfinite(value)][:left]
-        runners = []
-        for runner, state in zip(kept, each(_Judge(meshes), kept), strict=True):
-            if state is not None:
-                best = _better(best, target, runner, state, progress)
-                fine = None if meshes.fine is None else state
-                runners.append(replace(runner, judged=fine))
-        if best.is_met or not runners:
+    for heat, number in enumerate(going):
+        on_fine = heat >= _COARSE
+        if heat and not on_fine:
+            runners = [runner for runner in each(_Judge(meshes), runners[:number]) if runner is not None]
+            best = _best(best, target, runners, progress)
+        if best.is_met:
             break
+        firmness, trust = (values[min(heat, len(values) - 1)] for values in (_FIRMNESS, _TRUST))
+        own = replace(effort, solves=_FINE_SOLVES if on_fine else solves, trust=trust, starts=_STARTS)
+        run = _Run(meshes, replace(target, firmness=firmness), tuple(parameters), own, on_fine)
+        ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
+        steps += [step for *_, own_steps in ran for step in own_steps]
+        told = ", ".join(f"{value:.4g}" for _, value, _ in ran)
+        progress(f"heat {heat + 1} of {len(going)}: {len(ran)} searches, misfits {told}")
+        runners = [runner for runner, value, _ in ran if np.isfinite(value)]
+        if on_fine:
+            best = _best(best, target, runners, progress)
+            if not any(step.accepted for *_, own_steps in ran for step in own_steps):
+                break
     return replace(best, steps=tuple(steps))
 
 
-def _better(
-    best: Raced | None, target: Target, runner: Runner, state: ModalState, progress: Callable[[str], None]
-) -> Raced:
+def _best(best: Raced, target: Target, runners: Sequence[Runner], progress: Callable[[str], None]) -> Raced:
+    """The best so far, or of runners that have been judged."""
+    for runner in runners:
+        best = _better(best, target, runner, progress)
+    return best
+
+
+def _better(best: Raced | None, target: Target, runner: Runner, progress: Callable[[str], None]) -> Raced:
     """The better of the best so far and of a runner that has been judged."""
-    misfit = measure(target, state, runner.coordinates, strict=True)
+    assert runner.judged is not None
+    misfit = measure(target, runner.judged, runner.coordinates, strict=True)
     met = is_met(target, misfit)
     progress(
         f"search {runner.number + 1} on the fine mesh: misfit {misfit.value:.4g}, rms {misfit.rms_percent:.2f} %, "
@@ -227,7 +248,7 @@ def _better(
 def _going(count: int) -> list[int]:
     """How many there are in each heat."""
     going = [count]
-    while len(going) < _HEATS:
+    while len(going) < _COARSE + _FINE:
         going.append(min(going[-1], max(_LAST, (going[-1] + 1) // 2)))
     return going
 
