@@ -102,9 +102,10 @@ class Update(Table):
 
     `frequency_noise` is the relative standard deviation of a measured frequency together with what a perfect model
     would still miss; `shape_noise` that of each motion of a measured shape, as a part of the shape's root-mean-square.
-    The search is made with elements of `mesh_size` (None: the box's own) and the box's own decide. `gap` is the least
-    gap of dominance, `modes` how many are taken along, `solves` how many designs are solved at most, `explore` how
-    many other starts there are, and `seed` that of the random starts on the surrogate.
+    The search is made with elements of `mesh_size` (None: the box's own), whose bias is taken off, and the box's own
+    judge. `gap` is the least gap of dominance, `modes` how many are taken along, `solves` how many designs are solved
+    on the search's mesh at most, `explore` how many starts there are beside the case's own, and `seed` that of their
+    draws and of the random starts on the surrogate.
     """
 
     parameter: tuple[UpdateParameter, ...] = Field(min_length=1, max_length=200)

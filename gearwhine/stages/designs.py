@@ -39,6 +39,9 @@ class HousingDesigns:
         From a mesh to the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes).
     threads : int
     progress : callable
+    as_written : bool
+        Whether values are rounded as an updated case has them, so that the design solved is the one written: where the
+        last digits differ the mesher may well go another way, and frequencies with it by some 0.03 %.
     """
 
     case: FittedCase
@@ -46,6 +49,7 @@ class HousingDesigns:
     measured: Callable[[Mesh], sparse.csr_array] | None = None
     threads: int = 2
     progress: Progress = silent
+    as_written: bool = False
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -59,7 +63,10 @@ class HousingDesigns:
 
     def case_at(self, coordinates: FloatArray) -> Case:
         """The case at coordinates."""
-        return self.case.at(values_at(self.parameters, coordinates).tolist())
+        values = values_at(self.parameters, coordinates).tolist()
+        if self.as_written:
+            values = [number.as_written(value) for number, value in zip(self.case.numbers, values, strict=True)]
+        return self.case.at(values)
 
     def solve(self, coordinates: FloatArray, near: "HousingDesign | None" = None) -> "HousingDesign":
         """Solve at coordinates, on the mesh of a neighbour where that can follow, else on a new one.

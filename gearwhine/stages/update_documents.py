@@ -8,8 +8,7 @@ import tomli_w
 from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.check_provenance import without_changed
 from gearwhine.case.problems import Location, key_of
-from gearwhine.case.units import amount
-from gearwhine.stages.update_keys import FittedNumber, with_entry
+from gearwhine.stages.update_keys import FittedNumber, unit_in_si, with_entry
 from gearwhine.stages.updating import SolvedUpdate
 from housing.updating import UNPAIRED, HeldBack, Misfit, NullFit
 
@@ -92,7 +91,7 @@ def _parameters(solved: SolvedUpdate) -> list[dict[str, Any]]:
                 "keys": [key_of(location) for location in number.places],
                 "factor": number.given.factor,
                 "unit": number.given.unit,
-                "unit_in_si": _unit_in_si(number.given),
+                "unit_in_si": unit_in_si(number.given),
                 "before": number.start,
                 "after": after,
                 "standard_deviation": deviation,
@@ -219,7 +218,7 @@ def updated_case(case: Case, solved: SolvedUpdate) -> str:
         was, now, give = (_shown(value, number.given) for value in (number.start, after, deviation))
         remarks.append(f"#   {number.parameter.name}: {was} -> {now}, give or take {give}")
         why = f"found: by updating to the measured frequencies; {was} before, {now} give or take {give} after"
-        for location, value in number.entries(_rounded(after, number.given)):
+        for location, value in number.entries(number.as_written(after)):
             text = f"{value:.10g}" if number.given.factor or not number.given.unit else _shown(value, number.given)
             document = with_entry(document, location, float(text) if _is_number(text) else text)
             changed.add(location)
@@ -249,22 +248,13 @@ def _prior(number: FittedNumber) -> dict[str, Any]:
     return {"nominal": _exact(parameter.nominal, given), "spread": _exact(parameter.spread, given)}
 
 
-def _unit_in_si(given: UpdateParameter) -> float:
-    return amount(f"1 {given.unit}") if given.unit else 1.0
-
-
 def _exact(value: float, given: UpdateParameter) -> str | float:
-    return f"{value / _unit_in_si(given):.12g} {given.unit}" if given.unit else value
+    return f"{value / unit_in_si(given):.12g} {given.unit}" if given.unit else value
 
 
 def _shown(value: float, given: UpdateParameter) -> str:
     """A value in the unit of its range, to four digits or to a hundredth of a millimetre's like."""
-    return f"{value / _unit_in_si(given):.5g} {given.unit}".strip()
-
-
-def _rounded(value: float, given: UpdateParameter) -> float:
-    """The value as it is shown."""
-    return float(f"{value / _unit_in_si(given):.5g}") * _unit_in_si(given)
+    return f"{value / unit_in_si(given):.5g} {given.unit}".strip()
 
 
 def _is_number(text: str) -> bool:

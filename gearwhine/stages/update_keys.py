@@ -38,6 +38,11 @@ class FittedNumber:
         """Its value in the case as it stands."""
         return 1.0 if self.given.factor else self.own[0]
 
+    def as_written(self, value: float) -> float:
+        """A value as the updated case has it: five digits in the unit of its range."""
+        unit = unit_in_si(self.given)
+        return float(f"{value / unit:.5g}") * unit
+
     def entries(self, value: float) -> Iterator[tuple[Location, float]]:
         """What to set where, in SI, for a value."""
         for place, own in zip(self.places, self.own, strict=True):
@@ -139,6 +144,11 @@ def _number(
         return None
     spread = _SPREAD * max(high - nominal, nominal - low) if given.spread is None else amount(given.spread)
     return FittedNumber(given, Parameter(given.name, low, high, nominal, spread), places, own)
+
+
+def unit_in_si(given: UpdateParameter) -> float:
+    """What the unit that a parameter is written in amounts to."""
+    return amount(f"1 {given.unit}") if given.unit else 1.0
 
 
 def _places(document: object, steps: Sequence[str], place: Location = ()) -> Iterator[Location]:

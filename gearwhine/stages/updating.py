@@ -1,10 +1,12 @@
 """Updating a case's housing: its `[update]` numbers fitted to the measured modes, and what the fit is worth.
 
-The search is made on a mesh of its own, coarse enough for many solves, that moves with the box. The box's own mesh
-decides: the search goes on there with a few designs more, each meshed anew.
+The search is made on a mesh of its own, coarse enough for many solves, that moves with the box, with that mesh's bias
+taken off. The box's own mesh decides: it judges every few solves, and the search ends with a few designs more there,
+each meshed anew.
 """
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,22 +15,29 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.designs import HousingDesign, HousingDesigns
+from gearwhine.stages.side_by_side import default_workers, side_by_side
 from gearwhine.stages.update_keys import FittedCase, fitted_case
 from gearwhine.stages.update_target import measurement_of
 from housing.updating import (
+    Debiased,
     Effort,
     Found,
     HeldBack,
+    MeshBias,
+    Meshes,
     Misfit,
+    ModalState,
     NullFit,
     Posterior,
+    Raced,
     Step,
     Target,
-    explore,
+    debiased,
     hold_back,
     measure,
     null_fits,
     posterior,
+    race,
     search,
 )
 
@@ -36,8 +45,10 @@ FloatArray = npt.NDArray[np.float64]
 
 _REFINED = 0.05  # trust region of the search that goes on with the finer mesh
 _FEW = 10  # solves of that search, and of each random set
-_SOFT, _WIDE = 0.4, 0.25  # firmness of the penalties and trust region to begin with
+_LEFT = 3  # of that search where all is met already, so that the misfit is least there
 _FIRM = 3.0  # how much less soft the penalties are there
+_HELD = 20  # solves of each search that holds a mode back
+_KEPT = 7  # of the designs judged, that random sets may begin at
 _STARTS = 16  # on the surrogate, where the search is made over and over
 
 
@@ -53,9 +64,9 @@ class SolvedUpdate:
     misfit_before, misfit_after : Misfit
         Theirs.
     tuned : HousingDesign
-        Where the search on the coarser mesh came to.
+        On the coarser mesh, where the search on it came to.
     misfit_tuned : Misfit
-        Its misfit there.
+        Its misfit there, that mesh's bias taken off.
     target : Target
     left_out : int
         Measured degrees of freedom that took no part.
@@ -118,43 +129,40 @@ def update_housing(
         expected = "0 where shapes were measured: random frequencies have none"
         raise CaseError([Problem("--null", null, expected)])
     begin = time.perf_counter()
-    fine = HousingDesigns(fitted_case(case), given.modes, measured.observer, threads=threads)
+    fine = HousingDesigns(fitted_case(case), given.modes, measured.observer, threads=threads, as_written=True)
     coarse = replace(fine, case=fitted_case(case, given.mesh_size))
     progress("solving the housing as it stands")
-    start = coarse.solve(coarse.start)
-    known: list[HousingDesign] = [start]
-
-    def solve(coordinates: FloatArray, near: HousingDesign | None) -> HousingDesign:
-        solved = coarse.solve(coordinates, near)
-        if null:  # each keeps a mesh and its modes in memory
-            known.append(solved)
-        return solved
-
+    before = fine.solve(fine.start)
+    same = coarse.case_at(coarse.start) == before.case
+    start = before if same else coarse.solve(coarse.start)
     effort = Effort(solves=given.solves, seed=given.seed)
-    # Soft penalties lead past what is in the way; then the housing is meshed anew, and they count in full.
-    half = replace(effort, solves=max(1, given.solves // 2), trust=_WIDE)
-    found = explore(solve, replace(target, firmness=_SOFT), coarse.parameters, start, half, given.explore, progress)
-    left = replace(effort, solves=max(1, given.solves - len(found.steps)))
-    anew = found.design if found.design is start else solve(found.design.coordinates, None)
-    full = search(solve, target, coarse.parameters, anew, left, progress)
-    found = replace(full, steps=found.steps + full.steps)
+    raced = _raced(fine, start, None if same else before.state, target, effort, 1 + given.explore, progress)
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
-    tuned = found.design
-    before, found = _polished(fine, start, found, target, effort, progress)
+    progress("going on with the housing's own mesh")
+    ended = fine.solve(raced.coordinates)
+    tuned = ended if same else coarse.solve(raced.coordinates)
+    bias = None if same else MeshBias.between(tuned.state, ended.state)
+    found = _polished(fine, ended, target, replace(effort, solves=_LEFT if raced.is_met else _FEW), progress)
     seconds["own_mesh"] = time.perf_counter() - begin
     after = found.design
     spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
     rows: list[HeldBack] = []
     fits: list[NullFit] = []
+    near = Debiased(tuned, bias)
     if held_back:
         begin = time.perf_counter()
-        rows = hold_back(coarse.solve, target, coarse.parameters, start, replace(effort, starts=_STARTS), progress)
+        # By the bias at the start: that at the end has seen the mode that is held back.
+        first = Debiased(start, None if same else MeshBias.between(start.state, before.state))
+        few = replace(effort, solves=_HELD, starts=_STARTS)
+        rows = hold_back(debiased(coarse.solve, first.bias), target, coarse.parameters, first, few, progress)
         seconds["held_back"] = time.perf_counter() - begin
     if null:
         begin = time.perf_counter()
-        few = replace(effort, solves=min(given.solves, _FEW), starts=_STARTS)
-        fits = null_fits(coarse.solve, target, coarse.parameters, _thinned(known), few, null, progress=progress)
+        solve = debiased(coarse.solve, bias)
+        known = [near, *(solve(point, None) for point in _thinned(raced.seen))]
+        few = replace(effort, solves=_FEW, starts=_STARTS)
+        fits = null_fits(solve, target, coarse.parameters, known, few, null, progress=progress)
         seconds["null"] = time.perf_counter() - begin
     return SolvedUpdate(
         fitted=fine.case,
@@ -163,43 +171,50 @@ def update_housing(
         misfit_before=measure(target, before.state, before.coordinates, strict=True),
         misfit_after=measure(target, after.state, after.coordinates, strict=True),
         tuned=tuned,
-        misfit_tuned=measure(target, tuned.state, tuned.coordinates, strict=True),
+        misfit_tuned=measure(target, near.state, near.coordinates, strict=True),
         target=target,
         left_out=measured.left_out,
         posterior=spread,
-        steps=found.steps,
+        steps=raced.steps + found.steps,
         held_back=rows,
         null=fits,
         seconds=seconds,
     )
 
 
-def _polished(
+def _raced(
     fine: HousingDesigns,
     start: HousingDesign,
-    found: Found[HousingDesign],
+    judged: ModalState | None,
     target: Target,
     effort: Effort,
+    count: int,
     progress: Progress,
-) -> tuple[HousingDesign, Found[HousingDesign]]:
-    """The start on the housing's own mesh, and the search that goes on there from where it came to on a coarser one.
+) -> Raced:
+    """The search from the start and others on the coarse mesh, judged by the fine one, side by side where several are.
+
+    One thread each, so that the same is found however many run side by side.
+    """
+    coarse, own = (replace(designs, threads=1) for designs in (start.designs, fine))
+    meshes = Meshes(coarse.solve, None if judged is None else own.solve)
+    with side_by_side(min(count, fine.threads, default_workers())) as each:
+        return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
+
+
+def _polished(
+    fine: HousingDesigns, begin: HousingDesign, target: Target, effort: Effort, progress: Progress
+) -> Found[HousingDesign]:
+    """The search that goes on on the housing's own mesh.
 
     Penalties are firm now: what was bent to get here has to be straight in the end. Each design is meshed anew: what a
     moved mesh has and a new one has not is no property of the housing.
     """
-    before, begin = start, found.design
-    if start.case != fine.case_at(fine.start):
-        progress("solving the housing as it stands on its own mesh")
-        before = fine.solve(fine.start)
-        progress("going on with the housing's own mesh")
-        begin = fine.solve(found.design.coordinates)
-    few = replace(effort, solves=_FEW, trust=_REFINED)
     firm = replace(target, firmness=_FIRM)
-    last = search(lambda point, near: fine.solve(point), firm, fine.parameters, begin, few, progress)
-    return before, replace(last, steps=found.steps + last.steps)
+    near = replace(effort, trust=_REFINED)
+    return search(lambda point, _: fine.solve(point), firm, fine.parameters, begin, near, progress)
 
 
-def _thinned(designs: list[HousingDesign]) -> list[HousingDesign]:
+def _thinned(points: Sequence[FloatArray]) -> list[FloatArray]:
     """The first, the last and some between."""
-    chosen = np.unique(np.linspace(0, len(designs) - 1, min(len(designs), 8)).round().astype(int))
-    return [designs[place] for place in chosen]
+    chosen = np.unique(np.linspace(0, len(points) - 1, min(len(points), _KEPT)).round().astype(int))
+    return [points[place] for place in chosen]

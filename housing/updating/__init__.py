@@ -1,29 +1,35 @@
 """Updating: named parameters of a housing's model fitted to its measured modes, and what the fit is worth.
 
 - :class:`Parameter` -- a number of the model with its range and prior; :class:`ModelRate`, :func:`modal_rates` -- what
-it
-  does to the modes, exactly; :class:`Surrogate` -- the modes of a design's neighbours.
+  it does to the modes, exactly; :class:`Surrogate` -- the modes of a design's neighbours.
 - :class:`Target`, :func:`measure` -- what was measured and how far a design is from it (:class:`Misfit`).
-- :func:`search`, :func:`explore` -- the fit from one start or from several, by true solves (:data:`Solve`) of
-  :class:`Design`; :func:`posterior` -- what the data say beside the prior (:class:`Posterior`).
+- :func:`search` -- the fit from one start by true solves (:data:`Solve`) of :class:`Design`; :class:`MeshBias`,
+  :func:`debiased` -- a coarse mesh that stands for a fine one; :func:`race` -- from many starts on the one, judged by
+  the other; :func:`posterior` -- what the data say beside the prior (:class:`Posterior`).
 - :func:`hold_back`, :func:`null_fits` -- what the fit is worth: modes left out and predicted, random frequencies
-fitted.
+  fitted.
 """
 
-from housing.updating.misfit import UNPAIRED, Misfit, ModeCount, Target, measure, residuals
+from housing.updating.bias import Debiased, MeshBias, debiased
+from housing.updating.misfit import UNPAIRED, Misfit, ModeCount, Target, is_met, measure, residuals
 from housing.updating.parameters import Parameter, coordinate_bounds, values_at
 from housing.updating.posterior import Posterior, posterior
+from housing.updating.race import Each, Meshes, Raced, one_by_one, race
 from housing.updating.rates import ModalRates, ModelRate, modal_rates
-from housing.updating.search import Design, Effort, Found, Solve, Step, explore, search, search_surrogate
+from housing.updating.search import Design, Effort, Found, Solve, Step, search, search_surrogate
 from housing.updating.surrogate import ModalState, Neighbour, Surrogate
 from housing.updating.worth import HeldBack, NullFit, hold_back, null_fits, random_frequencies
 
 __all__ = [
     "UNPAIRED",
+    "Debiased",
     "Design",
+    "Each",
     "Effort",
     "Found",
     "HeldBack",
+    "MeshBias",
+    "Meshes",
     "Misfit",
     "ModalRates",
     "ModalState",
@@ -33,17 +39,21 @@ __all__ = [
     "NullFit",
     "Parameter",
     "Posterior",
+    "Raced",
     "Solve",
     "Step",
     "Surrogate",
     "Target",
     "coordinate_bounds",
-    "explore",
+    "debiased",
     "hold_back",
+    "is_met",
     "measure",
     "modal_rates",
     "null_fits",
+    "one_by_one",
     "posterior",
+    "race",
     "random_frequencies",
     "residuals",
     "search",

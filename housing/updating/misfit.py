@@ -34,6 +34,7 @@ _LEAST_MAC = 0.5  # below it two shapes are no pair
 _COUNT_SCALE = 0.01  # how soft the number of modes is: in ln ω of the mode that has to lie beyond the limit or below
 _COUNT_CLEAR = 0.005  # how clearly it has to, lest the next mesh decides
 _HOPELESS = 1e6  # J of a design with too few modes to pair
+_WITHIN = 2.0  # σ that a frequency may be off where it is met
 _LOOSE = 25.0  # J of each measured mode that finds no partner: as much as an error of five σ
 
 
@@ -194,6 +195,22 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
     errors = np.where(pairs == UNPAIRED, np.nan, np.log(state.frequencies[pairs]) - target.logarithms)
     value = float(np.nansum((errors / target.noise) ** 2) + penalty)
     return Misfit(value, pairs, errors, gap, margin, count, mac, clear)
+
+
+def is_met(target: Target, misfit: Misfit) -> bool:
+    """Whether a design meets all that is asked for.
+
+    Every frequency within two standard deviations, the modes paired chosen as clearly as wanted and by all measures
+    alike, and the number of modes the one known. Where shapes were measured nothing is: the least misfit is sought.
+    """
+    if target.shapes is not None:
+        return False
+    told = np.isfinite(target.noise)
+    if (misfit.pairs[told] == UNPAIRED).any() or (np.abs(misfit.errors / target.noise)[told] > _WITHIN).any():
+        return False
+    known = target.count
+    counted = known is None or known.least <= misfit.count <= known.most
+    return counted and misfit.gap >= target.gap and (misfit.margin > 0.0 or not np.isfinite(target.margin))
 
 
 def strays(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:

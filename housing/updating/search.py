@@ -5,7 +5,7 @@ the best of them is solved for in truth. Where that lessens the misfit it is the
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -22,10 +22,6 @@ FloatArray = npt.NDArray[np.float64]
 _STEPS = 8  # of Gauss and Newton from each start
 _WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
-_FAR_STEPS = 40  # of the same where they begin far away
-_DRAWN = 24  # from the prior for each other start that is solved
-_APART = 1.0  # least distance of two starts, in standard deviations of the prior
-_HEAT = 3  # solves of each start before the better half goes on
 
 
 class Design(Protocol):
@@ -159,68 +155,6 @@ def search(
     return Found(design, misfit, tuple(steps))
 
 
-def explore(
-    solve: Solve[AnyDesign],
-    target: Target,
-    parameters: Sequence[Parameter],
-    start: AnyDesign,
-    effort: Effort,
-    count: int,
-    progress: Callable[[str], None] = lambda message: None,
-) -> Found[AnyDesign]:
-    """Search from the start and from several other designs, and go on with those that come further.
-
-    A choice of dominant modes that is clear on all measures parts the designs into basins, and a search from one start
-    ends in the nearest. The other starts are drawn from the prior and brought down on the start's own surrogate; the
-    best of them that lie apart are solved. Each has a few solves, the better half of them goes on, and so forth.
-
-    Parameters
-    ----------
-    count : int
-        Other starts; none where 0, and the search from the start has all the solves.
-    """
-    if count == 0:
-        return search(solve, target, parameters, start, effort, progress)
-    begun: list[Found[AnyDesign]] = [Found(start, measure(target, start.state, start.coordinates), ())]
-    for point in _others(start, target, parameters, count, effort.seed):
-        try:
-            design = solve(point, start)
-        except HousingError as error:
-            progress(f"another start is no sound housing ({error})")
-            continue
-        begun.append(Found(design, measure(target, design.state, design.coordinates), ()))
-        progress(f"start {len(begun)}: misfit {begun[-1].misfit.value:.4g}")
-    steps = list[Step]()
-    while len(begun) > 1:
-        going = []
-        for number, found in enumerate(begun):
-            progress(f"search {number + 1} of {len(begun)}")
-            own = replace(effort, solves=_HEAT, trust=effort.trust if not found.steps else found.steps[-1].trust)
-            going.append(search(solve, target, parameters, found.design, own, progress))
-            steps += going[-1].steps
-        begun = sorted(going, key=lambda found: found.misfit.value)[: len(going) // 2]
-    left = replace(effort, solves=max(_HEAT, effort.solves - len(steps)))
-    found = search(solve, target, parameters, begun[0].design, left, progress)
-    return replace(found, steps=(*steps, *found.steps))
-
-
-def _others(
-    start: AnyDesign, target: Target, parameters: Sequence[Parameter], count: int, seed: int
-) -> list[FloatArray]:
-    """Coordinates of the best designs, apart from each other, that the start's surrogate leads to from the prior."""
-    bounds, generator = coordinate_bounds(parameters), np.random.default_rng(seed)
-    surrogate = start.surrogate()
-    ends = []
-    for _ in range(_DRAWN * count):
-        drawn = np.clip(generator.normal(size=bounds.shape[1]), *bounds)
-        ends.append(_descend(surrogate, target, drawn, bounds, _FAR_STEPS))
-    apart = list[FloatArray]()
-    for point, _ in sorted(ends, key=lambda end: end[1]):
-        if all(np.linalg.norm(point - other) > _APART for other in [start.coordinates, *apart]):
-            apart.append(point)
-    return apart[:count]
-
-
 def search_surrogate(
     surrogate: Surrogate, target: Target, region: FloatArray, starts: int, generator: np.random.Generator
 ) -> tuple[FloatArray, float]:
@@ -232,13 +166,13 @@ def search_surrogate(
     best_point, best = center, valued[0][0]
     # The surrogate's own centre, and the better half of the others, since most of those lead to the same places.
     for _, place in [valued[0], *sorted(valued[1:])[: max(1, starts // 2)]]:
-        point, value = _descend(surrogate, target, points[place], region)
+        point, value = descend(surrogate, target, points[place], region)
         if value < best:
             best_point, best = point, value
     return best_point, best
 
 
-def _descend(
+def descend(
     surrogate: Surrogate, target: Target, point: FloatArray, region: FloatArray, steps: int = _STEPS
 ) -> tuple[FloatArray, float]:
     """Gauss and Newton's steps on the surrogate from a start, kept within the region."""

@@ -21,6 +21,7 @@ from housing.updating.rates import ModalRates
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
 
 _TOGETHER = 1e-9  # difference of ln λ below which two modes are one
 _STILL = 1e-300  # motion of seats and skin that stand still
@@ -52,6 +53,14 @@ class ModalState:
     def dominance(self) -> Dominance:
         """Each mode's strength between seats and skin."""
         return dominance(self.frequencies, self.seats, self.skin)
+
+
+def elastic(state: ModalState) -> tuple[ModalState, BoolArray]:
+    """The modes that are not rigid, and which those are, shape (n_modes,)."""
+    eigenvalues = state.frequencies**2
+    kept = eigenvalues > _RIGID * eigenvalues[-1]
+    measured = None if state.measured is None else state.measured[kept]
+    return ModalState(state.frequencies[kept], state.seats[kept], state.skin[kept], measured), kept
 
 
 @dataclass(frozen=True)
@@ -137,15 +146,12 @@ class Surrogate:
     @classmethod
     def about(cls, center: FloatArray, state: ModalState, rates: ModalRates) -> "Surrogate":
         """The surrogate about a design; rigid modes, which no parameter moves, are left out."""
-        eigenvalues = state.frequencies**2
-        kept = eigenvalues > _RIGID * eigenvalues[-1]
-        eigenvalues = eigenvalues[kept]
+        own, kept = elastic(state)
+        eigenvalues = own.frequencies**2
         stiffness, mass = rates.stiffness[:, kept][:, :, kept], rates.mass[:, kept][:, :, kept]
         change = stiffness - 0.5 * (eigenvalues[:, None] * mass + mass * eigenvalues)
         scale = 1.0 / np.sqrt(eigenvalues)
-        measured = None if state.measured is None else state.measured[kept]
-        elastic = ModalState(state.frequencies[kept], state.seats[kept], state.skin[kept], measured)
-        return cls(center, elastic, scale[:, None] * change * scale, mass)
+        return cls(center, own, scale[:, None] * change * scale, mass)
 
     def at(self, coordinates: FloatArray) -> Neighbour:
         """Modes at other coordinates."""

@@ -1,0 +1,43 @@
+"""Work on several tasks at once, by processes of this machine, where the tasks are long and their results small."""
+
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from housing.updating import Each, one_by_one
+
+
+def default_workers() -> int:
+    """As many as this process may use of the machine's cores."""
+    from gearwhine.sweep.workers import default_workers as of_the_machine
+
+    return of_the_machine()
+
+
+@contextmanager
+def side_by_side(workers: int) -> Iterator[Each]:
+    """Who does the work: processes of one thread each, which end with the block; with one worker this process.
+
+    Raises
+    ------
+    WorkersError
+        Where the processes do not start.
+    """
+    if workers < 2:
+        yield one_by_one
+        return
+    from gearwhine.sweep.workers import connected
+
+    with tempfile.TemporaryDirectory(prefix="gearwhine-") as place, connected(workers, None, Path(place)) as client:
+
+        def each(work: Callable[[Any], Any], tasks: Sequence[Any]) -> list[Any]:
+            with warnings.catch_warnings():
+                # Dask would rather have large tasks scattered first; ours are few and long.
+                warnings.filterwarnings("ignore", message="Sending large graph")
+                futures = [client.submit(work, task, pure=False) for task in tasks]
+            return list(client.gather(futures))
+
+        yield each

@@ -1,0 +1,281 @@
+"""A search from many starts on a coarse mesh, the better half of them going on, that ends on a fine one.
+
+What is asked of a choice of dominant modes parts the designs into basins, and a search from one start ends in the
+nearest. So many are begun, heat by heat, and the better half of each heat goes on (Jamieson and Talwalkar 2016 on
+successive halving). In the first heats every runner is searched for with a few solves on the coarse mesh, the mesh's
+bias taken off (:mod:`housing.updating.bias`), which the fine mesh tells anew at each design that goes on. A bias that
+was learned at one design is off by per cents some standard deviations away where walls are thin, so the last heats are
+run on the fine mesh itself. Penalties grow from heat to heat. The race ends where a design meets all that is asked for
+on the fine mesh, or with its last heat.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Generic, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import HousingError
+from housing.updating.bias import Debiased, MeshBias, debiased
+from housing.updating.misfit import Misfit, Target, is_met, measure
+from housing.updating.parameters import Parameter, coordinate_bounds
+from housing.updating.search import AnyDesign, Effort, Solve, Step, descend, search
+from housing.updating.surrogate import ModalState, Surrogate
+
+FloatArray = npt.NDArray[np.float64]
+
+_DRAWN = 8  # from the prior for each start that is solved
+_DESCENT = 25  # steps of each on the surrogate
+_APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
+_COARSE, _FINE = 2, 2  # heats on either mesh
+_LAST = 2  # runners that are never parted
+_FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the last in all others
+_TRUST = (0.25, 0.15, 0.1)  # likewise
+_FINE_SOLVES = 4  # of each runner in each heat on the fine mesh
+_STARTS = 16  # on the surrogate
+
+
+class Each(Protocol):
+    """Does work on each of some tasks, side by side or not, and returns the results in the tasks' order."""
+
+    def __call__(self, work: Callable[[Any], Any], tasks: Sequence[Any]) -> list[Any]:
+        """The results."""
+
+
+def one_by_one(work: Callable[[Any], Any], tasks: Sequence[Any]) -> list[Any]:
+    """The plainest :class:`Each`."""
+    return [work(task) for task in tasks]
+
+
+@dataclass(frozen=True)
+class Meshes(Generic[AnyDesign]):
+    """Both meshes of a race.
+
+    Attributes
+    ----------
+    coarse : callable
+        See :data:`housing.updating.Solve`.
+    fine : callable
+        The same on the mesh that judges, made anew at each design; None where there is one mesh only.
+    """
+
+    coarse: Solve[AnyDesign]
+    fine: Solve[AnyDesign] | None
+
+    def judge(self, coordinates: FloatArray, near: AnyDesign | None = None) -> AnyDesign:
+        """A design on the mesh that judges, whatever is near."""
+        return (self.coarse if self.fine is None else self.fine)(coordinates, None)
+
+
+@dataclass(frozen=True)
+class Runner:
+    """Where one of the searches is.
+
+    Attributes
+    ----------
+    number : int
+    coordinates : ndarray, shape (n_parameters,)
+    bias : MeshBias, or None
+        Of the design where the race began; None where there is one mesh only.
+    judged : ModalState, or None
+        What the fine mesh has here; None where it has not been asked yet.
+    """
+
+    number: int
+    coordinates: FloatArray
+    bias: MeshBias | None
+    judged: ModalState | None = None
+
+
+@dataclass(frozen=True)
+class Raced:
+    """How a race has ended.
+
+    Attributes
+    ----------
+    coordinates : ndarray, shape (n_parameters,)
+        Of the best design that the fine mesh has seen.
+    misfit : Misfit
+        Its own there.
+    is_met : bool
+        Whether it meets all that is asked for.
+    steps : tuple of Step
+        Every solve of all searches.
+    seen : tuple of ndarray
+        Coordinates of every design that the fine mesh has judged.
+    """
+
+    coordinates: FloatArray
+    misfit: Misfit
+    is_met: bool
+    steps: tuple[Step, ...]
+    seen: tuple[FloatArray, ...]
+
+
+Ran = tuple[Runner, float, tuple[Step, ...]]
+
+
+@dataclass(frozen=True)
+class _Run(Generic[AnyDesign]):
+    """One runner's search in one heat: what a worker is told."""
+
+    meshes: Meshes[AnyDesign]
+    target: Target
+    parameters: tuple[Parameter, ...]
+    effort: Effort
+    on_fine: bool
+
+    def __call__(self, runner: Runner) -> Ran:
+        """The runner where it has come to, its misfit there, and its steps; infinite where nothing is sound there."""
+        solve = self.meshes.judge if self.on_fine else self.meshes.coarse
+        try:
+            begin = solve(runner.coordinates, None)
+        except HousingError:
+            return runner, np.inf, ()
+        bias = None
+        if not self.on_fine:
+            # Learned on this very mesh where the fine one has been here, else what is known from the race's start.
+            bias = runner.bias if runner.judged is None else MeshBias.between(begin.state, runner.judged)
+        effort = replace(self.effort, seed=self.effort.seed + runner.number)
+        found = search(debiased(solve, bias), self.target, self.parameters, Debiased(begin, bias), effort)
+        judged = found.design.state if self.on_fine else None
+        ended = replace(runner, coordinates=found.design.coordinates, judged=judged)
+        return ended, found.misfit.value, found.steps
+
+
+@dataclass(frozen=True)
+class _Judge(Generic[AnyDesign]):
+    """The fine mesh's judgement of a runner."""
+
+    meshes: Meshes[AnyDesign]
+
+    def __call__(self, runner: Runner) -> Runner | None:
+        """The runner with what the fine mesh has there; None where it has nothing sound."""
+        try:
+            return replace(runner, judged=self.meshes.judge(runner.coordinates).state)
+        except HousingError:
+            return None
+
+
+def race(
+    meshes: Meshes[AnyDesign],
+    target: Target,
+    parameters: Sequence[Parameter],
+    start: AnyDesign,
+    judged: ModalState | None,
+    effort: Effort,
+    count: int,
+    each: Each = one_by_one,
+    progress: Callable[[str], None] = lambda message: None,
+) -> Raced:
+    """Race a start and the best of some draws of the prior.
+
+    Parameters
+    ----------
+    meshes : Meshes
+    target : Target
+    parameters : sequence of Parameter
+    start : Design
+        Solved on the coarse mesh.
+    judged : ModalState, or None
+        The fine mesh's modes of the same; None where there is one mesh only.
+    effort : Effort
+        Its solves are those of all runners in the heats on the coarse mesh.
+    count : int
+        Runners, the start among them.
+    each : callable
+        See :class:`Each`: the result does not depend on how many are run side by side.
+    progress : callable
+    """
+    bias = None if judged is None else MeshBias.between(start.state, judged)
+    soft = replace(target, firmness=_FIRMNESS[0])
+    points = [start.coordinates]
+    if count > 1:
+        progress(f"bringing {_DRAWN * (count - 1)} draws of the prior down")
+    points += _drawn(Debiased(start, bias).surrogate(), soft, parameters, count - 1, effort.seed, each)
+    runners = [Runner(number, point, bias) for number, point in enumerate(points)]
+    first = replace(runners[0], judged=start.state if judged is None else judged)
+    best = _better(None, target, first, lambda message: None)
+    going = _going(count)
+    solves = max(1, effort.solves // sum(going[:_COARSE]))
+    steps = list[Step]()
+    for heat, number in enumerate(going):
+        on_fine = heat >= _COARSE
+        if heat and not on_fine:
+            runners = [runner for runner in each(_Judge(meshes), runners[:number]) if runner is not None]
+            best = _best(best, target, runners, progress)
+        if best.is_met:
+            break
+        firmness, trust = (values[min(heat, len(values) - 1)] for values in (_FIRMNESS, _TRUST))
+        own = replace(effort, solves=_FINE_SOLVES if on_fine else solves, trust=trust, starts=_STARTS)
+        run = _Run(meshes, replace(target, firmness=firmness), tuple(parameters), own, on_fine)
+        ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
+        steps += [step for *_, own_steps in ran for step in own_steps]
+        told = ", ".join(f"{value:.4g}" for _, value, _ in ran)
+        progress(f"heat {heat + 1} of {len(going)}: {len(ran)} searches, misfits {told}")
+        runners = [runner for runner, value, _ in ran if np.isfinite(value)]
+        if on_fine:
+            best = _best(best, target, runners, progress)
+            if not any(step.accepted for *_, own_steps in ran for step in own_steps):
+                break
+    return replace(best, steps=tuple(steps))
+
+
+def _best(best: Raced, target: Target, runners: Sequence[Runner], progress: Callable[[str], None]) -> Raced:
+    """The best so far, or of runners that have been judged."""
+    for runner in runners:
+        best = _better(best, target, runner, progress)
+    return best
+
+
+def _better(best: Raced | None, target: Target, runner: Runner, progress: Callable[[str], None]) -> Raced:
+    """The better of the best so far and of a runner that has been judged."""
+    assert runner.judged is not None
+    misfit = measure(target, runner.judged, runner.coordinates, strict=True)
+    met = is_met(target, misfit)
+    progress(
+        f"search {runner.number + 1} on the fine mesh: misfit {misfit.value:.4g}, rms {misfit.rms_percent:.2f} %, "
+        f"max {misfit.max_percent:.2f} %, gap {misfit.gap:.2f}, margin {misfit.margin:.2f}, {misfit.count} modes"
+        f"{': all that is asked for' if met else ''}"
+    )
+    seen = (*(() if best is None else best.seen), runner.coordinates)
+    if best is None or (met, -misfit.value) > (best.is_met, -best.misfit.value):
+        return Raced(runner.coordinates, misfit, met, (), seen)
+    return replace(best, seen=seen)
+
+
+def _going(count: int) -> list[int]:
+    """How many there are in each heat."""
+    going = [count]
+    while len(going) < _COARSE + _FINE:
+        going.append(min(going[-1], max(_LAST, (going[-1] + 1) // 2)))
+    return going
+
+
+@dataclass(frozen=True)
+class _Descent:
+    """From a draw of the prior down on a surrogate: where that leads to, and its misfit."""
+
+    surrogate: Surrogate
+    target: Target
+    bounds: FloatArray
+
+    def __call__(self, drawn: FloatArray) -> tuple[FloatArray, float]:
+        return descend(self.surrogate, self.target, drawn, self.bounds, _DESCENT)
+
+
+def _drawn(
+    surrogate: Surrogate, target: Target, parameters: Sequence[Parameter], count: int, seed: int, each: Each
+) -> list[FloatArray]:
+    """Coordinates of the best designs, apart from each other, that a surrogate leads to from draws of the prior."""
+    if not count:
+        return []
+    bounds, generator = coordinate_bounds(parameters), np.random.default_rng(seed)
+    draws = np.clip(generator.normal(size=(_DRAWN * count, bounds.shape[1])), *bounds)
+    ends = each(_Descent(surrogate, target, bounds), list(draws))
+    apart = [surrogate.center]
+    for point, _ in sorted(ends, key=lambda end: end[1]):
+        if all(np.linalg.norm(point - other) > _APART * np.sqrt(len(point)) for other in apart):
+            apart.append(point)
+    return apart[1 : count + 1]
