@@ -23,10 +23,8 @@ FloatArray = npt.NDArray[np.float64]
 _CORRECTIONS = 8
 _CLOSED = 1e-10  # closure relative to the motion
 _HIGHEST = 4  # halvings of the elements beyond those that a branch began with
-_PATIENCE, _LONGEST_PATIENCE = (
-    3,
-    48,
-)  # points after which coarser ones are tried again: twice as many after each failure
+# Points after which coarser ones are tried again: twice as many after each failure.
+_PATIENCE, _LONGEST_PATIENCE = 3, 48
 _TOO_GOOD = 1e-5  # part of the tolerance: elements twice as large err a thousand times as much
 _DIFFERENCE = 1e-7  # of the speed range, for the derivative by speed: flanks may begin to graze within a hair of it
 
