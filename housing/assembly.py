@@ -197,14 +197,14 @@ def _contribution(mesh: Mesh, chunk: _Chunk, constants: FloatArray, pattern: spa
             if i == k:
                 entry += trace
     mass = density * _shape_products(mesh, kind, nodes, first, second)
-    pairs = np.sort(np.stack([nodes[:, first], nodes[:, second]]), axis=0)
-    below = nodes[:, first] > nodes[:, second]
+    rows, columns = nodes[:, first], nodes[:, second]
+    below = rows > columns
     for i, k in ((0, 1), (0, 2), (1, 2)):
         one, other = stiffness[3 * i + k], stiffness[3 * k + i]
-        exchanged = one[below]
-        one[below] = other[below]
-        other[below] = exchanged
-    slots = pattern[pairs[0].ravel(), pairs[1].ravel()] - 1
+        exchanged = np.where(below, other, one)
+        np.copyto(other, one, where=below)
+        one[:] = exchanged
+    slots = pattern[np.minimum(rows, columns).ravel(), np.maximum(rows, columns).ravel()] - 1
     return _Contribution(np.asarray(slots), stiffness.reshape(9, -1), mass.ravel())
 
 

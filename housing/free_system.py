@@ -169,11 +169,12 @@ def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArr
     places: npt.NDArray[Any] = np.arange(count, dtype=np.int32 if count < np.iinfo(np.int32).max else np.int64)
     blocks = sparse.bsr_array((places.reshape(-1, 3, 3), matrices.neighbors, matrices.pointer), shape=(3 * n, 3 * n))
     entries = sparse.csr_array(blocks.tocsr())
-    row = np.repeat(np.arange(3 * n, dtype=np.int32), np.diff(entries.indptr))
-    kept = entries.indices >= row
-    number = np.full(3 * n, -1, dtype=np.int64)
-    number[free] = np.arange(len(free))
+    number = np.full(3 * n, -1, dtype=np.int32)
+    number[free] = np.arange(len(free), dtype=np.int32)
+    lengths = np.diff(entries.indptr)
+    rows = number[entries.indices]
+    kept = entries.indices >= np.repeat(np.arange(3 * n, dtype=np.int32), lengths)
     if len(free) < 3 * n:
-        kept &= (number[row] >= 0) & (number[entries.indices] >= 0)
-    counts = np.bincount(row[kept], minlength=3 * n)[free]
-    return np.concatenate([[0], np.cumsum(counts)]), number[entries.indices[kept]], entries.data[kept]
+        kept &= (rows >= 0) & np.repeat(number >= 0, lengths)
+    counts = np.add.reduceat(kept, entries.indptr[:-1], dtype=np.int64)[free]
+    return np.concatenate([[0], np.cumsum(counts)]), rows[kept].astype(np.int64), entries.data[kept]

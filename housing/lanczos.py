@@ -17,15 +17,14 @@ no mode is found twice. Several columns at a time because the factor is read onc
 """
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from housing.errors import IncompleteModesError
 from housing.symmetric import Operator
+from housing.tall import Tall
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -34,8 +33,6 @@ _BLOCK = 8
 _DEPENDENT = 1e-11  # what is left of a column, as a part of it, where it lay in the basis
 _NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
 _ORTHONORMAL = 1e-14  # how far products of a new block's columns may be from those of orthonormal ones
-_SHARES = 4  # of the rows, in products with the basis
-_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
 
 
@@ -88,7 +85,7 @@ def shift_invert(
     small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
 
-    tall = _Tall(n, threads)
+    tall = Tall(n, threads)
     start = np.random.default_rng(seed).standard_normal((n, width))
     found = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, tall)
     begin, size, checked = 0, 0, 0
@@ -142,41 +139,8 @@ class _Addition:
     projections: FloatArray
 
 
-class _Tall:
-    """Products of matrices with many rows and few columns, by shares of their rows.
-
-    There are as many shares whatever the threads, so that sums over the rows are rounded alike.
-    """
-
-    def __init__(self, rows: int, threads: int) -> None:
-        self._threads = min(threads, _SHARES) if rows > _WORTH_A_THREAD else 1
-        self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
-
-    def products(self, left: FloatArray, right: FloatArray) -> FloatArray:
-        """LᵀR."""
-        return np.asarray(sum(self._each(lambda rows: left[rows].T @ right[rows])))
-
-    def subtract(self, block: FloatArray, basis: FloatArray, parts: FloatArray) -> None:
-        """Take B p off a block, in place."""
-
-        def take(rows: slice) -> None:
-            block[rows] -= (parts.T @ basis[rows].T).T  # by columns, in half the time of basis[rows] @ parts
-
-        self._each(take)
-
-    def combined(self, block: FloatArray, mixture: FloatArray) -> FloatArray:
-        """B m."""
-        return np.concatenate(self._each(lambda rows: block[rows] @ mixture))
-
-    def _each(self, work: Callable[[slice], Any]) -> list[Any]:
-        if self._threads == 1:
-            return [work(rows) for rows in self._shares]
-        with ThreadPoolExecutor(self._threads) as pool:
-            return list(pool.map(work, self._shares))
-
-
 def _orthonormal(
-    basis: FloatArray, inertia_of_basis: FloatArray, recent: int, block: FloatArray, mass: Operator, tall: _Tall
+    basis: FloatArray, inertia_of_basis: FloatArray, recent: int, block: FloatArray, mass: Operator, tall: Tall
 ) -> _Addition:
     """What a block adds to a basis V, given M V.
 

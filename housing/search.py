@@ -20,6 +20,7 @@ from housing.errors import FactorizationError, HousingError, IncompleteModesErro
 from housing.factorization import Factorization, Factorizer
 from housing.free_system import FreeSystem
 from housing.lanczos import shift_invert
+from housing.tall import Tall
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -185,12 +186,13 @@ def _refined(
     rounding there, by λ / |σ| larger beside an elastic mode's own, stands in that mode. Vectors that overlap already
     are left as they are, to fail their certificate.
     """
+    tall = Tall(system.size, system.threads)
     inertia, force = system.mass @ vectors, system.stiffness @ vectors
-    overlaps = vectors.T @ inertia
+    overlaps = tall.products(vectors, inertia)
     if np.abs(overlaps - np.eye(len(values))).max(initial=0.0) < OVERLAP_BOUND:
-        values, mixture = linalg.eigh(vectors.T @ force, overlaps)
-        vectors, inertia, force = vectors @ mixture, inertia @ mixture, force @ mixture
-        overlaps = vectors.T @ inertia
+        values, mixture = linalg.eigh(tall.products(vectors, force), overlaps)
+        vectors, inertia, force = (tall.combined(columns, mixture) for columns in (vectors, inertia, force))
+        overlaps = tall.products(vectors, inertia)
     error = np.linalg.norm(force - inertia * values, axis=0)
     residuals = error / ((np.abs(values) + scale) * np.linalg.norm(inertia, axis=0))
     return values, vectors, residuals, float(np.abs(overlaps - np.eye(len(values))).max(initial=0.0))
