@@ -35,12 +35,18 @@ types: install-dev
 unit: install-dev
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile
 
-install: $(VENV)/.installed system
-install-dev: $(VENV)/.installed-dev system
+install: $(VENV)/.installed system $(VENV)/.compiled
+install-dev: $(VENV)/.installed-dev system $(VENV)/.compiled
 
 # gmsh and VTK need libraries from the system: this says which, and installs them where it may.
 system: | $(VENV)/.installed
 	@sh scripts/system_libraries.sh $(BIN)/python
+
+# After what it needs of the system, therefore last.
+$(VENV)/.compiled: pyproject.toml constraints.txt | $(BIN)/python
+	@echo "Compiling the kernels (about a minute) ..."
+	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python scripts/compile_kernels.py
+	@touch $@
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

@@ -1,0 +1,64 @@
+"""Compile the numerical kernels ahead, so that no first run has to: compile_kernels.py
+
+Numba compiles a kernel when it is first called, and keeps it beside the source. Two processes call them side by side,
+on machines as small as there are. What this leaves out is compiled when it is first used: nothing depends on it.
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from coupling import Component, ContactConnector, CoupledSystem, TransientOutputs, TransientSettings, simulate
+from coupling.gears import ToothContact, piecewise
+from coupling.periodic import periodic_response
+from coupling.settings import Method
+from gearwhine.cli import run_command
+
+
+def small_machine() -> CoupledSystem:
+    """A mass that a tooth of varying stiffness holds."""
+    mass = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))
+    stiffness = piecewise.tabulated(lambda s: 1.0 + 0.1 * np.cos(2.0 * np.pi * s), 1.0, tolerance=1e-3)
+    contact = ToothContact(1.0, stiffness, piecewise.constant(0.0, 1.0))
+    tooth = ContactConnector("contact", np.ones(1), contact, 0.0, 0.1, np.empty((0, 3)))
+    return CoupledSystem((mass,), (0.0,), contacts=(tooth,), load=np.ones(1))
+
+
+def rotors_and_gears() -> None:
+    tell("rotors")
+    tell("gears")
+
+
+def motions() -> None:
+    for method in METHODS:
+        settings = TransientSettings(20.0, 0.0, 0.1, 0.1, method=method)
+        simulate(small_machine(), settings, TransientOutputs(*[np.ones((1, 1))] * 3))
+    periodic_response(small_machine())
+
+
+def tell(command: str) -> None:
+    """Have a command work on a small case, and leave nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        code = run_command([command, "spur-pair", "--quiet", "--output", str(Path(folder) / "out")])
+    if code:
+        sys.exit(code)
+
+
+METHODS: tuple[Method, ...] = ("newmark", "exact")
+PARTS = (rotors_and_gears, motions)
+
+
+def main() -> int:
+    command = [sys.executable, __file__]
+    running = [subprocess.Popen([*command, str(part)], stdout=subprocess.DEVNULL) for part in range(len(PARTS))]
+    return max([process.wait() for process in running])
+
+
+if __name__ == "__main__":
+    if sys.argv[1:]:
+        PARTS[int(sys.argv[1])]()
+    else:
+        sys.exit(main())
