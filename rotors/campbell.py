@@ -160,7 +160,7 @@ class Campbell:
     def _chain(self, branch: int, highest: float, speed: float) -> SpatialChain:
         sets = self.blocks[branch]
         constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.bearings]
-        return spatial_chain(self.rotor, constant, sets, whirl_reach(START_REACH * highest, speed))
+        return spatial_chain(self.rotor, constant, sets, whirl_reach(START_REACH * highest, speed)).in_runs()
 
 
 def campbell(
@@ -221,7 +221,7 @@ def campbell(
     owners: list[tuple[int, ...]] = []
     proved = np.ones(turning.size, dtype=np.bool_)
     for blocks, values in zip(sets, starts, strict=True):
-        chain = spatial_chain(rotor, at_speeds[0], blocks, highest)
+        chain = spatial_chain(rotor, at_speeds[0], blocks, highest).in_runs()
         chains = [retied(chain, row, 0.0) for row in at_speeds] if tabled else [chain] * turning.size
         roots = roots_at_speeds(chains, values, turning, limits)
         proved &= proved_at(chains, roots, turning, least, limits, undriven, prove_all)

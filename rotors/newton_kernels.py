@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
 from .compiled import counted, inner
-from .entry_kernels import Pattern, Table, put_entries
+from .entry_kernels import Pattern, Table, put_entries, scratch
 from .exact_roots import ACCEPTED, MOST_STEPS, SETTLED, SLOPE_STEP
 
 FloatArray = npt.NDArray[np.float64]
@@ -53,8 +53,7 @@ def newton(
     """
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]
-    beams = np.empty((table[1][0].size, 1, 4, 4), dtype=np.complex128)
-    rods = np.empty((table[2][0].size, 1, 2, 2), dtype=np.complex128)
+    beams, rods = scratch(table)
     values, slopes = np.empty(rows.size, dtype=np.complex128), np.empty(rows.size, dtype=np.complex128)
     behind = np.empty(rows.size, dtype=np.complex128)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from .chain import Chain
 from .quadrature import gauss_rule
 from .search import require_positions
-from .spatial_chain import SpatialChain
+from .spatial_chain import SpatialChain, squared_frequencies
 from .spatial_ties import MEMBERS
 
 FloatArray = npt.NDArray[np.float64]
@@ -54,13 +54,10 @@ class SpatialMotion:
         scale: FloatArray,
     ) -> "SpatialMotion":
         """Motions from solutions (w, order) and their unit of force (w,); blocks that the chain lacks are at rest."""
-        states = chain.states(solutions, scale)
-        parts = {block: np.zeros((*states.shape[:2], 2 * len(of)), np.complex128) for block, of in MEMBERS.items()}
-        first = 0
-        for block in chain.blocks:
-            local = first + np.arange(len(MEMBERS[block]))
-            parts[block] = states[:, :, np.concatenate([local, chain.size + local])]
-            first += local.size
+        parts = chain.states(solutions, eigenvalues, speeds, scale)
+        for block in MEMBERS.keys() - parts.keys():
+            shape = (eigenvalues.size, chain.bending.nodes.size, 2 * len(MEMBERS[block]))
+            parts[block] = np.zeros(shape, dtype=np.complex128)
         rod = chain.axial if 0 in chain.blocks else None
         return cls(chain.bending, eigenvalues, speeds, parts[1], parts[-1], parts[0], rod)
 
@@ -167,9 +164,7 @@ class SpatialMotion:
         return np.asarray(np.einsum("zwij,wzj->wzi", transfers, states[:, pieces]))
 
     def _squared(self, block: int) -> tuple[ComplexArray, ComplexArray]:
-        """ω² of translation and of rotation in the circular coordinates of a block, (w,) both."""
-        translation = -(self.eigenvalues**2)
-        return translation, translation + block * 2j * self.speeds * self.eigenvalues
+        return squared_frequencies(block, self.eigenvalues, self.speeds)
 
 
 def planes(forward: ComplexArray, backward: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

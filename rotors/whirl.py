@@ -211,7 +211,7 @@ def certified_whirl(
         reach = START_REACH * limit
     highest = max(START_REACH * reach, 10.0 * least)
     highest = whirl_reach(highest, highest if turning is None else turning)
-    chains = [spatial_chain(rotor, bearings, blocks, highest) for blocks, _ in starts]
+    chains = [spatial_chain(rotor, bearings, blocks, highest).in_runs() for blocks, _ in starts]
     refined = [
         refine_roots(chain, values[np.abs(values) <= reach], speed) for chain, values in zip(chains, kept, strict=True)
     ]
