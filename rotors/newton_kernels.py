@@ -67,7 +67,7 @@ def newton(
     for root in range(roots.size):
         at, base, right, last, held = roots[root], bases[root], vectors[root : root + 1], math.inf, False
         residuals[root] = math.inf
-        for step in range(MOST_STEPS):
+        for _ in range(MOST_STEPS):
             scale = scales[root] if held else min(max(abs(at) ** 2 * mass, 1e-30), 1.0)
             scales[root] = scale
             put_entries(at, base + rate * at, scale, table, beams, rods, values)

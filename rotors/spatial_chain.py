@@ -34,6 +34,7 @@ Forces are scaled by the inertia forces of the frequency at hand, so that a near
 bearings loses no digits to its own stiffness.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -57,6 +58,8 @@ IntArray = npt.NDArray[np.intp]
 STATIC_FORCE = 1e-6
 # Motion grows along a run of pieces by this power of e at the most, which costs its states no more than two digits.
 MOST_GROWTH = 4.5
+# Pieces are made for frequencies so many to an octave.
+REACH_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -265,6 +268,17 @@ def spatial_chain(
     units = block_units(chain, blocks)
     ties = tuple(make_tie(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
     return SpatialChain(rotor, chain, blocks, ties, np.arange(chain.nodes.size))
+
+
+def whirl_chain(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
+    """The equations of `spatial_chain` in runs, which the rotor holds."""
+    # In steps, so that the next speed asks for the same.
+    steps = math.ceil(REACH_STEPS * math.log2(highest))
+    return rotor.once(_chain_in_runs, tuple(bearings), blocks, 2.0 ** (steps / REACH_STEPS))
+
+
+def _chain_in_runs(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
+    return spatial_chain(rotor, bearings, blocks, highest).in_runs()
 
 
 def retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:
