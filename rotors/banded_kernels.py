@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from .compiled import counted, inner
+from .compiled import FUSED, counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -32,7 +32,7 @@ def fill(rows: IntArray, columns: IntArray, lower: int, values: ComplexArray, ma
     return math.sqrt(largest)
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FUSED)
 def factor(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, least: float
 ) -> complex:
@@ -89,7 +89,7 @@ def factor(
     return complex(logarithm, math.atan2(phase.imag, phase.real))
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FUSED)
 def forward_back(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, side: ComplexArray
 ) -> None:
@@ -110,7 +110,7 @@ def forward_back(
         side[k] = total / matrix[k, lower]
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FUSED)
 def adjoint(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, side: ComplexArray
 ) -> None:

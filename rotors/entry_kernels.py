@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .banded_kernels import TINY, factor, fill
-from .compiled import counted, inner
-from .piece_kernels import piece_transfers
+from .compiled import FUSED, counted, inner
+from .piece_kernels import whole_transfer
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -24,15 +24,18 @@ Table = tuple[IntArray, Runs, Runs, ComplexArray, FloatArray]
 Pattern = tuple[IntArray, IntArray, IntArray, int, int]
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FUSED)
 def _times(left: ComplexArray, right: ComplexArray, out: ComplexArray) -> None:
-    """The product of two small matrices, of even order."""
-    for i in range(left.shape[0]):
-        for j in range(left.shape[0]):
-            total = left[i, 0] * right[0, j] + left[i, 1] * right[1, j]
-            for k in range(2, left.shape[0], 2):
-                total += left[i, k] * right[k, j] + left[i, k + 1] * right[k + 1, j]
-            out[i, j] = total
+    """The product of two matrices of order 2 or 4, of which the latter's loops are unrolled."""
+    if left.shape[0] == 2:
+        for i in range(2):
+            for j in range(2):
+                out[i, j] = left[i, 0] * right[0, j] + left[i, 1] * right[1, j]
+        return
+    for i in range(4):
+        for j in range(4):
+            near = left[i, 0] * right[0, j] + left[i, 1] * right[1, j]
+            out[i, j] = near + left[i, 2] * right[2, j] + left[i, 3] * right[3, j]
 
 
 @counted(error_model="python", no_cpython_wrapper=True)
@@ -44,7 +47,7 @@ def _put_runs(
     whole = np.ones(1)
     size, half, spare = transfers.shape[2], transfers.shape[2] // 2, lengths.size
     for e in range(lengths.size):
-        piece_transfers(lengths[e], given[e], translation, rotation, whole, transfers[e])
+        whole_transfer(lengths[e], given[e], translation, rotation, whole, transfers[e])
     entry = 0
     for run in range(kept.size - 1):
         product = element[kept[run]]
@@ -128,7 +131,7 @@ def continue_states(runs: Runs, translation: ComplexArray, rotation: ComplexArra
     transfers = np.empty((lengths.size, 1, size, size), dtype=np.complex128)
     for w in range(states.shape[0]):
         for e in range(lengths.size):
-            piece_transfers(lengths[e], given[e], translation[w], rotation[w], whole, transfers[e])
+            whole_transfer(lengths[e], given[e], translation[w], rotation[w], whole, transfers[e])
         for run in range(kept.size - 1):
             for node in range(kept[run] + 1, kept[run + 1]):
                 transfer = transfers[element[node - 1], 0]
