@@ -140,9 +140,9 @@ def put(given: ComplexArray, out: ComplexArray) -> None:
 
 @inner(error_model="python")
 def orthonormalise(vectors: ComplexArray) -> None:
-    """Gram and Schmidt, twice, on the rows in place."""
+    """Gram and Schmidt on the rows in place, twice where there is something to take off."""
     for k in range(vectors.shape[0]):
-        for _ in range(2):
+        for _ in range(2 if k else 1):
             for other in range(k):
                 overlap = 0.0j
                 for i in range(vectors.shape[1]):
@@ -151,14 +151,13 @@ def orthonormalise(vectors: ComplexArray) -> None:
                     vectors[k, i] -= overlap * vectors[other, i]
             size = 0.0
             for i in range(vectors.shape[1]):
-                size = max(size, abs(vectors[k, i]))
+                size = max(size, abs(vectors[k, i].real), abs(vectors[k, i].imag))
             total = 0.0
             for i in range(vectors.shape[1]):
-                vectors[k, i] /= size
-                total += vectors[k, i].real ** 2 + vectors[k, i].imag ** 2
-            norm = np.sqrt(total)
+                total += (vectors[k, i].real / size) ** 2 + (vectors[k, i].imag / size) ** 2
+            norm = size * math.sqrt(total)
             for i in range(vectors.shape[1]):
-                vectors[k, i] /= norm
+                vectors[k, i] = complex(vectors[k, i].real / norm, vectors[k, i].imag / norm)
 
 
 @counted(error_model="python")

@@ -80,7 +80,7 @@ def entry_table(
     kept: IntArray,
     bounds: IntArray,
 ) -> EntryTable:
-    """The table of a chain with the unknowns' ``bounds`` (r + 2,) of the nodes ``kept`` (r + 1,), and ties with theirs."""
+    """The table of a chain; ``bounds`` (r + 2,) are those of the unknowns of the nodes ``kept``, (r + 1,)."""
     starts, order = bounds[:-1], int(bounds[-1])
     n = sum(len(MEMBERS[block]) for block in blocks)
     across, right, first = np.arange(n), starts[1:, None], 0

@@ -121,10 +121,19 @@ def determinants(
 
 
 @counted(error_model="python")
-def continue_states(runs: Runs, translation: ComplexArray, rotation: ComplexArray, states: ComplexArray) -> None:
-    """Fill in the states (w, p + 1, 2n) at nodes inside runs from those at the nodes before them.
+def node_states(
+    runs: Runs,
+    translation: ComplexArray,
+    rotation: ComplexArray,
+    places: IntArray,
+    scale: FloatArray,
+    solutions: ComplexArray,
+    states: ComplexArray,
+) -> None:
+    """Fill in the states (w, p + 1, 2n) of one block at all nodes, those inside runs from the nodes before them.
 
-    ω² are those of ``translation`` and ``rotation``, (w,) both.
+    Of ``solutions`` (w, order) the unknowns at ``places`` (r + 1, 2n) are the states where runs end, their forces in
+    units of ``scale`` (w,); ω² are those of ``translation`` and ``rotation``, (w,) both.
     """
     lengths, given, element, kept = runs
     size, whole = states.shape[2], np.ones(1)
@@ -132,6 +141,10 @@ def continue_states(runs: Runs, translation: ComplexArray, rotation: ComplexArra
     for w in range(states.shape[0]):
         for e in range(lengths.size):
             whole_transfer(lengths[e], given[e], translation[w], rotation[w], whole, transfers[e])
+        for end in range(kept.size):
+            for i in range(size):
+                unit = scale[w] if i >= size // 2 else 1.0
+                states[w, kept[end], i] = unit * solutions[w, places[end, i]]
         for run in range(kept.size - 1):
             for node in range(kept[run] + 1, kept[run + 1]):
                 transfer = transfers[element[node - 1], 0]

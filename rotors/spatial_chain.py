@@ -195,20 +195,25 @@ class SpatialChain:
         self, solutions: ComplexArray, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
     ) -> dict[int, ComplexArray]:
         """Of every block its states (b, p + 1, 2 or 4) at all nodes in scaled units, of solutions (b, order)."""
-        from .entry_kernels import continue_states
+        from .entry_kernels import node_states
 
-        n, first, states = self.size, 0, {}
+        states, given = {}, np.ascontiguousarray(solutions)
+        for block, places in zip(self.blocks, self._state_places, strict=True):
+            own = np.empty((eigenvalues.size, self.bending.nodes.size, places.shape[1]), dtype=np.complex128)
+            runs = self.entries.beams if block else self.entries.rods
+            node_states(runs, *squared_frequencies(block, eigenvalues, speeds), places, scale, given, own)
+            states[block] = own
+        return states
+
+    @cached_property
+    def _state_places(self) -> list[IntArray]:
+        """Of every block the unknowns that are its states at the kept nodes, (r + 1, 2 or 4)."""
+        first, places = 0, []
         for block in self.blocks:
             local = first + np.arange(len(MEMBERS[block]))
-            own = np.empty((eigenvalues.size, self.bending.nodes.size, 2 * local.size), dtype=np.complex128)
-            own[:, self.kept] = solutions[:, self.starts[:-1, None] + np.concatenate([local, n + local])]
-            own[:, self.kept, local.size :] *= scale[:, None, None]
-            if self.kept.size < self.bending.nodes.size:
-                runs = self.entries.beams if block else self.entries.rods
-                continue_states(runs, *squared_frequencies(block, eigenvalues, speeds), own)
-            states[block] = own
+            places.append(self.starts[:-1, None] + np.concatenate([local, self.size + local]))
             first += local.size
-        return states
+        return places
 
     def in_runs(self) -> "SpatialChain":
         """The same equations with unknowns where there is need of them only: what loads the nodes has to be none."""

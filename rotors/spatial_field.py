@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from .chain import Chain
-from .quadrature import gauss_rule
+from .chain import SQUARE_FRACTIONS, Chain
 from .search import require_positions
 from .spatial_chain import SpatialChain, squared_frequencies
 from .spatial_ties import MEMBERS
@@ -14,8 +13,6 @@ from .spatial_ties import MEMBERS
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-
-GAUSS_FRACTIONS, _WEIGHTS = gauss_rule(6)
 
 
 @dataclass(frozen=True)
@@ -108,13 +105,12 @@ class SpatialMotion:
         from .share_kernels import inertia_shares
 
         chain = self.chain
-        along = chain.table.coefficients_along(GAUSS_FRACTIONS)[:, :, 2:4]
-        along = along * (chain.table.lengths[:, None] * _WEIGHTS)[:, :, None]
+        along = chain.inertia_weights
         pieces = chain.table.lengths, chain.table.coefficients, chain.element
         shares = []
         for block, states in ((1, self.forward), (-1, self.backward)):
             squared = self._squared(block)
-            shares.append(inertia_shares(pieces, *squared, states, GAUSS_FRACTIONS, along, chain.node_inertia))
+            shares.append(inertia_shares(pieces, *squared, states, SQUARE_FRACTIONS, along, chain.node_inertia))
         return np.stack(shares, axis=-1)
 
     def at(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:

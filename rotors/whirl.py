@@ -255,9 +255,8 @@ def _reach_behind(ascending: FloatArray, count: int) -> float:
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
     """A frequency in a gap behind the lowest ``count`` roots, or behind all there are."""
-    sector = oscillating(least, np.inf)
-    sizes = [np.abs(roots.eigenvalues[sector.holds(roots.eigenvalues)]) for roots in refined]
-    ascending = np.sort(np.concatenate(sizes))
+    values = np.concatenate([roots.eigenvalues for roots in refined])
+    ascending = np.sort(np.abs(values[oscillating(least, np.inf).holds(values)]))
     if ascending.size == 0:
         return 10.0 * least
     for last in range(count, ascending.size):
