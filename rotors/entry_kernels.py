@@ -38,13 +38,13 @@ def _times(left: ComplexArray, right: ComplexArray, out: ComplexArray) -> None:
             out[i, j] = near + left[i, 2] * right[2, j] + left[i, 3] * right[3, j]
 
 
-@counted(error_model="python", no_cpython_wrapper=True)
+@counted(error_model="python", no_cpython_wrapper=True, fastmath=FUSED)
 def _put_runs(
     runs: Runs, translation: complex, rotation: complex, scale: float, transfers: Any, out: ComplexArray
 ) -> int:
     """−T of every run of pieces, forces in the given unit, into the beginning of ``out``; how many entries they are."""
     lengths, given, element, kept = runs
-    whole = np.ones(1)
+    whole, over = np.ones(1), 1.0 / scale
     size, half, spare = transfers.shape[2], transfers.shape[2] // 2, lengths.size
     for e in range(lengths.size):
         whole_transfer(lengths[e], given[e], translation, rotation, whole, transfers[e])
@@ -58,12 +58,10 @@ def _put_runs(
             product = following
         for i in range(size):
             for j in range(size):
-                unit = 1.0
-                if i < half <= j:
-                    unit = scale
-                elif j < half <= i:
-                    unit = 1.0 / scale
-                out[entry] = -unit * transfers[product, 0, i, j]
+                # Displacements from forces, and forces from displacements.
+                unit = scale if i < half <= j else (over if j < half <= i else 1.0)
+                value = transfers[product, 0, i, j]
+                out[entry] = complex(-unit * value.real, -unit * value.imag)
                 entry += 1
     return entry
 
@@ -75,7 +73,7 @@ def scratch(table: Table) -> tuple[ComplexArray, ComplexArray]:
     return beams, np.empty((table[2][0].size + 2, 1, 2, 2), dtype=np.complex128)
 
 
-@counted(error_model="python", no_cpython_wrapper=True)
+@counted(error_model="python", no_cpython_wrapper=True, fastmath=FUSED)
 def put_entries(
     at: complex, speed: complex, scale: float, table: Table, beams: ComplexArray, rods: ComplexArray, out: ComplexArray
 ) -> None:
@@ -89,8 +87,9 @@ def put_entries(
         else:
             first += _put_runs(beam_runs, -squared, -squared + block * 2j * turning, scale, beams, out[first:])
     for term in range(numerators.shape[0]):
-        c = numerators[term]
-        top = c[0] + c[1] * at + c[2] * squared + c[3] * turning + c[4] * scale
+        # No view of a row: making one, and letting it go, takes longer than the row.
+        top = numerators[term, 0] + numerators[term, 1] * at + numerators[term, 2] * squared
+        top += numerators[term, 3] * turning + numerators[term, 4] * scale
         out[first + term] = top * (1.0 / (denominators[term, 0] * scale + denominators[term, 1]))
 
 

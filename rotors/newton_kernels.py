@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
-from .compiled import counted, inner
+from .compiled import FUSED, counted, inner
 from .entry_kernels import Pattern, Table, put_entries, scratch
 from .exact_roots import ACCEPTED, MOST_STEPS, SETTLED
 
@@ -30,7 +30,7 @@ TURNED = 1e-6
 FORWARD = 1e-6
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FUSED)
 def form(rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexArray, right: ComplexArray) -> complex:
     """yᴴ A x of one matrix."""
     total = 0.0j

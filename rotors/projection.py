@@ -196,10 +196,6 @@ class Projection:
         system[0, :order, order:] = np.diag(weight)
         system[0, order:, :order] = stiffness / (-mass[:, None] * weight)
         system[:, order:, order:] = np.array([damping, gyroscopic]) / -mass[:, None]
-        # Eigenvalues are found from the last row upwards, sooner where rows shrink that way.
-        falling = np.argsort(-weight, kind="stable")
-        rows = np.stack([falling, order + falling], axis=1).ravel()
-        system = system[:, rows[:, None], rows]
         return Pencil(self.blocks, system[0], system[1])
 
     def critical(self, bearings: Sequence[Bearing]) -> ComplexArray:
