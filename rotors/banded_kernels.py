@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from .compiled import counted, inner
+from .compiled import FUSED, counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -32,7 +32,7 @@ def fill(rows: IntArray, columns: IntArray, lower: int, values: ComplexArray, ma
     return math.sqrt(largest)
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FUSED)
 def factor(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, least: float
 ) -> complex:
@@ -89,7 +89,7 @@ def factor(
     return complex(logarithm, math.atan2(phase.imag, phase.real))
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FUSED)
 def forward_back(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, side: ComplexArray
 ) -> None:
@@ -110,7 +110,7 @@ def forward_back(
         side[k] = total / matrix[k, lower]
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FUSED)
 def adjoint(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, side: ComplexArray
 ) -> None:
@@ -140,9 +140,9 @@ def put(given: ComplexArray, out: ComplexArray) -> None:
 
 @inner(error_model="python")
 def orthonormalise(vectors: ComplexArray) -> None:
-    """Gram and Schmidt, twice, on the rows in place."""
+    """Gram and Schmidt on the rows in place, twice where there is something to take off."""
     for k in range(vectors.shape[0]):
-        for _ in range(2):
+        for _ in range(2 if k else 1):
             for other in range(k):
                 overlap = 0.0j
                 for i in range(vectors.shape[1]):
@@ -151,14 +151,13 @@ def orthonormalise(vectors: ComplexArray) -> None:
                     vectors[k, i] -= overlap * vectors[other, i]
             size = 0.0
             for i in range(vectors.shape[1]):
-                size = max(size, abs(vectors[k, i]))
+                size = max(size, abs(vectors[k, i].real), abs(vectors[k, i].imag))
             total = 0.0
             for i in range(vectors.shape[1]):
-                vectors[k, i] /= size
-                total += vectors[k, i].real ** 2 + vectors[k, i].imag ** 2
-            norm = np.sqrt(total)
+                total += (vectors[k, i].real / size) ** 2 + (vectors[k, i].imag / size) ** 2
+            norm = size * math.sqrt(total)
             for i in range(vectors.shape[1]):
-                vectors[k, i] /= norm
+                vectors[k, i] = complex(vectors[k, i].real / norm, vectors[k, i].imag / norm)
 
 
 @counted(error_model="python")

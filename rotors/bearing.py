@@ -1,6 +1,7 @@
 """What holds a rotor: springs of one plane, and bearings in all directions, on pedestals or on the ground."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -119,11 +120,11 @@ class Bearing:
 
     def __eq__(self, other: object) -> bool:
         """Equal in name, place and every coefficient."""
-        return isinstance(other, Bearing) and self._identity() == other._identity()
+        return isinstance(other, Bearing) and self._identity == other._identity
 
     def __hash__(self) -> int:
         """Hash that agrees with equality."""
-        return hash(self._identity())
+        return self._hash
 
     @classmethod
     def isotropic(cls, name: str, at: float, stiffness: float, damping: float = 0.0) -> "Bearing":
@@ -199,11 +200,16 @@ class Bearing:
             raise RotorError(f"bearing {self.name!r} has a table over speed; expected one speed of it, by at_speed")
         return matrix
 
+    @cached_property
     def _identity(self) -> tuple[object, ...]:
         arrays = [self.stiffness, self.damping, self.speeds]
         if self.pedestal is not None:
             arrays += [self.pedestal.stiffness, self.pedestal.damping, np.array(self.pedestal.mass)]
         return (self.name, self.at, *(None if array is None else (array.shape, array.tobytes()) for array in arrays))
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash(self._identity)
 
 
 def undamped(bearing: Bearing) -> Bearing:

@@ -25,7 +25,7 @@ from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
 from .projection import Projection, basis_for
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, retied, spatial_chain, whirl_reach
+from .spatial_chain import SpatialChain, retied, whirl_chain, whirl_reach
 from .spatial_ties import block_sets
 from .whirl import START_REACH, is_undriven
 from .whirl_certificate import NO_OSCILLATION
@@ -160,7 +160,7 @@ class Campbell:
     def _chain(self, branch: int, highest: float, speed: float) -> SpatialChain:
         sets = self.blocks[branch]
         constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.bearings]
-        return spatial_chain(self.rotor, constant, sets, whirl_reach(START_REACH * highest, speed))
+        return whirl_chain(self.rotor, constant, sets, whirl_reach(START_REACH * highest, speed))
 
 
 def campbell(
@@ -208,9 +208,10 @@ def campbell(
     for blocks in sets:
         one = Projection.of(rotor, at_speeds[0], blocks, chosen)
         if tabled:
-            values = np.concatenate([one.eigenvalues(b, turning[k : k + 1]) for k, b in enumerate(at_speeds)])
+            rows = [one.pencil(b).eigenvalues(turning[k : k + 1]) for k, b in enumerate(at_speeds)]
+            values = np.concatenate(rows)
         else:
-            values = one.eigenvalues(at_speeds[0], turning)
+            values = one.pencil(at_speeds[0]).eigenvalues(turning)
         oscillates = (values.imag > NO_OSCILLATION * np.abs(values)) & (np.abs(values) > NO_OSCILLATION * one.floor)
         starts.append(np.where(oscillates, values, np.nan))
     limits = limits_behind(starts, frequency_limit, wanted)
@@ -221,7 +222,7 @@ def campbell(
     owners: list[tuple[int, ...]] = []
     proved = np.ones(turning.size, dtype=np.bool_)
     for blocks, values in zip(sets, starts, strict=True):
-        chain = spatial_chain(rotor, at_speeds[0], blocks, highest)
+        chain = whirl_chain(rotor, at_speeds[0], blocks, highest)
         chains = [retied(chain, row, 0.0) for row in at_speeds] if tabled else [chain] * turning.size
         roots = roots_at_speeds(chains, values, turning, limits)
         proved &= proved_at(chains, roots, turning, least, limits, undriven, prove_all)

@@ -18,6 +18,11 @@ from numba import njit
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
+# A product and the sum it goes into may be rounded once.
+FUSED = {"contract"}
+# The same where nothing can overflow: what a real factor's missing imaginary part would make is left out.
+FINITE = {"contract", "nnan", "ninf", "nsz"}
+
 _ALL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 

@@ -1,6 +1,6 @@
 """The equations of `rotors.spatial_chain` as a table, from which compiled code makes their entries for any λ.
 
-Beside the transfer matrices of the pieces every entry is, with Ω the speed of rotation and s the unit of force,
+Beside the transfer matrices of runs of pieces every entry is, with Ω the speed of rotation and s the unit of force,
 
     (c₀ + c₁ λ + c₂ λ² + c₃ λΩ + c₄ s) / (d₁ s + d₀):
 
@@ -21,11 +21,11 @@ from .spatial_ties import MEMBERS, Tie
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-Pieces = tuple[FloatArray, FloatArray, IntArray]
+Runs = tuple[FloatArray, FloatArray, IntArray, IntArray]
 
 ALONE = np.array([0.0, 1.0])
 OVER_FORCE = np.array([1.0, 0.0])
-NO_PIECES = (np.zeros(0), np.zeros((0, 2, 1)), np.zeros(0, dtype=np.intp))
+NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), np.zeros(0, dtype=np.intp), np.zeros(1, dtype=np.intp))
 
 
 @dataclass(frozen=True)
@@ -39,16 +39,16 @@ class EntryTable:
     blocks
         1 for r+, −1 for r−, 0 for z.
     beams, rods
-        Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, and which of them each piece is, (p,); no
-        rods without z.
+        Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), and
+        the nodes with unknowns, between which pieces run together, (r + 1,); no rods without z.
     numerators, denominators
         (t, 5) complex and (t, 2): of the entries that are no transfer matrix's, and stand behind those.
     """
 
     pattern: BandPattern
     blocks: IntArray
-    beams: Pieces
-    rods: Pieces
+    beams: Runs
+    rods: Runs
     numerators: ComplexArray
     denominators: FloatArray
 
@@ -67,7 +67,7 @@ class EntryTable:
         return np.asarray(determinants(eigenvalues, speeds, scale, self.arrays, self.pattern.arrays))
 
     @property
-    def arrays(self) -> tuple[IntArray, Pieces, Pieces, ComplexArray, FloatArray]:
+    def arrays(self) -> tuple[IntArray, Runs, Runs, ComplexArray, FloatArray]:
         """The table as compiled functions take it."""
         return self.blocks, self.beams, self.rods, self.numerators, self.denominators
 
@@ -77,9 +77,10 @@ def entry_table(
     axial: Chain | None,
     blocks: tuple[int, ...],
     ties: Sequence[tuple[Tie, tuple[IntArray, IntArray]]],
+    kept: IntArray,
     bounds: IntArray,
 ) -> EntryTable:
-    """The table of a chain with ``bounds`` (p + 2,) of its nodes' unknowns, and ties with theirs."""
+    """The table of a chain; ``bounds`` (r + 2,) are those of the unknowns of the nodes ``kept``, (r + 1,)."""
     starts, order = bounds[:-1], int(bounds[-1])
     n = sum(len(MEMBERS[block]) for block in blocks)
     across, right, first = np.arange(n), starts[1:, None], 0
@@ -95,31 +96,32 @@ def entry_table(
     terms.add(right - n + across, right + across, [1.0])
     node = starts[:, None] + across
     terms.add(node, node + n, [1.0])
-    terms.add(node, node, [0.0, 0.0, *_inertias(bending, blocks)], OVER_FORCE)
+    terms.add(node, node, [0.0, 0.0, *_inertias(bending, kept, blocks)], OVER_FORCE)
     for tie, (force, foot) in ties:
-        _add_tie(terms, tie, starts[tie.node] + across, force, foot, n)
+        _add_tie(terms, tie, starts[kept.searchsorted(tie.node)] + across, force, foot, n)
     terms.add(order - n + across, starts[-1] + n + across, [1.0])
     rows, columns = np.concatenate(transfers + terms.places, axis=1)
     return EntryTable(
         BandPattern.of(rows, columns, order),
         np.array(blocks, dtype=np.intp),
-        _pieces(bending),
-        NO_PIECES if axial is None else _pieces(axial),
+        _runs(bending, kept),
+        NO_RUNS if axial is None else _runs(axial, kept),
         np.concatenate(terms.numerators),
         np.concatenate(terms.denominators),
     )
 
 
-def _pieces(chain: Chain) -> Pieces:
-    return chain.table.lengths, chain.table.coefficients, chain.element
+def _runs(chain: Chain, kept: IntArray) -> Runs:
+    return chain.table.lengths, chain.table.coefficients, chain.element, kept
 
 
-def _inertias(chain: Chain, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
-    """−M and the gyroscopic term of λΩ, (p + 1, n) both, of the nodes' own inertias."""
+def _inertias(chain: Chain, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
+    """−M and the gyroscopic term of λΩ, (r + 1, n) both, of the nodes' own inertias."""
+    inertia, polar = chain.node_inertia[kept], chain.node_polar[kept]
     squared, turning = [], []
     for block in blocks:
-        squared += [-chain.node_inertia[:, 0], -chain.node_inertia[:, 1]][: len(MEMBERS[block])]
-        turning += [0.0 * chain.node_polar, block * 1j * chain.node_polar][: len(MEMBERS[block])]
+        squared += [-inertia[:, 0], -inertia[:, -1]][: len(MEMBERS[block])]
+        turning += [0.0 * polar, block * 1j * polar][: len(MEMBERS[block])]
     return np.stack(squared, axis=1), np.stack(turning, axis=1)
 
 

@@ -9,67 +9,94 @@ import numpy as np
 import numpy.typing as npt
 
 from .banded_kernels import TINY, factor, fill
-from .compiled import counted
-from .piece_kernels import piece_transfers
+from .compiled import FUSED, counted, inner
+from .piece_kernels import whole_transfer
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-# Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, and which of them each piece is, (p,).
-Pieces = tuple[FloatArray, FloatArray, IntArray]
+# Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), and the nodes
+# between which pieces run together, (r + 1,).
+Runs = tuple[FloatArray, FloatArray, IntArray, IntArray]
 # Blocks (of which 1 and −1 are bending, 0 axial motion), beams, rods, numerators (t, 5) and denominators (t, 2).
-Table = tuple[IntArray, Pieces, Pieces, ComplexArray, FloatArray]
+Table = tuple[IntArray, Runs, Runs, ComplexArray, FloatArray]
 # Rows and columns of the entries (nnz,), envelope (order, 2), and how many diagonals lie below and above the main one.
 Pattern = tuple[IntArray, IntArray, IntArray, int, int]
 
 
-@counted(error_model="python", no_cpython_wrapper=True)
-def _put_pieces(
-    pieces: Pieces, translation: complex, rotation: complex, scale: float, transfers: Any, out: ComplexArray
+@inner(error_model="python", fastmath=FUSED)
+def _times(left: ComplexArray, right: ComplexArray, out: ComplexArray) -> None:
+    """The product of two matrices of order 2 or 4, of which the latter's loops are unrolled."""
+    if left.shape[0] == 2:
+        for i in range(2):
+            for j in range(2):
+                out[i, j] = left[i, 0] * right[0, j] + left[i, 1] * right[1, j]
+        return
+    for i in range(4):
+        for j in range(4):
+            near = left[i, 0] * right[0, j] + left[i, 1] * right[1, j]
+            out[i, j] = near + left[i, 2] * right[2, j] + left[i, 3] * right[3, j]
+
+
+@counted(error_model="python", no_cpython_wrapper=True, fastmath=FUSED)
+def _put_runs(
+    runs: Runs, translation: complex, rotation: complex, scale: float, transfers: Any, out: ComplexArray
 ) -> int:
-    """−T of every piece, forces in the given unit, into the beginning of ``out``; returns how many entries they are."""
-    lengths, given, element = pieces
-    whole = np.ones(1)
-    size, half = transfers.shape[2], transfers.shape[2] // 2
+    """−T of every run of pieces, forces in the given unit, into the beginning of ``out``; how many entries they are."""
+    lengths, given, element, kept = runs
+    whole, over = np.ones(1), 1.0 / scale
+    size, half, spare = transfers.shape[2], transfers.shape[2] // 2, lengths.size
     for e in range(lengths.size):
-        piece_transfers(lengths[e], given[e], translation, rotation, whole, transfers[e])
-        for i in range(half):
-            for j in range(half):
-                transfers[e, 0, i, half + j] *= scale
-                transfers[e, 0, half + i, j] /= scale
+        whole_transfer(lengths[e], given[e], translation, rotation, whole, transfers[e])
     entry = 0
-    for piece in range(element.size):
+    for run in range(kept.size - 1):
+        product = element[kept[run]]
+        for piece in range(kept[run] + 1, kept[run + 1]):
+            # Two spare matrices take turns.
+            following = spare + 1 if product == spare else spare
+            _times(transfers[element[piece], 0], transfers[product, 0], transfers[following, 0])
+            product = following
         for i in range(size):
             for j in range(size):
-                out[entry] = -transfers[element[piece], 0, i, j]
+                # Displacements from forces, and forces from displacements.
+                unit = scale if i < half <= j else (over if j < half <= i else 1.0)
+                value = transfers[product, 0, i, j]
+                out[entry] = complex(-unit * value.real, -unit * value.imag)
                 entry += 1
     return entry
 
 
 @counted(error_model="python", no_cpython_wrapper=True)
+def scratch(table: Table) -> tuple[ComplexArray, ComplexArray]:
+    """Room for the transfer matrices of beams and rods that `put_entries` makes, and for two products of each."""
+    beams = np.empty((table[1][0].size + 2, 1, 4, 4), dtype=np.complex128)
+    return beams, np.empty((table[2][0].size + 2, 1, 2, 2), dtype=np.complex128)
+
+
+@counted(error_model="python", no_cpython_wrapper=True, fastmath=FUSED)
 def put_entries(
     at: complex, speed: complex, scale: float, table: Table, beams: ComplexArray, rods: ComplexArray, out: ComplexArray
 ) -> None:
-    """Entries at one λ, speed Ω and unit of force, (nnz,); ``beams`` and ``rods`` (e, 1, 2n, 2n) are for scratch."""
-    blocks, beam_pieces, rod_pieces, numerators, denominators = table
+    """Entries at one λ, speed Ω and unit of force, (nnz,); ``beams`` and ``rods`` are for `scratch`."""
+    blocks, beam_runs, rod_runs, numerators, denominators = table
     squared, turning = at * at, speed * at
     first = 0
     for block in blocks:
         if block == 0:
-            first += _put_pieces(rod_pieces, -squared, -squared, scale, rods, out[first:])
+            first += _put_runs(rod_runs, -squared, -squared, scale, rods, out[first:])
         else:
-            first += _put_pieces(beam_pieces, -squared, -squared + block * 2j * turning, scale, beams, out[first:])
+            first += _put_runs(beam_runs, -squared, -squared + block * 2j * turning, scale, beams, out[first:])
     for term in range(numerators.shape[0]):
-        c = numerators[term]
-        top = c[0] + c[1] * at + c[2] * squared + c[3] * turning + c[4] * scale
-        out[first + term] = top / (denominators[term, 0] * scale + denominators[term, 1])
+        # No view of a row: making one, and letting it go, takes longer than the row.
+        top = numerators[term, 0] + numerators[term, 1] * at + numerators[term, 2] * squared
+        top += numerators[term, 3] * turning + numerators[term, 4] * scale
+        out[first + term] = top * (1.0 / (denominators[term, 0] * scale + denominators[term, 1]))
 
 
 @counted(error_model="python")
 def entries(at: ComplexArray, speeds: ComplexArray, scale: FloatArray, table: Table, out: ComplexArray) -> None:
     """Entries at every λ, (b, nnz)."""
-    beams = np.empty((table[1][0].size, 1, 4, 4), dtype=np.complex128)
-    rods = np.empty((table[2][0].size, 1, 2, 2), dtype=np.complex128)
+    beams, rods = scratch(table)
     for b in range(at.size):
         put_entries(at[b], speeds[b], scale[b], table, beams, rods, out[b])
 
@@ -81,8 +108,7 @@ def determinants(
     """Logarithm of the determinant at every λ, (b,), its imaginary part within (−π, π]."""
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]
-    beams = np.empty((table[1][0].size, 1, 4, 4), dtype=np.complex128)
-    rods = np.empty((table[2][0].size, 1, 2, 2), dtype=np.complex128)
+    beams, rods = scratch(table)
     values, logarithms = np.empty(rows.size, dtype=np.complex128), np.empty(at.size, dtype=np.complex128)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
@@ -91,3 +117,38 @@ def determinants(
         largest = fill(rows, columns, lower, values, matrix)
         logarithms[b] = factor(matrix, lower, envelope, pivots, ends, TINY * largest)
     return logarithms
+
+
+@counted(error_model="python")
+def node_states(
+    runs: Runs,
+    translation: ComplexArray,
+    rotation: ComplexArray,
+    places: IntArray,
+    scale: FloatArray,
+    solutions: ComplexArray,
+    states: ComplexArray,
+) -> None:
+    """Fill in the states (w, p + 1, 2n) of one block at all nodes, those inside runs from the nodes before them.
+
+    Of ``solutions`` (w, order) the unknowns at ``places`` (r + 1, 2n) are the states where runs end, their forces in
+    units of ``scale`` (w,); ω² are those of ``translation`` and ``rotation``, (w,) both.
+    """
+    lengths, given, element, kept = runs
+    size, whole = states.shape[2], np.ones(1)
+    transfers = np.empty((lengths.size, 1, size, size), dtype=np.complex128)
+    for w in range(states.shape[0]):
+        for e in range(lengths.size):
+            whole_transfer(lengths[e], given[e], translation[w], rotation[w], whole, transfers[e])
+        for end in range(kept.size):
+            for i in range(size):
+                unit = scale[w] if i >= size // 2 else 1.0
+                states[w, kept[end], i] = unit * solutions[w, places[end, i]]
+        for run in range(kept.size - 1):
+            for node in range(kept[run] + 1, kept[run + 1]):
+                transfer = transfers[element[node - 1], 0]
+                for i in range(size):
+                    total = transfer[i, 0] * states[w, node - 1, 0]
+                    for j in range(1, size):
+                        total += transfer[i, j] * states[w, node - 1, j]
+                    states[w, node, i] = total

@@ -61,6 +61,11 @@ class Speed:
         """Ω at every λ, (w,)."""
         return np.asarray(self.base + self.rate * eigenvalues, dtype=np.complex128)
 
+    @property
+    def is_real(self) -> bool | npt.NDArray[np.bool_]:
+        """Whether it is real at real λ, so that Ω(λ̄) is the conjugate of Ω(λ)."""
+        return (np.imag(self.base) == 0.0) & (complex(self.rate).imag == 0.0)
+
 
 @dataclass(frozen=True)
 class ExactRoots:
@@ -158,6 +163,9 @@ def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
 def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp]]:
     """Indices of values that chains of distances below ``tolerance`` of their modulus connect."""
     label = np.arange(values.size)
+    sizes = np.sort(np.abs(values))
+    if (sizes[1:] - sizes[:-1] > tolerance * sizes[1:]).all():
+        return list(label[:, None])
     near = np.abs(values[:, None] - values) <= tolerance * np.abs(values)[:, None]
     if np.count_nonzero(near) <= values.size:
         return list(label[:, None])
@@ -214,7 +222,7 @@ def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArra
 
     values, found = (np.array(given, dtype=np.complex128, order="C") for given in (starts, vectors))
     residuals, scales = np.empty(values.size), np.empty(values.size)
-    bases = np.array(np.broadcast_to(speed.base, values.shape), dtype=np.complex128)
+    bases = np.full(values.size, speed.base, dtype=np.complex128)
     entries = chain.entries
     arrays = entries.arrays, entries.pattern.arrays
     newton(values, found, bases, complex(speed.rate), chain.total_mass, *arrays, residuals, scales)

@@ -17,7 +17,7 @@ from .shaft import Rotor
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LateralModes:
     """Mass-orthonormal planar modes, Φᵀ M Φ = I and Φᵀ K Φ = diag(ω²).
 

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
-from .compiled import counted, inner
-from .entry_kernels import Pattern, Table, put_entries
-from .exact_roots import ACCEPTED, MOST_STEPS, SETTLED, SLOPE_STEP
+from .compiled import FUSED, counted, inner
+from .entry_kernels import Pattern, Table, put_entries, scratch
+from .exact_roots import ACCEPTED, MOST_STEPS, SETTLED
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -22,9 +22,15 @@ IntArray = npt.NDArray[np.intp]
 STALE = 1e-4
 # A step larger than this part of the root starts from nowhere near it, and is shortened.
 LONGEST_STEP = 0.3
+# A root that has moved by less than this part of it is finished with the factors at hand.
+CLOSE = 1e-6
+# What is left of the vector's error then is the square of what was taken off it, which must be no more than this.
+TURNED = 1e-6
+# Relative step of the difference that gives slopes of the entries, good to about 1e-6.
+FORWARD = 1e-6
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FUSED)
 def form(rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexArray, right: ComplexArray) -> complex:
     """yᴴ A x of one matrix."""
     total = 0.0j
@@ -50,49 +56,66 @@ def newton(
     The speed of rotation is Ω = base + rate λ, the unit of force the inertia force of a ``mass``, as
     `rotors.spatial_chain.SpatialChain.force_scale`. ``residuals`` and ``scales`` (w,) take the last correction, as a
     part of the root, and the unit of force in each vector.
+
+    Once a root is nearly met, one step goes without factors of its own: with N the matrix at the new place and F the
+    factored one of the last, x ← x − F⁻¹ N x leaves of the vector's error the part by which the root has moved (Neumaier,
+    SIAM J. Numer. Anal. 22, 1985).
     """
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]
-    beams = np.empty((table[1][0].size, 1, 4, 4), dtype=np.complex128)
-    rods = np.empty((table[2][0].size, 1, 2, 2), dtype=np.complex128)
+    beams, rods = scratch(table)
     values, slopes = np.empty(rows.size, dtype=np.complex128), np.empty(rows.size, dtype=np.complex128)
-    behind = np.empty(rows.size, dtype=np.complex128)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
-    left = np.empty((1, order), dtype=np.complex128)
+    left, side = np.empty((1, order), dtype=np.complex128), np.empty(order, dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
     for root in range(roots.size):
-        at, base, right, last = roots[root], bases[root], vectors[root : root + 1], math.inf
+        at, base, right, last, held = roots[root], bases[root], vectors[root : root + 1], math.inf, False
         residuals[root] = math.inf
-        for step in range(MOST_STEPS):
-            scale = min(max(abs(at) ** 2 * mass, 1e-30), 1.0)
+        for _ in range(MOST_STEPS):
+            scale = scales[root] if held else min(max(abs(at) ** 2 * mass, 1e-30), 1.0)
+            scales[root] = scale
+            put_entries(at, base + rate * at, scale, table, beams, rods, values)
             # Slopes of the last step do for a root that has hardly moved since: they are not in the residual.
             if last > STALE:
-                width = SLOPE_STEP * abs(at)
-                ahead, back = at + width, at - width
+                ahead = at * (1.0 + FORWARD)
                 put_entries(ahead, base + rate * ahead, scale, table, beams, rods, slopes)
-                put_entries(back, base + rate * back, scale, table, beams, rods, behind)
+                over = 1.0 / (ahead - at)
                 for entry in range(rows.size):
-                    slopes[entry] = (slopes[entry] - behind[entry]) / (2.0 * width)
-            put_entries(at, base + rate * at, scale, table, beams, rods, values)
-            largest = fill(rows, columns, lower, values, matrix)
-            factor(matrix, lower, envelope, pivots, ends, TINY * largest)
-            for _ in range(2 if step == 0 else 1):
+                    slopes[entry] = (slopes[entry] - values[entry]) * over
+            turned = 0.0
+            if held:
+                # The factors of where the root was a moment ago take the rest off the vector.
+                for i in range(order):
+                    side[i] = 0.0
+                for entry in range(rows.size):
+                    side[rows[entry]] += values[entry] * right[0, columns[entry]]
+                forward_back(matrix, lower, envelope, pivots, ends, side)
+                along = 0.0j
+                for i in range(order):
+                    along += np.conj(right[0, i]) * side[i]
+                for i in range(order):
+                    change = side[i] - along * right[0, i]
+                    turned += change.real**2 + change.imag**2
+                    right[0, i] -= change
+                orthonormalise(right)
+            else:
+                largest = fill(rows, columns, lower, values, matrix)
+                factor(matrix, lower, envelope, pivots, ends, TINY * largest)
                 put(right[0], left[0])
                 adjoint(matrix, lower, envelope, pivots, ends, left[0])
                 orthonormalise(left)
                 put(left[0], right[0])
                 forward_back(matrix, lower, envelope, pivots, ends, right[0])
                 orthonormalise(right)
-            put(right[0], left[0])
-            adjoint(matrix, lower, envelope, pivots, ends, left[0])
-            orthonormalise(left)
+                put(right[0], left[0])
+                adjoint(matrix, lower, envelope, pivots, ends, left[0])
+                orthonormalise(left)
             top = form(rows, columns, values, left[0], right[0])
             bottom = form(rows, columns, slopes, left[0], right[0])
             change = -top / bottom if bottom != 0.0 else complex(math.inf, 0.0)
             share = abs(change) / abs(at)
             if share > LONGEST_STEP:
                 change = LONGEST_STEP * abs(at) * cmath.exp(1j * cmath.phase(change))
-            scales[root] = scale
             # Rounding alone moves a settled root: it stays where its last good step brought it.
             rounding = share < ACCEPTED and share >= 0.5 * last
             if not rounding and cmath.isfinite(change):
@@ -100,9 +123,10 @@ def newton(
             # What is left after the step, from how the last two steps fell.
             forecast = math.inf
             if share < math.sqrt(ACCEPTED) and last < 1.0:
-                forecast = share**2 * max(1.0, share / last**2) + STALE * share
+                forecast = share**2 * (1.0 / last if held else max(1.0, share / last**2)) + STALE * share
             residuals[root] = share if rounding else min(share, forecast)
-            last = share
-            if rounding or share <= SETTLED or forecast <= SETTLED:
+            # Held factors serve one step: a root that has not settled by then gets its own.
+            held, last = not held and share <= CLOSE, share
+            if turned <= TURNED**2 and (rounding or share <= SETTLED or forecast <= SETTLED):
                 break
         roots[root] = at

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .compiled import counted, inner
+from .compiled import FINITE, counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -41,7 +41,7 @@ MOST_TERMS = 80
 NEGLIGIBLE = 1e-18
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FINITE)
 def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, out: NumberArray) -> None:
     """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `rotors.timoshenko.PieceTable`."""
     a, b, k = given[0] * h, given[1] * h, given[4] * h
@@ -52,7 +52,8 @@ def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, o
     even_low, odd_low = older, older
     c2, c3 = newer * EVEN[1], newer * ODD[1]
     # Short pieces need few terms: neither λ² exceeds |e₁| + |e₂|^½.
-    size, terms = abs(e1) + math.sqrt(abs(e2)), LEAST_TERMS
+    size = abs(e1.real) + abs(e1.imag) + math.sqrt(abs(e2.real) + abs(e2.imag))
+    terms = LEAST_TERMS
     while terms < CLOSED_TERMS and size > REACH[terms]:
         terms += 1
     for n in range(2, terms):
@@ -79,7 +80,7 @@ def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, o
     out[3, 1] = -c1 * j + c3 * (bj * j + km * k)
 
 
-@inner(error_model="python")
+@inner(error_model="python", fastmath=FINITE)
 def uniform_rod(h: float, given: FloatArray, translation: Any, out: NumberArray) -> None:
     """T of a uniform rod of length h: cos and sin, as their series."""
     twist, swing = given[0] * h, translation * given[1] * h
@@ -185,6 +186,17 @@ def piece_transfers(
                 for middle in range(1, size):
                     total += value[row, middle] * inverse[middle, column]
                 out[k, row, column] = total
+
+
+@counted(error_model="python", no_cpython_wrapper=True)
+def whole_transfer(
+    h: float, given: FloatArray, translation: Any, rotation: Any, whole: FloatArray, out: NumberArray
+) -> None:
+    """T of a piece into ``out`` (1, 2n, 2n), ``whole`` being one: of the most usual piece without a detour."""
+    if given.shape[0] == 6 and given.shape[1] == 1:
+        uniform_beam(h, given[:, 0], translation, rotation, out[0])
+    else:
+        piece_transfers(h, given, translation, rotation, whole, out)
 
 
 @counted(error_model="python")

@@ -34,7 +34,7 @@ SPARE_MODES = 3
 BASIS_REACH = 1.5
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlanarBasis:
     """Mass-orthonormal motions of the shaft in one plane, and what they do at its bearings.
 

@@ -36,7 +36,7 @@ from .planar_basis import (
 )
 from .rotor_lines import bending_line, rod_line
 from .shaft import Rotor
-from .spatial_ties import CIRCULAR, MEMBERS
+from .spatial_ties import CIRCULAR, MEMBERS, block_sets
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -103,7 +103,11 @@ def basis_for(
         rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
     require_count("count of modes", count)
     if basis is None:
-        return planar_basis(rotor, bearings, frequency_limit, count)
+        return rotor.once(planar_basis, tuple(bearings), frequency_limit, count)
+    return rotor.once(_basis_of_modes, tuple(bearings), basis)
+
+
+def _basis_of_modes(rotor: Rotor, bearings: Sequence[Bearing], basis: LateralModes) -> PlanarBasis:
     expected = mean_supports(bearings)
     require(basis.supports == expected, "supports of the basis", basis.supports, f"{expected}, the bearings'")
     return PlanarBasis.of_modes(basis, bearings)
@@ -181,18 +185,18 @@ class Projection:
             mass[coordinates] = max(bearing.pedestal.mass, PEDESTAL_MASS * self.total_mass)
         return mass, stiffness, damping, gyroscopic
 
-    def eigenvalues(self, bearings: Sequence[Bearing], speeds: FloatArray) -> ComplexArray:
-        """All eigenvalues of the projected motion at every speed, (speeds, 2N); bearings have constant coefficients."""
+    def pencil(self, bearings: Sequence[Bearing]) -> "Pencil":
+        """The projected motion as a system of first order; bearings have constant coefficients."""
         mass, stiffness, damping, gyroscopic = self.matrices(bearings)
         order = mass.size
         # States W q and q̇ make the undamped system matrix nearly skew, so that high members of the basis
         # do not cost the low eigenvalues their digits.
         weight = np.sqrt(np.maximum(np.abs(stiffness.diagonal()) / mass, self.floor**2))
-        system = np.zeros((speeds.size, 2 * order, 2 * order), dtype=stiffness.dtype)
-        system[:, :order, order:] = np.diag(weight)
-        system[:, order:, :order] = stiffness / (-mass[:, None] * weight)
-        system[:, order:, order:] = (damping + speeds[:, None, None] * gyroscopic) / -mass[:, None]
-        return np.asarray(np.linalg.eigvals(system), dtype=np.complex128)
+        system = np.zeros((2, 2 * order, 2 * order), dtype=np.result_type(stiffness, gyroscopic))
+        system[0, :order, order:] = np.diag(weight)
+        system[0, order:, :order] = stiffness / (-mass[:, None] * weight)
+        system[:, order:, order:] = np.array([damping, gyroscopic]) / -mass[:, None]
+        return Pencil(self.blocks, system[0], system[1])
 
     def critical(self, bearings: Sequence[Bearing]) -> ComplexArray:
         """λ at which λ = iΩ, from K q = ω² (M − iG) q with the gyroscopic term beside the mass, (N,)."""
@@ -257,6 +261,34 @@ class Projection:
             return radial
         turn = CIRCULAR[MEMBERS[self.blocks[0]][0], :2]
         return np.asarray([[turn @ radial @ turn.conj()]])
+
+
+@dataclass(frozen=True)
+class Pencil:
+    """A projected motion as a system of first order, still + Ω turning, of one set of tied motions.
+
+    Attributes
+    ----------
+    blocks
+        As of `rotors.spatial_chain.SpatialChain`.
+    still, turning
+        (2N, 2N): in 1/s, and per rad/s of the speed Ω.
+    """
+
+    blocks: tuple[int, ...]
+    still: NumberArray
+    turning: NumberArray
+
+    def eigenvalues(self, speeds: FloatArray) -> ComplexArray:
+        """All eigenvalues at every speed, (speeds, 2N), rad/s."""
+        systems = self.still + speeds[:, None, None] * self.turning
+        return np.asarray(np.linalg.eigvals(systems), dtype=np.complex128)
+
+
+def pencils(rotor: Rotor, bearings: Sequence[Bearing], basis: PlanarBasis) -> list[Pencil]:
+    """Of every set of motions that bearings of constant coefficients tie."""
+    sets = block_sets(bearings)
+    return [Projection.of(rotor, bearings, blocks, basis).pencil(bearings) for blocks in sets]
 
 
 def _times(matrices: NumberArray, motions: FloatArray) -> NumberArray:

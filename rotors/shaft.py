@@ -2,10 +2,10 @@
 
 import math
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -21,10 +21,13 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 MassModel = Literal["distributed", "lumped"]
+Made = TypeVar("Made")
 
 # Two positions closer than this fraction of the rotor's length are one station: sums of printed
 # segment lengths differ from printed positions by rounding alone.
 STATION_TOLERANCE = 1e-9
+# So many things made of a rotor are held by it.
+MOST_HELD = 16
 
 
 @dataclass(frozen=True)
@@ -124,6 +127,24 @@ class Rotor:
         from .rotor_lines import FreeLines
 
         return FreeLines(self)
+
+    def once(self, make: Callable[..., Made], *given: Hashable) -> Made:
+        """``make(rotor, *given)``, made the first time and held: for what does not change with speed or frequency.
+
+        What is given must be of kinds that never change, as a rotor and its bearings. A few such things are held, those
+        made last.
+        """
+        key = (make, *given)
+        if key not in self._held:
+            made = make(self, *given)
+            if len(self._held) >= MOST_HELD:
+                self._held.pop(next(iter(self._held)), None)
+            self._held[key] = made
+        return cast(Made, self._held[key])
+
+    @cached_property
+    def _held(self) -> dict[tuple[Hashable, ...], object]:
+        return {}
 
     @property
     def length(self) -> float:

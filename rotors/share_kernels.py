@@ -7,16 +7,16 @@ import numpy as np
 import numpy.typing as npt
 
 from .compiled import counted
-from .entry_kernels import Pieces
 from .piece_kernels import piece_transfers
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
 ComplexArray = npt.NDArray[np.complex128]
 
 
 @counted(error_model="python")
 def inertia_shares(
-    pieces: Pieces,
+    pieces: tuple[FloatArray, FloatArray, IntArray],
     translation: ComplexArray,
     rotation: ComplexArray,
     states: ComplexArray,

@@ -13,7 +13,7 @@ equations of `rotors.timoshenko` with
 So the exact transfer matrices of both senses are at hand for any λ, with no modal truncation; the bearings alone
 tie them, and tie the shaft's axial motion where their five-by-five matrices do. At λ = iω forward whirl is r+.
 
-The unknowns are the states (displacements u, forces f to the right) at all nodes, the forces g of bearings and the
+The unknowns are the states (displacements u, forces f to the right) at some nodes, the forces g of bearings and the
 displacements p of pedestals; the equations are those of multiple shooting,
 
     u_{i+1} = T₁₁ u_i + T₁₂ f_i
@@ -26,10 +26,15 @@ eigenvalues, each with its multiplicity. (Elimination of the states shows it: th
 the bearings' forces have unit diagonal, and what is left is the map from the displacements of the left end and of
 the pedestals to the forces on the right end and the pedestals.)
 
+At a bare node nothing but the next piece begins. Roots need no unknowns there unless motion grows too much on the
+way: a run of pieces has the product of their transfer matrices (`SpatialChain.in_runs`), so that a shaft of sixty
+steps has no more unknowns than one without.
+
 Forces are scaled by the inertia forces of the frequency at hand, so that a nearly rigid shaft on soft
 bearings loses no digits to its own stiffness.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -51,6 +56,10 @@ IntArray = npt.NDArray[np.intp]
 
 # The least unit of force of a response, as a part of what the stiffest bearing takes per unit displacement.
 STATIC_FORCE = 1e-6
+# Motion grows along a run of pieces by this power of e at the most, which costs its states no more than two digits.
+MOST_GROWTH = 4.5
+# Pieces are made for frequencies so many to an octave.
+REACH_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -67,12 +76,15 @@ class SpatialChain:
         1 for r+, −1 for r−, 0 for z, in the order of the unknowns.
     ties
         Bearings with constant coefficients.
+    kept
+        (r + 1,): nodes whose states are unknowns, ascending; both ends, and wherever more than a piece begins.
     """
 
     rotor: Rotor
     bending: Chain
     blocks: tuple[int, ...]
     ties: tuple[Tie, ...]
+    kept: IntArray
 
     @property
     def size(self) -> int:
@@ -98,10 +110,13 @@ class SpatialChain:
 
     @cached_property
     def starts(self) -> IntArray:
-        """Index of every node's first unknown, (p + 1,); forces in its ties and their pedestals follow its states."""
-        sizes = np.full(self.bending.nodes.size, 2 * self.size)
+        """Index of every kept node's first unknown, and their number, (r + 2,).
+
+        Forces in a node's ties and their pedestals' displacements follow its state.
+        """
+        sizes = np.full(self.kept.size, 2 * self.size)
         for tie in self.ties:
-            sizes[tie.node] += len(tie.directions) + len(tie.foot)
+            sizes[self.kept.searchsorted(tie.node)] += len(tie.directions) + len(tie.foot)
         return np.concatenate([[0], np.cumsum(sizes)])
 
     @cached_property
@@ -110,9 +125,10 @@ class SpatialChain:
         used = self.starts + 2 * self.size
         unknowns = []
         for tie in self.ties:
-            first, m, f = int(used[tie.node]), len(tie.directions), len(tie.foot)
+            place = self.kept.searchsorted(tie.node)
+            first, m, f = int(used[place]), len(tie.directions), len(tie.foot)
             unknowns.append((first + np.arange(m), first + m + np.arange(f)))
-            used[tie.node] += m + f
+            used[place] += m + f
         return tuple(unknowns)
 
     @cached_property
@@ -120,7 +136,7 @@ class SpatialChain:
         """What makes the entries of the equations at any λ."""
         ties = tuple(zip(self.ties, self.tie_unknowns, strict=True))
         axial = self.axial if 0 in self.blocks else None
-        return entry_table(self.bending, axial, self.blocks, ties, self.starts)
+        return entry_table(self.bending, axial, self.blocks, ties, self.kept, self.starts)
 
     @property
     def pattern(self) -> BandPattern:
@@ -168,27 +184,60 @@ class SpatialChain:
     def _transfers(
         self, block: int, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
     ) -> ComplexArray:
-        translation = -(eigenvalues**2)
-        if block == 0:
-            transfer = self.axial.transfers(translation)
-        else:
-            transfer = self.bending.transfers(translation, translation + block * 2j * speeds * eigenvalues)
+        chain = self.bending if block else self.axial
+        transfer = chain.transfers(*squared_frequencies(block, eigenvalues, speeds))
         half = transfer.shape[-1] // 2
         transfer[..., :half, half:] *= scale[:, None, None]
         transfer[..., half:, :half] /= scale[:, None, None]
         return transfer
 
-    def states(self, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
-        """Node states (b, p + 1, 2n) in scaled units of solutions (b, order) of the equations."""
-        n = self.size
-        states = solutions[:, self.starts[:-1, None] + np.arange(2 * n)].copy()
-        states[:, :, n:] *= scale[:, None, None]
-        return np.asarray(states)
+    def states(
+        self, solutions: ComplexArray, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
+    ) -> dict[int, ComplexArray]:
+        """Of every block its states (b, p + 1, 2 or 4) at all nodes in scaled units, of solutions (b, order)."""
+        from .entry_kernels import node_states
+
+        states, given = {}, np.ascontiguousarray(solutions)
+        for block, places in zip(self.blocks, self._state_places, strict=True):
+            own = np.empty((eigenvalues.size, self.bending.nodes.size, places.shape[1]), dtype=np.complex128)
+            runs = self.entries.beams if block else self.entries.rods
+            node_states(runs, *squared_frequencies(block, eigenvalues, speeds), places, scale, given, own)
+            states[block] = own
+        return states
+
+    @cached_property
+    def _state_places(self) -> list[IntArray]:
+        """Of every block the unknowns that are its states at the kept nodes, (r + 1, 2 or 4)."""
+        first, places = 0, []
+        for block in self.blocks:
+            local = first + np.arange(len(MEMBERS[block]))
+            places.append(self.starts[:-1, None] + np.concatenate([local, self.size + local]))
+            first += local.size
+        return places
+
+    def in_runs(self) -> "SpatialChain":
+        """The same equations with unknowns where there is need of them only: what loads the nodes has to be none."""
+        chain = self.bending
+        needed = chain.node_inertia.any(axis=1) | (chain.node_polar != 0.0)
+        needed[[0, -1, *(tie.node for tie in self.ties)]] = True
+        growth, total = chain.table.growth(chain.highest)[chain.element].tolist(), 0.0
+        for piece, own in enumerate(growth):
+            needed[piece] |= total + own > MOST_GROWTH
+            total = own if needed[piece] else total + own
+        return replace(self, kept=np.flatnonzero(needed))
 
 
 def block_units(chain: Chain, blocks: tuple[int, ...]) -> FloatArray:
     """Units of a node's displacements, (n,)."""
     return np.concatenate([chain.displacement_unit if block else chain.displacement_unit[:1] for block in blocks])
+
+
+def squared_frequencies(
+    block: int, eigenvalues: ComplexArray, speeds: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """ω² of translation and of rotation in the circular coordinates of a block, (w,) both."""
+    translation = -(eigenvalues**2)
+    return translation, translation + block * 2j * speeds * eigenvalues
 
 
 def whirl_reach(limit: float, speed: float) -> float:
@@ -223,7 +272,18 @@ def spatial_chain(
     chain = bending_chain(rotor, tuple(supports), highest)
     units = block_units(chain, blocks)
     ties = tuple(make_tie(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
-    return SpatialChain(rotor, chain, blocks, ties)
+    return SpatialChain(rotor, chain, blocks, ties, np.arange(chain.nodes.size))
+
+
+def whirl_chain(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
+    """The equations of `spatial_chain` in runs, which the rotor holds."""
+    # In steps, so that the next speed asks for the same.
+    steps = math.ceil(REACH_STEPS * math.log2(highest))
+    return rotor.once(_chain_in_runs, tuple(bearings), blocks, 2.0 ** (steps / REACH_STEPS))
+
+
+def _chain_in_runs(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
+    return spatial_chain(rotor, bearings, blocks, highest).in_runs()
 
 
 def retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:

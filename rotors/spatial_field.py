@@ -5,17 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from .chain import Chain
-from .quadrature import gauss_rule
+from .chain import SQUARE_FRACTIONS, Chain
 from .search import require_positions
-from .spatial_chain import SpatialChain
+from .spatial_chain import SpatialChain, squared_frequencies
 from .spatial_ties import MEMBERS
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-
-GAUSS_FRACTIONS, _WEIGHTS = gauss_rule(6)
 
 
 @dataclass(frozen=True)
@@ -54,13 +51,10 @@ class SpatialMotion:
         scale: FloatArray,
     ) -> "SpatialMotion":
         """Motions from solutions (w, order) and their unit of force (w,); blocks that the chain lacks are at rest."""
-        states = chain.states(solutions, scale)
-        parts = {block: np.zeros((*states.shape[:2], 2 * len(of)), np.complex128) for block, of in MEMBERS.items()}
-        first = 0
-        for block in chain.blocks:
-            local = first + np.arange(len(MEMBERS[block]))
-            parts[block] = states[:, :, np.concatenate([local, chain.size + local])]
-            first += local.size
+        parts = chain.states(solutions, eigenvalues, speeds, scale)
+        for block in MEMBERS.keys() - parts.keys():
+            shape = (eigenvalues.size, chain.bending.nodes.size, 2 * len(MEMBERS[block]))
+            parts[block] = np.zeros(shape, dtype=np.complex128)
         rod = chain.axial if 0 in chain.blocks else None
         return cls(chain.bending, eigenvalues, speeds, parts[1], parts[-1], parts[0], rod)
 
@@ -111,13 +105,12 @@ class SpatialMotion:
         from .share_kernels import inertia_shares
 
         chain = self.chain
-        along = chain.table.coefficients_along(GAUSS_FRACTIONS)[:, :, 2:4]
-        along = along * (chain.table.lengths[:, None] * _WEIGHTS)[:, :, None]
+        along = chain.inertia_weights
         pieces = chain.table.lengths, chain.table.coefficients, chain.element
         shares = []
         for block, states in ((1, self.forward), (-1, self.backward)):
             squared = self._squared(block)
-            shares.append(inertia_shares(pieces, *squared, states, GAUSS_FRACTIONS, along, chain.node_inertia))
+            shares.append(inertia_shares(pieces, *squared, states, SQUARE_FRACTIONS, along, chain.node_inertia))
         return np.stack(shares, axis=-1)
 
     def at(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
@@ -167,9 +160,7 @@ class SpatialMotion:
         return np.asarray(np.einsum("zwij,wzj->wzi", transfers, states[:, pieces]))
 
     def _squared(self, block: int) -> tuple[ComplexArray, ComplexArray]:
-        """ω² of translation and of rotation in the circular coordinates of a block, (w,) both."""
-        translation = -(self.eigenvalues**2)
-        return translation, translation + block * 2j * self.speeds * self.eigenvalues
+        return squared_frequencies(block, self.eigenvalues, self.speeds)
 
 
 def planes(forward: ComplexArray, backward: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

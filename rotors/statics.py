@@ -74,7 +74,7 @@ class StaticDeflection:
     bearings: tuple[str, ...]
     bearing_loads: FloatArray
     chains: tuple[SpatialChain, ...] = field(repr=False)
-    states: tuple[ComplexArray, ...] = field(repr=False)
+    states: tuple[dict[int, ComplexArray], ...] = field(repr=False)
 
     def evaluate(self, z: npt.ArrayLike) -> FloatArray:
         """Displacement over x, y and z at positions z (m), (3, len(z)), m."""
@@ -101,13 +101,12 @@ class StaticDeflection:
         for chain, states in zip(self.chains, self.states, strict=True):
             members = [member for block in chain.blocks for member in MEMBERS[block]]
             pieces, fractions = chain.bending.places(positions)
-            n, units, first = chain.size, chain.units, 0
+            units, first = chain.units, 0
             for block in chain.blocks:
                 width = len(MEMBERS[block])
-                local = np.concatenate([first + np.arange(width), n + first + np.arange(width)])
                 planar = chain.bending if block else chain.axial
                 at = planar.transfers_to(pieces, fractions, np.array([TINY * 1j]))[:, 0]
-                inside = np.einsum("zij,zj->zi", at.real, states[pieces][:, local])
+                inside = np.einsum("zij,zj->zi", at.real, states[block][0, pieces])
                 inside = inside + acceleration(self.gravity, block) / units[first] * at.imag[:, :, 0] / TINY
                 for k in range(width):
                     if members[first + k] in wanted:
@@ -159,7 +158,8 @@ def static_deflection(
         require_held(rotor, chain)
         solution, scale = _solve(chain, forces, pull)
         chains.append(chain)
-        states.append(chain.states(solution, scale)[0])
+        at_rest = np.zeros(1, dtype=np.complex128)
+        states.append(chain.states(solution, at_rest, at_rest, scale))
         loads += bearing_forces(chain, solution, scale)
     return StaticDeflection(pull, tuple(b.name for b in bearings), loads[0].real, tuple(chains), tuple(states))
 

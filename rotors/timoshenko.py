@@ -109,6 +109,15 @@ class PieceTable:
         place_transfers(self.lengths, self.coefficients, element, fractions, moving, turning, out)
         return out
 
+    def growth(self, frequency: float) -> FloatArray:
+        """About by what power of e motion at most grows along the pieces at ω, (e,): the root of a bound on |λ²|."""
+        largest = np.abs(self.coefficients).sum(axis=2) * self.lengths[:, None]
+        if self.size == 1:
+            return np.asarray(frequency * np.sqrt(largest[:, 0] * largest[:, 1]))
+        a, b, m, j, k, axial = largest.T
+        m, j = frequency**2 * m, frequency**2 * j + axial
+        return np.asarray(np.sqrt(a * m + b * j + np.sqrt(b * m * (a * j + k * k))))
+
     def coefficients_along(self, fractions: FloatArray) -> FloatArray:
         """Coefficients at the same fractions (k,) of every piece, (e, k, 6) or (e, k, 2)."""
         kinds, fields, order = self.coefficients.shape

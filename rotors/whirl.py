@@ -18,11 +18,10 @@ from .errors import require_finite
 from .exact_roots import ExactRoots, Speed, constant_speed
 from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
-from .projection import Projection, basis_for
+from .projection import basis_for, pencils
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, spatial_chain, whirl_reach
+from .spatial_chain import SpatialChain, whirl_chain, whirl_reach
 from .spatial_field import SpatialMotion
-from .spatial_ties import block_sets
 from .whirl_certificate import NO_OSCILLATION, WhirlCertificate, certified_roots, oscillating
 from .whirl_count import is_conservative
 from .whirl_energy import StrainShares, strain_shares
@@ -151,7 +150,7 @@ def solve_whirl(
     count
         How many modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with less has less.
     basis
-        From `rotors.whirl_basis`, of the same rotor and bearings, to spare building it at every speed.
+        From `rotors.whirl_basis`, of the same rotor and bearings; without it the rotor makes one of its own and holds it.
 
     Raises
     ------
@@ -162,17 +161,16 @@ def solve_whirl(
     """
     require_finite("speed", speed)
     chosen = basis_for(rotor, bearings, frequency_limit, count, basis)
-    constant = [bearing.at_speed(speed) for bearing in bearings]
-    sets = [Projection.of(rotor, constant, blocks, chosen) for blocks in block_sets(constant)]
-    starts = [one.eigenvalues(constant, np.array([speed]))[0] for one in sets]
+    constant = tuple(bearing.at_speed(speed) for bearing in bearings)
+    turning = np.array([speed])
     wanted = None if frequency_limit is not None else count or DEFAULT_COUNT
     modes = certified_whirl(
         rotor,
         constant,
-        [(one.blocks, values) for one, values in zip(sets, starts, strict=True)],
+        [(one.blocks, one.eigenvalues(turning)[0]) for one in rotor.once(pencils, constant, chosen)],
         constant_speed(speed),
         speed,
-        NO_OSCILLATION * sets[0].floor,
+        NO_OSCILLATION * chosen.floor,
         frequency_limit,
         wanted,
     )
@@ -183,7 +181,7 @@ def solve_whirl(
         eigenvalues=motion.eigenvalues,
         direction=(shares[:, 0] - shares[:, 1]) / shares.sum(axis=1),
         certificate=certificate,
-        bearings=tuple(constant),
+        bearings=constant,
         motion=motion.scaled(1.0 / np.sqrt(shares.sum(axis=1)).astype(np.complex128)),
     )
 
@@ -211,7 +209,7 @@ def certified_whirl(
         reach = START_REACH * limit
     highest = max(START_REACH * reach, 10.0 * least)
     highest = whirl_reach(highest, highest if turning is None else turning)
-    chains = [spatial_chain(rotor, bearings, blocks, highest) for blocks, _ in starts]
+    chains = [whirl_chain(rotor, bearings, blocks, highest) for blocks, _ in starts]
     refined = [
         refine_roots(chain, values[np.abs(values) <= reach], speed) for chain, values in zip(chains, kept, strict=True)
     ]
@@ -221,7 +219,7 @@ def certified_whirl(
         sector = oscillating(least, _limit_behind(refined, least, count))
     else:
         sector = oscillating(least, limit)
-    conservative = is_undriven(rotor, bearings)
+    conservative = rotor.once(is_undriven, tuple(bearings))
     parts = [
         certified_roots(chain, roots, speed, sector, conservative, near)
         for chain, roots, near in zip(chains, refined, beyond, strict=True)
@@ -257,9 +255,8 @@ def _reach_behind(ascending: FloatArray, count: int) -> float:
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
     """A frequency in a gap behind the lowest ``count`` roots, or behind all there are."""
-    sector = oscillating(least, np.inf)
-    sizes = [np.abs(roots.eigenvalues[sector.holds(roots.eigenvalues)]) for roots in refined]
-    ascending = np.sort(np.concatenate(sizes))
+    values = np.concatenate([roots.eigenvalues for roots in refined])
+    ascending = np.sort(np.abs(values[oscillating(least, np.inf).holds(values)]))
     if ascending.size == 0:
         return 10.0 * least
     for last in range(count, ascending.size):

@@ -28,6 +28,7 @@ Where a root is missing from those known, the power sums of all roots,
 less those of known ones not divided out, give the polynomial of the missing (Delves and Lyness, Math. Comp. 21, 1967).
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,19 +70,18 @@ class Sector:
     @property
     def corners(self) -> ComplexArray:
         """ln λ at the corners, counter-clockwise."""
-        low, high = np.log(self.least), np.log(self.most)
+        low, high = math.log(self.least), math.log(self.most)
         return np.array([low + 1j * self.first, high + 1j * self.first, high + 1j * self.last, low + 1j * self.last])
 
     def holds(self, eigenvalues: ComplexArray) -> npt.NDArray[np.bool_]:
         """Which of the values lie inside."""
-        size, angle = np.abs(eigenvalues), np.angle(eigenvalues)
-        return np.asarray((size > self.least) & (size < self.most) & (angle > self.first) & (angle < self.last))
+        return np.asarray(self.distance(np.log(eigenvalues)) < 0.0)
 
-    def distance(self, eigenvalues: ComplexArray) -> FloatArray:
-        """How far values lie from the edge in ln λ, negative inside; along the axes, the larger part of it."""
-        w = np.log(eigenvalues)
-        across = np.maximum(np.log(self.least) - w.real, w.real - np.log(self.most))
-        return np.asarray(np.maximum(across, np.maximum(self.first - w.imag, w.imag - self.last)))
+    def distance(self, logarithms: ComplexArray) -> FloatArray:
+        """How far values given by their ln λ lie from the edge, negative inside; along the axes, the larger part."""
+        size, angle = logarithms.real, logarithms.imag
+        across = np.maximum(math.log(self.least) - size, size - math.log(self.most))
+        return np.asarray(np.maximum(across, np.maximum(self.first - angle, angle - self.last)))
 
     def halves(self, part: float) -> tuple["Sector", "Sector"]:
         """Two sectors, cut across the longer side at a part of it."""
@@ -160,13 +160,14 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
 
     scale = float(chain.force_scale(np.array([sector.most]))[0])
     corners = sector.corners
-    apart = np.abs(sector.distance(known)) > TOO_NEAR
-    divided, left = known[apart], known[~apart & sector.holds(known)]
-    inside = int(sector.holds(divided).sum())
+    logarithms = np.log(known)
+    distance = sector.distance(logarithms)
+    apart, holds = np.abs(distance) > TOO_NEAR, distance < 0.0
+    divided, left = known[apart], known[~apart & holds]
+    inside = int(np.count_nonzero(apart & holds))
     if len(chain.blocks) > 1:
-        mirrored = divided.conj()
-        real = speed(mirrored) == speed(divided).conj()
-        divided = np.concatenate([divided, mirrored[real & (sector.distance(mirrored) > TOO_NEAR)]])
+        outside = sector.distance(logarithms.conj()) > TOO_NEAR
+        divided = np.concatenate([divided, known[apart & outside & speed.is_real].conj()])
 
     sides = corners[[1, 2, 3, 0]] - corners
     edge = corners[:, None] + sides[:, None] * (np.arange(SIDE_SAMPLES - 1) / (SIDE_SAMPLES - 1))

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .banded_kernels import TINY, factor, fill
 from .compiled import counted, inner
-from .entry_kernels import Pattern, Table, put_entries
+from .entry_kernels import Pattern, Table, put_entries, scratch
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -62,8 +62,7 @@ def walk(
     steepest, misfit, shortest, slope_part = limits[0], limits[1], limits[2], limits[3]
     rows, columns, envelope, lower, upper = pattern
     order, corners = envelope.shape[0], edge.size - 1
-    beams = np.empty((table[1][0].size, 1, 4, 4), dtype=np.complex128)
-    rods = np.empty((table[2][0].size, 1, 2, 2), dtype=np.complex128)
+    beams, rods = scratch(table)
     values = np.empty(rows.size, dtype=np.complex128)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)

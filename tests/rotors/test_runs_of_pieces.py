@@ -1,0 +1,118 @@
+"""Pieces that run together between the unknowns of whirl's equations, and what a rotor holds from speed to speed."""
+
+import numpy as np
+import pytest
+
+from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
+from rotors.coalesced_roots import refine_roots
+from rotors.exact_roots import constant_speed
+from rotors.shaft import MOST_HELD, MassModel
+from rotors.spatial_chain import MOST_GROWTH, SpatialChain, spatial_chain, whirl_reach
+from rotors.spatial_field import SpatialMotion
+from rotors.spatial_ties import block_sets
+
+STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
+DISC = Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0)
+SPEED, LIMIT = 400.0, 3000.0
+SIDEWAYS = np.diag([2e6, 1e6])
+# Along the axis too, and tied to the tilt, so that all three motions go together.
+SPATIAL = np.diag([2e6, 1e6, 5e6, 3e3, 3e3])
+SPATIAL[2, 4] = SPATIAL[4, 2] = 1e4
+KINDS = {
+    "one sense alone": (2e6 * np.eye(2), 300.0 * np.eye(2)),
+    "both senses": (SIDEWAYS, np.diag([300.0, 200.0])),
+    "along the axis too": (SPATIAL, 1e-4 * SPATIAL),
+}
+
+
+def stepped(parts: int, mass_model: MassModel = "distributed") -> Rotor:
+    steps = 0.05 * (1.0 + 0.1 * np.sin(1.0 + 3.1 * np.arange(parts)))
+    segments = [Segment(1.5 / parts, float(diameter), 0.0, STEEL) for diameter in steps]
+    segments[3] = Segment(1.5 / parts, 0.05, 0.0, STEEL, right_outer_diameter=0.06)
+    return Rotor("stepped", segments, [DISC], mass_model)
+
+
+def bearings_of(kind: str, factor: float = 1.0) -> list[Bearing]:
+    stiffness, damping = KINDS[kind]
+    return [Bearing("left", 0.0, factor * stiffness, damping), Bearing("right", 1.2, factor * stiffness, damping)]
+
+
+def motion_of(chain: SpatialChain, starts: np.ndarray) -> SpatialMotion:
+    speed = constant_speed(SPEED)
+    roots = refine_roots(chain, starts, speed)
+    return SpatialMotion.of(chain, roots.eigenvalues, speed(roots.eigenvalues), roots.solutions, roots.scales)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("mass_model", ["distributed", "lumped"])
+def test_runs_have_the_roots_and_shapes_of_their_pieces(kind: str, mass_model: MassModel) -> None:
+    rotor, bearings = stepped(30, mass_model), bearings_of(kind)
+    modes = solve_whirl(rotor, bearings, SPEED, frequency_limit=LIMIT)
+    assert modes.eigenvalues.size >= 6
+    for blocks in block_sets(bearings):
+        whole = spatial_chain(rotor, bearings, blocks, whirl_reach(LIMIT, SPEED))
+        runs = whole.in_runs()
+        if mass_model == "distributed":
+            # Ends, the disc, the bearing, and a few between them.
+            assert 4 <= runs.kept.size <= 8 < whole.kept.size
+        own = modes.eigenvalues
+        if len(blocks) == 1:
+            own = own[modes.direction * blocks[0] > 0.5]
+        separate, together = motion_of(whole, own), motion_of(runs, own)
+        np.testing.assert_allclose(together.eigenvalues, separate.eigenvalues, rtol=1e-12)
+        # At every node and between them, but for a factor.
+        places = np.linspace(0.0, rotor.length, 101)
+        for mode in range(separate.count):
+            shapes = [
+                np.concatenate([part[mode] for part in motion.evaluate(places)]) for motion in (separate, together)
+            ]
+            likeness = np.vdot(shapes[0], shapes[1]) / np.vdot(shapes[0], shapes[0])
+            np.testing.assert_allclose(shapes[1], likeness * shapes[0], rtol=0.0, atol=1e-10 * np.abs(shapes[1]).max())
+
+
+def test_motion_grows_no_more_along_a_run_than_it_may() -> None:
+    rotor, bearings = stepped(30), bearings_of("both senses")
+    runs = spatial_chain(rotor, bearings, (1, -1), 4e4).in_runs()
+    growth = runs.bending.table.growth(4e4)[runs.bending.element]
+    along = np.add.reduceat(growth, runs.kept[:-1])
+    assert (along <= MOST_GROWTH).all()
+    # As few runs as that: no two neighbours would do as one, but where a node needs its unknowns.
+    assert runs.kept.size > 8
+    # The bound is one: no wave of a uniform piece is shorter than it says.
+    table = runs.bending.table
+    eigenvalues = np.linalg.eigvals(table.transfers([4e4**2])[0, :, 0])
+    uniform = ~table.coefficients[:, :, 1:].any(axis=(1, 2))
+    fastest = np.abs(np.log(eigenvalues.astype(complex))).max(axis=1)
+    assert (fastest[uniform] <= table.growth(4e4)[uniform] * (1.0 + 1e-12)).all()
+
+
+def test_what_a_rotor_holds_is_of_its_bearings() -> None:
+    rotor = stepped(30)
+    before = solve_whirl(rotor, bearings_of("both senses"), SPEED, count=6).eigenvalues
+    # Other bearings at the same places: the answer of a rotor that has solved nothing before.
+    for factor in (0.5, 2.0):
+        held = solve_whirl(rotor, bearings_of("both senses", factor), SPEED, count=6).eigenvalues
+        fresh = solve_whirl(stepped(30), bearings_of("both senses", factor), SPEED, count=6).eigenvalues
+        np.testing.assert_array_equal(held, fresh)
+        assert np.abs(held - before).max() > 1.0
+    # Equal bearings and the former speed, after others: every digit again.
+    solve_whirl(rotor, bearings_of("both senses"), 3.0 * SPEED, count=12)
+    again = solve_whirl(rotor, bearings_of("both senses"), SPEED, count=6).eigenvalues
+    np.testing.assert_array_equal(again, before)
+
+
+def test_a_rotor_holds_a_few_things_made_last() -> None:
+    rotor, made = stepped(6), []
+
+    def make(shaft: Rotor, number: int) -> int:
+        assert shaft is rotor
+        made.append(number)
+        return -number
+
+    for number in range(MOST_HELD):
+        assert rotor.once(make, number) == rotor.once(make, number) == -number
+    assert made == list(range(MOST_HELD))
+    rotor.once(make, MOST_HELD)
+    rotor.once(make, MOST_HELD - 1)
+    rotor.once(make, 0)
+    assert made == [*range(MOST_HELD + 1), 0]
