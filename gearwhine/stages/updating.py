@@ -140,7 +140,7 @@ def update_housing(
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
     progress("going on with the housing's own mesh")
-    ended = fine.solve(raced.coordinates)
+    ended = fine.solve(raced.coordinates) if raced.design is None else raced.design
     tuned = ended if same else coarse.solve(raced.coordinates)
     bias = None if same else MeshBias.between(tuned.state, ended.state)
     found = _polished(fine, ended, target, replace(effort, solves=_LEFT if raced.is_met else _FEW), progress)
@@ -190,13 +190,13 @@ def _raced(
     effort: Effort,
     count: int,
     progress: Progress,
-) -> Raced:
+) -> Raced[HousingDesign]:
     """The search from the start and others on the coarse mesh, judged by the fine one, side by side where several are.
 
     One thread each, so that the same is found however many run side by side.
     """
     coarse, own = (replace(designs, threads=1) for designs in (start.designs, fine))
-    meshes = Meshes(coarse.solve, None if judged is None else own.solve)
+    meshes = Meshes(coarse.solve, None if judged is None else own.solve, HousingDesign.light)
     with side_by_side(min(count, fine.threads, default_workers())) as each:
         return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
 
