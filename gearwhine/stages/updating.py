@@ -6,7 +6,6 @@ each meshed anew.
 """
 
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +17,7 @@ from gearwhine.stages.designs import HousingDesign, HousingDesigns
 from gearwhine.stages.side_by_side import default_workers, side_by_side
 from gearwhine.stages.update_keys import FittedCase, fitted_case
 from gearwhine.stages.update_target import measurement_of
+from gearwhine.stages.update_worth import NullTest, held_back_modes, null_test
 from housing.updating import (
     Debiased,
     Effort,
@@ -27,15 +27,11 @@ from housing.updating import (
     Meshes,
     Misfit,
     ModalState,
-    NullFit,
     Posterior,
     Raced,
     Step,
     Target,
-    debiased,
-    hold_back,
     measure,
-    null_fits,
     posterior,
     race,
     search,
@@ -44,12 +40,9 @@ from housing.updating import (
 FloatArray = npt.NDArray[np.float64]
 
 _REFINED = 0.05  # trust region of the search that goes on with the finer mesh
-_FEW = 10  # solves of that search, and of each random set
+_FEW = 10  # solves of that search
 _LEFT = 3  # of that search where all is met already, so that the misfit is least there
 _FIRM = 3.0  # how much less soft the penalties are there
-_HELD = 20  # solves of each search that holds a mode back
-_KEPT = 7  # of the designs judged, that random sets may begin at
-_STARTS = 16  # on the surrogate, where the search is made over and over
 
 
 @dataclass(frozen=True)
@@ -75,8 +68,8 @@ class SolvedUpdate:
         Every true solve of the search.
     held_back : list of HeldBack
         Empty where not asked for.
-    null : list of NullFit
-        Likewise.
+    null : NullTest, or None
+        Likewise None.
     seconds : dict of str to float
     """
 
@@ -92,7 +85,7 @@ class SolvedUpdate:
     posterior: Posterior
     steps: tuple[Step, ...]
     held_back: list[HeldBack]
-    null: list[NullFit]
+    null: NullTest | None
     seconds: dict[str, float]
 
 
@@ -147,23 +140,21 @@ def update_housing(
     seconds["own_mesh"] = time.perf_counter() - begin
     after = found.design
     spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
-    rows: list[HeldBack] = []
-    fits: list[NullFit] = []
     near = Debiased(tuned, bias)
-    if held_back:
-        begin = time.perf_counter()
-        # By the bias at the start: that at the end has seen the mode that is held back.
-        first = Debiased(start, None if same else MeshBias.between(start.state, before.state))
-        few = replace(effort, solves=_HELD, starts=_STARTS)
-        rows = hold_back(debiased(coarse.solve, first.bias), target, coarse.parameters, first, few, progress)
-        seconds["held_back"] = time.perf_counter() - begin
-    if null:
-        begin = time.perf_counter()
-        solve = debiased(coarse.solve, bias)
-        known = [near, *(solve(point, None) for point in _thinned(raced.seen))]
-        few = replace(effort, solves=_FEW, starts=_STARTS)
-        fits = null_fits(solve, target, coarse.parameters, known, few, null, progress=progress)
-        seconds["null"] = time.perf_counter() - begin
+    rows: list[HeldBack] = []
+    null_fits: NullTest | None = None
+    if held_back or null:
+        # One thread each, as in the race.
+        with side_by_side(min(threads, default_workers())) as each:
+            if held_back:
+                begin = time.perf_counter()
+                first = None if same else MeshBias.between(start.state, before.state)
+                rows = held_back_modes(_alone(start), first, target, effort.seed, each, progress)
+                seconds["held_back"] = time.perf_counter() - begin
+            if null:
+                begin = time.perf_counter()
+                null_fits = null_test(_alone(tuned), bias, raced.seen, target, null, effort.seed, each, progress)
+                seconds["null"] = time.perf_counter() - begin
     return SolvedUpdate(
         fitted=fine.case,
         before=before,
@@ -177,7 +168,7 @@ def update_housing(
         posterior=spread,
         steps=raced.steps + found.steps,
         held_back=rows,
-        null=fits,
+        null=null_fits,
         seconds=seconds,
     )
 
@@ -214,7 +205,6 @@ def _polished(
     return search(lambda point, _: fine.solve(point), firm, fine.parameters, begin, near, progress)
 
 
-def _thinned(points: Sequence[FloatArray]) -> list[FloatArray]:
-    """The first, the last and some between."""
-    chosen = np.unique(np.linspace(0, len(points) - 1, min(len(points), _KEPT)).round().astype(int))
-    return [points[place] for place in chosen]
+def _alone(design: HousingDesign) -> HousingDesign:
+    """The design, whose neighbours are solved by one thread."""
+    return replace(design, designs=replace(design.designs, threads=1))

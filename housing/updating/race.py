@@ -30,8 +30,8 @@ _DESCENT = 25  # steps of each on the surrogate
 _APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
 _COARSE, _FINE = 2, 2  # heats on either mesh
 _LAST = 2  # runners that are never parted
-_FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the last in all others
-_TRUST = (0.25, 0.15, 0.1)  # likewise
+FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the last in all others
+TRUST = (0.25, 0.15, 0.1)  # likewise
 _FINE_SOLVES = 4  # of each runner in each heat on the fine mesh
 _STARTS = 16  # on the surrogate
 
@@ -199,7 +199,7 @@ def race(
     progress : callable
     """
     bias = None if judged is None else MeshBias.between(start.state, judged)
-    soft = replace(target, firmness=_FIRMNESS[0])
+    soft = replace(target, firmness=FIRMNESS[0])
     points = [start.coordinates]
     if count > 1:
         progress(f"bringing {_DRAWN * (count - 1)} draws of the prior down")
@@ -217,7 +217,7 @@ def race(
             best = _best(best, target, runners, progress)
         if best.is_met:
             break
-        firmness, trust = (values[min(heat, len(values) - 1)] for values in (_FIRMNESS, _TRUST))
+        firmness, trust = (values[min(heat, len(values) - 1)] for values in (FIRMNESS, TRUST))
         own = replace(effort, solves=_FINE_SOLVES if on_fine else solves, trust=trust, starts=_STARTS)
         run = _Run(meshes, replace(target, firmness=firmness), tuple(parameters), own, on_fine)
         ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
