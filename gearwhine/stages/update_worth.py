@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,6 @@ from housing.updating import (
     Each,
     Effort,
     HeldBack,
-    MeshBias,
     NullFit,
     Target,
     debiased,
@@ -58,26 +57,25 @@ class _Solved:
 
 
 def held_back_modes(
-    start: HousingDesign, bias: MeshBias | None, target: Target, seed: int, each: Each, progress: Progress
+    start: Debiased[HousingDesign], target: Target, seed: int, each: Each, progress: Progress
 ) -> list[HeldBack]:
     """Each mode predicted by a fit to the others, from the case as it stands.
 
     Parameters
     ----------
-    start : HousingDesign
-        Of the search's mesh.
-    bias : MeshBias, or None
-        That mesh's, at the start: what is known at the end has seen the mode that is held back.
+    start : Debiased
+        On the search's mesh, by the bias there: what is known at the end has seen the mode that is held back.
+    target, seed, each, progress
+        See :func:`housing.updating.hold_back`.
     """
     progress(f"holding back {len(target.noise)} modes, one at a time")
-    solve = debiased(start.designs.solve, bias)
-    effort = Effort(solves=_SOLVES, starts=_STARTS, seed=seed)
-    return hold_back(solve, target, start.designs.parameters, Debiased(start.light(), bias), effort, each, progress)
+    designs = _alone(start.design)
+    solve, begin = debiased(designs.solve, start.bias), Debiased(start.design.light(), start.bias)
+    return hold_back(solve, target, designs.parameters, begin, _effort(seed), each, progress)
 
 
-def null_test(
-    tuned: HousingDesign,
-    bias: MeshBias | None,
+def random_sets(
+    tuned: Debiased[HousingDesign],
     seen: Sequence[FloatArray],
     target: Target,
     count: int,
@@ -89,21 +87,32 @@ def null_test(
 
     Parameters
     ----------
-    tuned : HousingDesign
-        Of the search's mesh, where the search has ended.
-    bias : MeshBias, or None
-        That mesh's, there.
+    tuned : Debiased
+        On the search's mesh, where the search has ended, by the bias there.
     seen : sequence of ndarray
         Coordinates of designs that the race has come through; the first is its start.
+    target, seed, each, progress
+        See :func:`housing.updating.null_fits`.
+    count : int
+        How many sets.
     """
     progress(f"fitting {count} random sets of {len(target.noise)} frequencies")
-    designs = tuned.designs
-    solve = debiased(designs.solve, bias)
-    known = [Debiased(design, bias) for design in [*each(_Solved(designs), _thinned(seen)), tuned.light()]]
-    effort = Effort(solves=_SOLVES, starts=_STARTS, seed=seed)
-    fits = null_fits(solve, target, designs.parameters, known, effort, count, each=each, progress=progress)
-    (own,) = fit_sets(solve, target, designs.parameters, known[:1], effort, [target.frequencies], each)
+    designs = _alone(tuned.design)
+    solve = debiased(designs.solve, tuned.bias)
+    known = [*each(_Solved(designs), _thinned(seen)), tuned.design.light()]
+    starts, parameters = [Debiased(design, tuned.bias) for design in known], designs.parameters
+    fits = null_fits(solve, target, parameters, starts, _effort(seed), count, each=each, progress=progress)
+    (own,) = fit_sets(solve, target, parameters, starts[:1], _effort(seed), [target.frequencies], each)
     return NullTest(fits, own)
+
+
+def _effort(seed: int) -> Effort:
+    return Effort(solves=_SOLVES, starts=_STARTS, seed=seed)
+
+
+def _alone(design: HousingDesign) -> HousingDesigns:
+    """What solves a design's like by one thread."""
+    return replace(design.designs, threads=1)
 
 
 def _thinned(points: Sequence[FloatArray]) -> list[FloatArray]:

@@ -17,7 +17,7 @@ from gearwhine.stages.designs import HousingDesign, HousingDesigns
 from gearwhine.stages.side_by_side import default_workers, side_by_side
 from gearwhine.stages.update_keys import FittedCase, fitted_case
 from gearwhine.stages.update_target import measurement_of
-from gearwhine.stages.update_worth import NullTest, held_back_modes, null_test
+from gearwhine.stages.update_worth import NullTest, held_back_modes, random_sets
 from housing.updating import (
     Debiased,
     Effort,
@@ -142,19 +142,18 @@ def update_housing(
     spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
     near = Debiased(tuned, bias)
     rows: list[HeldBack] = []
-    null_fits: NullTest | None = None
-    if held_back or null:
-        # One thread each, as in the race.
-        with side_by_side(min(threads, default_workers())) as each:
-            if held_back:
-                begin = time.perf_counter()
-                first = None if same else MeshBias.between(start.state, before.state)
-                rows = held_back_modes(_alone(start), first, target, effort.seed, each, progress)
-                seconds["held_back"] = time.perf_counter() - begin
-            if null:
-                begin = time.perf_counter()
-                null_fits = null_test(_alone(tuned), bias, raced.seen, target, null, effort.seed, each, progress)
-                seconds["null"] = time.perf_counter() - begin
+    null_test: NullTest | None = None
+    # One thread each, as in the race.
+    with side_by_side(min(threads, default_workers()) if held_back or null else 1) as each:
+        if held_back:
+            begin = time.perf_counter()
+            first = Debiased(start, None if same else MeshBias.between(start.state, before.state))
+            rows = held_back_modes(first, target, effort.seed, each, progress)
+            seconds["held_back"] = time.perf_counter() - begin
+        if null:
+            begin = time.perf_counter()
+            null_test = random_sets(near, raced.seen, target, null, effort.seed, each, progress)
+            seconds["null"] = time.perf_counter() - begin
     return SolvedUpdate(
         fitted=fine.case,
         before=before,
@@ -168,7 +167,7 @@ def update_housing(
         posterior=spread,
         steps=raced.steps + found.steps,
         held_back=rows,
-        null=null_fits,
+        null=null_test,
         seconds=seconds,
     )
 
@@ -203,8 +202,3 @@ def _polished(
     firm = replace(target, firmness=_FIRM)
     near = replace(effort, trust=_REFINED)
     return search(lambda point, _: fine.solve(point), firm, fine.parameters, begin, near, progress)
-
-
-def _alone(design: HousingDesign) -> HousingDesign:
-    """The design, whose neighbours are solved by one thread."""
-    return replace(design, designs=replace(design.designs, threads=1))
