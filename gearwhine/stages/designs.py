@@ -99,7 +99,7 @@ class HousingDesigns:
         skin = room.survey_grid(mesh, bounds).normal_motion(solved.shapes)
         measured = None if self.measured is None else solved.project(self.measured(mesh))
         state = ModalState(solved.frequencies, seats, skin, measured)
-        return HousingDesign(self, np.asarray(coordinates), case, mesh, solved, state)
+        return HousingDesign(self, np.asarray(coordinates), case, mesh, state, solved.shapes)
 
 
 @dataclass(frozen=True)
@@ -113,26 +113,35 @@ class HousingDesign:
     coordinates : ndarray, shape (n_parameters,)
     case : Case
     mesh : Mesh
-    modes : housing.ModeSet
     state : housing.updating.ModalState
+    shapes : ndarray, shape (n_modes, n_nodes, 3), or None
+        Mass-normalised [1/√kg]; None once they are let go.
+    known : Surrogate, or None
+        Its neighbourhood where that was worked out before.
     """
 
     designs: HousingDesigns
     coordinates: FloatArray
     case: Case
     mesh: Mesh
-    modes: room.ModeSet
     state: ModalState
+    shapes: FloatArray | None
+    known: Surrogate | None = None
 
     def surrogate(self) -> Surrogate:
         """Its neighbourhood, by the exact rates of stiffness and mass."""
-        return self._surrogate
+        return self._surrogate if self.known is None else self.known
+
+    def light(self) -> "HousingDesign":
+        """The same with its neighbourhood and without its shapes, a twentieth of the size, for another process."""
+        return replace(self, shapes=None, known=self.surrogate())
 
     @cached_property
     def _surrogate(self) -> Surrogate:
+        assert self.shapes is not None
         parted, material, materials = materials_of(self.case, self.mesh)
         constants = element_constants(parted, material, materials)
-        rates = modal_rates(self.mesh, constants, self.modes.shapes, self.rates())
+        rates = modal_rates(self.mesh, constants, self.shapes, self.rates())
         return Surrogate.about(self.coordinates, self.state, rates)
 
     def rates(self) -> list[ModelRate]:

@@ -9,6 +9,7 @@ from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.check_provenance import without_changed
 from gearwhine.case.problems import Location, key_of
 from gearwhine.stages.update_keys import FittedNumber, unit_in_si, with_entry
+from gearwhine.stages.update_worth import NullTest
 from gearwhine.stages.updating import SolvedUpdate
 from housing.updating import UNPAIRED, HeldBack, Misfit, NullFit
 
@@ -165,13 +166,16 @@ def _held_back(row: HeldBack) -> dict[str, Any]:
     }
 
 
-def _null(fits: list[NullFit], own: Misfit) -> dict[str, Any]:
-    def part(test: Any) -> float:
-        return sum(1 for fit in fits if test(fit)) / len(fits)
+def _null(test: NullTest, own: Misfit) -> dict[str, Any]:
+    fits = test.fits
+
+    def part(meets: Any) -> float:
+        return sum(1 for fit in fits if meets(fit)) / len(fits)
 
     return {
         "sets": len(fits),
         "as_good_in_rms": part(lambda fit: fit.rms_percent <= own.rms_percent),
+        "as_good_in_rms_as_measured_likewise": part(lambda fit: fit.rms_percent <= test.measured.rms_percent),
         "as_good_in_misfit": part(lambda fit: fit.value <= own.value),
         "within_5_percent": part(lambda fit: fit.max_percent <= 5.0),
         "within_2_percent": part(lambda fit: fit.max_percent <= 2.0),
@@ -180,17 +184,19 @@ def _null(fits: list[NullFit], own: Misfit) -> dict[str, Any]:
             lambda fit: fit.max_percent <= 2.0 and fit.gap >= 0.1 and fit.measures_agree
         ),
         "median_rms_error_percent": float(np.median([fit.rms_percent for fit in fits])),
-        "fits": [
-            {
-                "frequencies_hz": (fit.frequencies / _HERTZ).tolist(),
-                "rms_error_percent": fit.rms_percent,
-                "max_error_percent": fit.max_percent,
-                "gap": fit.gap,
-                "measures_agree": fit.measures_agree,
-                "misfit": fit.value,
-            }
-            for fit in fits
-        ],
+        "measured_likewise": _null_fit(test.measured),
+        "fits": [_null_fit(fit) for fit in fits],
+    }
+
+
+def _null_fit(fit: NullFit) -> dict[str, Any]:
+    return {
+        "frequencies_hz": (fit.frequencies / _HERTZ).tolist(),
+        "rms_error_percent": fit.rms_percent,
+        "max_error_percent": fit.max_percent,
+        "gap": fit.gap,
+        "measures_agree": fit.measures_agree,
+        "misfit": fit.value,
     }
 
 

@@ -6,7 +6,6 @@ each meshed anew.
 """
 
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +17,7 @@ from gearwhine.stages.designs import HousingDesign, HousingDesigns
 from gearwhine.stages.side_by_side import default_workers, side_by_side
 from gearwhine.stages.update_keys import FittedCase, fitted_case
 from gearwhine.stages.update_target import measurement_of
+from gearwhine.stages.update_worth import NullTest, held_back_modes, random_sets
 from housing.updating import (
     Debiased,
     Effort,
@@ -27,15 +27,11 @@ from housing.updating import (
     Meshes,
     Misfit,
     ModalState,
-    NullFit,
     Posterior,
     Raced,
     Step,
     Target,
-    debiased,
-    hold_back,
     measure,
-    null_fits,
     posterior,
     race,
     search,
@@ -44,12 +40,9 @@ from housing.updating import (
 FloatArray = npt.NDArray[np.float64]
 
 _REFINED = 0.05  # trust region of the search that goes on with the finer mesh
-_FEW = 10  # solves of that search, and of each random set
+_FEW = 10  # solves of that search
 _LEFT = 3  # of that search where all is met already, so that the misfit is least there
 _FIRM = 3.0  # how much less soft the penalties are there
-_HELD = 20  # solves of each search that holds a mode back
-_KEPT = 7  # of the designs judged, that random sets may begin at
-_STARTS = 16  # on the surrogate, where the search is made over and over
 
 
 @dataclass(frozen=True)
@@ -75,8 +68,8 @@ class SolvedUpdate:
         Every true solve of the search.
     held_back : list of HeldBack
         Empty where not asked for.
-    null : list of NullFit
-        Likewise.
+    null : NullTest, or None
+        Likewise None.
     seconds : dict of str to float
     """
 
@@ -92,7 +85,7 @@ class SolvedUpdate:
     posterior: Posterior
     steps: tuple[Step, ...]
     held_back: list[HeldBack]
-    null: list[NullFit]
+    null: NullTest | None
     seconds: dict[str, float]
 
 
@@ -140,30 +133,27 @@ def update_housing(
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
     progress("going on with the housing's own mesh")
-    ended = fine.solve(raced.coordinates)
+    ended = fine.solve(raced.coordinates) if raced.design is None else raced.design
     tuned = ended if same else coarse.solve(raced.coordinates)
     bias = None if same else MeshBias.between(tuned.state, ended.state)
     found = _polished(fine, ended, target, replace(effort, solves=_LEFT if raced.is_met else _FEW), progress)
     seconds["own_mesh"] = time.perf_counter() - begin
     after = found.design
     spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
-    rows: list[HeldBack] = []
-    fits: list[NullFit] = []
     near = Debiased(tuned, bias)
-    if held_back:
-        begin = time.perf_counter()
-        # By the bias at the start: that at the end has seen the mode that is held back.
-        first = Debiased(start, None if same else MeshBias.between(start.state, before.state))
-        few = replace(effort, solves=_HELD, starts=_STARTS)
-        rows = hold_back(debiased(coarse.solve, first.bias), target, coarse.parameters, first, few, progress)
-        seconds["held_back"] = time.perf_counter() - begin
-    if null:
-        begin = time.perf_counter()
-        solve = debiased(coarse.solve, bias)
-        known = [near, *(solve(point, None) for point in _thinned(raced.seen))]
-        few = replace(effort, solves=_FEW, starts=_STARTS)
-        fits = null_fits(solve, target, coarse.parameters, known, few, null, progress=progress)
-        seconds["null"] = time.perf_counter() - begin
+    rows: list[HeldBack] = []
+    null_test: NullTest | None = None
+    # One thread each, as in the race.
+    with side_by_side(min(threads, default_workers()) if held_back or null else 1) as each:
+        if held_back:
+            begin = time.perf_counter()
+            first = Debiased(start, None if same else MeshBias.between(start.state, before.state))
+            rows = held_back_modes(first, target, effort.seed, each, progress)
+            seconds["held_back"] = time.perf_counter() - begin
+        if null:
+            begin = time.perf_counter()
+            null_test = random_sets(near, raced.seen, target, null, effort.seed, each, progress)
+            seconds["null"] = time.perf_counter() - begin
     return SolvedUpdate(
         fitted=fine.case,
         before=before,
@@ -177,7 +167,7 @@ def update_housing(
         posterior=spread,
         steps=raced.steps + found.steps,
         held_back=rows,
-        null=fits,
+        null=null_test,
         seconds=seconds,
     )
 
@@ -190,13 +180,13 @@ def _raced(
     effort: Effort,
     count: int,
     progress: Progress,
-) -> Raced:
+) -> Raced[HousingDesign]:
     """The search from the start and others on the coarse mesh, judged by the fine one, side by side where several are.
 
     One thread each, so that the same is found however many run side by side.
     """
     coarse, own = (replace(designs, threads=1) for designs in (start.designs, fine))
-    meshes = Meshes(coarse.solve, None if judged is None else own.solve)
+    meshes = Meshes(coarse.solve, None if judged is None else own.solve, HousingDesign.light)
     with side_by_side(min(count, fine.threads, default_workers())) as each:
         return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
 
@@ -212,9 +202,3 @@ def _polished(
     firm = replace(target, firmness=_FIRM)
     near = replace(effort, trust=_REFINED)
     return search(lambda point, _: fine.solve(point), firm, fine.parameters, begin, near, progress)
-
-
-def _thinned(points: Sequence[FloatArray]) -> list[FloatArray]:
-    """The first, the last and some between."""
-    chosen = np.unique(np.linspace(0, len(points) - 1, min(len(points), _KEPT)).round().astype(int))
-    return [points[place] for place in chosen]

@@ -18,7 +18,7 @@ from housing.updating.race import Each, Meshes, Raced, one_by_one, race
 from housing.updating.rates import ModalRates, ModelRate, modal_rates
 from housing.updating.search import Design, Effort, Found, Solve, Step, search, search_surrogate
 from housing.updating.surrogate import ModalState, Neighbour, Surrogate
-from housing.updating.worth import HeldBack, NullFit, hold_back, null_fits, random_frequencies
+from housing.updating.worth import HeldBack, NullFit, fit_sets, hold_back, null_fits, random_frequencies
 
 __all__ = [
     "UNPAIRED",
@@ -46,6 +46,7 @@ __all__ = [
     "Target",
     "coordinate_bounds",
     "debiased",
+    "fit_sets",
     "hold_back",
     "is_met",
     "measure",

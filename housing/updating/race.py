@@ -30,8 +30,8 @@ _DESCENT = 25  # steps of each on the surrogate
 _APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
 _COARSE, _FINE = 2, 2  # heats on either mesh
 _LAST = 2  # runners that are never parted
-_FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the last in all others
-_TRUST = (0.25, 0.15, 0.1)  # likewise
+FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the last in all others
+TRUST = (0.25, 0.15, 0.1)  # likewise
 _FINE_SOLVES = 4  # of each runner in each heat on the fine mesh
 _STARTS = 16  # on the surrogate
 
@@ -58,10 +58,13 @@ class Meshes(Generic[AnyDesign]):
         See :data:`housing.updating.Solve`.
     fine : callable
         The same on the mesh that judges, made anew at each design; None where there is one mesh only.
+    light : callable
+        A design of that mesh as it is handed on from one heat to the next, lest it be solved again.
     """
 
     coarse: Solve[AnyDesign]
     fine: Solve[AnyDesign] | None
+    light: Callable[[AnyDesign], AnyDesign] = lambda design: design
 
     def judge(self, coordinates: FloatArray, near: AnyDesign | None = None) -> AnyDesign:
         """A design on the mesh that judges, whatever is near."""
@@ -69,7 +72,7 @@ class Meshes(Generic[AnyDesign]):
 
 
 @dataclass(frozen=True)
-class Runner:
+class Runner(Generic[AnyDesign]):
     """Where one of the searches is.
 
     Attributes
@@ -80,16 +83,19 @@ class Runner:
         Of the design where the race began; None where there is one mesh only.
     judged : ModalState, or None
         What the fine mesh has here; None where it has not been asked yet.
+    design : Design, or None
+        The fine mesh's own here, light, where the last heat was run on it.
     """
 
     number: int
     coordinates: FloatArray
     bias: MeshBias | None
     judged: ModalState | None = None
+    design: AnyDesign | None = None
 
 
 @dataclass(frozen=True)
-class Raced:
+class Raced(Generic[AnyDesign]):
     """How a race has ended.
 
     Attributes
@@ -104,6 +110,8 @@ class Raced:
         Every solve of all searches.
     seen : tuple of ndarray
         Coordinates of every design that the fine mesh has judged.
+    design : Design, or None
+        The best on the fine mesh, where it was found there.
     """
 
     coordinates: FloatArray
@@ -111,9 +119,10 @@ class Raced:
     is_met: bool
     steps: tuple[Step, ...]
     seen: tuple[FloatArray, ...]
+    design: AnyDesign | None = None
 
 
-Ran = tuple[Runner, float, tuple[Step, ...]]
+Ran = tuple[Runner[AnyDesign], float, tuple[Step, ...]]
 
 
 @dataclass(frozen=True)
@@ -126,11 +135,11 @@ class _Run(Generic[AnyDesign]):
     effort: Effort
     on_fine: bool
 
-    def __call__(self, runner: Runner) -> Ran:
+    def __call__(self, runner: Runner[AnyDesign]) -> Ran[AnyDesign]:
         """The runner where it has come to, its misfit there, and its steps; infinite where nothing is sound there."""
         solve = self.meshes.judge if self.on_fine else self.meshes.coarse
         try:
-            begin = solve(runner.coordinates, None)
+            begin = solve(runner.coordinates, None) if runner.design is None else runner.design
         except HousingError:
             return runner, np.inf, ()
         bias = None
@@ -139,8 +148,9 @@ class _Run(Generic[AnyDesign]):
             bias = runner.bias if runner.judged is None else MeshBias.between(begin.state, runner.judged)
         effort = replace(self.effort, seed=self.effort.seed + runner.number)
         found = search(debiased(solve, bias), self.target, self.parameters, Debiased(begin, bias), effort)
-        judged = found.design.state if self.on_fine else None
-        ended = replace(runner, coordinates=found.design.coordinates, judged=judged)
+        ended = replace(runner, coordinates=found.design.coordinates, judged=None)
+        if self.on_fine:
+            ended = replace(ended, judged=found.design.state, design=self.meshes.light(found.design.design))
         return ended, found.misfit.value, found.steps
 
 
@@ -150,7 +160,7 @@ class _Judge(Generic[AnyDesign]):
 
     meshes: Meshes[AnyDesign]
 
-    def __call__(self, runner: Runner) -> Runner | None:
+    def __call__(self, runner: Runner[AnyDesign]) -> Runner[AnyDesign] | None:
         """The runner with what the fine mesh has there; None where it has nothing sound."""
         try:
             return replace(runner, judged=self.meshes.judge(runner.coordinates).state)
@@ -168,7 +178,7 @@ def race(
     count: int,
     each: Each = one_by_one,
     progress: Callable[[str], None] = lambda message: None,
-) -> Raced:
+) -> Raced[AnyDesign]:
     """Race a start and the best of some draws of the prior.
 
     Parameters
@@ -189,12 +199,12 @@ def race(
     progress : callable
     """
     bias = None if judged is None else MeshBias.between(start.state, judged)
-    soft = replace(target, firmness=_FIRMNESS[0])
+    soft = replace(target, firmness=FIRMNESS[0])
     points = [start.coordinates]
     if count > 1:
         progress(f"bringing {_DRAWN * (count - 1)} draws of the prior down")
     points += _drawn(Debiased(start, bias).surrogate(), soft, parameters, count - 1, effort.seed, each)
-    runners = [Runner(number, point, bias) for number, point in enumerate(points)]
+    runners = [Runner[AnyDesign](number, point, bias) for number, point in enumerate(points)]
     first = replace(runners[0], judged=start.state if judged is None else judged)
     best = _better(None, target, first, lambda message: None)
     going = _going(count)
@@ -207,7 +217,7 @@ def race(
             best = _best(best, target, runners, progress)
         if best.is_met:
             break
-        firmness, trust = (values[min(heat, len(values) - 1)] for values in (_FIRMNESS, _TRUST))
+        firmness, trust = (values[min(heat, len(values) - 1)] for values in (FIRMNESS, TRUST))
         own = replace(effort, solves=_FINE_SOLVES if on_fine else solves, trust=trust, starts=_STARTS)
         run = _Run(meshes, replace(target, firmness=firmness), tuple(parameters), own, on_fine)
         ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
@@ -222,14 +232,18 @@ def race(
     return replace(best, steps=tuple(steps))
 
 
-def _best(best: Raced, target: Target, runners: Sequence[Runner], progress: Callable[[str], None]) -> Raced:
+def _best(
+    best: Raced[AnyDesign], target: Target, runners: Sequence[Runner[AnyDesign]], progress: Callable[[str], None]
+) -> Raced[AnyDesign]:
     """The best so far, or of runners that have been judged."""
     for runner in runners:
         best = _better(best, target, runner, progress)
     return best
 
 
-def _better(best: Raced | None, target: Target, runner: Runner, progress: Callable[[str], None]) -> Raced:
+def _better(
+    best: Raced[AnyDesign] | None, target: Target, runner: Runner[AnyDesign], progress: Callable[[str], None]
+) -> Raced[AnyDesign]:
     """The better of the best so far and of a runner that has been judged."""
     assert runner.judged is not None
     misfit = measure(target, runner.judged, runner.coordinates, strict=True)
@@ -241,7 +255,7 @@ def _better(best: Raced | None, target: Target, runner: Runner, progress: Callab
     )
     seen = (*(() if best is None else best.seen), runner.coordinates)
     if best is None or (met, -misfit.value) > (best.is_met, -best.misfit.value):
-        return Raced(runner.coordinates, misfit, met, (), seen)
+        return Raced(runner.coordinates, misfit, met, (), seen, runner.design)
     return replace(best, seen=seen)
 
 

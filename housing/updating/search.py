@@ -124,9 +124,11 @@ def search(
     generator = np.random.default_rng(effort.seed)
     design, misfit = start, measure(target, start.state, start.coordinates)
     trust, steps = effort.trust, list[Step]()
-    surrogate = design.surrogate()
+    surrogate = None
     while len(steps) < effort.solves and trust >= effort.least_trust and misfit.value > effort.enough:
         region = _region(design.coordinates, bounds, trust)
+        if surrogate is None:
+            surrogate = design.surrogate()
         point, promised = search_surrogate(surrogate, target, region, effort.starts, generator)
         if promised > misfit.value - _WORTH * abs(misfit.value):
             # Nothing here is better: perhaps so close by that other starts find it, in a smaller region.
@@ -150,7 +152,7 @@ def search(
             f"trust {trust:.3f}"
         )
         if accepted:
-            design, misfit, surrogate = trial, found, trial.surrogate()
+            design, misfit, surrogate = trial, found, None
         trust = min(trust * 1.4, 0.4) if kept > 0.6 else trust if kept > 0.25 else trust * 0.5
     return Found(design, misfit, tuple(steps))
 

@@ -112,12 +112,23 @@ def test_an_update_finds_a_secret_and_writes_it(gearwhine, tmp_path: Path) -> No
     compared = gearwhine("compare", "out/updated.toml", "--json", "-q").document
     assert compared["max_error_percent"] == pytest.approx(document["max_error_percent"], abs=0.02)
 
-    shown = gearwhine(
-        "update", "out/updated.toml", "-q", "-o", "again", "--set", "update.mesh_size=", "--set", "update.solves=2"
-    )
+    short = ("--set", "update.mesh_size=", "--set", "update.solves=2")
+    shown = gearwhine("update", "out/updated.toml", "-q", "-o", "again", *short)
     assert shown.code == 0
     assert "the data tell" in shown.out
     assert "--null" in shown.out
+
+    worth = gearwhine("update", "out/updated.toml", "-o", "again", "--null", "2", "--held-back", "--json", *short)
+    assert worth.code == 0
+    assert "mode 5 predicted within" in worth.err
+    assert "random set 2 of 2" in worth.err
+    told = worth.document
+    # Two walls and five modes: the other four tell of each, and random sets are not fitted.
+    for row in told["held_back"]:
+        assert abs(row["error_percent"]) < 3.0 * row["standard_deviation_percent"] < 6.0
+    assert told["null"]["sets"] == len(told["null"]["fits"]) == 2
+    assert told["null"]["within_1_percent"] == 0.0
+    assert told["null"]["measured_likewise"]["max_error_percent"] < 1.0
 
 
 def secret_survey(text: str) -> SurveyData:
@@ -128,6 +139,7 @@ def secret_survey(text: str) -> SurveyData:
     generator = np.random.default_rng(4)
     case = load_case(text, [f"housing.box.wall.{face}={value} m" for face, value in SECRET.items()]).case
     secret = HousingDesigns(fitted_case(case), 24, threads=1).solve(np.zeros(2))
+    assert secret.shapes is not None
     corners = np.array([[-0.1, 0.0, -0.12], [0.1, 0.16, 0.12]])
     where = corners[0] + (corners[1] - corners[0]) * generator.uniform(0.05, 0.95, size=(60, 3))
     sides = generator.integers(0, 3, 60), generator.integers(0, 2, 60)
@@ -136,10 +148,10 @@ def secret_survey(text: str) -> SurveyData:
     directions[np.arange(60), sides[0]] = 2.0 * sides[1] - 1.0
     geometry = MeasuredGeometry(tuple(map(str, range(1, 61))), where, np.arange(60), directions)
     seen = [0, 1, 2, 4, 5, 7, 8]
-    shapes = map_survey(secret.mesh, geometry).shapes(secret.modes.shapes)[seen]
+    shapes = map_survey(secret.mesh, geometry).shapes(secret.shapes)[seen]
     shapes += 0.05 * np.sqrt((shapes**2).mean(axis=1))[:, None] * generator.normal(size=shapes.shape)
     scaled = shapes * np.exp(2j * np.pi * generator.uniform(size=len(seen)))[:, None]
-    frequencies = secret.modes.frequencies[seen] * (1.0 + 1e-3 * generator.normal(size=len(seen)))
+    frequencies = secret.state.frequencies[seen] * (1.0 + 1e-3 * generator.normal(size=len(seen)))
     modes = MeasuredModes(frequencies, None, scaled, geometry)
     return SurveyData(geometry=geometry, modes=modes)
 

@@ -64,6 +64,17 @@ def test_slopes_of_all_numbers_together_are_those_of_solved_designs(designs: Hou
         assert np.abs(way @ slopes[:, :12] - expected).max() < 1e-6 * np.abs(slopes).max()
 
 
+def test_a_light_design_is_the_same_without_its_shapes(designs: HousingDesigns) -> None:
+    start = designs.solve(designs.start)
+    light = start.light()
+    assert light.shapes is None
+    assert np.array_equal(light.surrogate().rates, start.surrogate().rates)
+    assert np.array_equal(light.state.skin, start.state.skin)
+    near = start.coordinates + 0.1
+    assert np.array_equal(designs.solve(near, light).mesh.points, designs.solve(near, start).mesh.points)
+    assert light.light().surrogate() is light.surrogate()
+
+
 def test_a_design_that_is_no_sound_housing_is_said(designs: HousingDesigns) -> None:
     wide = designs.start.copy()
     wide[1] = 100.0  # as wide a boss as its range allows is still sound

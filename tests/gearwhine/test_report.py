@@ -109,6 +109,7 @@ def test_what_a_fit_is_worth_is_told_beside_it() -> None:
         "within_2_percent": 0.15,
         "within_1_percent": 0.0,
         "as_good_in_rms": 0.3,
+        "measured_likewise": {"rms_error_percent": 3.2, "max_error_percent": 6.1},
     }
     held = {"measured_hz": 658.0, "predicted_hz": 700.0, "error_percent": 6.383, "standard_deviation_percent": 2.0}
     document = {
@@ -120,6 +121,7 @@ def test_what_a_fit_is_worth_is_told_beside_it() -> None:
     assert any("Not known" in sentence for sentence in alone.sentences)
     (tested,) = sections_of(document | {"null": worth, "held_back": [held]})
     assert any("80 % within 5 %" in sentence and "30 % as well" in sentence for sentence in tested.sentences)
+    assert any("3.20 % root mean square, 6.10 % at most" in sentence for sentence in tested.sentences)
     assert tested.tables[1].filled()[1] == [["658.0", "700.0", "+6.38", "2.00"]]
 
 

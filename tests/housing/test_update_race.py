@@ -206,6 +206,25 @@ def test_how_the_work_is_shared_out_changes_nothing() -> None:
     assert [step.found for step in one.steps] != [step.found for step in run_race(target, 3, seed=2).steps]
 
 
+def test_no_design_of_the_fine_mesh_is_solved_twice() -> None:
+    """A heat begins with the designs that the last one ended with, and the race hands out the best."""
+    solved: list[tuple[float, ...]] = []
+
+    def noted(coordinates: FloatArray, near: Design | None) -> Finer:
+        solved.append(tuple(coordinates))
+        return Finer(coordinates)
+
+    # So narrow that no heat meets it.
+    target = replace(target_at(np.array([1.2, -0.9, 1.0, -1.3])), noise=np.full(N, 1e-12))
+    begin = np.zeros(N)
+    raced = race(Meshes(coarse, noted), target, FREE, Oscillators(begin), fine(begin), Effort(solves=12), 3)
+    assert len(solved) > 4
+    assert len(set(solved)) == len(solved)
+    assert raced.design is not None
+    assert np.array_equal(raced.design.coordinates, raced.coordinates)
+    assert raced.misfit.errors == pytest.approx(np.log(raced.design.state.frequencies / target.frequencies))
+
+
 def test_a_race_outlives_starts_that_are_no_housing() -> None:
     def fragile(coordinates: FloatArray, near: Design | None) -> Oscillators:
         if coordinates[0] < -0.2:

@@ -1,0 +1,287 @@
+"""The elements' integrals behind :func:`housing.updating.modal_rates`, some elements at a time.
+
+Most of the work is in products of all modes with all modes, once for each parameter. So elements are sorted by which
+parameters concern them, σ : T is summed over the six components of the symmetric σ, and where div V does not change
+within straight elements their modal masses are made once, of which every parameter takes so much of each.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.assembly import stiffness_degree, straight_elements
+from meshes import ElementKind, Mesh
+from meshes.mapping import determinants, inverses, jacobians
+from meshes.shapes import quadrature, shape_functions
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+_WORKING_SET = 2**19  # numbers in the modes' gradients of one chunk: 4 MB, that a core keeps at hand
+_STILL = 1e-10  # part of the largest motion within an element below which another is carried along as it is
+_EVEN = 1e-11  # likewise of a divergence's changes within elements
+
+_PAIRS = ((0, 1), (1, 2), (2, 0))  # components of the shears, after the three stretches
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What parameters do to elements, in the order of these.
+
+    Attributes
+    ----------
+    velocity : ndarray, shape (n_nodes, 3), or None
+        How fast the nodes move [m] for each unit of the parameter.
+    constants : ndarray, shape (3, n_elements), or None
+        Rates of λ, μ [Pa] and ρ [kg/m³].
+    """
+
+    velocity: FloatArray | None
+    constants: FloatArray | None
+
+    def concerned(self, nodes: IntArray, elements: IntArray) -> BoolArray:
+        """Which elements are strained or become of other stuff, shape (n_elements,)."""
+        either = np.zeros(len(nodes), dtype=bool)
+        if self.velocity is not None:
+            moved = self.velocity[nodes]
+            apart = np.abs(moved - moved[:, :1]).max(axis=(1, 2))
+            either |= apart > _STILL * np.abs(self.velocity).max(initial=0.0)
+        if self.constants is not None:
+            either |= self.constants[:, elements].any(axis=0)
+        return either
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some elements of one kind, all affine or not.
+
+    Attributes
+    ----------
+    kind : ElementKind
+    elements : ndarray of int, shape (n,)
+        Their numbers over all blocks.
+    nodes : ndarray of int, shape (n, n_nodes)
+    affine : bool
+    spans : tuple of (int, slice)
+        Numbers of the parameters that concern some of the elements, and the first to the last of those.
+    """
+
+    kind: ElementKind
+    elements: IntArray
+    nodes: IntArray
+    affine: bool
+    spans: tuple[tuple[int, slice], ...]
+
+
+def parts(mesh: Mesh, n_modes: int, changes: Sequence[Changes]) -> Iterator[Part]:
+    """The elements that some parameter concerns."""
+    first = 0
+    for block in mesh.blocks:
+        straight = straight_elements(mesh.points, block)
+        every = first + np.arange(len(block))
+        concerned = np.array([change.concerned(block.nodes, every) for change in changes])
+        for affine in (True, False):
+            members = np.flatnonzero((straight == affine) & concerned.any(axis=0))
+            if not len(members):
+                continue
+            members = members[np.lexsort(concerned[:, members])]
+            points = len(quadrature(block.kind, stiffness_degree(block.of, affine=affine))[1])
+            step = max(1, _WORKING_SET // (9 * n_modes * points))
+            for start in range(0, len(members), step):
+                chosen = members[start : start + step]
+                spans = tuple(
+                    (number, slice(int(places[0]), int(places[-1]) + 1))
+                    for number, row in enumerate(concerned[:, chosen])
+                    if len(places := np.flatnonzero(row))
+                )
+                yield Part(block.of, first + chosen, block.nodes[chosen], affine, spans)
+        first += len(block)
+
+
+@dataclass(frozen=True)
+class _Places:
+    """The quadrature points of a part's stiffness.
+
+    Attributes
+    ----------
+    slopes : ndarray, shape (n_elements, n_points, 3, n_nodes)
+        ∂_j N_a [1/m].
+    volumes : ndarray, shape (n_elements, n_points)
+        det J times the weight [m³].
+    """
+
+    slopes: FloatArray
+    volumes: FloatArray
+
+    @classmethod
+    def of(cls, mesh: Mesh, part: Part, degree: int) -> "_Places":
+        places, weights = quadrature(part.kind.name, degree)
+        reference = shape_functions(part.kind.name, places)[1]
+        jacobian = jacobians(mesh.points, part.nodes, reference)
+        determinant = determinants(jacobian)
+        inverse = inverses(jacobian, determinant)
+        slopes = np.einsum("kjeq,qak->eqja", inverse, reference, optimize=True)
+        return cls(np.ascontiguousarray(slopes), determinant * weights)
+
+    def gradients(self, fields: FloatArray, span: slice = slice(None)) -> FloatArray:
+        """∂_j f_i of nodal fields (n, n_nodes, m) of the elements of a span, shape (n, n_points, 3, m)."""
+        slopes = self.slopes[span]
+        n, points, _, nodes = slopes.shape
+        return np.asarray((slopes.reshape(n, -1, nodes) @ fields).reshape(n, points, 3, -1))
+
+
+def add_part(
+    mesh: Mesh,
+    part: Part,
+    constants: FloatArray,
+    by_node: FloatArray,
+    changes: Sequence[Changes],
+    stiffness: FloatArray,
+    mass: FloatArray,
+) -> None:
+    """Add a part's Φᵀ dK Φ and Φᵀ dM Φ by each parameter.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    part : Part
+    constants : ndarray, shape (3, n_elements)
+        λ, μ [Pa] and ρ [kg/m³].
+    by_node : ndarray, shape (n_nodes, 3, n_modes)
+        The modes.
+    changes : sequence of Changes
+    stiffness, mass : ndarray, shape (n_parameters, n_modes, n_modes)
+    """
+    places = _Places.of(mesh, part, stiffness_degree(part.kind, affine=part.affine))
+    n_modes = by_node.shape[2]
+    fields = by_node[part.nodes].reshape(*part.nodes.shape, 3 * n_modes)
+    moving: dict[int, FloatArray] = {}
+    for number, span in part.spans:
+        velocity = changes[number].velocity
+        if velocity is not None:
+            moving[number] = places.gradients(velocity[part.nodes[span]], span)
+    _add_stiffness(part, places, fields, constants, changes, moving, stiffness)
+    divergences = {number: np.einsum("eqjj->eq", gradients) for number, gradients in moving.items()}
+    if part.affine and all(_is_even(divergence) for divergence in divergences.values()):
+        _add_even_mass(part, places, fields, constants, changes, divergences, mass)
+    else:
+        _add_mass(mesh, part, fields, constants, changes, mass)
+
+
+def _add_stiffness(
+    part: Part,
+    places: _Places,
+    fields: FloatArray,
+    constants: FloatArray,
+    changes: Sequence[Changes],
+    moving: dict[int, FloatArray],
+    stiffness: FloatArray,
+) -> None:
+    """By one product of all points' stresses with what the parameter does to the gradients."""
+    n_modes = stiffness.shape[1]
+    gradients = places.gradients(fields).reshape(*places.volumes.shape, 3, 3, n_modes)  # ..., j, i of ∂_j φ_i, mode
+    strains = np.empty((*places.volumes.shape, 6, n_modes))
+    for i in range(3):
+        strains[:, :, i] = gradients[:, :, i, i]
+    for place, (i, j) in enumerate(_PAIRS):
+        np.add(gradients[:, :, i, j], gradients[:, :, j, i], out=strains[:, :, 3 + place])
+    own = _stresses(strains, places.volumes, *constants[:2, part.elements])
+    for number, span in part.spans:
+        given = changes[number].constants
+        if given is not None and given[:2, part.elements[span]].any():
+            stress = _stresses(strains[span], places.volumes[span], *given[:2, part.elements[span]])
+            stiffness[number] += stress.reshape(-1, n_modes).T @ strains[span].reshape(-1, n_modes)
+        if number in moving:
+            tilt = _tilt(moving[number])
+            tilted = tilt @ gradients[span].reshape(-1, *places.volumes.shape[1:], 9, n_modes)
+            half = own[span].reshape(-1, n_modes).T @ tilted.reshape(-1, n_modes)
+            stiffness[number] += half + half.T
+
+
+def _stresses(strains: FloatArray, volumes: FloatArray, lam: FloatArray, mu: FloatArray) -> FloatArray:
+    """σ dV of strains, shears as the sums of both gradients, of the same shape (n_elements, n_points, 6, n_modes)."""
+    shear = mu[:, None] * volumes
+    stress = np.asarray(strains * shear[:, :, None, None])
+    stress[:, :, :3] *= 2.0
+    stress[:, :, :3] += ((lam[:, None] * volumes)[..., None] * strains[:, :, :3].sum(axis=2))[:, :, None]
+    return stress
+
+
+def _tilt(velocities: FloatArray) -> FloatArray:
+    """From ∇φ to T = ½ div V ∇φ - ∇φ ∇V as the stress works on it, from ∂_j V_l: shape (n, n_points, 6, 9).
+
+    The stress is symmetric: of a shear it takes T_ik + T_ki.
+    """
+    factor = 0.5 * np.einsum("eqjj->eq", velocities)[..., None, None] * np.eye(3) - velocities
+    tilt = np.zeros((*factor.shape[:2], 6, 3, 3))  # component; j, i of ∂_j φ_i
+    for i in range(3):
+        tilt[:, :, i, :, i] = factor[:, :, i]
+    for place, (i, k) in enumerate(_PAIRS):
+        tilt[:, :, 3 + place, :, i] = factor[:, :, k]
+        tilt[:, :, 3 + place, :, k] = factor[:, :, i]
+    return tilt.reshape(*factor.shape[:2], 6, 9)
+
+
+def _is_even(divergence: FloatArray) -> bool:
+    """Whether it is the same at all points of each element."""
+    return bool(np.ptp(divergence, axis=1).max() <= _EVEN * np.abs(divergence).max())
+
+
+def _add_even_mass(
+    part: Part,
+    places: _Places,
+    fields: FloatArray,
+    constants: FloatArray,
+    changes: Sequence[Changes],
+    divergences: dict[int, FloatArray],
+    mass: FloatArray,
+) -> None:
+    """Of straight elements in which no density and no div V changes: each gives so much of its own modal mass."""
+    points, weights = quadrature(part.kind.name, 2 * part.kind.order)
+    values = shape_functions(part.kind.name, points)[0]
+    n, n_modes = len(part.elements), mass.shape[1]
+    # Of density 1: Nᵀ N over the reference element as Rᵀ R, and the size of the element.
+    unit = values.T @ (weights[:, None] * values) / weights.sum()
+    turned = (np.linalg.cholesky(unit).T @ fields).reshape(n, -1, n_modes)
+    modal = (turned.transpose(0, 2, 1) @ turned).reshape(n, -1)
+    volumes = places.volumes.sum(axis=1)
+    amounts = np.zeros((len(part.spans), n))
+    for row, (number, span) in zip(amounts, part.spans, strict=True):
+        if number in divergences:
+            row[span] += constants[2, part.elements[span]] * divergences[number][:, 0]
+        given = changes[number].constants
+        if given is not None:
+            row[span] += given[2, part.elements[span]]
+    numbers = [number for number, _ in part.spans]
+    mass[numbers] += ((amounts * volumes) @ modal).reshape(-1, n_modes, n_modes)
+
+
+def _add_mass(
+    mesh: Mesh,
+    part: Part,
+    fields: FloatArray,
+    constants: FloatArray,
+    changes: Sequence[Changes],
+    mass: FloatArray,
+) -> None:
+    """Of any elements, by matrices of scalar mass rates and the modes' quadratic forms in these."""
+    degree = 2 * part.kind.order
+    places, n_modes = _Places.of(mesh, part, degree), mass.shape[1]
+    values = shape_functions(part.kind.name, quadrature(part.kind.name, degree)[0])[0]
+    for number, span in part.spans:
+        change, elements = changes[number], part.elements[span]
+        amount = np.zeros_like(places.volumes[span])
+        if change.velocity is not None:
+            velocities = places.gradients(change.velocity[part.nodes[span]], span)
+            amount += constants[2, elements, None] * np.einsum("eqjj->eq", velocities)
+        if change.constants is not None:
+            amount += change.constants[2, elements, None]
+        if not amount.any():
+            continue
+        amount *= places.volumes[span]
+        products = np.einsum("eq,qa,qb->eab", amount, values, values, optimize=True)
+        local = fields[span]
+        mass[number] += local.reshape(-1, n_modes).T @ (products @ local).reshape(-1, n_modes)
