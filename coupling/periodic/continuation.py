@@ -27,6 +27,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError, PeriodicError
 from coupling.periodic.branch import Branch, Point, interpolation
+from coupling.periodic.branch_motion import BranchMotion, without_course
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.response_curve import Bifurcation, Ending, Event, ResponseCurve
 from coupling.periodic.shooting import periodic_response, problem
@@ -49,17 +50,25 @@ _LOCATIONS = 30  # steps in the location of a fold or a loss of stability
 _LOCATED = 1e-5  # of a step: the speed of a fold errs by the square
 
 
+Seen = Callable[[float, PeriodicResponse], None]
+
+
 class _Follower:
     """The way along a branch. Positions are parts of the speed range, 0 at its start and 1 at its end."""
 
-    def __init__(self, branch: Branch, first: Point, start: float, end: float, points: int, most_tries: int) -> None:
+    def __init__(
+        self, branch: Branch, first: Point, start: float, end: float, points: int, most_tries: int, seen: Seen
+    ) -> None:
         self.branch, self.start, self.end = branch, start, end
         self.largest, self.most_tries, self.tries = 1.0 / (points - 1), most_tries, 0
-        self.speeds, self.responses = [first.speed], [first.response]
+        self.speeds: list[float] = []
+        self.motions: list[BranchMotion] = []
         self.events: list[Bifurcation] = []
+        self.seen = seen
         self.recent = [first]  # since the speed last turned
         self.sense, self.stride, self.order = 1.0, 0.3 * self.largest, 1
         self.failures, self.turning, self.ds = 0, False, 0.0
+        self._keep(first)
 
     def position(self, speed: float) -> float:
         """Of a speed in the range."""
@@ -163,10 +172,8 @@ class _Follower:
         event, between = self._event(here, there, turned, along)
         if event is not None and between is not None:
             self.events.append(Bifurcation(len(self.speeds), event, float(between.speed)))
-            self.speeds.append(between.speed)
-            self.responses.append(between.response)
-        self.speeds.append(there.speed)
-        self.responses.append(there.response)
+            self._keep(between)
+        self._keep(there)
         if turned:
             self.recent = [there]
             return True
@@ -174,6 +181,12 @@ class _Follower:
             self.order = self._best_order(there)
         self.recent = [*self.recent, there][-_KEPT:]
         return False
+
+    def _keep(self, point: Point) -> None:
+        """What the curve tells of a point; its course over time goes with the next points."""
+        self.seen(point.speed, point.response)
+        self.speeds.append(point.speed)
+        self.motions.append(without_course(point.response, point.ready.segments))
 
     def _best_order(self, there: Point) -> int:
         """Of the polynomial through the last points that would have predicted this one best."""
@@ -255,6 +268,7 @@ def response_curve(
     periods: int = 1,
     tolerance: float = 1e-6,
     progress: Callable[[float], None] = lambda fraction: None,
+    seen: Seen = lambda speed, response: None,
 ) -> ResponseCurve:
     """Follow the periodic motion from one speed to another, through folds.
 
@@ -276,6 +290,9 @@ def response_curve(
         By which a halving of the elements may move the state after a period, relative.
     progress : callable
         Told the part of the speed range that has been reached, from 0 to 1.
+    seen : callable
+        Shown the speed and the whole motion of every point of the curve, in its order: the curve keeps no motion's
+        course over time.
 
     Returns
     -------
@@ -303,7 +320,7 @@ def response_curve(
     unit = np.sqrt(np.mean(np.sum(moving**2, axis=1)))
     unit = max(float(unit), 0.1 * float(np.linalg.norm(still))) or 1.0
     branch = Branch(system_at, periods, abs(span), max(known.level - 1 - _COARSER, 0), tolerance, unit)
-    follower = _Follower(branch, branch.first(known, start), start, end, points, most_tries)
+    follower = _Follower(branch, branch.first(known, start), start, end, points, most_tries, seen)
     ending = follower.follow(most_points, progress)
     if len(follower.speeds) == 1:
         raise PeriodicError(
@@ -312,7 +329,7 @@ def response_curve(
         )
     return ResponseCurve(
         speeds=np.array(follower.speeds),
-        responses=tuple(follower.responses),
+        responses=tuple(follower.motions),
         bifurcations=tuple(follower.events),
         system_at=system_at,
         periods=periods,

@@ -61,10 +61,8 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve) 
             quantities.append(
                 ("teeth apart [%]", {name: 100.0 * curve.contact_loss[:, i] for name, i in table.items()})
             )
-    sensors = list(solved.motions[0].histories.sensor_acceleration)
-    if sensors:
-        rms = {name: np.array([motion.sensor_rms[name] for motion in solved.branch]) for name in sensors}
-        quantities.append(("acceleration, rms [m/s²]", rms))
+    if solved.branch_rms:
+        quantities.append(("acceleration, rms [m/s²]", solved.branch_rms))
     note = "full: stable, dashed: unstable; dash-dotted: operation"
     if curve.ending != "end":
         note += f"; left at {RPM * abs(curve.speeds[-1]):.4g} rpm"
