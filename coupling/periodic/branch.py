@@ -14,7 +14,6 @@ import numpy.typing as npt
 from coupling.errors import PeriodicError
 from coupling.periodic.orbit import Elements, Pass, one_pass
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.segments import bordered_correction, correction
 from coupling.periodic.shooting import Problem, problem, response_of
 from coupling.system import CoupledSystem
 
@@ -73,7 +72,7 @@ class Point:
         zero, up = np.zeros_like(found.misses), lift(self.ready)
         along, pace = (zero, 1.0) if self.towards is None else (self.towards[0] @ up / len(zero), self.towards[1])
         by_speed = change * (branch.span / branch.unit)
-        moves, speed = bordered_correction(found.pieces, zero, by_speed, along, pace, 1.0)
+        moves, speed = found.bordered_correction(zero, by_speed, along, pace, 1.0)
         states = moves @ up.T
         length = np.sqrt(np.mean(np.sum(states**2, axis=1)) + speed**2)
         return states / length, speed / length
@@ -161,7 +160,7 @@ class Branch:
         elements, begin = ready.elements(self.level), below(ready, predicted)
         limit = within * self.unit * np.sqrt(len(predicted))
         starts, before = begin, np.inf
-        pieces, monodromy = np.empty(0), np.empty(0)
+        linear: Pass | None = None
         for turn in range(_CORRECTIONS):
             # After the first correction the same pieces serve once more, and the last ones are exact.
             found = one_pass(ready.part, ready.contacts, elements, starts, varied=turn != 1)
@@ -173,9 +172,9 @@ class Branch:
             if found.missing > before:
                 return None
             before = found.missing
-            if turn != 1:
-                pieces, monodromy = found.pieces, found.monodromy
-            starts = starts + correction(pieces, found.misses, monodromy)
+            if linear is None or turn != 1:
+                linear = found
+            starts = starts + linear.correction(found.misses)
             if not float(np.linalg.norm(starts - begin)) < limit:
                 return None
         return None
@@ -214,8 +213,7 @@ class Branch:
             if found.missing > 10.0 * before:
                 return None
             before = found.missing
-            moves, change = bordered_correction(
-                found.pieces,
+            moves, change = found.bordered_correction(
                 found.misses / self.unit,
                 by_speed @ lift(ready) * (self.span / self.unit),
                 along @ lift(ready) / count,

@@ -93,6 +93,18 @@ class LinearPart:
         return np.concatenate([state @ self.left.T, own], axis=-1).view(np.float64)
 
     @cached_property
+    def to_amplitudes(self) -> FloatArray:
+        """Amplitudes of a state, real parts and then the imaginary ones that there are, shape (2 N, 2 N)."""
+        turning = self.eigenvalues.imag > 0.0
+        return np.concatenate([self.left.real, self.left.imag[turning]])
+
+    @cached_property
+    def from_amplitudes(self) -> FloatArray:
+        """The inverse: states of such amplitudes, shape (2 N, 2 N)."""
+        turning = self.eigenvalues.imag > 0.0
+        return np.concatenate([self.right.real, -self.right.imag[:, turning]], axis=1)
+
+    @cached_property
     def displacement_rows(self) -> FloatArray:
         """All coordinates from the amplitudes, what rides along included, shape (n, 2 M)."""
         return self._rows(self.basis @ self.right[: self.states // 2], self.amplitudes.T, self.mean)

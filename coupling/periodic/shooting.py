@@ -28,7 +28,6 @@ from coupling.periodic.floquet import multipliers
 from coupling.periodic.linear_part import LinearPart, linear_part
 from coupling.periodic.orbit import Elements, Pass, coarsest_element, cut_period, one_pass
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.segments import correction
 from coupling.step import contact_arrays
 from coupling.system import CoupledSystem
 
@@ -253,7 +252,7 @@ def response_of(ready: Problem, found: Pass, level: int, error: float, steps: in
         period=ready.period,
         displacement=ready.recovery @ q,
         velocity=ready.recovery @ v,
-        floquet=multipliers(found.monodromy, ready.period),
+        floquet=multipliers(found.turn, ready.period),
         residual=found.missing / ready.scale(found.start),
         error=error,
         elements=len(found.trace.start),
@@ -274,7 +273,7 @@ def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, 
     for step in range(_NEWTON_STEPS):
         if best <= _ROUNDING * ready.scale(here.start):
             return here, step
-        move = correction(here.pieces, here.misses, here.monodromy, least=True)
+        move = here.correction(least=True)
         part = 1.0
         while True:
             there = one_pass(ready.part, ready.contacts, elements, here.starts + part * move)
