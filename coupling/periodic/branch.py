@@ -24,7 +24,8 @@ _CLOSED = 1e-10  # closure relative to the motion
 _HIGHEST = 4  # halvings of the elements beyond those that a branch began with
 # Points after which coarser ones are tried again: twice as many after each failure.
 _PATIENCE, _LONGEST_PATIENCE = 3, 48
-_TOO_GOOD = 1e-5  # part of the tolerance: elements twice as large err a thousand times as much
+_LOWEST = 1  # halvings: with fewer, multipliers err by more than the states that the proof is of
+_TOO_GOOD = 3e-3  # part of the tolerance: elements twice as large err some tens to hundreds of times as much
 _DIFFERENCE = 1e-7  # of the speed range, for the derivative by speed: flanks may begin to graze within a hair of it
 
 
@@ -92,11 +93,12 @@ class Branch:
     ) -> None:
         self.system_at, self.periods, self.span = system_at, periods, span
         self.level, self.tolerance, self.unit = level, tolerance, unit
-        self.lowest, self.calm, self.patience = level, 0, _PATIENCE
+        self.lowest, self.highest = min(level, _LOWEST), level + _HIGHEST
+        self.calm, self.patience = 0, _PATIENCE
 
     def _raise(self) -> None:
         """Finer elements from here on: where a flank grazes, none are fine enough, and a shorter step passes it."""
-        if self.level < self.lowest + _HIGHEST:
+        if self.level < self.highest:
             self.level += 1
             self.patience = min(2 * self.patience, _LONGEST_PATIENCE) if self.calm < self.patience else _PATIENCE
             self.calm = 0

@@ -162,7 +162,6 @@ class _Follower:
     def _accept(self, there: Point, along: bool) -> bool:
         """A point of the branch, after what happens on the way there; whether the branch turned."""
         here = self.recent[-1]
-        self.branch.settle(there.response.error)
         forwards = np.sign(self.end - self.start)
         turned = False
         if along and there.towards is not None:
@@ -174,6 +173,8 @@ class _Follower:
             self.events.append(Bifurcation(len(self.speeds), event, float(between.speed)))
             self._keep(between)
         self._keep(there)
+        # What happens on the way was looked for with the elements of this point.
+        self.branch.settle(there.response.error)
         if turned:
             self.recent = [there]
             return True
@@ -233,6 +234,7 @@ class _Follower:
                 part = 0.5 if turn % 3 == 2 else at_low / (at_low - at_high)
                 middle = low + min(max(part, 0.01), 0.99) * (high - low)
                 self.tries += 1
+                level = self.branch.level
                 if along:
                     sense = forwards if turned or here.towards is not None else np.sign(there.speed - here.speed)
                     point = self.branch.along(here, sense * middle)
@@ -240,6 +242,8 @@ class _Follower:
                     speed = here.speed + middle * (there.speed - here.speed)
                     point = self.branch.hold([*self.recent[-3:-1], there, here], speed, self._within(here))
                 if point is None:
+                    if self.branch.level > level:
+                        continue  # with finer elements
                     break
                 best, value = point, test(point)
                 if value == 0.0 or high - low <= _LOCATED * whole or abs(value) < 1e-8:

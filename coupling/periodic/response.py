@@ -19,7 +19,7 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 
 _LOOKS = 16  # at each element for the peak
-_MAY_MISS = 0.1  # part of its range in an element by which the polynomial of a force may miss its peak there
+_MAY_MISS = 0.02  # part of its range in an element by which the polynomial of a force may miss its peak there
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,10 +183,12 @@ class PeriodicResponse:
 
 def _near_peaks(trace: Trace) -> npt.NDArray[np.int64]:
     """Elements that may hold the largest force of any contact: by the polynomials through its values at the places."""
+    top, bottom = trace.force.max(axis=1), trace.force.min(axis=1)
+    # Between and beside the places a force goes no farther than it does among them; what stays the same has no peak.
+    near = np.flatnonzero(np.any(2.0 * top - bottom > top.max(axis=0), axis=1))
     inner = (np.arange(_LOOKS) + 0.5) / _LOOKS
-    powers = (trace.part[:, None] * inner)[:, :, None] ** np.arange(ORDER)
-    along = np.einsum("elk,jk,ejc->elc", powers, MONOMIALS, trace.force, optimize=True)
-    values = np.concatenate([along, trace.force], axis=1)
-    top, bottom = values.max(axis=1), values.min(axis=1)
-    # A force that stays the same has no peak between.
-    return np.flatnonzero(np.any((top + _MAY_MISS * (top - bottom) > top.max(axis=0)), axis=1))
+    powers = (trace.part[near, None] * inner)[:, :, None] ** np.arange(ORDER)
+    along = (powers @ MONOMIALS.T) @ trace.force[near]
+    highest = np.maximum(along.max(axis=1), top[near])
+    reach = highest + _MAY_MISS * (highest - bottom[near])
+    return near[np.any(reach > np.maximum(top.max(axis=0), highest.max(axis=0, initial=0.0)), axis=1)]
