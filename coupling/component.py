@@ -10,6 +10,7 @@ its ports; by virtual work a force F along it adds F d to f.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -110,7 +111,18 @@ class RotorComponent(Component):
         return np.asarray(self.motions(at)[axis])
 
     def motions(self, at: float) -> FloatArray:
-        """Motion of a section: x, y, z, rotations about x and y, shape (5, n)."""
+        """Motion of a section: x, y, z, rotations about x and y, shape (5, n), not to be written to."""
+        if at not in self._sections:
+            self._sections[at] = self._motions(at)
+            self._sections[at].setflags(write=False)
+        return self._sections[at]
+
+    @cached_property
+    def _sections(self) -> dict[float, FloatArray]:
+        # A machine is put together anew at every speed, with its bearings and gears at the same places.
+        return {}
+
+    def _motions(self, at: float) -> FloatArray:
         m = self.modal.lateral.count
         displacement, slope = (self.mixture.T @ part[:, 0] for part in self.modal.lateral.evaluate([at]))
         rows = np.zeros((5, self.size))

@@ -208,7 +208,7 @@ class ExactRun(MarchRun):
             self._trace = empty_trace(room, m, ORDER, c)
         trace, end = self._trace, z.copy()
         slots = sizes.slots(length)
-        none, work = np.zeros((2 * modes, 0)), element_work(m, ORDER, c)
+        none, work = np.zeros((0, 2 * modes)), element_work(m, ORDER, c)
         count, _, wrong = march(
             reference, self.arrays.contacts, self._steps, starts, length, slots, end, none, modes, trace, 0, work
         )

@@ -14,7 +14,12 @@ FloatArray = npt.NDArray[np.float64]
 @inner()
 def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
     """Gaussian elimination with row exchanges; the columns of ``right`` (n, k) become the solutions."""
-    n, columns = right.shape
+    solve_part_in_place(matrix, right, right.shape[0], right.shape[1])
+
+
+@inner()
+def solve_part_in_place(matrix: FloatArray, right: FloatArray, n: int, columns: int) -> None:
+    """The same for the first n rows and columns of a matrix and the first columns of ``right``."""
     for column in range(n):
         pivot = column
         for row in range(column + 1, n):

@@ -64,7 +64,7 @@ def _branch(solved: SolvedSteady, sensors: list[str], variables: Variables, coor
         ):
             variables[name] = ((point, "contact"), values, _unit(unit, what))
     if sensors:
-        rms = np.array([[motion.sensor_rms[name] for name in sensors] for motion in solved.branch])
+        rms = np.stack([solved.branch_rms[name] for name in sensors], axis=-1)
         variables["branch_sensor_rms"] = ((point, "sensor"), rms, _unit("m/s2", "rms of the sensor's acceleration"))
     coordinates["branch_event"] = ("branch_event", [event.kind for event in curve.bifurcations], {})
     speeds = np.array([event.speed for event in curve.bifurcations]) * _RPM

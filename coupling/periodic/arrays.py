@@ -47,6 +47,8 @@ class Steps(NamedTuple):
     flexibility: FloatArray  # (k, 2 s c, s c) compressions at the places from the forces there, taken off; rates
     source: FloatArray  # (k, s c, 2 m) amplitudes at the end from the forces, taken off
     missed: FloatArray  # (k, 2 c, 2 m) and from what their polynomial misses at the start and at the end
+    felt_by: FloatArray  # (k, 2 s c, 2 m) as felt, of real parts and then imaginary ones; of no sizes where ...
+    sent_by: FloatArray  # (k, s c, 2 m) ... no disturbances are carried; as the source
     inner_decay: ComplexArray  # (k, s, m) exp(λ h u) at the places; of no sizes where it is not asked for ...
     inner_source: FloatArray  # (k, s, s c, 2 m) ... nor amplitudes there from the forces, taken off
 
@@ -94,10 +96,12 @@ def first_elements(trace: Trace, count: int) -> Trace:
     return Trace._make(rows[:count] for rows in trace)
 
 
-def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner: bool) -> Steps:
+def empty_steps(
+    sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner: bool = False, varied: bool = False
+) -> Steps:
     """Room for some sizes of elements, of which the ladder begins at a number."""
     k, n = len(sizes), s * c
-    within = k if inner else 0
+    within, by = k if inner else 0, k if varied else 0
     return Steps(
         size=sizes,
         filled=np.zeros(k, dtype=np.int64),
@@ -107,6 +111,8 @@ def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner
         flexibility=np.zeros((k, 2 * n, n)),
         source=np.zeros((k, n, 2 * m)),
         missed=np.zeros((k, 2 * c, 2 * m)),
+        felt_by=np.zeros((by, 2 * n, 2 * m)),
+        sent_by=np.zeros((by, n, 2 * m)),
         inner_decay=np.zeros((within, s, m), dtype=np.complex128),
         inner_source=np.zeros((within, s, n, 2 * m)),
     )

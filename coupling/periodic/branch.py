@@ -14,7 +14,6 @@ import numpy.typing as npt
 from coupling.errors import PeriodicError
 from coupling.periodic.orbit import Elements, Pass, one_pass
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.segments import bordered_correction, correction
 from coupling.periodic.shooting import Problem, problem, response_of
 from coupling.system import CoupledSystem
 
@@ -25,7 +24,8 @@ _CLOSED = 1e-10  # closure relative to the motion
 _HIGHEST = 4  # halvings of the elements beyond those that a branch began with
 # Points after which coarser ones are tried again: twice as many after each failure.
 _PATIENCE, _LONGEST_PATIENCE = 3, 48
-_TOO_GOOD = 1e-5  # part of the tolerance: elements twice as large err a thousand times as much
+_LOWEST = 1  # halvings: with fewer, multipliers err by more than the states that the proof is of
+_TOO_GOOD = 3e-3  # part of the tolerance: elements twice as large err some tens to hundreds of times as much
 _DIFFERENCE = 1e-7  # of the speed range, for the derivative by speed: flanks may begin to graze within a hair of it
 
 
@@ -73,7 +73,7 @@ class Point:
         zero, up = np.zeros_like(found.misses), lift(self.ready)
         along, pace = (zero, 1.0) if self.towards is None else (self.towards[0] @ up / len(zero), self.towards[1])
         by_speed = change * (branch.span / branch.unit)
-        moves, speed = bordered_correction(found.pieces, zero, by_speed, along, pace, 1.0)
+        moves, speed = found.bordered_correction(zero, by_speed, along, pace, 1.0)
         states = moves @ up.T
         length = np.sqrt(np.mean(np.sum(states**2, axis=1)) + speed**2)
         return states / length, speed / length
@@ -93,11 +93,12 @@ class Branch:
     ) -> None:
         self.system_at, self.periods, self.span = system_at, periods, span
         self.level, self.tolerance, self.unit = level, tolerance, unit
-        self.lowest, self.calm, self.patience = level, 0, _PATIENCE
+        self.lowest, self.highest = min(level, _LOWEST), level + _HIGHEST
+        self.calm, self.patience = 0, _PATIENCE
 
     def _raise(self) -> None:
         """Finer elements from here on: where a flank grazes, none are fine enough, and a shorter step passes it."""
-        if self.level < self.lowest + _HIGHEST:
+        if self.level < self.highest:
             self.level += 1
             self.patience = min(2 * self.patience, _LONGEST_PATIENCE) if self.calm < self.patience else _PATIENCE
             self.calm = 0
@@ -161,7 +162,7 @@ class Branch:
         elements, begin = ready.elements(self.level), below(ready, predicted)
         limit = within * self.unit * np.sqrt(len(predicted))
         starts, before = begin, np.inf
-        pieces, monodromy = np.empty(0), np.empty(0)
+        linear: Pass | None = None
         for turn in range(_CORRECTIONS):
             # After the first correction the same pieces serve once more, and the last ones are exact.
             found = one_pass(ready.part, ready.contacts, elements, starts, varied=turn != 1)
@@ -173,9 +174,9 @@ class Branch:
             if found.missing > before:
                 return None
             before = found.missing
-            if turn != 1:
-                pieces, monodromy = found.pieces, found.monodromy
-            starts = starts + correction(pieces, found.misses, monodromy)
+            if linear is None or turn != 1:
+                linear = found
+            starts = starts + linear.correction(found.misses)
             if not float(np.linalg.norm(starts - begin)) < limit:
                 return None
         return None
@@ -214,8 +215,7 @@ class Branch:
             if found.missing > 10.0 * before:
                 return None
             before = found.missing
-            moves, change = bordered_correction(
-                found.pieces,
+            moves, change = found.bordered_correction(
                 found.misses / self.unit,
                 by_speed @ lift(ready) * (self.span / self.unit),
                 along @ lift(ready) / count,

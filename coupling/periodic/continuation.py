@@ -27,6 +27,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError, PeriodicError
 from coupling.periodic.branch import Branch, Point, interpolation
+from coupling.periodic.branch_motion import BranchMotion, without_course
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.response_curve import Bifurcation, Ending, Event, ResponseCurve
 from coupling.periodic.shooting import periodic_response, problem
@@ -49,17 +50,25 @@ _LOCATIONS = 30  # steps in the location of a fold or a loss of stability
 _LOCATED = 1e-5  # of a step: the speed of a fold errs by the square
 
 
+Seen = Callable[[float, PeriodicResponse], None]
+
+
 class _Follower:
     """The way along a branch. Positions are parts of the speed range, 0 at its start and 1 at its end."""
 
-    def __init__(self, branch: Branch, first: Point, start: float, end: float, points: int, most_tries: int) -> None:
+    def __init__(
+        self, branch: Branch, first: Point, start: float, end: float, points: int, most_tries: int, seen: Seen
+    ) -> None:
         self.branch, self.start, self.end = branch, start, end
         self.largest, self.most_tries, self.tries = 1.0 / (points - 1), most_tries, 0
-        self.speeds, self.responses = [first.speed], [first.response]
+        self.speeds: list[float] = []
+        self.motions: list[BranchMotion] = []
         self.events: list[Bifurcation] = []
+        self.seen = seen
         self.recent = [first]  # since the speed last turned
         self.sense, self.stride, self.order = 1.0, 0.3 * self.largest, 1
         self.failures, self.turning, self.ds = 0, False, 0.0
+        self._keep(first)
 
     def position(self, speed: float) -> float:
         """Of a speed in the range."""
@@ -153,7 +162,6 @@ class _Follower:
     def _accept(self, there: Point, along: bool) -> bool:
         """A point of the branch, after what happens on the way there; whether the branch turned."""
         here = self.recent[-1]
-        self.branch.settle(there.response.error)
         forwards = np.sign(self.end - self.start)
         turned = False
         if along and there.towards is not None:
@@ -163,10 +171,10 @@ class _Follower:
         event, between = self._event(here, there, turned, along)
         if event is not None and between is not None:
             self.events.append(Bifurcation(len(self.speeds), event, float(between.speed)))
-            self.speeds.append(between.speed)
-            self.responses.append(between.response)
-        self.speeds.append(there.speed)
-        self.responses.append(there.response)
+            self._keep(between)
+        self._keep(there)
+        # What happens on the way was looked for with the elements of this point.
+        self.branch.settle(there.response.error)
         if turned:
             self.recent = [there]
             return True
@@ -174,6 +182,12 @@ class _Follower:
             self.order = self._best_order(there)
         self.recent = [*self.recent, there][-_KEPT:]
         return False
+
+    def _keep(self, point: Point) -> None:
+        """What the curve tells of a point; its course over time goes with the next points."""
+        self.seen(point.speed, point.response)
+        self.speeds.append(point.speed)
+        self.motions.append(without_course(point.response, point.ready.segments))
 
     def _best_order(self, there: Point) -> int:
         """Of the polynomial through the last points that would have predicted this one best."""
@@ -220,6 +234,7 @@ class _Follower:
                 part = 0.5 if turn % 3 == 2 else at_low / (at_low - at_high)
                 middle = low + min(max(part, 0.01), 0.99) * (high - low)
                 self.tries += 1
+                level = self.branch.level
                 if along:
                     sense = forwards if turned or here.towards is not None else np.sign(there.speed - here.speed)
                     point = self.branch.along(here, sense * middle)
@@ -227,6 +242,8 @@ class _Follower:
                     speed = here.speed + middle * (there.speed - here.speed)
                     point = self.branch.hold([*self.recent[-3:-1], there, here], speed, self._within(here))
                 if point is None:
+                    if self.branch.level > level:
+                        continue  # with finer elements
                     break
                 best, value = point, test(point)
                 if value == 0.0 or high - low <= _LOCATED * whole or abs(value) < 1e-8:
@@ -255,6 +272,7 @@ def response_curve(
     periods: int = 1,
     tolerance: float = 1e-6,
     progress: Callable[[float], None] = lambda fraction: None,
+    seen: Seen = lambda speed, response: None,
 ) -> ResponseCurve:
     """Follow the periodic motion from one speed to another, through folds.
 
@@ -276,6 +294,9 @@ def response_curve(
         By which a halving of the elements may move the state after a period, relative.
     progress : callable
         Told the part of the speed range that has been reached, from 0 to 1.
+    seen : callable
+        Shown the speed and the whole motion of every point of the curve, in its order: the curve keeps no motion's
+        course over time.
 
     Returns
     -------
@@ -303,7 +324,7 @@ def response_curve(
     unit = np.sqrt(np.mean(np.sum(moving**2, axis=1)))
     unit = max(float(unit), 0.1 * float(np.linalg.norm(still))) or 1.0
     branch = Branch(system_at, periods, abs(span), max(known.level - 1 - _COARSER, 0), tolerance, unit)
-    follower = _Follower(branch, branch.first(known, start), start, end, points, most_tries)
+    follower = _Follower(branch, branch.first(known, start), start, end, points, most_tries, seen)
     ending = follower.follow(most_points, progress)
     if len(follower.speeds) == 1:
         raise PeriodicError(
@@ -312,7 +333,7 @@ def response_curve(
         )
     return ResponseCurve(
         speeds=np.array(follower.speeds),
-        responses=tuple(follower.responses),
+        responses=tuple(follower.motions),
         bifurcations=tuple(follower.events),
         system_at=system_at,
         periods=periods,

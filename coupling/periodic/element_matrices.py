@@ -200,4 +200,20 @@ def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexAr
                     if steps.inner_decay.shape[0] > 0:
                         steps.inner_source[slot, i, j * c + b, 2 * m] = x
                         steps.inner_source[slot, i, j * c + b, 2 * m + 1] = y
+    if steps.felt_by.shape[0] > 0:
+        arrange(steps, slot)
     steps.filled[slot] = 1
+
+
+@uncounted()
+def arrange(steps: Steps, slot: int) -> None:
+    """The same in the order of the disturbances: real parts, then imaginary ones."""
+    n, modes = steps.source.shape[1], steps.decay.shape[1]
+    for m in range(modes):
+        for row in range(2 * n):
+            steps.felt_by[slot, row, m] = steps.felt[slot, 2 * m, row]
+            steps.felt_by[slot, row, modes + m] = steps.felt[slot, 2 * m + 1, row]
+    for row in range(n):
+        for m in range(modes):
+            steps.sent_by[slot, row, m] = steps.source[slot, row, 2 * m]
+            steps.sent_by[slot, row, modes + m] = steps.source[slot, row, 2 * m + 1]

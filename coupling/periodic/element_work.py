@@ -32,14 +32,18 @@ class Work(NamedTuple):
     integral: ComplexArray  # (s + 2,)
     values: ComplexArray  # (s,)
     coefficient: FloatArray  # (s, c) of the excess as a power series
-    columns: FloatArray  # (n, p) of disturbances
-    moved: FloatArray  # (p,)
-    active: IntArray  # (n,), or (s,) if more, rows of forces that disturbances change
+    shares: FloatArray  # (n, 2 n) of the slopes in the forces
+    feedback: FloatArray  # (n, 2 m) forces that disturbances change; of no rows where there are none ...
+    sent: FloatArray  # (n, 2 m) ... what these send to the end ...
+    decay: FloatArray  # (2, m) ... and the decay of the disturbances
+    moved: FloatArray  # (n,)
+    active: IntArray  # (n,) rows of forces that disturbances change
 
 
-def element_work(m: int, s: int, c: int, p: int = 0) -> Work:
-    """Room for elements of some shape, and for p disturbances."""
+def element_work(m: int, s: int, c: int, *, varied: bool = False) -> Work:
+    """Room for elements of some shape, and for their disturbances."""
     n = s * c
+    rows = n if varied else 0
     return Work(
         base=np.zeros(2 * n),
         excess=np.zeros(n),
@@ -60,7 +64,10 @@ def element_work(m: int, s: int, c: int, p: int = 0) -> Work:
         integral=np.zeros(s + 2, dtype=np.complex128),
         values=np.zeros(s, dtype=np.complex128),
         coefficient=np.zeros((s, c)),
-        columns=np.zeros((n, p)),
-        moved=np.zeros(p),
-        active=np.zeros(max(n, s), dtype=np.int64),
+        shares=np.zeros((rows, 2 * n)),
+        feedback=np.zeros((rows, 2 * m)),
+        sent=np.zeros((rows, 2 * m)),
+        decay=np.zeros((2, m)),
+        moved=np.zeros(n),
+        active=np.zeros(n, dtype=np.int64),
     )

@@ -40,7 +40,7 @@ from coupling.periodic.element import (
     law,
     solve_element,
 )
-from coupling.periodic.element_matrices import carry_on, end_matrices, fill_step
+from coupling.periodic.element_matrices import carry_on, fill_step
 from coupling.periodic.element_work import Work
 from coupling.periodic.variations import cross, jump_at, vary
 from rotors.compiled import uncounted
@@ -125,8 +125,8 @@ def march(
 ) -> tuple[int, int, int]:
     """Carry the amplitudes z and their disturbances through elements, each of a slot's size or, at -1, of any.
 
-    The trace holds ``held`` of them already. Returns how many it holds then, how many cuts there were, and 0,
-    ``NO_BALANCE`` or ``NO_ROOM``.
+    Disturbances as in :mod:`coupling.periodic.variations`. The trace holds ``held`` elements already. Returns how many
+    it holds then, how many cuts there were, and 0, ``NO_BALANCE`` or ``NO_ROOM``.
     """
     c = reference.stiffness.size
     count, cuts = held, 0
@@ -172,14 +172,9 @@ def march(
             length = part * h
             write_element(reference, contacts, steps, slot, time, length, z, modes, trace, count, work)
             count += 1
-            if part == 1.0:
-                if columns.shape[1] > 0:
-                    vary(steps, slot, steps.decay, steps.source, slot, columns, work)
-            else:
-                if columns.shape[1] > 0:
-                    end = 0 * slot  # 0, in a form that is no constant: a constant would compile all anew
-                    end_matrices(reference, h, part, work.cut_decay[end], work.cut_source[end], work.integral)
-                    vary(steps, slot, work.cut_decay, work.cut_source, end, columns, work)
+            if columns.shape[0] > 0:
+                vary(reference, steps, slot, part, columns, work)
+            if part != 1.0:
                 carry_on(reference, h, part, z, work.excess, work.end, work.coefficient, work.integral)
             for i in range(z.size):
                 z[i] = work.end[i]
@@ -188,13 +183,13 @@ def march(
             cuts_here += 1
             if which >= 0:
                 cuts += 1
-                if columns.shape[1] > 0:
+                if columns.shape[0] > 0:
                     inside = 1e-5 * min(length, left - length)
                     x, v = interpolated(work.delta, which, part), interpolated(work.rate, which, part)
                     row = ORDER * c + 2 * c
                     jump = jump_at(reference, contacts, which, time + length, x, v, inside, work.laws, row)
                     if jump != 0.0:
-                        cross(reference, which, jump, columns, work.moved)
+                        cross(reference, which, jump, columns)
             time += length
             left -= length
             slot = -1

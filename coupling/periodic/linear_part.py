@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError, PeriodicError
 from coupling.periodic.arrays import Reference
+from coupling.periodic.eigenvector_correction import corrected_eigenvectors
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -91,6 +92,18 @@ class LinearPart:
         """A state as the kernels march it, with what rides along, shape (2 M,); or (K, 2 M) of states at K times."""
         own = np.exp(np.multiply.outer(time, self.reference.eigenvalue[len(self.eigenvalues) :]))
         return np.concatenate([state @ self.left.T, own], axis=-1).view(np.float64)
+
+    @cached_property
+    def to_amplitudes(self) -> FloatArray:
+        """Amplitudes of a state, real parts and then the imaginary ones that there are, shape (2 N, 2 N)."""
+        turning = self.eigenvalues.imag > 0.0
+        return np.concatenate([self.left.real, self.left.imag[turning]])
+
+    @cached_property
+    def from_amplitudes(self) -> FloatArray:
+        """The inverse: states of such amplitudes, shape (2 N, 2 N)."""
+        turning = self.eigenvalues.imag > 0.0
+        return np.concatenate([self.right.real, -self.right.imag[:, turning]], axis=1)
 
     @cached_property
     def displacement_rows(self) -> FloatArray:
@@ -218,7 +231,7 @@ def linear_part(
         ratio = np.repeat([1.0, like.rate_unit / rate_unit], basis.shape[1])
         eigenvalues, right, left = like.eigenvalues, like.right * ratio[:, None], like.left / ratio
     else:
-        eigenvalues, right, left = _eigenvectors(within, resisting, rate_unit)
+        eigenvalues, right, left = _eigenvectors(within, resisting, rate_unit, like)
     matrices = (stiffness, damping)
     return LinearPart(
         system, rate_unit, basis, rigid, eigenvalues, right, left, mean, frequencies, amplitudes, matrices
@@ -253,11 +266,17 @@ def _splits(like: LinearPart, stiffness: FloatArray, damping: FloatArray, direct
 
 
 def _eigenvectors(
-    stiffness: FloatArray, damping: FloatArray, rate_unit: float
+    stiffness: FloatArray, damping: FloatArray, rate_unit: float, like: LinearPart | None = None
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """Eigenvalues, one of each pair, with right vectors that count for both, and left ones."""
     half = len(stiffness)
     state = np.block([[np.zeros((half, half)), rate_unit * np.eye(half)], [-stiffness / rate_unit, -damping]])
+    if like is not None and len(like.right) == len(state):
+        # Of the same machine at a neighbouring speed they are a few corrections away.
+        scale = np.repeat([1.0, like.rate_unit / rate_unit], half)
+        near = corrected_eigenvectors(state, like.eigenvalues, like.right * scale[:, None], like.left / scale)
+        if near is not None:
+            return near
     values, vectors = np.linalg.eig(state)
     vectors = np.asarray(vectors, dtype=np.complex128)
     inverse = np.linalg.inv(vectors)

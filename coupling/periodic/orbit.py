@@ -13,7 +13,7 @@ from coupling.periodic.arrays import Steps, Trace, empty_steps, empty_trace, fir
 from coupling.periodic.collocation import ORDER
 from coupling.periodic.element_work import element_work
 from coupling.periodic.linear_part import LinearPart, real_rows
-from coupling.periodic.segments import product
+from coupling.periodic.segments import bordered_correction, correction, product
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,16 +56,19 @@ class Pass:
 
     Attributes
     ----------
+    part : LinearPart
     starts, ends : ndarray, shape (K, 2 N)
         States, see :class:`coupling.periodic.linear_part.LinearPart`.
     pieces : ndarray, shape (K, 2 N, 2 N)
-        Of each end by its start; without columns where they were not asked for.
+        Of each end by its start, both in amplitudes, as :attr:`LinearPart.to_amplitudes` gives them; of no segments
+        where they were not asked for.
     trace : Trace
         Cut to the elements that it holds.
     switches : int
         How often a contact changed its branch.
     """
 
+    part: LinearPart
     starts: FloatArray
     ends: FloatArray
     pieces: FloatArray
@@ -83,9 +86,14 @@ class Pass:
         return np.asarray(self.ends[-1])
 
     @cached_property
+    def turn(self) -> FloatArray:
+        """The monodromy of amplitudes, with the same eigenvalues, shape (2 N, 2 N)."""
+        return product(self.pieces)
+
+    @cached_property
     def monodromy(self) -> FloatArray:
         """Of the end by the start, shape (2 N, 2 N)."""
-        return product(self.pieces)
+        return np.asarray(self.part.from_amplitudes @ self.turn @ self.part.to_amplitudes)
 
     @cached_property
     def misses(self) -> FloatArray:
@@ -96,6 +104,24 @@ class Pass:
     def missing(self) -> float:
         """Norm of all of them."""
         return float(np.linalg.norm(self.misses))
+
+    def correction(self, misses: FloatArray | None = None, *, least: bool = False) -> FloatArray:
+        """What closes this motion, or one nearby by its own misses, to the first order, shape (K, 2 N).
+
+        See :func:`coupling.periodic.segments.correction`.
+        """
+        missing = (self.misses if misses is None else misses) @ self.part.to_amplitudes.T
+        return np.asarray(correction(self.pieces, missing, self.turn, least=least) @ self.part.from_amplitudes.T)
+
+    def bordered_correction(
+        self, misses: FloatArray, by_speed: FloatArray, along: FloatArray, along_speed: float, behind: float
+    ) -> tuple[FloatArray, float]:
+        """What also moves it along a direction; see :func:`coupling.periodic.segments.bordered_correction`."""
+        there, back = self.part.to_amplitudes.T, self.part.from_amplitudes
+        moves, change = bordered_correction(
+            self.pieces, self.turn, misses @ there, by_speed @ there, along @ back, along_speed, behind
+        )
+        return np.asarray(moves @ back.T), change
 
 
 def event_times(system: CoupledSystem, nodes: FloatArray) -> FloatArray:
@@ -132,16 +158,19 @@ def cut_period(part: LinearPart, period: float, largest: float, segments: int = 
     within = np.arange(len(size)) - np.repeat(np.cumsum(counts) - counts, counts)
     # What rounding alone holds apart is one size.
     _, first, slots = np.unique(np.rint(size / (_SAME_SIZE * largest)), return_index=True, return_inverse=True)
-    steps = element_sizes(part, size[first], float(size.max()))
+    steps = element_sizes(part, size[first], float(size.max()), varied=True)
     nodes = np.concatenate([[0], np.cumsum(counts)])[np.searchsorted(bounds, marks)]
     return Elements(np.repeat(bounds[:-1], counts) + within * size, size, slots.astype(np.int64), steps, nodes)
 
 
-def element_sizes(part: LinearPart, values: FloatArray, largest: float, *, inner: bool = False) -> Steps:
-    """Room for elements of some sizes, and for a ladder from the largest down."""
+def element_sizes(
+    part: LinearPart, values: FloatArray, largest: float, *, inner: bool = False, varied: bool = False
+) -> Steps:
+    """Room for elements of some sizes, and for a ladder from the largest down; see :class:`Steps`."""
     reference = part.reference
     sizes = np.concatenate([values, largest / _LADDER ** np.arange(_RUNGS)])
-    return empty_steps(sizes, len(values), reference.eigenvalue.size, ORDER, reference.stiffness.size, inner=inner)
+    m, c = reference.eigenvalue.size, reference.stiffness.size
+    return empty_steps(sizes, len(values), m, ORDER, c, inner=inner, varied=varied)
 
 
 def one_pass(
@@ -160,13 +189,14 @@ def one_pass(
     m, c = part.reference.eigenvalue.size, len(part.system.contacts)
     size = start.shape[-1]
     starts, ends = np.empty((count, size)), np.empty((count, size))
-    pieces = np.empty((count, size, size if varied else 0))
+    pieces = np.empty((count if varied else 0, size, size))
     room = max(_ROOM_FOR_CUTS, len(elements.starts))
     trace = empty_trace(len(elements.starts) + room, m, ORDER, c)
-    columns, begun = np.zeros((2 * modes, size if varied else 0)), np.empty((2 * modes, size if varied else 0))
-    if varied:
-        begun[0::2], begun[1::2] = part.left.real, part.left.imag
-    work, rows = element_work(m, ORDER, c, columns.shape[1]), real_rows(part.right)
+    # One disturbance of each amplitude; real eigenvalues have no imaginary part.
+    there = np.concatenate([np.arange(modes), m + np.flatnonzero(part.eigenvalues.imag > 0.0)])
+    begun = np.eye(2 * m)[there if varied else []]
+    columns = np.empty_like(begun)
+    work, rows = element_work(m, ORDER, c, varied=varied), real_rows(part.right)
     length = switches = 0
     times = elements.starts[elements.nodes[:-1]]
     amplitudes = part.amplitudes_of(start, times) if start.ndim == 2 else None
@@ -193,14 +223,14 @@ def one_pass(
             _refuse(wrong, room)
         ends[k] = rows @ z[: 2 * modes]
         if varied:
-            np.matmul(rows, columns, out=pieces[k])
+            pieces[k] = columns.T[there]
         length = int(held)
         switches += int(cuts)
     if not np.all(np.isfinite(ends)):
         raise PeriodicError("the motion grew beyond all bounds within a period; look for unstable coupled modes")
     # What is kept has no room to spare.
     kept = Trace._make(values.copy() for values in first_elements(trace, length))
-    return Pass(starts, ends, pieces, kept, switches)
+    return Pass(part, starts, ends, pieces, kept, switches)
 
 
 def _refuse(wrong: int, room: int) -> None:

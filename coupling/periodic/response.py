@@ -9,7 +9,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Trace
-from coupling.periodic.collocation import ORDER, weights_to
+from coupling.periodic.collocation import MONOMIALS, ORDER, weights_to
 from coupling.periodic.element_work import element_work
 from coupling.periodic.floquet import FloquetMultipliers
 from coupling.periodic.linear_part import LinearPart
@@ -19,6 +19,7 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 
 _LOOKS = 16  # at each element for the peak
+_MAY_MISS = 0.02  # part of its range in an element by which the polynomial of a force may miss its peak there
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,10 +116,12 @@ class PeriodicResponse:
     @cached_property
     def peak_force(self) -> FloatArray:
         """Largest force of each contact [N], shape (c,)."""
+        trace = self.trace
+        elements = _near_peaks(trace)
         inner = (np.arange(_LOOKS) + 0.5) / _LOOKS
-        times = (self.trace.start[:, None] + self.trace.size[:, None] * inner).ravel()
+        times = (trace.start[elements, None] + trace.size[elements, None] * inner).ravel()
         _, force = self._contacts(times, self._amplitudes(times))
-        return np.asarray(np.maximum(force.max(axis=0), self.trace.force.max(axis=(0, 1))))
+        return np.asarray(np.maximum(force.max(axis=0, initial=0.0), trace.force.max(axis=(0, 1))))
 
     def record(self, outputs: TransientOutputs, samples: int) -> PeriodicRecord:
         """Rows of coordinates, rates and accelerations over the period, and the contacts.
@@ -176,3 +179,16 @@ class PeriodicResponse:
         work = element_work(len(reference.eigenvalue), ORDER, len(reference.stiffness))
         forces_at(self.contacts, times, delta, rate, work, force)
         return delta, force
+
+
+def _near_peaks(trace: Trace) -> npt.NDArray[np.int64]:
+    """Elements that may hold the largest force of any contact: by the polynomials through its values at the places."""
+    top, bottom = trace.force.max(axis=1), trace.force.min(axis=1)
+    # Between and beside the places a force goes no farther than it does among them; what stays the same has no peak.
+    near = np.flatnonzero(np.any(2.0 * top - bottom > top.max(axis=0), axis=1))
+    inner = (np.arange(_LOOKS) + 0.5) / _LOOKS
+    powers = (trace.part[near, None] * inner)[:, :, None] ** np.arange(ORDER)
+    along = (powers @ MONOMIALS.T) @ trace.force[near]
+    highest = np.maximum(along.max(axis=1), top[near])
+    reach = highest + _MAY_MISS * (highest - bottom[near])
+    return near[np.any(reach > np.maximum(top.max(axis=0), highest.max(axis=0, initial=0.0)), axis=1)]

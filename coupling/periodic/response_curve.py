@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError
+from coupling.periodic.branch_motion import BranchMotion
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.shooting import periodic_response, problem
+from coupling.periodic.shooting import made_again, response_near
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -46,7 +47,8 @@ class ResponseCurve:
     ----------
     speeds : ndarray, shape (p,)
         In the unit that ``system_at`` takes.
-    responses : tuple of PeriodicResponse
+    responses : tuple of BranchMotion
+        What is told of each motion; :meth:`motion` gives its course over time.
     bifurcations : tuple of Bifurcation
     ending : str
         ``end`` where the branch came to the speed it was followed to, ``start`` where it came back to where it began;
@@ -56,7 +58,7 @@ class ResponseCurve:
     """
 
     speeds: FloatArray
-    responses: tuple[PeriodicResponse, ...]
+    responses: tuple[BranchMotion, ...]
     bifurcations: tuple[Bifurcation, ...]
     system_at: Callable[[float], CoupledSystem] = field(repr=False)
     periods: int = 1
@@ -110,6 +112,11 @@ class ResponseCurve:
         """Part of the period that the flanks of every contact are apart, shape (p, c)."""
         return np.array([response.contact_loss for response in self.responses])
 
+    def motion(self, index: int) -> PeriodicResponse:
+        """The whole motion of a point, marched again from where its segments start."""
+        kept = self.responses[index]
+        return made_again(self.system_at(float(self.speeds[index])), self._period(kept.period), kept)
+
     def at(self, speed: float, tolerance: float = 1e-8) -> list[PeriodicResponse]:
         """Every motion of the branch at a speed, in the branch's order.
 
@@ -117,25 +124,29 @@ class ResponseCurve:
         ------
         CouplingError
             Where the branch does not come to this speed.
+        PeriodicError
+            Where a motion between two points is not found from them, or the tolerance is not met.
         """
         away = self.speeds - speed
-        found = []
-        system = self.system_at(speed)
-        for i in np.flatnonzero(away == 0.0):
-            found.append((float(i), self.responses[i]))
+        found = [(float(i), self.motion(int(i))) for i in np.flatnonzero(away == 0.0)]
         for i in np.flatnonzero(away[:-1] * away[1:] < 0.0):
-            before, after = self.responses[i], self.responses[i + 1]
             part = away[i] / (away[i] - away[i + 1])
-            # Rates are compared in their own period.
-            length = 1.0 / (1.0 / before.period + part * (1.0 / after.period - 1.0 / before.period))
-            period = None if self.periods == 1 else length
-            segments = problem(system, period).segments
-            (q0, v0), (q1, v1) = before.at_nodes(segments), after.at_nodes(segments)
-            q = (1.0 - part) * q0 + part * q1
-            v = ((1.0 - part) * v0 * before.period + part * v1 * after.period) / length
-            found.append((i + part, periodic_response(system, period=period, start=(q, v), tolerance=tolerance)))
+            found.append((i + part, self._between(int(i), part, speed, tolerance)))
         if not found:
             raise CouplingError(
                 f"no motion at {speed:g}: the branch was followed from {self.speeds.min():g} to {self.speeds.max():g}"
             )
         return [response for _, response in sorted(found, key=lambda one: one[0])]
+
+    def _between(self, index: int, part: float, speed: float, tolerance: float) -> PeriodicResponse:
+        """The motion at a speed that is a part of the way from one point to the next."""
+        before, after = self.responses[index], self.responses[index + 1]
+        # Rates are compared in their own period.
+        length = 1.0 / (1.0 / before.period + part * (1.0 / after.period - 1.0 / before.period))
+        q = (1.0 - part) * before.displacements + part * after.displacements
+        v = ((1.0 - part) * before.velocities * before.period + part * after.velocities * after.period) / length
+        level = max(before.level, after.level)
+        return response_near(self.system_at(speed), self._period(length), (q, v), level, tolerance)
+
+    def _period(self, length: float) -> float | None:
+        return None if self.periods == 1 else length

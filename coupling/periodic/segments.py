@@ -56,6 +56,7 @@ def correction(pieces: FloatArray, misses: FloatArray, monodromy: FloatArray, *,
 
 def bordered_correction(
     pieces: FloatArray,
+    monodromy: FloatArray,
     misses: FloatArray,
     by_speed: FloatArray,
     along: FloatArray,
@@ -67,6 +68,8 @@ def bordered_correction(
     Parameters
     ----------
     pieces : ndarray, shape (K, 2 N, 2 N)
+    monodromy : ndarray, shape (2 N, 2 N)
+        Their product.
     misses, by_speed : ndarray, shape (K, 2 N)
         r and s.
     along : ndarray, shape (K, 2 N)
@@ -93,7 +96,7 @@ def bordered_correction(
     for piece, direction in zip(pieces[::-1], along[::-1], strict=True):
         row = direction + row @ piece
     matrix = np.zeros((size + 1, size + 1))
-    matrix[:size, :size] = product(pieces) - np.eye(size)
+    matrix[:size, :size] = monodromy - np.eye(size)
     matrix[:size, size] = change[-1]
     matrix[size, :size], matrix[size, size] = row, float(np.sum(along * change[:-1])) + along_speed
     right = np.append(-rest[-1], behind - float(np.sum(along * rest[:-1])))

@@ -23,11 +23,11 @@ from coupling.condensation import Condensed, condensed
 from coupling.errors import CouplingError, PeriodicError
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.base_period import common_period, driving_frequencies
+from coupling.periodic.branch_motion import BranchMotion
 from coupling.periodic.floquet import multipliers
 from coupling.periodic.linear_part import LinearPart, linear_part
 from coupling.periodic.orbit import Elements, Pass, coarsest_element, cut_period, one_pass
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.segments import correction
 from coupling.step import contact_arrays
 from coupling.system import CoupledSystem
 
@@ -188,11 +188,43 @@ def _states(ready: Problem, start: tuple[FloatArray, FloatArray] | PeriodicRespo
     return np.array([ready.part.state(*row) for row in rows])
 
 
-def refined(ready: Problem, found: Pass, level: int, tolerance: float, steps: int) -> PeriodicResponse:
-    """Halve the elements until neither state nor monodromy changes by more than the tolerance."""
+def response_near(
+    system: CoupledSystem, period: float | None, start: tuple[FloatArray, FloatArray], level: int, tolerance: float
+) -> PeriodicResponse:
+    """The motion next to states at the starts of all segments, unstable ones too, with elements that are known to do.
+
+    Raises
+    ------
+    PeriodicError
+        Where Newton's method alone does not find it: a march in time would leave an unstable motion.
+    """
+    ready = problem(system, period)
+    found = close(ready, ready.elements(level), _states(ready, start))
+    if found is None:
+        raise PeriodicError("no motion is found next to where it was looked for; take points that are closer together")
+    return refined(ready, found[0], level, tolerance, found[1], near=True)
+
+
+def made_again(system: CoupledSystem, period: float | None, kept: BranchMotion) -> PeriodicResponse:
+    """The course of a motion over time, from the starts of its segments."""
+    ready = problem(system, period)
+    states = _states(ready, (kept.displacements, kept.velocities))
+    found = one_pass(ready.part, ready.contacts, ready.elements(kept.level), states)
+    return response_of(ready, found, kept.level, kept.error, kept.newton_steps)
+
+
+def refined(
+    ready: Problem, found: Pass, level: int, tolerance: float, steps: int, *, near: bool = False
+) -> PeriodicResponse:
+    """Halve the elements until neither state nor monodromy changes by more than the tolerance.
+
+    What is to stay ``near`` is not looked for by a march in time.
+    """
     while level < _FINEST:
         finer = close(ready, ready.elements(level + 1), found.starts)
         if finer is None:
+            if near:
+                raise PeriodicError("elements half as large find no motion near that of the larger ones")
             again, more = _search(ready, level + 1, found.starts)
             finer = again, more
         better, more = finer
@@ -220,7 +252,7 @@ def response_of(ready: Problem, found: Pass, level: int, error: float, steps: in
         period=ready.period,
         displacement=ready.recovery @ q,
         velocity=ready.recovery @ v,
-        floquet=multipliers(found.monodromy, ready.period),
+        floquet=multipliers(found.turn, ready.period),
         residual=found.missing / ready.scale(found.start),
         error=error,
         elements=len(found.trace.start),
@@ -241,7 +273,7 @@ def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, 
     for step in range(_NEWTON_STEPS):
         if best <= _ROUNDING * ready.scale(here.start):
             return here, step
-        move = correction(here.pieces, here.misses, here.monodromy, least=True)
+        move = here.correction(least=True)
         part = 1.0
         while True:
             there = one_pass(ready.part, ready.contacts, elements, here.starts + part * move)

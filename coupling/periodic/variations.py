@@ -1,6 +1,14 @@
-"""What becomes of small disturbances of a motion, compiled: over an element, and over a moment where a force steps.
+r"""What becomes of small disturbances of a motion, compiled: over an element, and over a moment where a force steps.
 
-Importing this module imports numba. p disturbances are the columns of an array (2 m, p) of amplitudes.
+Importing this module imports numba.
+
+p disturbances of the amplitudes are the rows of an array (p, 2 m): the real parts of all modes, then the imaginary
+ones. Over an element the forces at its places follow the disturbance z of its start by
+
+    (I + S F) g = S f z,
+
+f its compressions and rates there, F those of the forces, S the slopes of the law; and z becomes e^{λh} z - b g. What
+the small system makes of S f serves all disturbances, of which each is then read and written once.
 """
 
 import numpy as np
@@ -11,116 +19,146 @@ from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.collocation import ORDER
 from coupling.periodic.element import law
+from coupling.periodic.element_matrices import end_matrices
 from coupling.periodic.element_work import Work
-from coupling.small_systems import solve_in_place
+from coupling.small_systems import solve_part_in_place
 from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+
+_FAST = {"reassoc", "contract", "nsz"}
 
 
 @uncounted()
-def felt_by(steps: Steps, slot: int, columns: FloatArray, active: int, work: Work) -> None:
-    """What the disturbances make of the excess forces that they change, if the other forces stayed as they are."""
-    count, p, n = columns.shape[0], columns.shape[1], work.excess.size
-    right = work.columns
-    # Four rows of them at a time: they are read once, and the sums read and written less often.
-    i = 0
-    while i < count:
-        many = i + 4 <= count
-        for j in range(active):
-            row = work.active[j]
-            x, v = work.slope[row], work.rate_slope[row]
-            a = x * steps.felt[slot, i, row] + v * steps.felt[slot, i, n + row]
-            if not many:
-                for k in range(p):
-                    right[row, k] += a * columns[i, k]
-                continue
-            b = x * steps.felt[slot, i + 1, row] + v * steps.felt[slot, i + 1, n + row]
-            c = x * steps.felt[slot, i + 2, row] + v * steps.felt[slot, i + 2, n + row]
-            d = x * steps.felt[slot, i + 3, row] + v * steps.felt[slot, i + 3, n + row]
-            for k in range(p):
-                right[row, k] += (
-                    a * columns[i, k] + b * columns[i + 1, k] + c * columns[i + 2, k] + d * columns[i + 3, k]
-                )
-        i += 4 if many else 1
-
-
-@uncounted()
-def send(source: FloatArray, end: int, row: int, columns: FloatArray, work: Work) -> None:
-    """Take what one excess force sends to the end off the disturbances there."""
-    for i in range(columns.shape[0]):
-        a = source[end, row, i]
-        for k in range(columns.shape[1]):
-            columns[i, k] -= a * work.columns[row, k]
-
-
-@uncounted()
-def decay_and_send(
-    decay: ComplexArray, source: FloatArray, end: int, columns: FloatArray, active: int, work: Work
-) -> None:
-    """Disturbances at the end from those at the start and the excess forces, as many as one contact has at once."""
-    right, rows = work.columns, work.active
-    q, r, s, t, u = rows[0], rows[1], rows[2], rows[3], rows[4]
-    for m in range(columns.shape[0] // 2):
-        x, y, i, j = decay[end, m].real, decay[end, m].imag, 2 * m, 2 * m + 1
-        if active < ORDER:
-            for k in range(columns.shape[1]):
-                one, two = columns[i, k], columns[j, k]
-                columns[i, k], columns[j, k] = x * one - y * two, x * two + y * one
-            continue
-        a, b, c, d, e = source[end, q, i], source[end, r, i], source[end, s, i], source[end, t, i], source[end, u, i]
-        f, g, h, v, w = source[end, q, j], source[end, r, j], source[end, s, j], source[end, t, j], source[end, u, j]
-        for k in range(columns.shape[1]):
-            one, two = columns[i, k], columns[j, k]
-            sent = a * right[q, k] + b * right[r, k] + c * right[s, k] + d * right[t, k] + e * right[u, k]
-            felt = f * right[q, k] + g * right[r, k] + h * right[s, k] + v * right[t, k] + w * right[u, k]
-            columns[i, k] = x * one - y * two - sent
-            columns[j, k] = x * two + y * one - felt
-    for k in range(ORDER if active >= ORDER else 0, active):
-        send(source, end, rows[k], columns, work)
-
-
-@uncounted()
-def vary(
-    steps: Steps, slot: int, decay: ComplexArray, source: FloatArray, end: int, columns: FloatArray, work: Work
-) -> None:
-    """Carry the disturbances over an element of a slot's size, with the matrices ``end`` to where it ends."""
-    n = work.excess.size
-    matrix, right = work.matrix, work.columns
+def feed_back(steps: Steps, slot: int, work: Work) -> int:
+    """Rows that give the forces of a disturbance; how many forces there are, ``work.active`` says which."""
+    n, size = work.excess.size, steps.felt_by.shape[2]
+    matrix, shares, felt = work.matrix, work.shares, work.feedback
     active = 0
     for row in range(n):
-        x, v = work.slope[row], work.rate_slope[row]
-        for column in range(n):
-            matrix[row, column] = (
-                x * steps.flexibility[slot, row, column] + v * steps.flexibility[slot, n + row, column]
-            )
-        matrix[row, row] += 1.0
-        for k in range(columns.shape[1]):
-            right[row, k] = 0.0
         # Flanks that are apart, in the reference too, have no slope: no disturbance changes their force.
-        if x != 0.0 or v != 0.0:
+        if work.slope[row] != 0.0 or work.rate_slope[row] != 0.0:
             work.active[active] = row
             active += 1
-    felt_by(steps, slot, columns, active, work)
-    solve_in_place(matrix, right)
-    decay_and_send(decay, source, end, columns, active, work)
+    for i in range(active):
+        row = work.active[i]
+        x, v = work.slope[row], work.rate_slope[row]
+        for j in range(active):
+            column = work.active[j]
+            matrix[i, j] = x * steps.flexibility[slot, row, column] + v * steps.flexibility[slot, n + row, column]
+            shares[i, j] = shares[i, active + j] = 0.0
+        matrix[i, i] += 1.0
+        shares[i, i], shares[i, active + i] = x, v
+    solve_part_in_place(matrix, shares, active, 2 * active)
+    for i in range(active):
+        for m in range(size):
+            felt[i, m] = 0.0
+        for j in range(active):
+            row, x, v = work.active[j], shares[i, j], shares[i, active + j]
+            for m in range(size):
+                felt[i, m] += x * steps.felt_by[slot, row, m] + v * steps.felt_by[slot, n + row, m]
+    return active
 
 
 @uncounted()
-def cross(reference: Reference, a: int, jump: float, columns: FloatArray, moved: FloatArray) -> None:
+def send_whole(steps: Steps, slot: int, active: int, work: Work) -> None:
+    """Rows that the forces of an element send to its end."""
+    for i in range(active):
+        row = work.active[i]
+        for m in range(work.sent.shape[1]):
+            work.sent[i, m] = steps.sent_by[slot, row, m]
+    for m in range(steps.decay.shape[1]):
+        work.decay[0, m], work.decay[1, m] = steps.decay[slot, m].real, steps.decay[slot, m].imag
+
+
+@uncounted()
+def send_cut(active: int, work: Work) -> None:
+    """And to a part of it."""
+    modes = work.cut_decay.shape[1]
+    for m in range(modes):
+        work.decay[0, m], work.decay[1, m] = work.cut_decay[0, m].real, work.cut_decay[0, m].imag
+        for i in range(active):
+            row = work.active[i]
+            work.sent[i, m], work.sent[i, modes + m] = (
+                work.cut_source[0, row, 2 * m],
+                work.cut_source[0, row, 2 * m + 1],
+            )
+
+
+@uncounted(fastmath=_FAST)
+def carry(columns: FloatArray, decay: FloatArray, felt: FloatArray, sent: FloatArray) -> None:
+    """Disturbances at the end from those at the start, as many forces as one contact has at once."""
+    size = columns.shape[1]
+    modes = size // 2
+    for k in range(columns.shape[0]):
+        a = b = c = d = e = 0.0
+        for i in range(size):
+            z = columns[k, i]
+            a += felt[0, i] * z
+            b += felt[1, i] * z
+            c += felt[2, i] * z
+            d += felt[3, i] * z
+            e += felt[4, i] * z
+        for i in range(modes):
+            j = modes + i
+            x, y, p, q = columns[k, i], columns[k, j], decay[0, i], decay[1, i]
+            one = a * sent[0, i] + b * sent[1, i] + c * sent[2, i] + d * sent[3, i] + e * sent[4, i]
+            two = a * sent[0, j] + b * sent[1, j] + c * sent[2, j] + d * sent[3, j] + e * sent[4, j]
+            columns[k, i] = p * x - q * y - one
+            columns[k, j] = p * y + q * x - two
+
+
+@uncounted(fastmath=_FAST)
+def carry_any(
+    columns: FloatArray, decay: FloatArray, felt: FloatArray, sent: FloatArray, active: int, force: FloatArray
+) -> None:
+    """As :func:`carry`, for any number of forces."""
+    size = columns.shape[1]
+    modes = size // 2
+    for k in range(columns.shape[0]):
+        for row in range(active):
+            total = 0.0
+            for i in range(size):
+                total += felt[row, i] * columns[k, i]
+            force[row] = total
+        for i in range(modes):
+            x, y, p, q = columns[k, i], columns[k, modes + i], decay[0, i], decay[1, i]
+            columns[k, i] = p * x - q * y
+            columns[k, modes + i] = p * y + q * x
+        for row in range(active):
+            total = force[row]
+            for i in range(size):
+                columns[k, i] -= total * sent[row, i]
+
+
+@uncounted()
+def vary(reference: Reference, steps: Steps, slot: int, part: float, columns: FloatArray, work: Work) -> None:
+    """Carry the disturbances over an element of a slot's size, or over a part of it."""
+    active = feed_back(steps, slot, work)
+    if part == 1.0:
+        send_whole(steps, slot, active, work)
+    else:
+        end = 0 * slot  # 0, in a form that is no constant: a constant would compile all anew
+        end_matrices(reference, steps.size[slot], part, work.cut_decay[end], work.cut_source[end], work.integral)
+        send_cut(active, work)
+    if active == ORDER:
+        carry(columns, work.decay, work.feedback, work.sent)
+    else:
+        carry_any(columns, work.decay, work.feedback, work.sent, active, work.moved)
+
+
+@uncounted(fastmath=_FAST)
+def cross(reference: Reference, a: int, jump: float, columns: FloatArray) -> None:
     """Carry the disturbances over a moment at which the force of a contact steps: the sooner, the longer it acts."""
-    count, p = columns.shape[0], columns.shape[1]
-    for k in range(p):
-        moved[k] = 0.0
-    for i in range(count):
-        for k in range(p):
-            moved[k] += reference.displacement[a, i] * columns[i, k]
-    for m in range(count // 2):
-        x, y = jump * reference.source[m, a].real, jump * reference.source[m, a].imag
-        for k in range(p):
-            columns[2 * m, k] -= x * moved[k]
-            columns[2 * m + 1, k] -= y * moved[k]
+    modes = columns.shape[1] // 2
+    for k in range(columns.shape[0]):
+        moved = 0.0
+        for m in range(modes):
+            moved += reference.displacement[a, 2 * m] * columns[k, m]
+            moved += reference.displacement[a, 2 * m + 1] * columns[k, modes + m]
+        for m in range(modes):
+            columns[k, m] -= jump * moved * reference.source[m, a].real
+            columns[k, modes + m] -= jump * moved * reference.source[m, a].imag
 
 
 @uncounted()

@@ -17,10 +17,11 @@ from gearwhine.figures.style import (
     GREY,
     HEAD,
     INK,
+    MM_PER_INCH,
+    NOTE,
     RED,
     RPM,
     SERIES,
-    legend,
     name_in_legend,
     panel,
     save,
@@ -32,7 +33,14 @@ from gearwhine.stages.steady import SolvedSteady, SteadyMotion
 FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _BETWEEN = 46.0, 6.0  # of the panels of a branch, and between them [mm]
-_MARKS = {"fold": ("o", RED), "period doubling": ("s", INK), "Neimark-Sacker": ("D", INK), "branch point": ("^", INK)}
+_HEAD, _LEGEND = HEAD + 4.0, 8.6  # room above the panels, and the legend's place below the upper edge [mm]
+_UNSTABLE = (0, (3, 2))
+_MARKS = {  # marker, colour of its edge, and within: folds, where a machine jumps, stand out
+    "fold": ("o", RED, RED),
+    "period doubling": ("s", INK, "white"),
+    "Neimark-Sacker": ("D", INK, "white"),
+    "branch point": ("^", INK, "white"),
+}
 
 
 def draw_steady(folder: Path, case: Case, solved: SolvedSteady) -> list[str]:
@@ -42,7 +50,7 @@ def draw_steady(folder: Path, case: Case, solved: SolvedSteady) -> list[str]:
         motion = _motion_sheet(case, solved)
         files.append(save(motion, folder / "steady-motion.png"))
     if solved.curve is not None:
-        curve = draw_response_curve(f"{case.title}: steady motions over speed", solved, solved.curve)
+        curve = draw_response_curve(f"Steady motions over speed: {case.title}", solved, solved.curve)
         files.append(save(curve, folder / "steady-curve.png"))
     return files
 
@@ -61,14 +69,12 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve) 
             quantities.append(
                 ("teeth apart [%]", {name: 100.0 * curve.contact_loss[:, i] for name, i in table.items()})
             )
-    sensors = list(solved.motions[0].histories.sensor_acceleration)
-    if sensors:
-        rms = {name: np.array([motion.sensor_rms[name] for motion in solved.branch]) for name in sensors}
-        quantities.append(("acceleration, rms [m/s²]", rms))
-    note = "full: stable, dashed: unstable; dash-dotted: operation"
+    if solved.branch_rms:
+        quantities.append(("acceleration, rms [m/s²]", solved.branch_rms))
+    note = "dash-dotted: speed of operation"
     if curve.ending != "end":
         note += f"; left at {RPM * abs(curve.speeds[-1]):.4g} rpm"
-    figure = sheet(HEAD + len(quantities) * (_HEIGHT + _BETWEEN) - _BETWEEN + FOOT, title, note)
+    figure = sheet(_HEAD + len(quantities) * (_HEIGHT + _BETWEEN) - _BETWEEN + FOOT, title, note)
     speeds = RPM * np.abs(curve.speeds)
     for number, (what, lines) in enumerate(reversed(quantities)):
         axes = panel(figure, FOOT + number * (_HEIGHT + _BETWEEN), _HEIGHT)
@@ -83,13 +89,25 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve) 
         if len(lines) > 1:
             axes.legend(loc="best", fontsize=6.5, frameon=False)
     met = {event.kind for event in curve.bifurcations}
-    legend(
-        figure,
-        [
-            Line2D([], [], ls="", marker=marker, color=color, ms=4, label=kind)
-            for kind, (marker, color) in _MARKS.items()
-            if kind in met
-        ],
+    lines_of = [Line2D([], [], color=INK, lw=1.2, label="stable")]
+    if not curve.stable.all():
+        lines_of.append(Line2D([], [], color=INK, lw=1.2, ls=_UNSTABLE, label="unstable"))
+    marks = [
+        Line2D([], [], ls="", marker=marker, color=color, mfc=inside, ms=4, label=kind)
+        for kind, (marker, color, inside) in _MARKS.items()
+        if kind in met
+    ]
+    handles = [*lines_of, *marks]
+    # In a line of its own: a title may be long.
+    figure.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(0.0, 1.0 - _LEGEND / (MM_PER_INCH * figure.get_size_inches()[1])),
+        ncols=len(handles),
+        frameon=False,
+        fontsize=NOTE,
+        handlelength=2.0,
+        columnspacing=1.2,
     )
     return figure
 
@@ -104,12 +122,22 @@ def _draw_branch(axes: Axes, speeds: FloatArray, lines: dict[str, FloatArray], c
             if end < len(stable) and stable[end] == stable[start]:
                 continue
             run = slice(start, min(end + 1, len(stable)))
-            style = "-" if stable[start] else (0, (3, 2))
+            style = "-" if stable[start] else _UNSTABLE
             axes.plot(speeds[run], values[run], color=color, lw=1.2, ls=style, label=label, zorder=3)
             label, start = "_", end
         for event in curve.bifurcations:
-            marker, tint = _MARKS[event.kind]
-            axes.plot(speeds[event.index], values[event.index], marker=marker, color=tint, ms=3.5, ls="", zorder=4)
+            marker, tint, inside = _MARKS[event.kind]
+            axes.plot(
+                speeds[event.index],
+                values[event.index],
+                marker=marker,
+                color=tint,
+                mfc=inside,
+                ms=3.2,
+                mew=0.8,
+                ls="",
+                zorder=4,
+            )
 
 
 def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
@@ -135,6 +163,6 @@ def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
 
 def _spectrum(axes: Axes, motion: SteadyMotion, name: str) -> None:
     spectrum = motion.spectrum(motion.histories.mesh_force[name])
-    draw_lines(axes, spectrum, min(motion.trusted_limit, float(spectrum.frequencies[-1])))
+    draw_lines(axes, spectrum, min(1.02 * motion.trusted_limit, float(spectrum.frequencies[-1])))
     axes.set(xlabel="frequency [Hz]", ylabel="mesh force [N, peak]")
     axes.set_title("its lines", fontsize=10, loc="left")

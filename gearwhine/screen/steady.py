@@ -37,6 +37,9 @@ def _show_motion(console: Console, motion: dict[str, Any], name: str) -> None:
         stability = f"stable, disturbances fall by {motion['largest_multiplier']:.4g} each period"
     else:
         stability = f"unstable: {_ADVICE.get(motion['instability'] or '', 'disturbances grow')}"
+        if motion["instability"] == "fold":
+            # A multiplier beyond +1: over many mesh periods it may be an even power of one beyond -1.
+            stability = "unstable: disturbances grow without turning, the motion leaves for another one"
     console.print(
         f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes to {motion['residual']:.0e}, "
         f"changes by {motion['error']:.0e} with elements half as long"

@@ -1,7 +1,7 @@
 """The steady state of a case directly: the motion that repeats with its excitation, and its branch over speed."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -71,14 +71,14 @@ class SolvedSteady:
         At the speed of operation: one, or all that a branch has there.
     curve : coupling.ResponseCurve or None
         The branch over the speed of the first driver's rotor [rad/s].
-    branch : tuple of SteadyMotion
-        Its points.
+    branch_rms : dict of str to ndarray, shape (p,)
+        Of each sensor's acceleration up to the trusted limit at every point of the branch [m/s²].
     """
 
     machine: room.Machine
     motions: tuple[SteadyMotion, ...]
     curve: room.ResponseCurve | None = None
-    branch: tuple[SteadyMotion, ...] = ()
+    branch_rms: dict[str, FloatArray] = field(default_factory=dict)
 
 
 def solve_steady(
@@ -126,27 +126,27 @@ def solve_steady(
         return SolvedSteady(machine, (_motion(case, machine, housing, speed, response),))
     low, high = _speed_range(case)
     low, high = math.copysign(low, speed), math.copysign(high, speed)
-    machines: dict[float, room.Machine] = {}
+    rms: dict[str, list[float]] = {name: [] for name in machine.housing.sensors} if machine.housing is not None else {}
 
-    def system_at(at: float) -> room.CoupledSystem:
-        machines[at] = machine.at_speed(at)
-        return machines[at].system
+    def seen(at: float, response: room.PeriodicResponse) -> None:
+        if rms:
+            motion = _motion(case, machine.at_speed(at), housing, at, response)
+            for name, value in motion.sensor_rms.items():
+                rms[name].append(value)
 
     curve = room.response_curve(
-        system_at,
+        lambda at: machine.at_speed(at).system,
         *((high, low) if downwards else (low, high)),
         points=points,
         tolerance=CURVE_TOLERANCE,
         progress=lambda fraction: progress("following the motion over speed", fraction),
+        seen=seen,
     )
-
-    def motion(at: float, response: room.PeriodicResponse) -> SteadyMotion:
-        return _motion(case, machines[at], housing, at, response)
-
-    branch = tuple(motion(float(at), found) for at, found in zip(curve.speeds, curve.responses, strict=True))
+    progress("the motions at the speed of operation")
     reached = sorted((float(curve.speeds.min()), float(curve.speeds.max())))
     here = curve.at(speed) if reached[0] <= speed <= reached[1] else [room.periodic_response(machine.system)]
-    return SolvedSteady(machine, tuple(_motion(case, machine, housing, speed, one) for one in here), curve, branch)
+    motions = tuple(_motion(case, machine, housing, speed, one) for one in here)
+    return SolvedSteady(machine, motions, curve, {name: np.array(values) for name, values in rms.items()})
 
 
 def _speed_range(case: Case) -> tuple[float, float]:
@@ -256,10 +256,7 @@ def _curve_document(solved: SolvedSteady, curve: room.ResponseCurve) -> dict[str
             }
             for number, (_, mesh) in enumerate(_drives(solved.machine))
         ],
-        "sensors": [
-            {"name": name, "rms_m_per_s2": [motion.sensor_rms[name] for motion in solved.branch]}
-            for name in solved.motions[0].histories.sensor_acceleration
-        ],
+        "sensors": [{"name": name, "rms_m_per_s2": values.tolist()} for name, values in solved.branch_rms.items()],
         "bifurcations": [{"kind": event.kind, "speed_rpm": event.speed * _RPM} for event in curve.bifurcations],
     }
 

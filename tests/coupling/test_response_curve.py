@@ -1,5 +1,8 @@
 """Branches of periodic motions over speed: folds, jumps, period doubling, and a linear machine's own curve."""
 
+import gc
+import weakref
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -11,6 +14,7 @@ from coupling import (
     CoupledSystem,
     CouplingError,
     HarmonicLoad,
+    PeriodicResponse,
     TransientOutputs,
     TransientSettings,
     simulate,
@@ -143,6 +147,32 @@ def test_a_rotor_with_unbalance_follows_its_receptance() -> None:
         exact = np.linalg.solve(matrix, 0.1 * speed**2 * np.array([1.0, -1.0j]))
         np.testing.assert_allclose(response.displacement, exact.real, atol=1e-9 * np.abs(exact).max())
         np.testing.assert_allclose(response.velocity, -speed * exact.imag, atol=1e-9 * np.abs(exact).max())
+
+
+def test_a_curve_keeps_no_motion_s_course_and_makes_it_again() -> None:
+    shown: list[tuple[float, FloatArray]] = []
+    alive: list[weakref.ref[PeriodicResponse]] = []
+
+    def seen(speed: float, response: PeriodicResponse) -> None:
+        shown.append((speed, response.peak_force))
+        alive.append(weakref.ref(response))
+
+    curve = response_curve(deep, 0.6, 1.2, points=30, seen=seen)
+    gc.collect()
+    assert not any(response() for response in alive)
+    assert [speed for speed, _ in shown] == curve.speeds.tolist()
+    np.testing.assert_array_equal([force for _, force in shown], curve.peak_force)
+    for index in (0, curve.folds[0].index, len(curve.speeds) - 1):
+        kept, motion = curve.responses[index], curve.motion(index)
+        assert motion.residual < 1e-9
+        assert motion.switches == kept.switches
+        np.testing.assert_allclose(motion.displacement, kept.displacement, rtol=1e-12)
+        np.testing.assert_allclose(motion.floquet.values, kept.floquet.values, atol=1e-9)
+        for name in ("mean_force", "peak_force", "mean_compression", "rms_compression", "contact_loss"):
+            np.testing.assert_allclose(getattr(motion, name), getattr(kept, name), rtol=1e-9, atol=1e-12)
+        # The largest force is looked for at sixteen places of few elements; no other element has a larger one.
+        force = motion.record(TransientOutputs(ROW, ROW, ROW), 4000).force.max()
+        assert kept.peak_force[0] == pytest.approx(force, rel=2e-4)
 
 
 def test_wrong_ranges() -> None:

@@ -56,7 +56,7 @@ def test_condensed_corrections_are_those_of_the_whole_system(seed: int, count: i
         np.testing.assert_allclose(found, exact, atol=1e-10 * np.abs(exact).max())
     bordered = np.block([[matrix, by_speed.reshape(-1, 1)], [along.reshape(1, -1), np.full((1, 1), 0.3)]])
     whole = np.linalg.solve(bordered, np.append(-misses.ravel(), 0.7))
-    moves, change = bordered_correction(pieces, misses, by_speed, along, 0.3, 0.7)
+    moves, change = bordered_correction(pieces, product(pieces), misses, by_speed, along, 0.3, 0.7)
     np.testing.assert_allclose(np.append(moves.ravel(), change), whole, atol=1e-10 * np.abs(whole).max())
 
 
@@ -65,7 +65,7 @@ def test_at_a_fold_the_bordered_correction_is_regular() -> None:
     pieces = np.array([np.diag([2.0, 0.5]), np.diag([0.5, 0.5])])
     zero = np.zeros((2, 2))
     by_speed, along = np.array([[1.0, 0.0], [0.0, 0.0]]), np.array([[1.0, 0.0], [0.0, 0.0]])
-    moves, change = bordered_correction(pieces, zero, by_speed, along, 0.0, 1.0)
+    moves, change = bordered_correction(pieces, product(pieces), zero, by_speed, along, 0.0, 1.0)
     assert change == pytest.approx(0.0, abs=1e-15)
     np.testing.assert_allclose(moves, [[1.0, 0.0], [2.0, 0.0]], atol=1e-15)
     with pytest.raises(np.linalg.LinAlgError):
