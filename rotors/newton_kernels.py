@@ -58,8 +58,8 @@ def newton(
     part of the root, and the unit of force in each vector.
 
     Once a root is nearly met, one step goes without factors of its own: with N the matrix at the new place and F the
-    factored one of the last, x ← x − F⁻¹ N x leaves of the vector's error the part by which the root has moved (Neumaier,
-    SIAM J. Numer. Anal. 22, 1985).
+    factored one of the last, x ← x − F⁻¹ N x leaves of the vector's error the part by which the root has moved
+    (Neumaier, SIAM J. Numer. Anal. 22, 1985).
     """
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]

@@ -150,7 +150,7 @@ def solve_whirl(
     count
         How many modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with less has less.
     basis
-        From `rotors.whirl_basis`, of the same rotor and bearings; without it the rotor makes one of its own and holds it.
+        From `rotors.whirl_basis`, of the same rotor and bearings; without it the rotor makes and holds one of its own.
 
     Raises
     ------
