@@ -20,6 +20,7 @@ from gearwhine.stages.update_target import measurement_of
 from gearwhine.stages.update_worth import NullTest, held_back_modes, random_sets
 from housing.updating import (
     Debiased,
+    Each,
     Effort,
     Found,
     HeldBack,
@@ -125,11 +126,11 @@ def update_housing(
     fine = HousingDesigns(fitted_case(case), given.modes, measured.observer, threads=threads, as_written=True)
     coarse = replace(fine, case=fitted_case(case, given.mesh_size))
     progress("solving the housing as it stands")
-    before = fine.solve(fine.start)
-    same = coarse.case_at(coarse.start) == before.case
-    start = before if same else coarse.solve(coarse.start)
+    same = coarse.case_at(coarse.start) == fine.case_at(fine.start)
     effort = Effort(solves=given.solves, seed=given.seed)
-    raced = _raced(fine, start, None if same else before.state, target, effort, 1 + given.explore, progress)
+    with side_by_side(min(threads, default_workers())) as each:
+        before, start = _started(fine, fine if same else coarse, each)
+        raced = _raced(fine, start, None if same else before.state, target, effort, 1 + given.explore, each, progress)
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
     progress("going on with the housing's own mesh")
@@ -172,6 +173,25 @@ def update_housing(
     )
 
 
+def _started(fine: HousingDesigns, coarse: HousingDesigns, each: Each) -> tuple[HousingDesign, HousingDesign]:
+    """The housing as it stands on both meshes.
+
+    By one thread each, as all that follows in the race: with other numbers of threads sums are rounded otherwise, and a
+    search that is led by its last digits ends elsewhere.
+    """
+    alone = replace(fine, threads=1)
+    tasks = [(alone, coarse is fine), (replace(coarse, threads=1), True)]
+    solved = each(_as_it_stands, tasks[: 1 if coarse is fine else 2])
+    return solved[0], solved[-1]
+
+
+def _as_it_stands(task: tuple[HousingDesigns, bool]) -> HousingDesign:
+    """Solved where the case begins, and with its neighbourhood where that is wanted."""
+    designs, wanted = task
+    design = designs.solve(designs.start)
+    return replace(design, known=design.surrogate()) if wanted else design
+
+
 def _raced(
     fine: HousingDesigns,
     start: HousingDesign,
@@ -179,16 +199,13 @@ def _raced(
     target: Target,
     effort: Effort,
     count: int,
+    each: Each,
     progress: Progress,
 ) -> Raced[HousingDesign]:
-    """The search from the start and others on the coarse mesh, judged by the fine one, side by side where several are.
-
-    One thread each, so that the same is found however many run side by side.
-    """
+    """The search from the start and others on the coarse mesh, judged by the fine one, one thread for each."""
     coarse, own = (replace(designs, threads=1) for designs in (start.designs, fine))
     meshes = Meshes(coarse.solve, None if judged is None else own.solve, HousingDesign.light)
-    with side_by_side(min(count, fine.threads, default_workers())) as each:
-        return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
+    return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
 
 
 def _polished(
