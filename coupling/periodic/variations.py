@@ -17,7 +17,6 @@ import numpy.typing as npt
 from coupling.contact_kernels import DAMPING, FORCE, TOUCHING
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
-from coupling.periodic.collocation import ORDER
 from coupling.periodic.element import law
 from coupling.periodic.element_matrices import end_matrices
 from coupling.periodic.element_work import Work
@@ -27,6 +26,7 @@ from rotors.compiled import uncounted
 FloatArray = npt.NDArray[np.float64]
 
 _FAST = {"reassoc", "contract", "nsz"}
+_UNROLLED = 5  # forces that :func:`carry` is written for: as many as one contact has with elements of order 5
 
 
 @uncounted()
@@ -87,7 +87,7 @@ def send_cut(active: int, work: Work) -> None:
 
 @uncounted(fastmath=_FAST)
 def carry(columns: FloatArray, decay: FloatArray, felt: FloatArray, sent: FloatArray) -> None:
-    """Disturbances at the end from those at the start, as many forces as one contact has at once."""
+    """Disturbances at the end from those at the start, by ``_UNROLLED`` forces."""
     size = columns.shape[1]
     modes = size // 2
     for k in range(columns.shape[0]):
@@ -141,7 +141,7 @@ def vary(reference: Reference, steps: Steps, slot: int, part: float, columns: Fl
         end = 0 * slot  # 0, in a form that is no constant: a constant would compile all anew
         end_matrices(reference, steps.size[slot], part, work.cut_decay[end], work.cut_source[end], work.integral)
         send_cut(active, work)
-    if active == ORDER:
+    if active == _UNROLLED:
         carry(columns, work.decay, work.feedback, work.sent)
     else:
         carry_any(columns, work.decay, work.feedback, work.sent, active, work.moved)

@@ -86,12 +86,12 @@ def _update(document: Document) -> Section:
             f"Of {null['sets']} random sets of as many frequencies a short search from the nearest of known designs "
             f"fits {100 * null['within_5_percent']:.0f} % within 5 %, "
             f"{100 * null['within_2_percent']:.0f} % within 2 % "
-            f"and {100 * null['within_1_percent']:.0f} % within 1 % each; {100 * null['as_good_in_rms']:.0f} % as well "
-            "as the measured ones in rms."
+            f"and {100 * null['within_1_percent']:.0f} % within 1 % each."
         )
         sentences.append(
             "The measured ones, searched for as shortly from the case's own design, come to "
-            f"{own['rms_error_percent']:.2f} % root mean square, {own['max_error_percent']:.2f} % at most."
+            f"{own['rms_error_percent']:.2f} % root mean square, {own['max_error_percent']:.2f} % at most; "
+            f"{100 * null['as_good_in_rms']:.0f} % of the random sets do as well."
         )
     else:
         sentences.append("Not known is how often random frequencies are fitted as well (--null).")

@@ -8,11 +8,13 @@ from rich.table import Table
 
 from gearwhine.screen.console import counted, open_console, percent, show_origin, show_written
 
-_ADVICE = {
+_EVENTS = {
     "fold": "the motion jumps to another one",
     "period doubling": "the motion is taken over by one of twice the period",
     "Neimark-Sacker": "a second frequency comes in",
 }
+# A multiplier beyond +1 alone tells no fold: over many mesh periods it may be an even power of one beyond -1.
+_UNSTABLE = {**_EVENTS, "fold": "disturbances grow without turning, the motion leaves for another one"}
 
 
 def show_steady(document: dict[str, Any]) -> None:
@@ -36,10 +38,7 @@ def _show_motion(console: Console, motion: dict[str, Any], name: str) -> None:
     if motion["stable"]:
         stability = f"stable, disturbances fall by {motion['largest_multiplier']:.4g} each period"
     else:
-        stability = f"unstable: {_ADVICE.get(motion['instability'] or '', 'disturbances grow')}"
-        if motion["instability"] == "fold":
-            # A multiplier beyond +1: over many mesh periods it may be an even power of one beyond -1.
-            stability = "unstable: disturbances grow without turning, the motion leaves for another one"
+        stability = f"unstable: {_UNSTABLE.get(motion['instability'] or '', 'disturbances grow')}"
     console.print(
         f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes to {motion['residual']:.0e}, "
         f"changes by {motion['error']:.0e} with elements half as long"
@@ -78,5 +77,5 @@ def show_curve(console: Console, curve: dict[str, Any]) -> None:
         )
     for event in curve["bifurcations"]:
         console.print(
-            f"{event['speed_rpm']:9.1f} rpm: {event['kind']}; {_ADVICE.get(event['kind'], 'stability changes')}"
+            f"{event['speed_rpm']:9.1f} rpm: {event['kind']}; {_EVENTS.get(event['kind'], 'stability changes')}"
         )

@@ -121,9 +121,9 @@ def _null(console: Console, document: dict[str, Any]) -> None:
     own = null["measured_likewise"]
     console.print(
         f"Of {null['sets']} random sets of as many frequencies a short search from the nearest of known designs fits "
-        f"{five} within 5 %, {two} within 2 % and {one} within 1 % each; {rms} as well as the measured ones in rms. "
-        f"The measured ones, searched for as shortly from the case's own design: rms {own['rms_error_percent']:.2f} %, "
-        f"largest {own['max_error_percent']:.2f} %."
+        f"{five} within 5 %, {two} within 2 % and {one} within 1 % each. The measured ones, searched for as shortly "
+        f"from the case's own design, come to an rms of {own['rms_error_percent']:.2f} %, largest "
+        f"{own['max_error_percent']:.2f} %; {rms} of the random sets do as well."
     )
     if null["as_good_in_rms"] > 0.05:
         console.print("So the errors alone say little of this housing: it is a plausible one, calibrated.")

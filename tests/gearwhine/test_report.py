@@ -120,8 +120,10 @@ def test_what_a_fit_is_worth_is_told_beside_it() -> None:
     (alone,) = sections_of(document)
     assert any("Not known" in sentence for sentence in alone.sentences)
     (tested,) = sections_of(document | {"null": worth, "held_back": [held]})
-    assert any("80 % within 5 %" in sentence and "30 % as well" in sentence for sentence in tested.sentences)
-    assert any("3.20 % root mean square, 6.10 % at most" in sentence for sentence in tested.sentences)
+    assert any("80 % within 5 %" in sentence and "within 1 % each" in sentence for sentence in tested.sentences)
+    assert any(
+        "3.20 % root mean square, 6.10 % at most; 30 % of the random sets" in sentence for sentence in tested.sentences
+    )
     assert tested.tables[1].filled()[1] == [["658.0", "700.0", "+6.38", "2.00"]]
 
 
