@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
+NOT_COUNTED = -1
+"""Stands for the modes that there are where no inertia was asked for."""
 
 
 @dataclass(frozen=True)
@@ -15,7 +17,7 @@ class Certificate:
     limit : float
         The circular frequency up to which the set is complete [rad/s].
     expected : int
-        Modes below the limit by the inertia of K - limit² M.
+        Modes below the limit by the inertia of K - limit² M; :data:`NOT_COUNTED` where nobody counted.
     found : int
         Modes in the set.
     max_residual : float

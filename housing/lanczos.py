@@ -28,7 +28,9 @@ from housing.tall import Tall
 
 FloatArray = npt.NDArray[np.float64]
 
-_TOLERANCE = 1e-9  # of a Ritz pair's residual, as a part of ν
+TOLERANCE = 1e-9
+"""Of a Ritz pair's residual, as a part of ν."""
+
 _BLOCK = 8
 _DEPENDENT = 1e-11  # what is left of a column, as a part of it, where it lay in the basis
 _NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
@@ -45,6 +47,7 @@ def shift_invert(
     above: bool = False,
     seed: int = 0,
     threads: int = 1,
+    tolerance: float = TOLERANCE,
 ) -> tuple[FloatArray, FloatArray]:
     """The modes nearest to a shift on one side of it.
 
@@ -64,6 +67,8 @@ def shift_invert(
         Of the random starting block; each also doubles its width.
     threads : int
         That orthogonalise; the modes are the same to the last bit for any number.
+    tolerance : float
+        Of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of that.
 
     Returns
     -------
@@ -104,7 +109,7 @@ def shift_invert(
             wanted, mixture = nu[chosen], mixtures[:, chosen]
             outside = remainder @ mixture[begin:]
             errors = np.linalg.norm(outside, axis=0)
-            if whole or (np.all(sign * wanted > 0.0) and np.all(errors < _TOLERANCE * np.abs(wanted))):
+            if whole or (np.all(sign * wanted > 0.0) and np.all(errors < tolerance * np.abs(wanted))):
                 # Basis and block are orthonormal, so that the norms follow from the coefficients.
                 step = outside / wanted
                 norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))

@@ -75,6 +75,7 @@ def solve_modes(
     *,
     frequency_limit: float | None = None,
     count: int | None = None,
+    draft: bool = False,
     ports: sparse.csr_array | None = None,
     backend: Backend | None = None,
     threads: int = 2,
@@ -92,6 +93,9 @@ def solve_modes(
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
         The lowest so many, and the rest of a multiple mode that the last is part of.
+    draft : bool
+        Of ``count``, whether two thirds of the time will do: the inertia behind the last mode is not asked whether one
+        is missing, and the last ones are rough (their λ to some 1e-8). The certificate is then not complete.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes), optional
         Motions whose static compliance the mode set is to hold exactly: it then has attachments.
     backend, threads
@@ -114,6 +118,8 @@ def solve_modes(
     most = min(system.size - 2, MOST_MODES)
     if count is not None and not 1 <= count <= most:
         raise HousingError(f"{count} modes asked of {system.size} degrees of freedom: give 1 to {most}")
+    if draft and (count is None or ports is not None):
+        raise HousingError("a draft is of a number of modes, without ports")
     if frequency_limit is not None and frequency_limit <= 0.0:
         raise HousingError(f"frequency limit {frequency_limit} rad/s must be positive")
 
@@ -121,7 +127,9 @@ def solve_modes(
     factorizer.order_ahead(system.stiffness)
     search = Search(system, factorizer, system.floor(frequency_limit or 0.0))
     found = (
-        search.below(frequency_limit, progress) if frequency_limit is not None else search.lowest(count or 0, progress)
+        search.below(frequency_limit, progress)
+        if frequency_limit is not None
+        else search.lowest(count or 0, progress, draft=draft)
     )
     values, vectors = found.values, _oriented(found.vectors)
     values[np.abs(values) < 1e-6 * search.floor] = 0.0

@@ -15,11 +15,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from housing.certificate import OVERLAP_BOUND, Certificate
+from housing.certificate import NOT_COUNTED, OVERLAP_BOUND, Certificate
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Factorization, Factorizer
 from housing.free_system import FreeSystem
-from housing.lanczos import shift_invert
+from housing.lanczos import TOLERANCE, shift_invert
 from housing.tall import Tall
 
 FloatArray = npt.NDArray[np.float64]
@@ -28,13 +28,14 @@ _ATTEMPTS = 3
 _ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away from a mode beside it
 MOST_MODES = 2000
 """More at a time would take a basis that no memory holds."""
+_DRAFT = 1e-4  # residual of the last modes of a draft; those of half their frequency have all digits by then
 _BELOW = 0.1  # part of the lowest elastic eigenvalue
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
 
 
 @dataclass(frozen=True)
 class Found:
-    """Certified modes, the shift of their search, and the factor of K - limit² M that counted them."""
+    """Certified modes, the shift of their search, and the factor of K - limit² M that counted them, or the search's."""
 
     values: FloatArray
     vectors: FloatArray
@@ -75,7 +76,7 @@ class Search:
         pole, place = factor, shift
         for attempt in range(_ATTEMPTS):
             values, vectors = self._modes(pole, place, count, above=True, attempt=attempt)
-            certificate, values, vectors = self._certify(values, vectors, limit, factor)
+            certificate, values, vectors = self._certify(values, vectors, limit, count)
             if certificate.complete:
                 return Found(values, vectors, certificate, factor, shift)
             if pole is factor and certificate.found == count:
@@ -94,8 +95,11 @@ class Search:
                 return other, aside
         return factor, shift
 
-    def lowest(self, count: int, progress: Callable[[str], None]) -> Found:
-        """The lowest modes by number, with the rest of the multiple mode that the last may be part of."""
+    def lowest(self, count: int, progress: Callable[[str], None], *, draft: bool = False) -> Found:
+        """The lowest modes by number, with the rest of the multiple mode that the last may be part of.
+
+        A draft is not counted, and its last modes are rough.
+        """
         shift = -self.floor
         certificate = Certificate(0.0, count, 0, 0.0, 0.0)
         for attempt in range(_ATTEMPTS):
@@ -106,15 +110,17 @@ class Search:
             progress(f"searching {count} modes")
             # Some more than asked for, to see the gap behind the last.
             wanted = min(count + 2 * 4**attempt, self._system.size - 1)
-            values, vectors = self._modes(factor, shift, wanted, above=False, attempt=attempt)
+            values, vectors = self._modes(factor, shift, wanted, above=False, attempt=attempt, draft=draft)
             limit = _gap_after(values, count, self.floor)
             if limit == 0.0:
                 continue
-            progress("counting the modes found")
-            del factor  # two at once would be the most memory that a search takes
-            factor = self._factor(limit**2)
-            certificate, values, vectors = self._certify(values, vectors, limit, factor)
-            if certificate.complete:
+            if not draft:
+                progress("counting the modes found")
+                del factor  # two at once would be the most memory that a search takes
+                factor = self._factor(limit**2)
+            below = NOT_COUNTED if draft else factor.negative
+            certificate, values, vectors = self._certify(values, vectors, limit, below)
+            if certificate.complete or (draft and certificate.max_overlap < OVERLAP_BOUND):
                 return Found(values, vectors, certificate, factor, shift)
             if values.max(initial=0.0) > self.floor:
                 # Farther from rigid modes, by the scale of the elastic ones: less of their rounding stands in these.
@@ -128,14 +134,21 @@ class Search:
         return factor
 
     def _modes(
-        self, factor: Factorization, shift: float, count: int, *, above: bool, attempt: int
+        self, factor: Factorization, shift: float, count: int, *, above: bool, attempt: int, draft: bool = False
     ) -> tuple[FloatArray, FloatArray]:
         """Modes without a proof; of an attempt that does not converge, none, but for the last one's."""
         start = time.perf_counter()
         system = self._system
         try:
             return shift_invert(
-                factor.solve, self._mass, shift, count, above=above, seed=attempt, threads=system.threads
+                factor.solve,
+                self._mass,
+                shift,
+                count,
+                above=above,
+                seed=attempt,
+                threads=system.threads,
+                tolerance=_DRAFT if draft else TOLERANCE,
             )
         except IncompleteModesError:
             if attempt + 1 == _ATTEMPTS:
@@ -146,15 +159,13 @@ class Search:
             self.seconds["eigensolver"] += time.perf_counter() - start
 
     def _certify(
-        self, values: FloatArray, vectors: FloatArray, limit: float, factor: Factorization
+        self, values: FloatArray, vectors: FloatArray, limit: float, below: int
     ) -> tuple[Certificate, FloatArray, FloatArray]:
-        """The certificate of the modes below a limit; and these, the most that their space gives."""
+        """The certificate of the modes below a limit, of which so many are; and these, the most their space gives."""
         start = time.perf_counter()
         values, vectors, residuals, overlap = _refined(self._system, values, vectors, limit**2 + self.floor)
         keep = values < limit**2
-        certificate = Certificate(
-            limit, factor.negative, int(keep.sum()), float(residuals[keep].max(initial=0.0)), overlap
-        )
+        certificate = Certificate(limit, below, int(keep.sum()), float(residuals[keep].max(initial=0.0)), overlap)
         self.seconds["eigensolver"] += time.perf_counter() - start
         return certificate, values[keep], vectors[:, keep]
 

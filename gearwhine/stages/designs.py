@@ -39,6 +39,8 @@ class HousingDesigns:
         From a mesh to the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes).
     threads : int
     progress : callable
+    draft : bool
+        Whether modes go without their proof, which on a search's way they may (:func:`housing.solve_modes`).
     as_written : bool
         Whether values are rounded as an updated case has them, so that the design solved is the one written: where the
         last digits differ the mesher may well go another way, and frequencies with it by some 0.03 %.
@@ -49,6 +51,7 @@ class HousingDesigns:
     measured: Callable[[Mesh], sparse.csr_array] | None = None
     threads: int = 2
     progress: Progress = silent
+    draft: bool = False
     as_written: bool = False
 
     @property
@@ -78,15 +81,22 @@ class HousingDesigns:
         """
         try:
             case = self.case_at(coordinates)
-            mesh = None if near is None else _followed(near, case)
-            if mesh is None:
-                mesh = build_mesh(case)
+            followed = None if near is None else _followed(near, case)
+            if followed is not None:
+                try:
+                    return self._solved(coordinates, case, followed)
+                except room.HousingError:
+                    pass  # the move may have folded an element, of which a new mesh knows nothing
+            return self._solved(coordinates, case, build_mesh(case))
         except (CaseError, GeometryError) as error:
             raise room.HousingError(str(error)) from error
+
+    def _solved(self, coordinates: FloatArray, case: Case, mesh: Mesh) -> "HousingDesign":
+        """The case on a mesh of its housing."""
         parted, material, materials = materials_of(case, mesh)
         matrices = attach_all(case, mesh, room.assemble(parted, material, materials, threads=self.threads))
         fixed = room.fixed_freedoms(mesh, build_supports(case))
-        solved = room.solve_modes(matrices, fixed, count=self.modes, threads=self.threads)
+        solved = room.solve_modes(matrices, fixed, count=self.modes, draft=self.draft, threads=self.threads)
         given = case.housing
         assert given is not None
         ports = [room.seat_matrix(mesh, room.Seat(seat.name, seat.center)) for seat in given.seat]

@@ -111,8 +111,8 @@ def _effort(seed: int) -> Effort:
 
 
 def _alone(design: HousingDesign) -> HousingDesigns:
-    """What solves a design's like by one thread."""
-    return replace(design.designs, threads=1)
+    """What solves a design's like by one thread, as a draft."""
+    return replace(design.designs, threads=1, draft=True)
 
 
 def _thinned(points: Sequence[FloatArray]) -> list[FloatArray]:

@@ -32,6 +32,7 @@ from housing.updating import (
     Raced,
     Step,
     Target,
+    is_met,
     measure,
     posterior,
     race,
@@ -41,8 +42,7 @@ from housing.updating import (
 FloatArray = npt.NDArray[np.float64]
 
 _REFINED = 0.05  # trust region of the search that goes on with the finer mesh
-_FEW = 10  # solves of that search
-_LEFT = 3  # of that search where all is met already, so that the misfit is least there
+_FEW = 6  # solves of that search, where not all is met before
 _FIRM = 3.0  # how much less soft the penalties are there
 
 
@@ -137,9 +137,10 @@ def update_housing(
     ended = fine.solve(raced.coordinates) if raced.design is None else raced.design
     tuned = ended if same else coarse.solve(raced.coordinates)
     bias = None if same else MeshBias.between(tuned.state, ended.state)
-    found = _polished(fine, ended, target, replace(effort, solves=_LEFT if raced.is_met else _FEW), progress)
+    found = _polished(fine, ended, target, replace(effort, solves=0 if raced.is_met else _FEW), progress)
+    # On the way modes were not counted; those that are told of have their proof.
+    after = replace(fine.solve(found.design.coordinates), known=found.design.surrogate())
     seconds["own_mesh"] = time.perf_counter() - begin
-    after = found.design
     spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
     near = Debiased(tuned, bias)
     rows: list[HeldBack] = []
@@ -203,7 +204,7 @@ def _raced(
     progress: Progress,
 ) -> Raced[HousingDesign]:
     """The search from the start and others on the coarse mesh, judged by the fine one, one thread for each."""
-    coarse, own = (replace(designs, threads=1) for designs in (start.designs, fine))
+    coarse, own = (replace(designs, threads=1, draft=True) for designs in (start.designs, fine))
     meshes = Meshes(coarse.solve, None if judged is None else own.solve, HousingDesign.light)
     return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
 
@@ -218,4 +219,9 @@ def _polished(
     """
     firm = replace(target, firmness=_FIRM)
     near = replace(effort, trust=_REFINED)
-    return search(lambda point, _: fine.solve(point), firm, fine.parameters, begin, near, progress)
+    own = replace(fine, draft=True)
+
+    def is_enough(design: HousingDesign) -> bool:
+        return is_met(target, measure(firm, design.state, design.coordinates, strict=True))
+
+    return search(lambda point, _: own.solve(point), firm, fine.parameters, begin, near, progress, is_enough)

@@ -28,11 +28,11 @@ FloatArray = npt.NDArray[np.float64]
 _DRAWN = 8  # from the prior for each start that is solved
 _DESCENT = 25  # steps of each on the surrogate
 _APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
-_COARSE, _FINE = 2, 2  # heats on either mesh
-_LAST = 2  # runners that are never parted
+_COARSE = 1  # heats on the coarse mesh, before those on the fine one
+_NEVER_PARTED = (1, 4, 2)  # runners that go on into each heat, however few the better half is
 FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the last in all others
 TRUST = (0.25, 0.15, 0.1)  # likewise
-_FINE_SOLVES = 4  # of each runner in each heat on the fine mesh
+_FINE_SOLVES = (3, 5)  # of each runner in the heats on the fine mesh
 _STARTS = 16  # on the surrogate
 
 
@@ -142,30 +142,13 @@ class _Run(Generic[AnyDesign]):
             begin = solve(runner.coordinates, None) if runner.design is None else runner.design
         except HousingError:
             return runner, np.inf, ()
-        bias = None
-        if not self.on_fine:
-            # Learned on this very mesh where the fine one has been here, else what is known from the race's start.
-            bias = runner.bias if runner.judged is None else MeshBias.between(begin.state, runner.judged)
+        bias = None if self.on_fine else runner.bias
         effort = replace(self.effort, seed=self.effort.seed + runner.number)
         found = search(debiased(solve, bias), self.target, self.parameters, Debiased(begin, bias), effort)
         ended = replace(runner, coordinates=found.design.coordinates, judged=None)
         if self.on_fine:
             ended = replace(ended, judged=found.design.state, design=self.meshes.light(found.design.design))
         return ended, found.misfit.value, found.steps
-
-
-@dataclass(frozen=True)
-class _Judge(Generic[AnyDesign]):
-    """The fine mesh's judgement of a runner."""
-
-    meshes: Meshes[AnyDesign]
-
-    def __call__(self, runner: Runner[AnyDesign]) -> Runner[AnyDesign] | None:
-        """The runner with what the fine mesh has there; None where it has nothing sound."""
-        try:
-            return replace(runner, judged=self.meshes.judge(runner.coordinates).state)
-        except HousingError:
-            return None
 
 
 def race(
@@ -212,13 +195,10 @@ def race(
     steps = list[Step]()
     for heat, number in enumerate(going):
         on_fine = heat >= _COARSE
-        if heat and not on_fine:
-            runners = [runner for runner in each(_Judge(meshes), runners[:number]) if runner is not None]
-            best = _best(best, target, runners, progress)
         if best.is_met:
             break
         firmness, trust = (values[min(heat, len(values) - 1)] for values in (FIRMNESS, TRUST))
-        own = replace(effort, solves=_FINE_SOLVES if on_fine else solves, trust=trust, starts=_STARTS)
+        own = replace(effort, solves=_FINE_SOLVES[heat - _COARSE] if on_fine else solves, trust=trust, starts=_STARTS)
         run = _Run(meshes, replace(target, firmness=firmness), tuple(parameters), own, on_fine)
         ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
         steps += [step for *_, own_steps in ran for step in own_steps]
@@ -244,9 +224,12 @@ def _best(
 def _better(
     best: Raced[AnyDesign] | None, target: Target, runner: Runner[AnyDesign], progress: Callable[[str], None]
 ) -> Raced[AnyDesign]:
-    """The better of the best so far and of a runner that has been judged."""
+    """The better of the best so far and of a runner that has been judged.
+
+    Weighed as firmly as the last heat does: what led it here is not to be taken back in the end.
+    """
     assert runner.judged is not None
-    misfit = measure(target, runner.judged, runner.coordinates, strict=True)
+    misfit = measure(replace(target, firmness=FIRMNESS[-1]), runner.judged, runner.coordinates, strict=True)
     met = is_met(target, misfit)
     progress(
         f"search {runner.number + 1} on the fine mesh: misfit {misfit.value:.4g}, rms {misfit.rms_percent:.2f} %, "
@@ -262,8 +245,8 @@ def _better(
 def _going(count: int) -> list[int]:
     """How many there are in each heat."""
     going = [count]
-    while len(going) < _COARSE + _FINE:
-        going.append(min(going[-1], max(_LAST, (going[-1] + 1) // 2)))
+    for few in _NEVER_PARTED[1:]:
+        going.append(min(going[-1], max(few, (going[-1] + 1) // 2)))
     return going
 
 

@@ -101,6 +101,7 @@ def search(
     start: AnyDesign,
     effort: Effort = Effort(),
     progress: Callable[[str], None] = lambda message: None,
+    until: Callable[[AnyDesign], bool] = lambda design: False,
 ) -> Found[AnyDesign]:
     """Fit the parameters, from a design that has been solved.
 
@@ -114,11 +115,13 @@ def search(
     effort : Effort
     progress : callable
         Told in words what was found.
+    until : callable
+        Of a design, whether nothing more is sought.
 
     Returns
     -------
     Found
-        The best of all designs solved, the start among them.
+        The best of all designs solved, the start among them; or the first that nothing more is sought beyond.
     """
     bounds = coordinate_bounds(parameters)
     generator = np.random.default_rng(effort.seed)
@@ -151,8 +154,11 @@ def search(
             f"max {found.max_percent:.2f} %, gap {found.gap:.2f}, margin {found.margin:.2f}, {found.count} modes, "
             f"trust {trust:.3f}"
         )
-        if accepted:
+        enough = until(trial)
+        if accepted or enough:
             design, misfit, surrogate = trial, found, None
+        if enough:
+            break
         trust = min(trust * 1.4, 0.4) if kept > 0.6 else trust if kept > 0.25 else trust * 0.5
     return Found(design, misfit, tuple(steps))
 

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from gearwhine.case import case_document, load_case, parse_case
-from gearwhine.stages.designs import HousingDesigns
+from gearwhine.stages.designs import HousingDesigns, _followed
+from gearwhine.stages.geometry import build_mesh
+from gearwhine.stages.regions import materials_of
 from gearwhine.stages.update_keys import fitted_case
-from housing import HousingError
+from housing import HousingError, assemble
+from housing.updating import coordinate_bounds
 
 NUMBERS: list[tuple[list[str], list[Any], Any]] = [
     (["housing.box.wall.top"], ["6 mm", "20 mm"], "3 mm"),
@@ -73,6 +76,18 @@ def test_a_light_design_is_the_same_without_its_shapes(designs: HousingDesigns) 
     near = start.coordinates + 0.1
     assert np.array_equal(designs.solve(near, light).mesh.points, designs.solve(near, start).mesh.points)
     assert light.light().surrogate() is light.surrogate()
+
+
+def test_where_the_neighbours_mesh_would_fold_a_new_one_is_made(designs: HousingDesigns) -> None:
+    start = designs.solve(designs.start)
+    narrow = designs.start.copy()
+    narrow[1] = coordinate_bounds(designs.parameters)[0, 1]
+    case = designs.case_at(narrow)
+    followed = _followed(start, case)
+    assert followed is not None
+    with pytest.raises(HousingError, match="folded"):
+        assemble(*materials_of(case, followed))
+    assert np.array_equal(designs.solve(narrow, start).mesh.points, build_mesh(case).points)
 
 
 def test_a_design_that_is_no_sound_housing_is_said(designs: HousingDesigns) -> None:

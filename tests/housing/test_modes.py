@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy import linalg
+from scipy import linalg, sparse
 
 import housing.search
 from housing import (
@@ -23,6 +23,7 @@ from housing import (
     seat_matrix,
     solve_modes,
 )
+from housing.certificate import NOT_COUNTED
 from housing.factorization import FactorizationError
 from housing.ports import Seat
 from meshes import BoxGeometry, Mesh, WallThickness, mesh_box
@@ -77,6 +78,19 @@ def test_a_number_of_modes_is_never_cut_within_a_multiple_mode(
 def test_count_and_limit_give_the_same_modes(box_matrices: Matrices, box_modes: ModeSet) -> None:
     modes = solve_modes(box_matrices, count=len(box_modes.frequencies))
     np.testing.assert_allclose(modes.frequencies, box_modes.frequencies, rtol=1e-8)
+
+
+def test_a_draft_has_the_same_modes_without_their_proof(box_matrices: Matrices, box_modes: ModeSet) -> None:
+    modes = solve_modes(box_matrices, count=len(box_modes.frequencies), draft=True)
+    np.testing.assert_allclose(modes.frequencies, box_modes.frequencies, rtol=1e-7)
+    half = len(modes.frequencies) // 2
+    np.testing.assert_allclose(modes.frequencies[:half], box_modes.frequencies[:half], rtol=1e-10)
+    assert modes.certificate.expected == NOT_COUNTED
+    assert not modes.certificate.complete
+    ports = sparse.csr_array(np.eye(1, 3 * modes.shapes.shape[1]))
+    for wrong in ({"count": 6, "ports": ports}, {"frequency_limit": 1e4}):
+        with pytest.raises(HousingError, match="a draft is of a number of modes"):
+            solve_modes(box_matrices, draft=True, **wrong)
 
 
 @BACKENDS
