@@ -33,6 +33,7 @@ def texts_in(value: Any) -> set[str]:
     return set().union(*(texts_in(inner) for inner in _inner(value)))
 
 
+@cache
 def installed(library: str) -> str | None:
     """The version of a library; None where it is not there."""
     try:
