@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
@@ -15,6 +14,9 @@ from gearwhine.sweep.conduct import SweptPoint
 from gearwhine.sweep.point_files import POINTS
 from gearwhine.sweep.points import axis_name
 from gearwhine.sweep.solution import PointFailure, PointResult
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -28,6 +30,8 @@ def gathered(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) 
     Spectra stand over *order*, cycles for each turn of the first driver: records hold a number of its turns, so the
     lines of all speeds fall on each other without any interpolation. ``frequency`` has each point's in Hz.
     """
+    import xarray as xr
+
     names = tuple(axis_name(key.key) for key in keys)
     grid = _Grid(names, tuple(len(key.texts) for key in keys), swept)
     coordinates: dict[str, Any] = {

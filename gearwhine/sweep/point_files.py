@@ -5,15 +5,18 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from gearwhine import __version__
 from gearwhine.case import dump_case
 from gearwhine.output import finite, json_text
 from gearwhine.sweep.points import Point
 from gearwhine.sweep.solution import PointFailure, PointResult
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 POINTS = "points"
 """Folder of the points within the results folder."""
@@ -41,6 +44,8 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
     point, result
         What to write.
     """
+    import xarray as xr
+
     attributes = {
         "source": f"gearwhine {__version__}",
         "key": point.key,
@@ -61,6 +66,10 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
 
 def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
     """Read a point; None where there is no file of it, or one that is of other content or cannot be read."""
+    if not (folder / POINTS / point.file).exists():
+        return None
+    import xarray as xr
+
     try:
         with xr.open_dataset(folder / POINTS / point.file, engine="h5netcdf") as data:
             if data.attrs.get("key") != point.key:
@@ -79,24 +88,27 @@ def stale_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:
 
 
 def _arrays(result: PointResult) -> xr.Dataset:
-    orders = ("order", result.orders, {"units": "1", "long_name": "cycles for each turn of the first driver"})
-    dataset = xr.Dataset(coords={"order": orders})
+    import xarray as xr
+
+    # Gathered first: a dataset takes its time over every variable that is put into it later.
+    arrays: dict[str, Any] = {
+        "order": ("order", result.orders, {"units": "1", "long_name": "cycles for each turn of the first driver"})
+    }
     for group, (dimension, unit, what) in _SPECTRA.items():
         spectra = getattr(result, group)
         if spectra:
-            dataset[dimension] = (dimension, list(spectra))
+            arrays[dimension] = (dimension, list(spectra))
             values = np.array(list(spectra.values()))
-            dataset[group] = ((dimension, "order"), values, {"units": unit, "long_name": what})
+            arrays[group] = ((dimension, "order"), values, {"units": unit, "long_name": what})
     for group, what in _FORCES.items():
         forces = getattr(result, group)
         if forces:
-            dataset["bearing"] = ("bearing", list(forces))
-            dataset["axis"] = ("axis", ["x", "y"])
+            arrays |= {"bearing": ("bearing", list(forces)), "axis": ("axis", ["x", "y"])}
             values = np.array(list(forces.values()))
-            dataset[group] = (("bearing", "axis"), values, {"units": "N", "long_name": what})
+            arrays[group] = (("bearing", "axis"), values, {"units": "N", "long_name": what})
     attributes = {"units": "Hz", "long_name": "housing natural frequency"}
-    dataset["housing_frequencies_hz"] = ("housing_mode", result.housing_frequencies_hz, attributes)
-    return dataset
+    arrays["housing_frequencies_hz"] = ("housing_mode", result.housing_frequencies_hz, attributes)
+    return xr.Dataset(arrays)
 
 
 def _result(data: xr.Dataset) -> PointResult:
