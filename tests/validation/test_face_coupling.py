@@ -6,17 +6,18 @@ the middle plane. The slices' foundation gets k_b from the same elements under a
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.sparse.linalg import SuperLU, splu
-from skfem import Basis, ElementHex2, ElementVector, MeshHex
-from skfem.models.elasticity import lame_parameters, linear_elasticity
+from scipy import sparse
 
 from coupling.gears import Gear, tooth_outline
 from coupling.gears.face_coupling import tooth_coupling
+from housing import Factorization, Factorizer, Material, assemble
+from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -29,7 +30,7 @@ WIDTH = 12.0 * GEAR.module
 class Tooth:
     """The factored model: middle-plane places and deflections at the load's height."""
 
-    factor: SuperLU
+    factor: Factorization
     free: npt.NDArray[np.intp]
     places: FloatArray
     at_height: npt.NDArray[np.intp]
@@ -57,29 +58,28 @@ def _simpson(count: int) -> FloatArray:
 
 
 @pytest.fixture(scope="module")
-def tooth() -> Tooth:
+def tooth(block_of: Callable[..., Mesh]) -> Tooth:
     across, along = tooth_outline(GEAR)[:119].T
     height, half = along - along[0], -across
     load = float(np.interp(GEAR.pitch_radius, np.hypot(across, along), height))
     below = round(HIGH * load / height[-1])
     levels = np.concatenate([np.linspace(0, load, below + 1), np.linspace(load, height[-1], HIGH - below + 1)[1:]])
-    block = MeshHex.init_tensor(np.linspace(-1, 1, THICK + 1), levels, np.linspace(-WIDTH / 2, WIDTH / 2, LONG + 1))
-    points = block.p.copy()
-    points[0] *= np.interp(points[1], height, half)
-    basis = Basis(MeshHex(points, block.t), ElementVector(ElementHex2()), intorder=4)
-    stiffness = linear_elasticity(*lame_parameters(GEAR.youngs_modulus, GEAR.poisson_ratio)).assemble(basis)
-    places = basis.doflocs
+    halves = np.interp(levels, height, half)
+
+    def shaped(points: FloatArray) -> FloatArray:
+        level = HIGH * points[:, 1]
+        wide = np.interp(level, np.arange(HIGH + 1), halves)
+        high = np.interp(level, np.arange(HIGH + 1), levels)
+        return np.column_stack([(2.0 * points[:, 0] - 1.0) * wide, high, (points[:, 2] - 0.5) * WIDTH])
+
+    mesh = block_of("hexahedron27", cells=(THICK, HIGH, LONG), bend=shaped)
+    matrices = assemble(mesh, Material(GEAR.youngs_modulus, GEAR.poisson_ratio, 7850.0), threads=1)
+    places = np.repeat(mesh.points, 3, axis=0).T
     free = np.flatnonzero(np.abs(places[1]) > 1e-9)
-    across_dofs = np.concatenate([basis.nodal_dofs[0], basis.edge_dofs[0], basis.facet_dofs[0], basis.interior_dofs[0]])
-    at_height = np.intersect1d(np.flatnonzero(np.abs(places[1] - load) < 1e-9), across_dofs)
+    at_height = 3 * np.flatnonzero(np.abs(mesh.points[:, 1] - load) < 1e-9)
     middle = at_height[np.abs(places[0, at_height]) < 1e-12]
     middle = middle[np.argsort(places[2, middle])]
-    factor = splu(
-        stiffness[free][:, free].tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        options={"SymmetricMode": True},
-        diag_pivot_thresh=0.0,
-    )
+    factor = Factorizer(threads=1).factor(sparse.csr_array(matrices.stiffness[free][:, free]))
     z = np.unique(np.round(places[2, at_height], 12))
     return Tooth(factor, free, places, at_height, z, middle)
 
