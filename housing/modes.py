@@ -33,6 +33,7 @@ class ModeSet:
     shapes : ndarray, shape (n_modes, n_nodes, 3)
         Displacement at each node, normalised to φᵀ M φ = 1 [1/√kg].
     certificate : Certificate
+        Of the modes as they were found. Attachments turn them by some of their residual, towards exact ones.
     seconds : dict of str to float
         Time taken by ``factorisation``, ``eigensolver`` and, where ports were given, ``reduction`` [s].
     backend : str
@@ -139,7 +140,7 @@ def solve_modes(
     if ports is not None:
         start = time.perf_counter()
         progress("attaching the static response at the ports")
-        attachments = residual_attachments(
+        attachments, vectors = residual_attachments(
             system.stiffness,
             system.mass,
             found.factor.solve,

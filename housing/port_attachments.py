@@ -29,6 +29,9 @@ def attach_ports(
 ) -> ModeSet:
     """The same modes with residual attachments, so that the static compliance at the ports is exact.
 
+    The shapes are the same to the error of their certificate: what the attachments show of it is taken out, Eq. (3) of
+    :mod:`housing.reduction`.
+
     Parameters
     ----------
     matrices : Matrices
@@ -55,7 +58,7 @@ def attach_ports(
     if factor is None or shift is None:
         shift = -floor
         factor = Factorizer(backend=backend, threads=threads).factor(system.shifted(shift))
-    attachments = residual_attachments(
+    attachments, vectors = residual_attachments(
         system.stiffness,
         system.mass,
         factor.solve,
@@ -67,7 +70,7 @@ def attach_ports(
         free=system.free,
         n_nodes=system.n_nodes,
     )
-    return replace(modes, attachments=attachments)
+    return replace(modes, shapes=system.expand(vectors), attachments=attachments)
 
 
 def stacked(ports: Sequence[sparse.csr_array] | sparse.csr_array) -> sparse.csr_array:

@@ -25,10 +25,19 @@ MacNeal 1971 and Rubin 1975). By Galerkin's argument its compliance at the ports
 of X. Modes and attachments side by side are a component with the unit mass, a diagonal stiffness and the exact static
 compliance at its ports.
 
+Computed modes are not quite the housing's, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness
+leaves out: an error of first order, 2 |ψᵀ r| / √(λ ω²) of a port's compliance at most, the greater the softer the mode
+beside the limit. Galerkin's quotients in the space of both take it out. To first order they turn each pair by
+
+    s = ψᵀ r / (λ - ω²),        φ <- φ + s ψ,   ψ <- ψ - s φ,                                             (3)
+
+which moves φ towards the mode that it stands for, and leaves couplings of second order. What is turned is no more than
+the error of a mode that has its certificate; modes farther off are left for the proof to refuse.
+
 *Proof.* Let U be the displacements that modes and attachments claim for the loads F of all ports, and R = F - K U what
 these leave unbalanced. Whatever U is, the exact compliance is
 
-    C = Uᵀ F + Fᵀ U - Uᵀ K U + Rᵀ K⁻¹ R,                                                                 (3)
+    C = Uᵀ F + Fᵀ U - Uᵀ K U + Rᵀ K⁻¹ R,                                                                 (4)
 
 all of it computable but the last term, of second order, which is bounded by one more solve: the kept modes' part of R
 divided by λ, and for the rest rᵀ K⁻¹ r <= (1 + |min(σ, 0)| / λ_kept) rᵀ A⁻¹ r, since A differs from K by σM. What C so
@@ -46,6 +55,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
+from housing.certificate import RESIDUAL_BOUND
 from housing.errors import HousingError, ReductionError
 from housing.symmetric import Operator
 
@@ -73,7 +83,7 @@ class StaticProof:
         The part of it that the kept modes alone lack.
     error : float
         Bound on |C_ab - C'_ab| / sqrt(C_aa C_bb) over all pairs of motions, with C' by modes and attachments and C the
-        exact compliance of Eq. (3).
+        exact compliance of Eq. (4).
     overlap : float
         Largest |φᵀ M ψ| of two different vectors among modes and attachments, and |ψᵀ M ψ - 1|.
     sweeps : int
@@ -128,7 +138,7 @@ def residual_attachments(
     floor: float,
     free: IntArray,
     n_nodes: int,
-) -> Attachments:
+) -> tuple[Attachments, FloatArray]:
     """Residual attachment modes of a set of modes, proved to make the static compliance at the ports exact.
 
     Parameters
@@ -151,6 +161,12 @@ def residual_attachments(
         Where these degrees of freedom stand among the mesh's 3 n_nodes.
     n_nodes : int
         Nodes of the mesh.
+
+    Returns
+    -------
+    attachments : Attachments
+    vectors : ndarray, shape (n, p)
+        Φ, turned by Eq. (3).
 
     Raises
     ------
@@ -175,6 +191,11 @@ def residual_attachments(
 
     residual, sweeps = _static_response(stiffness, solve, loads, vectors, inertia, _SETTLED, modal.diagonal())
     squared, shapes = _orthonormal(stiffness, mass, residual, modal.diagonal(), vectors, inertia)
+    turn = _turn(stiffness, squared, shapes, values, vectors)
+    inertia += np.asarray(mass @ shapes) @ turn
+    vectors, shapes = vectors + shapes @ turn, shapes - vectors @ turn.T
+    motions = vectors.T @ loads
+    modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
     found = (ports @ shapes).T
     missing = (found.T / squared) @ found
     # Each load without what accelerates the rigid modes, and the displacements claimed for it.
@@ -196,7 +217,7 @@ def residual_attachments(
         )
     full = np.zeros((len(squared), 3 * n_nodes))
     full[:, free] = shapes.T
-    return Attachments(np.sqrt(squared), full.reshape(len(squared), n_nodes, 3), proof)
+    return Attachments(np.sqrt(squared), full.reshape(len(squared), n_nodes, 3), proof), vectors
 
 
 def _static_response(
@@ -277,6 +298,16 @@ def _orthonormal(
     return squared, np.asarray(shapes * np.sign(largest))
 
 
+def _turn(
+    stiffness: Operator, squared: FloatArray, shapes: FloatArray, values: FloatArray, vectors: FloatArray
+) -> FloatArray:
+    """The s of Eq. (3) for each attachment and mode, shape (k, p); 0 where they are farther off than modes may be."""
+    coupling = np.asarray(stiffness @ shapes).T @ vectors
+    apart = values - squared[:, None]
+    small = np.abs(coupling) <= RESIDUAL_BOUND * np.abs(apart)
+    return np.asarray(np.divide(coupling, apart, out=np.zeros_like(coupling), where=small & (apart != 0.0)))
+
+
 def _overlap(mass: Operator, shapes: FloatArray, inertia: FloatArray) -> float:
     own = shapes.T @ (mass @ shapes) - np.eye(shapes.shape[1])
     return float(max(np.abs(own).max(initial=0.0), np.abs(inertia.T @ shapes).max(initial=0.0)))
@@ -293,7 +324,7 @@ def _static_error(
     inertia: FloatArray,
     slack: float,
 ) -> float:
-    """The bound of :class:`StaticProof` by Eq. (3), from the displacements claimed for the balanced loads."""
+    """The bound of :class:`StaticProof` by Eq. (4), from the displacements claimed for the balanced loads."""
     held = np.asarray(stiffness @ claimed)
     left = loads - held
     cross = claimed.T @ loads

@@ -194,7 +194,7 @@ def test_a_port_on_the_fixed_patch_does_not_move(
 def test_all_the_modes_lack_nothing(beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array) -> None:
     arrays = dense(beam[1], clamped, port)
     stiffness, mass, solve, shift, values, vectors, ports, free = arrays
-    attached = residual_attachments(
+    attached, _ = residual_attachments(
         stiffness, mass, solve, values, vectors, ports, shift=shift, floor=-shift, free=free, n_nodes=beam[1].n_nodes
     )
     assert len(attached.frequencies) == 0
@@ -233,7 +233,7 @@ def test_loads_together_take_fewer_sweeps_than_the_slowest_alone(
     )
 
     def sweeps(rows: sparse.csr_array) -> int:
-        attached = residual_attachments(
+        attached, _ = residual_attachments(
             stiffness,
             mass,
             solve,
@@ -262,10 +262,13 @@ def compare_with_direct_solution(
     free: IntArray,
     *,
     cut: int,
-) -> None:
-    """The first ``cut`` modes with attachments against P K⁻¹ Pᵀ, refined with residuals of extended precision."""
+) -> FloatArray:
+    """The first ``cut`` modes with attachments against P K⁻¹ Pᵀ, refined with residuals of extended precision.
+
+    The modes as the attachments leave them are returned.
+    """
     n_nodes = int(free.max()) // 3 + 1
-    attached = residual_attachments(
+    attached, turned = residual_attachments(
         stiffness,
         mass,
         solve,
@@ -287,6 +290,33 @@ def compare_with_direct_solution(
     assert error < 1e-10
     # The bound is one, but for the rounding of its own products with K: a tenth of what a proof may leave.
     assert error < attached.proof.error + 1e-11
+    return turned
+
+
+@pytest.mark.parametrize("part", [1e-10, 1e-9, 6e-9])
+def test_modes_as_inexact_as_their_certificate_allows_are_turned_to_the_exact_compliance(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, part: float
+) -> None:
+    """The lowest mode with a little of the discarded ones, which couples it with the attachments."""
+    stiffness, mass, solve, shift, values, vectors, ports, free = dense(beam[1], clamped, port)
+    inexact = vectors.copy()
+    inexact[:, 0] += part * vectors[:, 8:20].sum(axis=1) / np.sqrt(12.0)
+    turned = compare_with_direct_solution(stiffness, mass, solve, shift, values, inexact, ports, free, cut=8)
+    np.testing.assert_allclose(turned.T @ (mass @ turned), np.eye(8), atol=1e-12)
+    before, after = (np.linalg.norm(ports @ (some[:, 0] - vectors[:, 0])) for some in (inexact, turned))
+    # By the lowest eigenvalue over the first discarded one, but for rounding.
+    assert after < before * values[0] / values[8] + 1e-12 * np.linalg.norm(ports @ vectors[:, 0])
+
+
+def test_modes_less_exact_than_their_certificate_allows_are_refused(
+    beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array
+) -> None:
+    """Or modes of another housing would be bent into this one's."""
+    stiffness, mass, solve, shift, values, vectors, ports, free = dense(beam[1], clamped, port)
+    inexact = vectors.copy()
+    inexact[:, 0] += 1e-6 * vectors[:, 8:20].sum(axis=1)
+    with pytest.raises(ReductionError, match="miss the static compliance at the ports by"):
+        compare_with_direct_solution(stiffness, mass, solve, shift, values, inexact, ports, free, cut=8)
 
 
 def test_modes_that_are_not_the_housings_fail_the_proof(

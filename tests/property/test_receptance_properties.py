@@ -10,7 +10,7 @@ from itertools import permutations, product
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 from scipy.linalg import block_diag
@@ -86,10 +86,14 @@ def _three(values: FloatArray) -> Point:
     return float(values[0]), float(values[1]), float(values[2])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solved:
-    """A housing with its modes and all its ports one after the other."""
+    """A housing with its modes and all its ports one after the other.
 
+    Without its arrays in words, which a failing example would print by the thousand.
+    """
+
+    mesh: Mesh
     matrices: Matrices
     fixed: npt.NDArray[np.int64]
     ports: sparse.csr_array
@@ -139,7 +143,7 @@ def _solve(mesh: Mesh, frame: Frame, fastened: list[Attachment], supports: list[
     ports.append(sensor_port(moved, slanted).matrix)
     whole = sparse.csr_array(sparse.vstack(ports, format="csr"))
     fixed = fixed_freedoms(moved, supports)
-    return Solved(matrices, fixed, whole, solve_modes(matrices, fixed, frequency_limit=LIMIT, ports=whole))
+    return Solved(mesh, matrices, fixed, whole, solve_modes(matrices, fixed, frequency_limit=LIMIT, ports=whole))
 
 
 def _asymmetry(values: ComplexArray) -> float:
@@ -199,12 +203,15 @@ def _compare(here: Solved, there: Solved, turn: FloatArray) -> None:
 
 @settings(max_examples=8, deadline=None)
 @given(angles=st.tuples(*[st.floats(-np.pi, np.pi)] * 3), shift=st.tuples(*[st.floats(-0.5, 0.5)] * 3))
+@example(angles=(0.0, 1.0, -1.0), shift=(0.0, 0.0, 0.0))
+@example(angles=(0.0, -1.0, 1.0), shift=(0.0, 0.0, 0.0))
 def test_turning_and_moving_the_whole_case_changes_no_frequency_and_no_receptance(
-    mesh: Mesh, solved: Solved, angles: Point, shift: Point
+    solved: Solved, angles: Point, shift: Point
 ) -> None:
+    """Also where the search ends with modes as coarse as it leaves them, as in the two frames named."""
     frame = Frame(Rotation.from_euler("xyz", angles).as_matrix(), np.array(shift))
     pad = Support("pad", surface="foot-4", fixed=(True, True, True))
-    _compare(solved, _solve(mesh, frame, _fastened(frame), [pad]), frame.turn)
+    _compare(solved, _solve(solved.mesh, frame, _fastened(frame), [pad]), frame.turn)
 
 
 def test_supports_by_components_turn_with_the_case(mesh: Mesh) -> None:
