@@ -22,11 +22,10 @@ IntArray = npt.NDArray[np.intp]
 STALE = 1e-4
 # A step larger than this part of the root starts from nowhere near it, and is shortened.
 LONGEST_STEP = 0.3
-# A root that has moved by less than this part of it is finished with the factors at hand, in so many steps at the most.
-CLOSE = 3e-4
-MOST_HELD = 3
-# What may then be left of the vector's error.
-LEFT = 1e-12
+# A root that has moved by less than this part of it is finished with the factors at hand.
+CLOSE = 1e-6
+# What is left of the vector's error then is the square of what was taken off it, which must be no more than this.
+TURNED = 1e-6
 # Relative step of the difference that gives slopes of the entries, good to about 1e-6.
 FORWARD = 1e-6
 
@@ -56,7 +55,7 @@ def newton(
     force of a ``mass``. Returned are roots (w,), vectors (w, order), the last correction as a part of the root, (w,),
     and the unit of force in each vector, (w,).
 
-    Once a root is nearly met, steps go without factors of their own: with N the matrix at the new place and F the
+    Once a root is nearly met, one step goes without factors of its own: with N the matrix at the new place and F the
     factored one of the last, x ← x − F⁻¹ N x leaves of the vector's error the part by which the root has moved
     (Neumaier, SIAM J. Numer. Anal. 22, 1985).
     """
@@ -71,11 +70,11 @@ def newton(
     roots, vectors = np.empty(count, dtype=np.complex128), np.empty((count, order), dtype=np.complex128)
     residuals, scales = np.empty(count), np.empty(count)
     for root in range(count):
-        at, base, last, held, turned = starts[root], bases[root % bases.size], math.inf, 0, 0.0
+        at, base, last, held = starts[root], bases[root % bases.size], math.inf, False
         residuals[root], right = math.inf, vectors[root : root + 1]
         put(given[root], right[0])
         for _ in range(MOST_STEPS):
-            scale = scales[root] if held > 0 else force_unit(at, mass)
+            scale = scales[root] if held else force_unit(at, mass)
             scales[root] = scale
             put_entries(at, base + rate * at, scale, table, beams, rods, values)
             # Slopes of the last step do for a root that has hardly moved since: they are not in the residual.
@@ -85,8 +84,8 @@ def newton(
                 over = 1.0 / (ahead - at)
                 for entry in range(rows.size):
                     slopes[entry] = (slopes[entry] - values[entry]) * over
-            turned, before = 0.0, turned if held > 1 else 0.0
-            if held > 0:
+            turned = 0.0
+            if held:
                 # The factors of where the root was a moment ago take the rest off the vector.
                 for i in range(order):
                     side[i] = 0.0
@@ -126,13 +125,11 @@ def newton(
             # What is left after the step, from how the last two steps fell.
             forecast = math.inf
             if share < math.sqrt(ACCEPTED) and last < 1.0:
-                forecast = share**2 * (1.0 / last if held > 0 else max(1.0, share / last**2)) + STALE * share
+                forecast = share**2 * (1.0 / last if held else max(1.0, share / last**2)) + STALE * share
             residuals[root] = share if rounding else min(share, forecast)
-            # Held factors serve few steps: a root that has not settled by then gets its own.
-            held, last = (held + 1 if share <= CLOSE and held < MOST_HELD else 0), share
-            # Each takes off the same part of the vector's error; two such parts went when the factors were made.
-            before = before if before > 0.0 else math.sqrt(turned)
-            if turned * turned <= LEFT**2 * before and (rounding or share <= SETTLED or forecast <= SETTLED):
+            # Held factors serve one step: a root that has not settled by then gets its own.
+            held, last = not held and share <= CLOSE, share
+            if turned <= TURNED**2 and (rounding or share <= SETTLED or forecast <= SETTLED):
                 break
         roots[root] = at
     return roots, vectors, residuals, scales
