@@ -223,6 +223,8 @@ def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArra
     """Exact roots from starting values (w,) and vectors (w, order), each by itself; none is dropped."""
     from .newton_kernels import newton
 
+    # One kind of array, lest the kernel be compiled for each kind: some are not to be written to.
+    starts, vectors = (np.array(given, dtype=np.complex128, order="C") for given in (starts, vectors))
     bases = np.array(speed.base, dtype=np.complex128, ndmin=1)
     entries = chain.entries
     arrays = entries.arrays, entries.pattern.arrays

@@ -24,8 +24,8 @@ STALE = 1e-4
 LONGEST_STEP = 0.3
 # A root that has moved by less than this part of it is finished with the factors at hand.
 CLOSE = 1e-6
-# What is left of the vector's error then is the square of what was taken off it, which must be no more than this.
-TURNED = 1e-6
+# What is left of the vector's error then is a few times the square of what was taken off it, which must be no more.
+TURNED = 1e-7
 # Relative step of the difference that gives slopes of the entries, good to about 1e-6.
 FORWARD = 1e-6
 
@@ -57,7 +57,8 @@ def newton(
 
     Once a root is nearly met, one step goes without factors of its own: with N the matrix at the new place and F the
     factored one of the last, x ← x − F⁻¹ N x leaves of the vector's error the part by which the root has moved
-    (Neumaier, SIAM J. Numer. Anal. 22, 1985).
+    (Neumaier, SIAM J. Numer. Anal. 22, 1985). A vector that its own factors made is that of where they were made: it
+    is done only where the root has not moved on from there.
     """
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]
@@ -128,8 +129,8 @@ def newton(
                 forecast = share**2 * (1.0 / last if held else max(1.0, share / last**2)) + STALE * share
             residuals[root] = share if rounding else min(share, forecast)
             # Held factors serve one step: a root that has not settled by then gets its own.
-            held, last = not held and share <= CLOSE, share
-            if turned <= TURNED**2 and (rounding or share <= SETTLED or forecast <= SETTLED):
+            kept, held, last = held, not held and share <= CLOSE, share
+            if turned <= TURNED**2 and (rounding or share <= SETTLED or (kept and forecast <= SETTLED)):
                 break
         roots[root] = at
     return roots, vectors, residuals, scales
