@@ -57,10 +57,11 @@ def inside(values: ComplexArray, bounds: FloatArray, out: BoolArray) -> None:
 
 
 @inner(error_model="python")
-def edge_distance(logarithm: complex, bounds: FloatArray) -> float:
+def edge_distance(place: complex, bounds: FloatArray) -> float:
     """How far ln λ lies from the edge of a sector, negative inside; along the axes, the larger part.
 
     ``bounds`` are the least and the greatest ln |λ| and arg λ, in this order.
     """
-    across = max(bounds[0] - logarithm.real, logarithm.real - bounds[1])
-    return max(across, max(bounds[2] - logarithm.imag, logarithm.imag - bounds[3]))
+    across: float = max(bounds[0] - place.real, place.real - bounds[1])
+    along: float = max(bounds[2] - place.imag, place.imag - bounds[3])
+    return max(across, along)

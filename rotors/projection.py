@@ -217,7 +217,7 @@ class Projection:
             return None
         b = self.basis.count
         # Behind the shaft's coordinates stand those of pedestals, each in the plane that its stiffness ties it to.
-        in_x = stiffness[:, :b].any(axis=1)
+        in_x = np.asarray(stiffness[:, :b].any(axis=1))
         in_x[: 2 * b] = np.arange(2 * b) < b
         return TiedPlanes.of(mass, stiffness, damping, gyroscopic, in_x)
 

@@ -58,11 +58,11 @@ def _principal(difference: complex) -> complex:
 @inner(error_model="python")
 def _put_edge(bounds: FloatArray, edge: ComplexArray) -> None:
     """Points on the sides of a sector, counter-clockwise from its first corner and back to it."""
-    part, low, high = edge.size // 4, bounds[:2], bounds[2:]
+    part, sizes, angles = edge.size // 4, bounds[:2], bounds[2:]
     for side in range(4):
         # Which end of ln |λ| and of arg λ the side begins and ends at.
-        start = complex(low[(side + 1) // 2 % 2], high[side // 2])
-        end = complex(low[(side + 2) // 2 % 2], high[(side + 1) % 4 // 2])
+        start = complex(sizes[(side + 1) // 2 % 2], angles[side // 2])
+        end = complex(sizes[(side + 2) // 2 % 2], angles[(side + 1) % 4 // 2])
         for k in range(part):
             edge[side * part + k] = start + (end - start) * (k / part)
     edge[4 * part] = edge[0]
