@@ -76,8 +76,7 @@ def directions(chain: SpatialChain, roots: ExactRoots, speeds: FloatArray) -> Fl
     if len(chain.blocks) == 1:
         return np.full(roots.eigenvalues.size, float(chain.blocks[0]))
     motion = SpatialMotion.of(chain, roots.eigenvalues, speeds.astype(np.complex128), roots.solutions, roots.scales)
-    shares = motion.shares()
-    return np.asarray((shares[:, 0] - shares[:, 1]) / shares.sum(axis=1))
+    return motion.direction
 
 
 def _directions_of_all(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[FloatArray]:

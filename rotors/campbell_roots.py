@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .coalesced_roots import refine_roots
-from .exact_roots import ACCEPTED, NEAR, ExactRoots, Speed, clusters, constant_speed, distinct, refine_each
+from .exact_roots import ACCEPTED, NEAR, ExactRoots, Speed, apart, constant_speed, distinct, refine_each
 from .spatial_chain import SpatialChain
 from .whirl_certificate import certified_roots, oscillating
 from .whirl_count import negative_count
@@ -47,7 +47,7 @@ def roots_at_speeds(
     """Exact roots at every speed: those that lie apart in one batch, near ones together at their speed."""
     chosen = [row[np.abs(row) < WINDOW * limit] for row, limit in zip(values, limits, strict=True)]
     same = all(chain is chains[0] for chain in chains)
-    near = [not same or len(clusters(row, NEAR)) < row.size for row in chosen]
+    near = [not same or not apart(row, NEAR) for row in chosen]
     owner = np.concatenate([np.full(row.size, k) for k, row in enumerate(chosen)])
     alone = ~np.array(near)[owner]
     batch = refine_each(chains[0], np.concatenate(chosen)[alone], speeds[owner[alone]])

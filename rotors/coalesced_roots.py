@@ -14,7 +14,17 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from .exact_roots import ACCEPTED, ExactRoots, Speed, clusters, distinct, random_vectors, refine_alone, settled_roots
+from .exact_roots import (
+    ACCEPTED,
+    ExactRoots,
+    Speed,
+    apart,
+    clusters,
+    distinct,
+    random_vectors,
+    refine_alone,
+    settled_roots,
+)
 from .spatial_chain import SpatialChain
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -105,8 +115,8 @@ def _settled(chain: SpatialChain, roots: ExactRoots, span: ComplexArray, radius:
     """Roots of one group polished one by one, or held together at their mean where they do not part."""
     polished = refine_alone(chain, roots.eigenvalues, roots.solutions, speed)
     moved = np.abs(polished.eigenvalues - roots.eigenvalues)
-    apart = len(clusters(polished.eigenvalues, ACCEPTED)) == polished.eigenvalues.size
-    if apart and bool((polished.residuals <= ACCEPTED).all() and (moved <= SAME_PLACE * radius).all()):
+    near = (polished.residuals <= ACCEPTED) & (moved <= SAME_PLACE * radius)
+    if near.all() and apart(polished.eigenvalues, ACCEPTED):
         return polished
     mean = complex(roots.eigenvalues.mean())
     spread = np.abs(roots.eigenvalues - mean) / abs(mean)

@@ -14,9 +14,8 @@ from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
 from .projection import Projection, basis_for
 from .shaft import Rotor
-from .spatial_field import SpatialMotion
 from .spatial_ties import block_sets
-from .whirl import certified_whirl
+from .whirl import WhirlRoots, certified_whirl
 from .whirl_certificate import NO_OSCILLATION, WhirlCertificate
 
 # Speeds at which tables are looked at for critical ones, and how far beyond them branches are followed.
@@ -91,11 +90,10 @@ def critical_speeds(
     if any(bearing.speeds is not None for bearing in free):
         return _tabled_critical_speeds(rotor, free, speed_limit, count, basis)
     sets = [Projection.of(rotor, free, blocks, chosen) for blocks in block_sets(free)]
-    motion, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
-    shares = motion.shares()
-    order = np.argsort(motion.eigenvalues.imag)
-    direction = (shares[:, 0] - shares[:, 1]) / shares.sum(axis=1)
-    return CriticalSpeeds(motion.eigenvalues.imag[order], direction[order], certificate)
+    roots, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
+    speeds = roots.eigenvalues.imag
+    order = np.argsort(speeds)
+    return CriticalSpeeds(speeds[order], roots.motion.direction[order], certificate)
 
 
 def _tabled_critical_speeds(
@@ -117,7 +115,7 @@ def _tabled_critical_speeds(
 
 def certified_criticals(
     rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[Projection], limit: float | None, count: int | None
-) -> tuple[SpatialMotion, WhirlCertificate]:
+) -> tuple[WhirlRoots, WhirlCertificate]:
     """Synchronous whirl of undamped bearings below a limit, or the lowest few, for some sets of tied motions."""
     return certified_whirl(
         rotor,

@@ -85,7 +85,7 @@ def critical_speed_map(
         ]
         basis = planar_basis(rotor, held, None, 2 * count)
         one = Projection.of(rotor, held, (direction,), basis)
-        motion, _ = certified_criticals(rotor, held, [one], None, count)
-        speeds = np.sort(motion.eigenvalues.imag)
+        roots, _ = certified_criticals(rotor, held, [one], None, count)
+        speeds = np.sort(roots.eigenvalues.imag)
         rows[k, : speeds.size] = speeds
     return CriticalSpeedMap(values, rows, direction)

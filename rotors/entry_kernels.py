@@ -66,6 +66,12 @@ def _put_runs(
     return entry
 
 
+@inner(error_model="python")
+def force_unit(at: complex, mass: float) -> float:
+    """Unit of force for roots near λ, as `rotors.spatial_chain.SpatialChain.force_scale`."""
+    return min(max((at.real**2 + at.imag**2) * mass, 1e-30), 1.0)
+
+
 @counted(error_model="python", no_cpython_wrapper=True)
 def scratch(table: Table) -> tuple[ComplexArray, ComplexArray]:
     """Room for the transfer matrices of beams and rods that `put_entries` makes, and for two products of each."""

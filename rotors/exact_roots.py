@@ -125,9 +125,9 @@ def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tu
     """
     order = chain.pattern.order
     first = random_vectors(starts.size, order)
-    groups = clusters(starts, NEAR)
-    if len(groups) == starts.size > 0:
+    if starts.size and apart(starts, NEAR):
         return _accepted(refine_alone(chain, starts, first, speed))
+    groups = clusters(starts, NEAR)
     alone: list[tuple[complex, ComplexArray]] = []
     settled: list[ExactRoots] = []
     for members in groups:
@@ -160,15 +160,19 @@ def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
     return distinct(roots.take(good)), roots.eigenvalues[~good]
 
 
+def apart(values: ComplexArray, tolerance: float) -> bool:
+    """Whether no two values are nearer than ``tolerance`` of their modulus."""
+    from .place_kernels import are_apart
+
+    return bool(are_apart(values, tolerance))
+
+
 def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp]]:
     """Indices of values that chains of distances below ``tolerance`` of their modulus connect."""
     label = np.arange(values.size)
-    sizes = np.sort(np.abs(values))
-    if (sizes[1:] - sizes[:-1] > tolerance * sizes[1:]).all():
+    if apart(values, tolerance):
         return list(label[:, None])
     near = np.abs(values[:, None] - values) <= tolerance * np.abs(values)[:, None]
-    if np.count_nonzero(near) <= values.size:
-        return list(label[:, None])
     for i, j in np.argwhere(near & ~np.eye(values.size, dtype=np.bool_)):
         label[label == label[j]] = label[i]
     order = np.argsort(label, kind="stable")
@@ -178,11 +182,10 @@ def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp
 
 def distinct(roots: ExactRoots) -> ExactRoots:
     """Each root once: equal values are several roots only where their vectors are independent."""
-    kept: list[int] = []
-    near = clusters(roots.eigenvalues, SAME)
-    if len(near) == roots.eigenvalues.size:
+    if apart(roots.eigenvalues, SAME):
         return roots
-    for cluster in near:
+    kept: list[int] = []
+    for cluster in clusters(roots.eigenvalues, SAME):
         first = len(kept)
         for i in cluster.tolist():
             if len(kept) > first:
@@ -220,13 +223,12 @@ def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArra
     """Exact roots from starting values (w,) and vectors (w, order), each by itself; none is dropped."""
     from .newton_kernels import newton
 
-    values, found = (np.array(given, dtype=np.complex128, order="C") for given in (starts, vectors))
-    residuals, scales = np.empty(values.size), np.empty(values.size)
-    bases = np.full(values.size, speed.base, dtype=np.complex128)
+    # One kind of array, lest the kernel be compiled for each kind: some are not to be written to.
+    starts, vectors = (np.array(given, dtype=np.complex128, order="C") for given in (starts, vectors))
+    bases = np.array(speed.base, dtype=np.complex128, ndmin=1)
     entries = chain.entries
     arrays = entries.arrays, entries.pattern.arrays
-    newton(values, found, bases, complex(speed.rate), chain.total_mass, *arrays, residuals, scales)
-    return ExactRoots(values, found, residuals, scales)
+    return ExactRoots(*newton(starts, vectors, bases, complex(speed.rate), chain.total_mass, *arrays))
 
 
 @lru_cache(maxsize=64)

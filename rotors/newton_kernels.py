@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
 from .compiled import FUSED, counted, inner
-from .entry_kernels import Pattern, Table, put_entries, scratch
+from .entry_kernels import Pattern, Table, force_unit, put_entries, scratch
 from .exact_roots import ACCEPTED, MOST_STEPS, SETTLED
 
 FloatArray = npt.NDArray[np.float64]
@@ -24,8 +24,8 @@ STALE = 1e-4
 LONGEST_STEP = 0.3
 # A root that has moved by less than this part of it is finished with the factors at hand.
 CLOSE = 1e-6
-# What is left of the vector's error then is the square of what was taken off it, which must be no more than this.
-TURNED = 1e-6
+# What is left of the vector's error then is a few times the square of what was taken off it, which must be no more.
+TURNED = 1e-7
 # Relative step of the difference that gives slopes of the entries, good to about 1e-6.
 FORWARD = 1e-6
 
@@ -41,25 +41,24 @@ def form(rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexA
 
 @counted(error_model="python")
 def newton(
-    roots: ComplexArray,
-    vectors: ComplexArray,
+    starts: ComplexArray,
+    given: ComplexArray,
     bases: ComplexArray,
     rate: complex,
     mass: float,
     table: Table,
     pattern: Pattern,
-    residuals: FloatArray,
-    scales: FloatArray,
-) -> None:
-    """Newton's method from starting values (w,) and vectors (w, order), in place.
+) -> tuple[ComplexArray, ComplexArray, FloatArray, FloatArray]:
+    """Newton's method from starting values (w,) and vectors (w or more, order).
 
-    The speed of rotation is Ω = base + rate λ, the unit of force the inertia force of a ``mass``, as
-    `rotors.spatial_chain.SpatialChain.force_scale`. ``residuals`` and ``scales`` (w,) take the last correction, as a
-    part of the root, and the unit of force in each vector.
+    The speed of rotation is Ω = base + rate λ, with one base for all or one for each, the unit of force the inertia
+    force of a ``mass``. Returned are roots (w,), vectors (w, order), the last correction as a part of the root, (w,),
+    and the unit of force in each vector, (w,).
 
     Once a root is nearly met, one step goes without factors of its own: with N the matrix at the new place and F the
     factored one of the last, x ← x − F⁻¹ N x leaves of the vector's error the part by which the root has moved
-    (Neumaier, SIAM J. Numer. Anal. 22, 1985).
+    (Neumaier, SIAM J. Numer. Anal. 22, 1985). A vector that its own factors made is that of where they were made: it
+    is done only where the root has not moved on from there.
     """
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]
@@ -68,11 +67,15 @@ def newton(
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
     left, side = np.empty((1, order), dtype=np.complex128), np.empty(order, dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
-    for root in range(roots.size):
-        at, base, right, last, held = roots[root], bases[root], vectors[root : root + 1], math.inf, False
-        residuals[root] = math.inf
+    count = starts.size
+    roots, vectors = np.empty(count, dtype=np.complex128), np.empty((count, order), dtype=np.complex128)
+    residuals, scales = np.empty(count), np.empty(count)
+    for root in range(count):
+        at, base, last, held = starts[root], bases[root % bases.size], math.inf, False
+        residuals[root], right = math.inf, vectors[root : root + 1]
+        put(given[root], right[0])
         for _ in range(MOST_STEPS):
-            scale = scales[root] if held else min(max(abs(at) ** 2 * mass, 1e-30), 1.0)
+            scale = scales[root] if held else force_unit(at, mass)
             scales[root] = scale
             put_entries(at, base + rate * at, scale, table, beams, rods, values)
             # Slopes of the last step do for a root that has hardly moved since: they are not in the residual.
@@ -126,7 +129,8 @@ def newton(
                 forecast = share**2 * (1.0 / last if held else max(1.0, share / last**2)) + STALE * share
             residuals[root] = share if rounding else min(share, forecast)
             # Held factors serve one step: a root that has not settled by then gets its own.
-            held, last = not held and share <= CLOSE, share
-            if turned <= TURNED**2 and (rounding or share <= SETTLED or forecast <= SETTLED):
+            kept, held, last = held, not held and share <= CLOSE, share
+            if turned <= TURNED**2 and (rounding or share <= SETTLED or (kept and forecast <= SETTLED)):
                 break
         roots[root] = at
+    return roots, vectors, residuals, scales

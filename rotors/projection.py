@@ -37,6 +37,7 @@ from .planar_basis import (
 from .rotor_lines import bending_line, rod_line
 from .shaft import Rotor
 from .spatial_ties import CIRCULAR, MEMBERS, block_sets
+from .tied_planes import TiedPlanes
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -99,18 +100,29 @@ def basis_for(
     basis: LateralModes | None,
 ) -> PlanarBasis:
     """From the given basis if it fits the bearings, or a new one; checks the limit and the count."""
-    for bearing in bearings:
-        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
     require_count("count of modes", count)
     if basis is None:
-        return rotor.once(planar_basis, tuple(bearings), frequency_limit, count)
+        return rotor.once(_basis_of_bearings, tuple(bearings), frequency_limit, count)
     return rotor.once(_basis_of_modes, tuple(bearings), basis)
 
 
+def _basis_of_bearings(
+    rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
+) -> PlanarBasis:
+    _require_on_shaft(rotor, bearings)
+    return planar_basis(rotor, bearings, frequency_limit, count)
+
+
 def _basis_of_modes(rotor: Rotor, bearings: Sequence[Bearing], basis: LateralModes) -> PlanarBasis:
+    _require_on_shaft(rotor, bearings)
     expected = mean_supports(bearings)
     require(basis.supports == expected, "supports of the basis", basis.supports, f"{expected}, the bearings'")
     return PlanarBasis.of_modes(basis, bearings)
+
+
+def _require_on_shaft(rotor: Rotor, bearings: Sequence[Bearing]) -> None:
+    for bearing in bearings:
+        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
 
 
 def slowest(bearing: Bearing) -> float:
@@ -196,7 +208,18 @@ class Projection:
         system[0, :order, order:] = np.diag(weight)
         system[0, order:, :order] = stiffness / (-mass[:, None] * weight)
         system[:, order:, order:] = np.array([damping, gyroscopic]) / -mass[:, None]
-        return Pencil(self.blocks, system[0], system[1])
+        return Pencil(self.blocks, system[0], system[1], self._tied_planes(mass, stiffness, damping, gyroscopic))
+
+    def _tied_planes(
+        self, mass: FloatArray, stiffness: NumberArray, damping: NumberArray, gyroscopic: NumberArray
+    ) -> TiedPlanes | None:
+        if self.blocks != (1, -1):
+            return None
+        b = self.basis.count
+        # Behind the shaft's coordinates stand those of pedestals, each in the plane that its stiffness ties it to.
+        in_x = np.asarray(stiffness[:, :b].any(axis=1))
+        in_x[: 2 * b] = np.arange(2 * b) < b
+        return TiedPlanes.of(mass, stiffness, damping, gyroscopic, in_x)
 
     def critical(self, bearings: Sequence[Bearing]) -> ComplexArray:
         """λ at which λ = iΩ, from K q = ω² (M − iG) q with the gyroscopic term beside the mass, (N,)."""
@@ -273,14 +296,25 @@ class Pencil:
         As of `rotors.spatial_chain.SpatialChain`.
     still, turning
         (2N, 2N): in 1/s, and per rad/s of the speed Ω.
+    planes
+        The same in a form that costs less, where it has one.
     """
 
     blocks: tuple[int, ...]
     still: NumberArray
     turning: NumberArray
+    planes: TiedPlanes | None
 
     def eigenvalues(self, speeds: FloatArray) -> ComplexArray:
-        """All eigenvalues at every speed, (speeds, 2N), rad/s."""
+        """All eigenvalues at every speed, (speeds, 2N), rad/s; near enough to the system's to start from."""
+        if self.planes is None:
+            return self._by_systems(speeds)
+        values, mixed = self.planes.eigenvalues(speeds)
+        if mixed.any():
+            values[mixed] = self._by_systems(speeds[mixed])
+        return values
+
+    def _by_systems(self, speeds: FloatArray) -> ComplexArray:
         systems = self.still + speeds[:, None, None] * self.turning
         return np.asarray(np.linalg.eigvals(systems), dtype=np.complex128)
 

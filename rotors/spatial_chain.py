@@ -245,7 +245,7 @@ def whirl_reach(limit: float, speed: float) -> float:
 
     The rotary inertia's ω² ± 2Ωω is largest in magnitude at ω(ω + 2|Ω|).
     """
-    return float(np.sqrt(limit * (limit + 2.0 * abs(speed))))
+    return math.sqrt(limit * (limit + 2.0 * abs(speed)))
 
 
 def spatial_chain(

@@ -1,6 +1,7 @@
 """Exact motion of a whole shaft in both planes at a complex frequency, from the states at its nodes to any place."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -100,6 +101,7 @@ class SpatialMotion:
         by = factors[:, None, None]
         return replace(self, forward=by * self.forward, backward=by * self.backward, axial=by * self.axial)
 
+    @cached_property
     def shares(self) -> FloatArray:
         """∫ ρA |r±|² + ρI |β±|² dz with the nodes' own, of the forward and the backward part, (w, 2), kg·m²."""
         from .share_kernels import inertia_shares
@@ -112,6 +114,11 @@ class SpatialMotion:
             squared = self._squared(block)
             shares.append(inertia_shares(pieces, *squared, states, SQUARE_FRACTIONS, along, chain.node_inertia))
         return np.stack(shares, axis=-1)
+
+    @property
+    def direction(self) -> FloatArray:
+        """Between −1 and 1: of all `shares` the forward part less the backward one, (w,)."""
+        return np.asarray((self.shares[:, 0] - self.shares[:, 1]) / self.shares.sum(axis=1))
 
     def at(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Forward and backward states (w, len(z), 4) at positions z (m), in scaled units, by the exact transfer.

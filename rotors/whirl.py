@@ -6,8 +6,10 @@ root is then refined on the exact transfer equations of both planes (`rotors.spa
 and their number is proved (`rotors.whirl_certificate`).
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -48,23 +50,33 @@ class WhirlModes:
         Ω, rad/s.
     eigenvalues
         (w,) complex, rad/s, with positive imaginary part: exact to about 1e-13 of each.
-    direction
-        (w,): between −1 and 1, the inertia-weighted mean of how circular the whirl is; 1 is circular and
-        counter-clockwise (forward for positive speed), −1 circular and clockwise, 0 planar.
     certificate
         Proof that none is missing.
     bearings
         What the shapes stand on, with the coefficients of this speed.
-    motion
-        The exact shapes, of unit norm in the inertias of shaft and nodes, m per √kg.
+    roots
+        The same eigenvalues as roots of the exact equations, with their vectors, of which `motion` makes the shapes.
     """
 
     speed: float
     eigenvalues: ComplexArray
-    direction: FloatArray
     certificate: WhirlCertificate
     bearings: tuple[Bearing, ...] = field(repr=False)
-    motion: SpatialMotion = field(repr=False)
+    roots: "WhirlRoots" = field(repr=False)
+
+    @cached_property
+    def motion(self) -> SpatialMotion:
+        """The exact shapes, of unit norm in the inertias of shaft and nodes, m per √kg; made when first asked for."""
+        motion = self.roots.motion
+        return motion.scaled(1.0 / np.sqrt(motion.shares.sum(axis=1)).astype(np.complex128))
+
+    @property
+    def direction(self) -> FloatArray:
+        """How circular the whirl is, the inertia-weighted mean over the shaft, (w,).
+
+        1 is circular and counter-clockwise (forward for positive speed), −1 circular and clockwise, 0 planar.
+        """
+        return self.roots.motion.direction
 
     @property
     def frequencies(self) -> FloatArray:
@@ -164,7 +176,7 @@ def solve_whirl(
     constant = tuple(bearing.at_speed(speed) for bearing in bearings)
     turning = np.array([speed])
     wanted = None if frequency_limit is not None else count or DEFAULT_COUNT
-    modes = certified_whirl(
+    roots, certificate = certified_whirl(
         rotor,
         constant,
         [(one.blocks, one.eigenvalues(turning)[0]) for one in rotor.once(pencils, constant, chosen)],
@@ -174,16 +186,44 @@ def solve_whirl(
         frequency_limit,
         wanted,
     )
-    motion, certificate = modes
-    shares = motion.shares()
-    return WhirlModes(
-        speed=speed,
-        eigenvalues=motion.eigenvalues,
-        direction=(shares[:, 0] - shares[:, 1]) / shares.sum(axis=1),
-        certificate=certificate,
-        bearings=constant,
-        motion=motion.scaled(1.0 / np.sqrt(shares.sum(axis=1)).astype(np.complex128)),
-    )
+    return WhirlModes(speed, roots.eigenvalues, certificate, constant, roots)
+
+
+@dataclass(frozen=True)
+class WhirlRoots:
+    """Whirl as roots of the exact equations of every set of tied motions, from which shapes are made.
+
+    Attributes
+    ----------
+    chains, parts
+        The equations of the sets, and their roots.
+    speed
+        Of rotation.
+    order
+        (w,): where each root stands among all, one set after another.
+    """
+
+    chains: Sequence[SpatialChain]
+    parts: Sequence[ExactRoots]
+    speed: Speed
+    order: npt.NDArray[np.intp]
+
+    @property
+    def eigenvalues(self) -> ComplexArray:
+        """λ of every root, rad/s, (w,)."""
+        return _all([roots.eigenvalues for roots in self.parts])[self.order]
+
+    @cached_property
+    def motion(self) -> SpatialMotion:
+        """The exact motion of every root, as it comes; made when first asked for."""
+        motions = [
+            SpatialMotion.of(chain, one.eigenvalues, self.speed(one.eigenvalues), one.solutions, one.scales)
+            for chain, one in zip(self.chains, self.parts, strict=True)
+        ]
+        motion = motions[0]
+        for more in motions[1:]:
+            motion = motion.joined(more)
+        return motion.take(self.order)
 
 
 def certified_whirl(
@@ -195,25 +235,24 @@ def certified_whirl(
     least: float,
     limit: float | None,
     count: int | None,
-) -> tuple[SpatialMotion, WhirlCertificate]:
+) -> tuple[WhirlRoots, WhirlCertificate]:
     """Every motion below a limit, or the lowest ``count``, from starting values for every set of tied motions.
 
     ``turning`` is the speed at which pieces must be short enough, rad/s; None where it follows the frequency.
     """
-    kept = [values[(values.imag > NO_OSCILLATION * np.abs(values)) & (np.abs(values) > least)] for _, values in starts]
-    sizes = np.sort(np.abs(np.concatenate(kept)))
+    from .place_kernels import ascending
+
+    kept = [ascending(values, least, NO_OSCILLATION) for _, values in starts]
     if limit is None:
         assert count is not None
-        reach = _reach_behind(sizes, count)
+        reach = _reach_behind(np.sort(np.abs(_all(kept))), count)
     else:
         reach = START_REACH * limit
     highest = max(START_REACH * reach, 10.0 * least)
     highest = whirl_reach(highest, highest if turning is None else turning)
     chains = [whirl_chain(rotor, bearings, blocks, highest) for blocks, _ in starts]
-    refined = [
-        refine_roots(chain, values[np.abs(values) <= reach], speed) for chain, values in zip(chains, kept, strict=True)
-    ]
-    beyond = [values[np.abs(values) > reach] for values in kept]
+    near = [int(np.abs(values).searchsorted(reach, side="right")) for values in kept]
+    refined = [refine_roots(chain, values[:k], speed) for chain, values, k in zip(chains, kept, near, strict=True)]
     if limit is None:
         assert count is not None
         sector = oscillating(least, _limit_behind(refined, least, count))
@@ -221,11 +260,11 @@ def certified_whirl(
         sector = oscillating(least, limit)
     conservative = rotor.once(is_undriven, tuple(bearings))
     parts = [
-        certified_roots(chain, roots, speed, sector, conservative, near)
-        for chain, roots, near in zip(chains, refined, beyond, strict=True)
+        certified_roots(chain, roots, speed, sector, conservative, values[k:])
+        for chain, roots, values, k in zip(chains, refined, kept, near, strict=True)
     ]
-    motion = _joined(chains, [roots for roots, _ in parts], speed)
-    order = np.lexsort((motion.eigenvalues.imag, np.abs(motion.eigenvalues)))[:count]
+    found = _all([roots.eigenvalues for roots, _ in parts])
+    order = np.lexsort((found.imag, np.abs(found)))[:count]
     proofs = [proof for _, proof in parts]
     certificate = WhirlCertificate(
         sector.most,
@@ -234,7 +273,7 @@ def certified_whirl(
         max(proof.max_residual for proof in proofs),
         proofs[0].method,
     )
-    return motion.take(order), certificate
+    return WhirlRoots(chains, [roots for roots, _ in parts], speed, order), certificate
 
 
 def is_undriven(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
@@ -255,22 +294,16 @@ def _reach_behind(ascending: FloatArray, count: int) -> float:
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
     """A frequency in a gap behind the lowest ``count`` roots, or behind all there are."""
-    values = np.concatenate([roots.eigenvalues for roots in refined])
-    ascending = np.sort(np.abs(values[oscillating(least, np.inf).holds(values)]))
-    if ascending.size == 0:
+    from .place_kernels import ascending
+
+    sizes = np.abs(ascending(_all([roots.eigenvalues for roots in refined]), least, NO_OSCILLATION)).tolist()
+    if not sizes:
         return 10.0 * least
-    for last in range(count, ascending.size):
-        if ascending[last] > ascending[last - 1] * (1.0 + LEAST_GAP):
-            return float(np.sqrt(ascending[last] * ascending[last - 1]))
-    return float(ascending[-1]) * (1.0 + 0.01)
+    for last in range(count, len(sizes)):
+        if sizes[last] > sizes[last - 1] * (1.0 + LEAST_GAP):
+            return math.sqrt(sizes[last] * sizes[last - 1])
+    return float(sizes[-1]) * (1.0 + 0.01)
 
 
-def _joined(chains: Sequence[SpatialChain], roots: Sequence[ExactRoots], speed: Speed) -> SpatialMotion:
-    motions = [
-        SpatialMotion.of(chain, one.eigenvalues, speed(one.eigenvalues), one.solutions, one.scales)
-        for chain, one in zip(chains, roots, strict=True)
-    ]
-    motion = motions[0]
-    for more in motions[1:]:
-        motion = motion.joined(more)
-    return motion
+def _all(parts: Sequence[ComplexArray]) -> ComplexArray:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)

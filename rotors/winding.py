@@ -42,16 +42,6 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 NONE = np.zeros(0, dtype=np.complex128)
-STEEPEST = 1.5
-MISFIT = 0.3
-SIDE_SAMPLES = 4
-# Known roots nearer to the contour than this, in ln λ, are not divided out.
-TOO_NEAR = 1e-4
-# The second step of a sample, as a part of the interval it was put into.
-SLOPE_PART = 1e-3
-# An interval of ln λ still unsafe at this length passes through a root to rounding.
-SHORTEST = 1e-10
-MOST_SAMPLES = 40_000
 
 
 class RootOnContourError(IncompleteModesError):
@@ -68,20 +58,17 @@ class Sector:
     last: float
 
     @property
-    def corners(self) -> ComplexArray:
-        """ln λ at the corners, counter-clockwise."""
-        low, high = math.log(self.least), math.log(self.most)
-        return np.array([low + 1j * self.first, high + 1j * self.first, high + 1j * self.last, low + 1j * self.last])
+    def bounds(self) -> FloatArray:
+        """The least and the greatest ln |λ| and arg λ, (4,)."""
+        return np.array([math.log(self.least), math.log(self.most), self.first, self.last])
 
     def holds(self, eigenvalues: ComplexArray) -> npt.NDArray[np.bool_]:
         """Which of the values lie inside."""
-        return np.asarray(self.distance(np.log(eigenvalues)) < 0.0)
+        from .place_kernels import inside
 
-    def distance(self, logarithms: ComplexArray) -> FloatArray:
-        """How far values given by their ln λ lie from the edge, negative inside; along the axes, the larger part."""
-        size, angle = logarithms.real, logarithms.imag
-        across = np.maximum(math.log(self.least) - size, size - math.log(self.most))
-        return np.asarray(np.maximum(across, np.maximum(self.first - angle, angle - self.last)))
+        found = np.empty(eigenvalues.size, dtype=np.bool_)
+        inside(eigenvalues, self.bounds, found)
+        return found
 
     def halves(self, part: float) -> tuple["Sector", "Sector"]:
         """Two sectors, cut across the longer side at a part of it."""
@@ -158,33 +145,19 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
     """
     from .winding_kernels import walk
 
-    scale = float(chain.force_scale(np.array([sector.most]))[0])
-    corners = sector.corners
-    logarithms = np.log(known)
-    distance = sector.distance(logarithms)
-    apart, holds = np.abs(distance) > TOO_NEAR, distance < 0.0
-    divided, left = known[apart], known[~apart & holds]
-    inside = int(np.count_nonzero(apart & holds))
-    if len(chain.blocks) > 1:
-        outside = sector.distance(logarithms.conj()) > TOO_NEAR
-        divided = np.concatenate([divided, known[apart & outside & speed.is_real].conj()])
-
-    sides = corners[[1, 2, 3, 0]] - corners
-    edge = corners[:, None] + sides[:, None] * (np.arange(SIDE_SAMPLES - 1) / (SIDE_SAMPLES - 1))
-    rule = np.array([STEEPEST, MISFIT, SHORTEST, SLOPE_PART])
-    count, samples, path = walk(
-        np.append(edge, corners[0]),
-        np.array([speed.base, speed.rate], dtype=np.complex128),
-        scale,
-        divided,
-        rule,
-        MOST_SAMPLES,
-        chain.entries.arrays,
-        chain.entries.pattern.arrays,
+    entries = chain.entries
+    count, samples, inside, left, path = walk(
+        sector.bounds,
+        (complex(speed.base), complex(speed.rate)),
+        chain.total_mass,
+        known,
+        len(chain.blocks) > 1 and bool(speed.is_real),
+        entries.arrays,
+        entries.pattern.arrays,
     )
     if count:
         path = path[:, :count]
-        turns = round(float(path[1, -1].imag - path[1, 0].imag) / (2.0 * np.pi))
+        turns = round(float(path[1, -1].imag - path[1, 0].imag) / (2.0 * math.pi))
         return Winding(inside + turns, samples, path[0], path[1], path[2], left)
     raise RootOnContourError(
         f"the count of whirl modes with {sector.least:g} < |λ| < {sector.most:g} rad/s does not settle, as one lies "

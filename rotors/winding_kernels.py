@@ -11,11 +11,26 @@ import numpy.typing as npt
 
 from .banded_kernels import TINY, factor, fill
 from .compiled import counted, inner
-from .entry_kernels import Pattern, Table, put_entries, scratch
+from .entry_kernels import Pattern, Table, force_unit, put_entries, scratch
+from .place_kernels import edge_distance, logarithm
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+# A safe interval: the steepest slopes of ln q, and the largest misfit of its change.
+STEEPEST = 1.5
+MISFIT = 0.3
+# Sides are sampled at so many places, both ends included.
+SIDE_SAMPLES = 4
+# Known roots nearer to the contour than this, in ln λ, are not divided out.
+TOO_NEAR = 1e-4
+# The second step of a sample, as a part of the interval it was put into.
+SLOPE_PART = 1e-3
+# An interval of ln λ still unsafe at this length passes through a root to rounding.
+SHORTEST = 1e-10
+MOST_SAMPLES = 40_000
+# Points that may wait beside those of the sides: two for each halving down to the shortest.
+MOST_WAITING = 2 * math.ceil(-math.log2(SHORTEST)) + 16
 # Factors are gathered up to these sizes before their logarithm is taken.
 SMALL, LARGE = 1e-100, 1e100
 
@@ -40,26 +55,70 @@ def _principal(difference: complex) -> complex:
     return complex(difference.real, difference.imag - 2.0 * math.pi * turns)
 
 
+@inner(error_model="python")
+def _put_edge(bounds: FloatArray, edge: ComplexArray) -> None:
+    """Points on the sides of a sector, counter-clockwise from its first corner and back to it."""
+    part, sizes, angles = edge.size // 4, bounds[:2], bounds[2:]
+    for side in range(4):
+        # Which end of ln |λ| and of arg λ the side begins and ends at.
+        start = complex(sizes[(side + 1) // 2 % 2], angles[side // 2])
+        end = complex(sizes[(side + 2) // 2 % 2], angles[(side + 1) % 4 // 2])
+        for k in range(part):
+            edge[side * part + k] = start + (end - start) * (k / part)
+    edge[4 * part] = edge[0]
+
+
+@inner(error_model="python")
+def _divide(
+    known: ComplexArray, mirrored: bool, bounds: FloatArray, divided: ComplexArray, left: ComplexArray
+) -> tuple[int, int, int]:
+    """Sort known roots into those divided out and those left inside; how many each, and how many of the former inside.
+
+    ``mirrored`` roots have conjugates that are roots.
+    """
+    away, near, inside = 0, 0, 0
+    for k in range(known.size):
+        place = logarithm(known[k])
+        distance = edge_distance(place, bounds)
+        if abs(distance) <= TOO_NEAR:
+            if distance < 0.0:
+                left[near] = known[k]
+                near += 1
+            continue
+        inside += distance < 0.0
+        divided[away] = known[k]
+        away += 1
+        if mirrored and edge_distance(place.conjugate(), bounds) > TOO_NEAR:
+            divided[away] = known[k].conjugate()
+            away += 1
+    return away, near, inside
+
+
 @counted(error_model="python")
 def walk(
-    edge: ComplexArray,
-    speed: ComplexArray,
-    scale: float,
-    divided: ComplexArray,
-    limits: FloatArray,
-    most_samples: int,
+    bounds: FloatArray,
+    speed: tuple[complex, complex],
+    mass: float,
+    known: ComplexArray,
+    mirrored: bool,
     table: Table,
     pattern: Pattern,
-) -> tuple[int, int, ComplexArray]:
-    """Follow ln q along a closed polygon of ln λ; how many points that took, how many determinants, and what they are.
+) -> tuple[int, int, int, ComplexArray, ComplexArray]:
+    """Follow ln q along the edge of a sector: how many points that took, how many determinants, and what was found.
 
-    The last is (3, s), of which as many columns hold points, ln q and d ln q/dw; none where the path does not settle.
+    That is how many known roots inside are divided out, those that are left, and (3, s), of which as many columns as
+    there are points hold them, ln q and d ln q/dw; no points where the path does not settle.
 
-    ``edge`` ends with its first point; Ω = ``speed[0]`` + ``speed[1]`` λ. ``limits`` are the steepest and the largest
-    misfit of a safe interval, the shortest one, and the part of an interval that is the second step of a sample. An
-    interval that is not safe is halved: what its ends know of it does not depend on what was found elsewhere.
+    ``bounds`` are as of `rotors.place_kernels.edge_distance`, Ω = ``speed[0]`` + ``speed[1]`` λ, and ``mass`` gives the
+    unit of force. An interval that is not safe is halved: what its ends know of it does not depend on what was found
+    elsewhere.
     """
-    steepest, misfit, shortest, slope_part = limits[0], limits[1], limits[2], limits[3]
+    edge = np.empty(4 * (SIDE_SAMPLES - 1) + 1, dtype=np.complex128)
+    _put_edge(bounds, edge)
+    divided, left = np.empty(2 * known.size, dtype=np.complex128), np.empty(known.size, dtype=np.complex128)
+    away, near, inside = _divide(known, mirrored, bounds, divided, left)
+    divided, left = divided[:away], left[:near]
+    scale = force_unit(complex(math.exp(bounds[1]), 0.0), mass)
     rows, columns, envelope, lower, upper = pattern
     order, corners = envelope.shape[0], edge.size - 1
     beams, rods = scratch(table)
@@ -69,14 +128,14 @@ def walk(
     both = np.empty(2, dtype=np.complex128)
     found = np.empty((3, 64), dtype=np.complex128)
     # Behind the last point of ``found`` that is safe to go on from, points to come wait, the nearest at the end.
-    waiting = np.empty((3, corners + 1 + 2 * int(-math.log2(shortest)) + 16), dtype=np.complex128)
+    waiting = np.empty((3, corners + 1 + MOST_WAITING), dtype=np.complex128)
     at_zero, samples, count, pending = 0, 0, 1, 0
     while True:
         # The points given come first, last to first; then those halfway between two that are too far apart.
         given = pending < corners and samples < 2 * corners
         if given:
             corner = corners - 1 - pending
-            point, step = edge[corner], slope_part * (edge[corner + 1] - edge[corner])
+            point, step = edge[corner], SLOPE_PART * (edge[corner + 1] - edge[corner])
         else:
             if samples == 2 * corners:
                 # Motions at zero, of a free shaft, are outside: divided out like the others.
@@ -93,7 +152,7 @@ def walk(
                 h = waiting[0, pending - 1] - found[0, count - 1]
                 change = _principal(waiting[1, pending - 1] - found[1, count - 1])
                 here, there = h * found[2, count - 1], h * waiting[2, pending - 1]
-                if max(abs(here), abs(there)) > steepest or abs(change - 0.5 * (here + there)) > misfit:
+                if max(abs(here), abs(there)) > STEEPEST or abs(change - 0.5 * (here + there)) > MISFIT:
                     break
                 if count == found.shape[1]:
                     more = np.empty((3, 2 * count), dtype=np.complex128)
@@ -107,10 +166,10 @@ def walk(
                 count += 1
                 pending -= 1
             if pending == 0:
-                return count, samples, found
-            if abs(h) < shortest or samples > most_samples or pending == waiting.shape[1]:
-                return 0, samples, found
-            point, step = found[0, count - 1] + 0.5 * h, 0.5 * slope_part * h
+                return count, samples, inside, left, found
+            if abs(h) < SHORTEST or samples > MOST_SAMPLES or pending == waiting.shape[1]:
+                return 0, samples, inside, left, found
+            point, step = found[0, count - 1] + 0.5 * h, 0.5 * SLOPE_PART * h
         for k in range(2):
             at = cmath.exp(point + k * step)
             put_entries(at, speed[0] + speed[1] * at, scale, table, beams, rods, values)

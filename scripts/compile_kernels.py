@@ -16,6 +16,7 @@ from coupling.gears import ToothContact, piecewise
 from coupling.periodic import periodic_response
 from coupling.settings import Method
 from gearwhine.cli import run_command
+from rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
 
 
 def small_machine() -> CoupledSystem:
@@ -27,7 +28,17 @@ def small_machine() -> CoupledSystem:
     return CoupledSystem((mass,), (0.0,), contacts=(tooth,), load=np.ones(1))
 
 
+def turn_in_uneven_bearings() -> None:
+    """Whirl of a shaft in bearings that are not alike in x and y, which the case's are."""
+    shaft = Rotor("shaft", [Segment(1.0, 0.05, 0.0, ShaftMaterial(2.1e11, 8.1e10, 7800.0))])
+    bearings = [
+        Bearing(name, at, np.diag([2e6, 1e6]), 10.0 * np.eye(2)) for name, at in (("left", 0.0), ("right", 1.0))
+    ]
+    solve_whirl(shaft, bearings, 1.0, count=2)
+
+
 def rotors_and_gears() -> None:
+    turn_in_uneven_bearings()
     tell("rotors")
     tell("gears")
 
