@@ -2,11 +2,10 @@
 
 What is asked of a choice of dominant modes parts the designs into basins, and a search from one start ends in the
 nearest. So many are begun, heat by heat, and the better half of each heat goes on (Jamieson and Talwalkar 2016 on
-successive halving). In the first heats every runner is searched for with a few solves on the coarse mesh, the mesh's
-bias taken off (:mod:`housing.updating.bias`), which the fine mesh tells anew at each design that goes on. A bias that
-was learned at one design is off by per cents some standard deviations away where walls are thin, so the last heats are
-run on the fine mesh itself. Penalties grow from heat to heat. The race ends where a design meets all that is asked for
-on the fine mesh, or with its last heat.
+successive halving). In the first heat every runner is searched for with a few solves on the coarse mesh, the mesh's
+bias taken off (:mod:`housing.updating.bias`). A bias that was learned at one design is off by per cents some standard
+deviations away where walls are thin, so the other heats are run on the fine mesh itself. Penalties grow from heat to
+heat. The race ends where a design meets all that is asked for on the fine mesh, or with its last heat.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,11 +27,10 @@ FloatArray = npt.NDArray[np.float64]
 _DRAWN = 8  # from the prior for each start that is solved
 _DESCENT = 25  # steps of each on the surrogate
 _APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
-_COARSE = 1  # heats on the coarse mesh, before those on the fine one
-_NEVER_PARTED = (1, 4, 2)  # runners that go on into each heat, however few the better half is
-FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the last in all others
+_NEVER_PARTED = (4, 2)  # runners that go on into each heat on the fine mesh, however few the better half is
+FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the first of which is on the coarse mesh
 TRUST = (0.25, 0.15, 0.1)  # likewise
-_FINE_SOLVES = (3, 5)  # of each runner in the heats on the fine mesh
+_FINE_SOLVES = (3, 5)  # of each runner there
 _STARTS = 16  # on the surrogate
 
 
@@ -79,8 +77,6 @@ class Runner(Generic[AnyDesign]):
     ----------
     number : int
     coordinates : ndarray, shape (n_parameters,)
-    bias : MeshBias, or None
-        Of the design where the race began; None where there is one mesh only.
     judged : ModalState, or None
         What the fine mesh has here; None where it has not been asked yet.
     design : Design, or None
@@ -89,7 +85,6 @@ class Runner(Generic[AnyDesign]):
 
     number: int
     coordinates: FloatArray
-    bias: MeshBias | None
     judged: ModalState | None = None
     design: AnyDesign | None = None
 
@@ -133,6 +128,7 @@ class _Run(Generic[AnyDesign]):
     target: Target
     parameters: tuple[Parameter, ...]
     effort: Effort
+    bias: MeshBias | None
     on_fine: bool
 
     def __call__(self, runner: Runner[AnyDesign]) -> Ran[AnyDesign]:
@@ -142,9 +138,8 @@ class _Run(Generic[AnyDesign]):
             begin = solve(runner.coordinates, None) if runner.design is None else runner.design
         except HousingError:
             return runner, np.inf, ()
-        bias = None if self.on_fine else runner.bias
         effort = replace(self.effort, seed=self.effort.seed + runner.number)
-        found = search(debiased(solve, bias), self.target, self.parameters, Debiased(begin, bias), effort)
+        found = search(debiased(solve, self.bias), self.target, self.parameters, Debiased(begin, self.bias), effort)
         ended = replace(runner, coordinates=found.design.coordinates, judged=None)
         if self.on_fine:
             ended = replace(ended, judged=found.design.state, design=self.meshes.light(found.design.design))
@@ -174,7 +169,7 @@ def race(
     judged : ModalState, or None
         The fine mesh's modes of the same; None where there is one mesh only.
     effort : Effort
-        Its solves are those of all runners in the heats on the coarse mesh.
+        Its solves are those of all runners in the heat on the coarse mesh.
     count : int
         Runners, the start among them.
     each : callable
@@ -187,19 +182,19 @@ def race(
     if count > 1:
         progress(f"bringing {_DRAWN * (count - 1)} draws of the prior down")
     points += _drawn(Debiased(start, bias).surrogate(), soft, parameters, count - 1, effort.seed, each)
-    runners = [Runner[AnyDesign](number, point, bias) for number, point in enumerate(points)]
+    runners = [Runner[AnyDesign](number, point) for number, point in enumerate(points)]
     first = replace(runners[0], judged=start.state if judged is None else judged)
     best = _better(None, target, first, lambda message: None)
     going = _going(count)
-    solves = max(1, effort.solves // sum(going[:_COARSE]))
     steps = list[Step]()
     for heat, number in enumerate(going):
-        on_fine = heat >= _COARSE
+        on_fine = heat > 0
         if best.is_met:
             break
-        firmness, trust = (values[min(heat, len(values) - 1)] for values in (FIRMNESS, TRUST))
-        own = replace(effort, solves=_FINE_SOLVES[heat - _COARSE] if on_fine else solves, trust=trust, starts=_STARTS)
-        run = _Run(meshes, replace(target, firmness=firmness), tuple(parameters), own, on_fine)
+        solves = _FINE_SOLVES[heat - 1] if on_fine else max(1, effort.solves // count)
+        own = replace(effort, solves=solves, trust=TRUST[heat], starts=_STARTS)
+        weighed, off = replace(target, firmness=FIRMNESS[heat]), None if on_fine else bias
+        run = _Run(meshes, weighed, tuple(parameters), own, off, on_fine)
         ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
         steps += [step for *_, own_steps in ran for step in own_steps]
         told = ", ".join(f"{value:.4g}" for _, value, _ in ran)
@@ -245,7 +240,7 @@ def _better(
 def _going(count: int) -> list[int]:
     """How many there are in each heat."""
     going = [count]
-    for few in _NEVER_PARTED[1:]:
+    for few in _NEVER_PARTED:
         going.append(min(going[-1], max(few, (going[-1] + 1) // 2)))
     return going
 
