@@ -35,7 +35,7 @@ _COUNT_SCALE = 0.01  # how soft the number of modes is: in ln ω of the mode tha
 _COUNT_CLEAR = 0.005  # how clearly it has to, lest the next mesh decides
 _HOPELESS = 1e6  # J of a design with too few modes to pair
 _WITHIN = 2.0  # σ that a frequency may be off where it is met
-_LOOSE = 25.0  # J of each measured mode that finds no partner: as much as an error of five σ
+_LOOSE = 25.0  # J of each measured mode that finds no partner, beside its shape's: as much as an error of five σ
 
 
 @dataclass(frozen=True)
@@ -184,9 +184,11 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
         penalty += clear.cost
     else:
         pairs, mac = pair_by_shape(target, state)
-        told = (pairs != UNPAIRED) & np.isfinite(target.noise)
+        told = np.isfinite(target.noise)
         penalty += _LOOSE * np.count_nonzero(pairs == UNPAIRED)
-        penalty += target.shapes.shape[1] / target.shape_noise**2 * float((1.0 - mac[told]).sum())
+        # Without partner a shape costs what it would on the verge of one: less, and a search would rather lose it.
+        unlike = 1.0 - np.where(pairs == UNPAIRED, _LEAST_MAC, mac)
+        penalty += target.shapes.shape[1] / target.shape_noise**2 * float(unlike[told].sum())
     count = 0
     if target.count is not None:
         count = int(np.count_nonzero(state.frequencies < target.count.limit))

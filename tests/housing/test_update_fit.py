@@ -159,6 +159,21 @@ def test_shapes_pair_modes_whatever_their_order_and_scale() -> None:
         measure(replace(target, shapes=np.ones((3, 5))), solve(z, None).state, z)
 
 
+def test_no_shape_is_cheaper_for_being_lost() -> None:
+    """As a measured shape turns away from the model's, J grows to the place where it loses its partner, and beyond."""
+    z = np.zeros(3)
+    target = replace(target_at(OWN), shape_noise=0.05)
+    values = []
+    for turned in (0.0, 0.7, 0.78, 0.79):  # MAC = cos² of it: a half at π/4
+        shape = [np.cos(turned), np.sin(turned) / np.sqrt(2.0), np.sin(turned) / np.sqrt(2.0)]
+        found = measure(
+            replace(target, shapes=np.array([shape, [0, 1.0, -1.0], [0, 1.0, 1.0]])), solve(z, None).state, z
+        )
+        values.append((found.value, found.pairs[0] == UNPAIRED))
+    assert [lost for _, lost in values] == [False, False, False, True]
+    assert values == sorted(values)
+
+
 def test_the_search_ends_where_prior_and_data_balance() -> None:
     """J_i = (½ z - d)² / σ² + z² is least at z = 2 d / (1 + 4 σ²)."""
     wanted, noise = np.array([0.3, -0.2, 0.1]), 0.2
