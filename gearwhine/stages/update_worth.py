@@ -1,6 +1,6 @@
 """What an update is worth, on the search's mesh: modes held back, and random sets of frequencies fitted likewise.
 
-"Likewise" is what one start of the race goes through on that mesh, its two heats: a race for each set would take days.
+"Likewise" is shorter than the race, which for each set would take a quarter of an hour: one start, on that mesh alone.
 """
 
 from collections.abc import Sequence

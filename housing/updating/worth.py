@@ -81,7 +81,7 @@ def search_in_heats(
     start: AnyDesign,
     effort: Effort,
 ) -> Found[AnyDesign]:
-    """What one start of a race goes through on the coarse mesh: half of the solves with soft penalties, then full ones.
+    """A short search from one start: half of the solves with the penalties of a race's first heat, half of its second.
 
     The end of the first heat is the start of the second, whatever it misses by full penalties.
     """
