@@ -33,11 +33,11 @@ def side_by_side(workers: int) -> Iterator[Each]:
 
     with tempfile.TemporaryDirectory(prefix="gearwhine-") as place, connected(workers, None, Path(place)) as client:
 
-        def each(work: Callable[[Any], Any], tasks: Sequence[Any]) -> list[Any]:
+        def each(work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterator[Any]:
             with warnings.catch_warnings():
                 # Dask would rather have large tasks scattered first; ours are few and long.
                 warnings.filterwarnings("ignore", message="Sending large graph")
                 futures = [client.submit(work, task, pure=False) for task in tasks]
-            return list(client.gather(futures))
+            return (future.result() for future in futures)
 
         yield each

@@ -1,34 +1,14 @@
 """What an update is worth, on the search's mesh: modes held back, and random sets of frequencies fitted likewise.
 
-"Likewise" is shorter than the race, which for each set would take a quarter of an hour: one start, on that mesh alone.
+Each is the whole search again. On the housing's own mesh it would take as long as the update itself, so all are made on
+the coarser one, as if that were the housing; the measured set too, with which the random ones are compared.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-import numpy.typing as npt
-
 from gearwhine.progress import Progress
-from gearwhine.stages.designs import HousingDesign, HousingDesigns
-from housing.updating import (
-    Debiased,
-    Each,
-    Effort,
-    HeldBack,
-    NullFit,
-    Target,
-    debiased,
-    fit_sets,
-    hold_back,
-    null_fits,
-)
-
-FloatArray = npt.NDArray[np.float64]
-
-_SOLVES = 6  # of each fit
-_STARTS = 16  # on the surrogate
-_KEPT = 7  # of the designs judged, that random sets may begin at
+from gearwhine.stages.designs import HousingDesign
+from housing.updating import Each, Effort, HeldBack, NullFit, Procedure, Target, hold_back, null_fits
 
 
 @dataclass(frozen=True)
@@ -37,85 +17,40 @@ class NullTest:
 
     Attributes
     ----------
-    fits : list of NullFit
     measured : NullFit
-        From the case's own design: of what the race has found for it nothing is given.
+    fits : list of NullFit
     """
 
-    fits: list[NullFit]
     measured: NullFit
+    fits: list[NullFit]
 
 
-@dataclass(frozen=True)
-class _Solved:
-    """Solves designs to be sent to other processes."""
+def whole_search(start: HousingDesign, effort: Effort, count: int) -> Procedure[HousingDesign]:
+    """The update's search as it is made on the mesh of one design alone, by one thread, from there.
 
-    designs: HousingDesigns
-
-    def __call__(self, coordinates: FloatArray) -> HousingDesign:
-        return self.designs.solve(coordinates).light()
+    Parameters
+    ----------
+    start : HousingDesign
+    effort : Effort
+        Of the update.
+    count : int
+        How many starts race, this one among them.
+    """
+    designs = replace(start.designs, threads=1, draft=True)
+    return Procedure(designs.solve, designs.parameters, start.light(), effort, count)
 
 
 def held_back_modes(
-    start: Debiased[HousingDesign], target: Target, seed: int, each: Each, progress: Progress
+    procedure: Procedure[HousingDesign], target: Target, each: Each, progress: Progress
 ) -> list[HeldBack]:
-    """Each mode predicted by a fit to the others, from the case as it stands.
-
-    Parameters
-    ----------
-    start : Debiased
-        On the search's mesh, by the bias there: what is known at the end has seen the mode that is held back.
-    target, seed, each, progress
-        See :func:`housing.updating.hold_back`.
-    """
+    """Each mode predicted by a fit to the others; see :func:`housing.updating.hold_back`."""
     progress(f"holding back {len(target.noise)} modes, one at a time")
-    designs = _alone(start.design)
-    solve, begin = debiased(designs.solve, start.bias), Debiased(start.design.light(), start.bias)
-    return hold_back(solve, target, designs.parameters, begin, _effort(seed), each, progress)
+    return hold_back(procedure, target, each, progress)
 
 
 def random_sets(
-    tuned: Debiased[HousingDesign],
-    seen: Sequence[FloatArray],
-    target: Target,
-    count: int,
-    seed: int,
-    each: Each,
-    progress: Progress,
+    procedure: Procedure[HousingDesign], target: Target, count: int, each: Each, progress: Progress
 ) -> NullTest:
-    """Random sets fitted from the nearest of some designs.
-
-    Parameters
-    ----------
-    tuned : Debiased
-        On the search's mesh, where the search has ended, by the bias there.
-    seen : sequence of ndarray
-        Coordinates of designs that the race has come through; the first is its start.
-    target, seed, each, progress
-        See :func:`housing.updating.null_fits`.
-    count : int
-        How many sets.
-    """
-    progress(f"fitting {count} random sets of {len(target.noise)} frequencies")
-    designs = _alone(tuned.design)
-    solve = debiased(designs.solve, tuned.bias)
-    known = [*each(_Solved(designs), _thinned(seen)), tuned.design.light()]
-    starts, parameters = [Debiased(design, tuned.bias) for design in known], designs.parameters
-    fits = null_fits(solve, target, parameters, starts, _effort(seed), count, each=each, progress=progress)
-    (own,) = fit_sets(solve, target, parameters, starts[:1], _effort(seed), [target.frequencies], each)
-    return NullTest(fits, own)
-
-
-def _effort(seed: int) -> Effort:
-    return Effort(solves=_SOLVES, starts=_STARTS, seed=seed)
-
-
-def _alone(design: HousingDesign) -> HousingDesigns:
-    """What solves a design's like by one thread, as a draft."""
-    return replace(design.designs, threads=1, draft=True)
-
-
-def _thinned(points: Sequence[FloatArray]) -> list[FloatArray]:
-    """The first, the last and some between."""
-    chosen = np.unique(np.linspace(0, len(points) - 1, min(len(points), _KEPT)).round().astype(int))
-    return [points[place] for place in chosen]
+    """Random sets fitted, and the measured one; see :func:`housing.updating.null_fits`."""
+    progress(f"fitting the measured and {count} random sets of {len(target.noise)} frequencies")
+    return NullTest(*null_fits(procedure, target, count, each=each, progress=progress))

@@ -8,23 +8,17 @@ each meshed anew.
 import time
 from dataclasses import dataclass, replace
 
-import numpy as np
-import numpy.typing as npt
-
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.designs import HousingDesign, HousingDesigns
 from gearwhine.stages.side_by_side import default_workers, side_by_side
 from gearwhine.stages.update_keys import FittedCase, fitted_case
 from gearwhine.stages.update_target import measurement_of
-from gearwhine.stages.update_worth import NullTest, held_back_modes, random_sets
+from gearwhine.stages.update_worth import NullTest, held_back_modes, random_sets, whole_search
 from housing.updating import (
-    Debiased,
     Each,
     Effort,
-    Found,
     HeldBack,
-    MeshBias,
     Meshes,
     Misfit,
     ModalState,
@@ -32,18 +26,11 @@ from housing.updating import (
     Raced,
     Step,
     Target,
-    is_met,
     measure,
+    polish,
     posterior,
     race,
-    search,
 )
-
-FloatArray = npt.NDArray[np.float64]
-
-_REFINED = 0.05  # trust region of the search that goes on with the finer mesh
-_FEW = 6  # solves of that search, where not all is met before
-_FIRM = 3.0  # how much less soft the penalties are there
 
 
 @dataclass(frozen=True)
@@ -57,10 +44,8 @@ class SolvedUpdate:
         On the box's own mesh.
     misfit_before, misfit_after : Misfit
         Theirs.
-    tuned : HousingDesign
-        On the coarser mesh, where the search on it came to.
-    misfit_tuned : Misfit
-        Its misfit there, that mesh's bias taken off.
+    start : HousingDesign
+        Where the search began, on its coarser mesh.
     target : Target
     left_out : int
         Measured degrees of freedom that took no part.
@@ -79,8 +64,7 @@ class SolvedUpdate:
     after: HousingDesign
     misfit_before: Misfit
     misfit_after: Misfit
-    tuned: HousingDesign
-    misfit_tuned: Misfit
+    start: HousingDesign
     target: Target
     left_out: int
     posterior: Posterior
@@ -134,27 +118,23 @@ def update_housing(
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
     progress("going on with the housing's own mesh")
-    ended = fine.solve(raced.coordinates) if raced.design is None else raced.design
-    tuned = ended if same else coarse.solve(raced.coordinates)
-    bias = None if same else MeshBias.between(tuned.state, ended.state)
-    found = _polished(fine, ended, target, replace(effort, solves=0 if raced.is_met else _FEW), progress)
+    found = polish(replace(fine, draft=True).solve, raced, target, fine.parameters, effort, progress)
     # On the way modes were not counted; those that are told of have their proof.
     after = replace(fine.solve(found.design.coordinates), known=found.design.surrogate())
     seconds["own_mesh"] = time.perf_counter() - begin
     spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
-    near = Debiased(tuned, bias)
     rows: list[HeldBack] = []
     null_test: NullTest | None = None
     # One thread each, as in the race.
     with side_by_side(min(threads, default_workers()) if held_back or null else 1) as each:
+        procedure = whole_search(start, effort, 1 + given.explore)
         if held_back:
             begin = time.perf_counter()
-            first = Debiased(start, None if same else MeshBias.between(start.state, before.state))
-            rows = held_back_modes(first, target, effort.seed, each, progress)
+            rows = held_back_modes(procedure, target, each, progress)
             seconds["held_back"] = time.perf_counter() - begin
         if null:
             begin = time.perf_counter()
-            null_test = random_sets(near, raced.seen, target, null, effort.seed, each, progress)
+            null_test = random_sets(procedure, target, null, each, progress)
             seconds["null"] = time.perf_counter() - begin
     return SolvedUpdate(
         fitted=fine.case,
@@ -162,8 +142,7 @@ def update_housing(
         after=after,
         misfit_before=measure(target, before.state, before.coordinates, strict=True),
         misfit_after=measure(target, after.state, after.coordinates, strict=True),
-        tuned=tuned,
-        misfit_tuned=measure(target, near.state, near.coordinates, strict=True),
+        start=start,
         target=target,
         left_out=measured.left_out,
         posterior=spread,
@@ -182,7 +161,7 @@ def _started(fine: HousingDesigns, coarse: HousingDesigns, each: Each) -> tuple[
     """
     alone = replace(fine, threads=1)
     tasks = [(alone, coarse is fine), (replace(coarse, threads=1), True)]
-    solved = each(_as_it_stands, tasks[: 1 if coarse is fine else 2])
+    solved = list(each(_as_it_stands, tasks[: 1 if coarse is fine else 2]))
     return solved[0], solved[-1]
 
 
@@ -207,21 +186,3 @@ def _raced(
     coarse, own = (replace(designs, threads=1, draft=True) for designs in (start.designs, fine))
     meshes = Meshes(coarse.solve, None if judged is None else own.solve, HousingDesign.light)
     return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
-
-
-def _polished(
-    fine: HousingDesigns, begin: HousingDesign, target: Target, effort: Effort, progress: Progress
-) -> Found[HousingDesign]:
-    """The search that goes on on the housing's own mesh.
-
-    Penalties are firm now: what was bent to get here has to be straight in the end. Each design is meshed anew: what a
-    moved mesh has and a new one has not is no property of the housing.
-    """
-    firm = replace(target, firmness=_FIRM)
-    near = replace(effort, trust=_REFINED)
-    own = replace(fine, draft=True)
-
-    def is_enough(design: HousingDesign) -> bool:
-        return is_met(target, measure(firm, design.state, design.coordinates, strict=True))
-
-    return search(lambda point, _: own.solve(point), firm, fine.parameters, begin, near, progress, is_enough)

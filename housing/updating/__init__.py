@@ -5,20 +5,20 @@
 - :class:`Target`, :func:`measure` -- what was measured and how far a design is from it (:class:`Misfit`).
 - :func:`search` -- the fit from one start by true solves (:data:`Solve`) of :class:`Design`; :class:`MeshBias`,
   :func:`debiased` -- a coarse mesh that stands for a fine one; :func:`race` -- from many starts on the one, judged by
-  the other; :func:`posterior` -- what the data say beside the prior (:class:`Posterior`).
-- :func:`hold_back`, :func:`null_fits` -- what the fit is worth: modes left out and predicted, random frequencies
-  fitted.
+  the other, which :func:`polish` ends; :func:`posterior` -- what the data say beside the prior (:class:`Posterior`).
+- :class:`Procedure` -- all of that search on one mesh; :func:`hold_back`, :func:`null_fits` -- what the fit is worth by
+  it: modes left out and predicted, random frequencies fitted.
 """
 
 from housing.updating.bias import Debiased, MeshBias, debiased
 from housing.updating.misfit import UNPAIRED, Misfit, ModeCount, Target, is_met, measure, residuals
 from housing.updating.parameters import Parameter, coordinate_bounds, values_at
 from housing.updating.posterior import Posterior, posterior
-from housing.updating.race import Each, Meshes, Raced, one_by_one, race
+from housing.updating.race import Each, Meshes, Raced, one_by_one, polish, race
 from housing.updating.rates import ModalRates, ModelRate, modal_rates
 from housing.updating.search import Design, Effort, Found, Solve, Step, search, search_surrogate
 from housing.updating.surrogate import ModalState, Neighbour, Surrogate
-from housing.updating.worth import HeldBack, NullFit, fit_sets, hold_back, null_fits, random_frequencies
+from housing.updating.worth import HeldBack, NullFit, Procedure, hold_back, null_fits, random_frequencies
 
 __all__ = [
     "UNPAIRED",
@@ -39,6 +39,7 @@ __all__ = [
     "NullFit",
     "Parameter",
     "Posterior",
+    "Procedure",
     "Raced",
     "Solve",
     "Step",
@@ -46,13 +47,13 @@ __all__ = [
     "Target",
     "coordinate_bounds",
     "debiased",
-    "fit_sets",
     "hold_back",
     "is_met",
     "measure",
     "modal_rates",
     "null_fits",
     "one_by_one",
+    "polish",
     "posterior",
     "race",
     "random_frequencies",

@@ -8,7 +8,7 @@ deviations away where walls are thin, so the other heats are run on the fine mes
 heat. The race ends where a design meets all that is asked for on the fine mesh, or with its last heat.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol
 
@@ -19,7 +19,7 @@ from housing.errors import HousingError
 from housing.updating.bias import Debiased, MeshBias, debiased
 from housing.updating.misfit import Misfit, Target, is_met, measure
 from housing.updating.parameters import Parameter, coordinate_bounds
-from housing.updating.search import AnyDesign, Effort, Solve, Step, descend, search
+from housing.updating.search import AnyDesign, Effort, Found, Solve, Step, descend, search
 from housing.updating.surrogate import ModalState, Surrogate
 
 FloatArray = npt.NDArray[np.float64]
@@ -32,18 +32,20 @@ FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the first of which 
 TRUST = (0.25, 0.15, 0.1)  # likewise
 _FINE_SOLVES = (3, 5)  # of each runner there
 _STARTS = 16  # on the surrogate
+_POLISHED = 6  # solves after the race where it has not met all
+_REFINED = 0.05  # trust region of these
 
 
 class Each(Protocol):
-    """Does work on each of some tasks, side by side or not, and returns the results in the tasks' order."""
+    """Does work on each of some tasks, side by side or not, and gives the results in the tasks' order, as they come."""
 
-    def __call__(self, work: Callable[[Any], Any], tasks: Sequence[Any]) -> list[Any]:
+    def __call__(self, work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterable[Any]:
         """The results."""
 
 
-def one_by_one(work: Callable[[Any], Any], tasks: Sequence[Any]) -> list[Any]:
+def one_by_one(work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterator[Any]:
     """The plainest :class:`Each`."""
-    return [work(task) for task in tasks]
+    return map(work, tasks)
 
 
 @dataclass(frozen=True)
@@ -183,7 +185,9 @@ def race(
         progress(f"bringing {_DRAWN * (count - 1)} draws of the prior down")
     points += _drawn(Debiased(start, bias).surrogate(), soft, parameters, count - 1, effort.seed, each)
     runners = [Runner[AnyDesign](number, point) for number, point in enumerate(points)]
-    first = replace(runners[0], judged=start.state if judged is None else judged)
+    first = replace(runners[0], judged=judged)
+    if judged is None:
+        first = replace(first, judged=start.state, design=start)
     best = _better(None, target, first, lambda message: None)
     going = _going(count)
     steps = list[Step]()
@@ -205,6 +209,36 @@ def race(
             if not any(step.accepted for *_, own_steps in ran for step in own_steps):
                 break
     return replace(best, steps=tuple(steps))
+
+
+def polish(
+    solve: Solve[AnyDesign],
+    raced: Raced[AnyDesign],
+    target: Target,
+    parameters: Sequence[Parameter],
+    effort: Effort,
+    progress: Callable[[str], None] = lambda message: None,
+) -> Found[AnyDesign]:
+    """Go on from a race's best design with firm penalties until all is met.
+
+    What was bent to get there is to be straight in the end. Where the race has met all, its design is the end.
+
+    Parameters
+    ----------
+    solve : callable
+        Of the mesh that judges. Each design is meshed anew: what a moved mesh has and a new one has not is no property
+        of the housing.
+    raced, target, parameters, effort, progress
+        See :func:`race`.
+    """
+    firm = replace(target, firmness=FIRMNESS[-1])
+    own = replace(effort, solves=0 if raced.is_met else _POLISHED, trust=_REFINED)
+    begin = solve(raced.coordinates, None) if raced.design is None else raced.design
+
+    def is_enough(design: AnyDesign) -> bool:
+        return is_met(target, measure(firm, design.state, design.coordinates, strict=True))
+
+    return search(lambda point, _: solve(point, None), firm, parameters, begin, own, progress, is_enough)
 
 
 def _best(

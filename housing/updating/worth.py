@@ -1,26 +1,26 @@
 """What a fit is worth: modes held back from it, and the same search made on frequencies that no one measured.
 
 Many parameters fit few frequencies, so that a small error proves little. A mode that took no part in the fit tests it;
-and where random frequencies are fitted as well as the measured ones, the fit alone says nothing of the housing.
+and where random frequencies are fitted as well as the measured ones, the fit alone says nothing of the housing. Each of
+these is the whole procedure once more, from the same start with as many solves; only the mesh is a coarser one.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Generic
 
 import numpy as np
 import numpy.typing as npt
 
-from housing.updating.misfit import Misfit, Target, measure
+from housing.updating.misfit import UNPAIRED, Misfit, Target, is_met, measure
 from housing.updating.parameters import Parameter
 from housing.updating.posterior import Posterior, posterior
-from housing.updating.race import FIRMNESS, TRUST, Each, one_by_one
-from housing.updating.search import AnyDesign, Effort, Found, Solve, Step, search
+from housing.updating.race import Each, Meshes, one_by_one, polish, race
+from housing.updating.search import AnyDesign, Effort, Solve
 
 FloatArray = npt.NDArray[np.float64]
 
 _APART = 0.01  # least relative distance of two random frequencies: what a survey would tell apart
-_BATCH = 4  # fits between two words of progress
 
 
 @dataclass(frozen=True)
@@ -64,60 +64,67 @@ class HeldBack:
 
 @dataclass(frozen=True)
 class NullFit:
-    """A set of frequencies that no one measured, and how well the same model fits it."""
+    """A set of frequencies and how well the model fits it.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (n,)
+        Circular [rad/s], ascending.
+    rms_percent, max_percent : float
+        Errors of the dominant modes.
+    gap : float
+    measures_agree : bool
+    count : int
+        See :class:`Misfit`.
+    is_met : bool
+        See :func:`is_met`.
+    """
 
     frequencies: FloatArray
     rms_percent: float
     max_percent: float
     gap: float
     measures_agree: bool
-    value: float
-
-
-def search_in_heats(
-    solve: Solve[AnyDesign],
-    target: Target,
-    parameters: Sequence[Parameter],
-    start: AnyDesign,
-    effort: Effort,
-) -> Found[AnyDesign]:
-    """A short search from one start: half of the solves with the penalties of a race's first heat, half of its second.
-
-    The end of the first heat is the start of the second, whatever it misses by full penalties.
-    """
-    solves = (effort.solves - effort.solves // 2, effort.solves // 2)
-    found, steps = None, tuple[Step, ...]()
-    for number, firmness, trust in zip(solves, FIRMNESS, TRUST, strict=False):
-        bent = replace(target, firmness=firmness * target.firmness)
-        begin = start if found is None else found.design
-        found = search(solve, bent, parameters, begin, replace(effort, solves=number, trust=trust))
-        steps += found.steps
-    assert found is not None
-    return replace(found, steps=steps)
+    count: int
+    is_met: bool
 
 
 @dataclass(frozen=True)
-class _Fit(Generic[AnyDesign]):
-    """A fit from a start to a target, as a worker is told."""
+class Procedure(Generic[AnyDesign]):
+    """The whole search on one mesh: a race from a start, and what follows where that has not met all.
+
+    Attributes
+    ----------
+    solve : callable
+        See :data:`housing.updating.Solve`.
+    parameters : sequence of Parameter
+    start : Design
+        Solved.
+    effort : Effort
+    count : int
+        Runners, the start among them.
+    """
 
     solve: Solve[AnyDesign]
-    parameters: tuple[Parameter, ...]
+    parameters: Sequence[Parameter]
+    start: AnyDesign
     effort: Effort
+    count: int
 
-    def __call__(self, task: tuple[Target, AnyDesign, int]) -> tuple[Misfit, Posterior]:
-        """The misfit where it ends, by dominant modes and full penalties, and what it leaves of the parameters."""
-        target, start, seed = task
-        found = search_in_heats(self.solve, target, self.parameters, start, replace(self.effort, seed=seed))
-        near = found.design.surrogate().at(found.design.coordinates)
-        return found.misfit, posterior(target, found.misfit, found.design.coordinates, near)
+    def __call__(self, target: Target) -> tuple[Misfit, Posterior]:
+        """The misfit where it ends, by dominant modes, and what it leaves of the parameters."""
+        meshes = Meshes(self.solve, None)
+        raced = race(meshes, target, self.parameters, self.start, None, self.effort, self.count)
+        found = polish(self.solve, raced, target, self.parameters, self.effort)
+        design, coordinates = found.design, found.design.coordinates
+        near = design.surrogate().at(coordinates)
+        judged = measure(target, design.state, coordinates, strict=True)
+        return judged, posterior(target, found.misfit, coordinates, near)
 
 
 def hold_back(
-    solve: Solve[AnyDesign],
+    procedure: Procedure[AnyDesign],
     target: Target,
-    parameters: Sequence[Parameter],
-    start: AnyDesign,
-    effort: Effort,
     each: Each = one_by_one,
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[HeldBack]:
@@ -127,103 +134,85 @@ def hold_back(
 
     Parameters
     ----------
-    solve : callable
-        See :data:`housing.updating.Solve`.
+    procedure : Procedure
     target : Target
-    parameters : sequence of Parameter
-    start : Design
-    effort : Effort
-        Of each fit; see :func:`search_in_heats`.
     each : callable
         See :class:`Each`: the result does not depend on how many are run side by side.
     progress : callable
     """
-    first = measure(target, start.state, start.coordinates)
+    start = procedure.start
+    first = measure(target, start.state, start.coordinates, strict=True)
     before = start.surrogate().at(start.coordinates)
     modes = range(len(target.noise))
     held = [replace(target, noise=np.where(np.arange(len(modes)) == mode, np.inf, target.noise)) for mode in modes]
-    fit = _Fit(solve, tuple(parameters), effort)
     rows = []
-    ended = _in_batches(each, fit, [(others, start, effort.seed) for others in held])
-    for mode, (misfit, after) in enumerate(ended):
-        noise, left = target.noise[mode], np.delete(misfit.errors, mode)
-        slopes = before.slopes[:, first.pairs[mode]]
+    for mode, (misfit, after) in enumerate(each(procedure, held)):
         rows.append(
             HeldBack(
                 mode=mode,
                 measured=float(target.frequencies[mode]),
                 predicted=float(target.frequencies[mode] * np.exp(misfit.errors[mode])),
-                deviation=float(np.hypot(after.frequency_deviations()[misfit.pairs[mode]], noise)),
-                prior_deviation=float(np.hypot(np.linalg.norm(slopes), noise)),
+                deviation=_deviation(after.frequency_deviations(), misfit, mode, target),
+                prior_deviation=_deviation(np.linalg.norm(before.slopes, axis=0), first, mode, target),
                 start=float(target.frequencies[mode] * np.exp(first.errors[mode])),
-                rms_percent=float(100.0 * np.sqrt(np.mean(np.expm1(left) ** 2))),
+                rms_percent=float(100.0 * np.sqrt(np.mean(np.expm1(np.delete(misfit.errors, mode)) ** 2))),
             )
         )
         progress(f"mode {mode + 1} predicted within {rows[-1].error_percent:+.2f} % by the others")
     return rows
 
 
+def _deviation(left: FloatArray, misfit: Misfit, mode: int, target: Target) -> float:
+    """Of the model's partner of a measured mode, and of its measurement; NaN where it has none."""
+    pair = misfit.pairs[mode]
+    return float("nan") if pair == UNPAIRED else float(np.hypot(left[pair], target.noise[mode]))
+
+
 def null_fits(
-    solve: Solve[AnyDesign],
+    procedure: Procedure[AnyDesign],
     target: Target,
-    parameters: Sequence[Parameter],
-    starts: Sequence[AnyDesign],
-    effort: Effort,
     count: int,
     seed: int = 0,
     each: Each = one_by_one,
     progress: Callable[[str], None] = lambda message: None,
-) -> list[NullFit]:
-    """The same search on random sets of as many frequencies, between the first and the last measured one.
-
-    Each set begins at whichever of some designs, already solved, is nearest to it: what the search for the measured set
-    had to find by itself is a gift here. What is not given is the race: one start, and the solves of a few.
+) -> tuple[NullFit, list[NullFit]]:
+    """The measured set of frequencies, and random ones of as many between its first and its last, fitted alike.
 
     Parameters
     ----------
-    solve, target, parameters, effort, each, progress
-        See :func:`hold_back`.
-    starts : sequence of Design
+    procedure : Procedure
+    target : Target
     count : int
-        How many sets.
+        How many random sets.
     seed : int
         Of their frequencies.
+    each, progress
+        See :func:`hold_back`.
+
+    Returns
+    -------
+    measured : NullFit
+    random : list of NullFit
     """
     generator = np.random.default_rng(seed)
-    sets = [random_frequencies(target.frequencies, generator) for _ in range(count)]
+    drawn = [random_frequencies(target.frequencies, generator) for _ in range(count)]
+    sets = [target, *(replace(target, frequencies=frequencies) for frequencies in drawn)]
     fits = []
-    for number, fit in enumerate(fit_sets(solve, target, parameters, starts, effort, sets, each)):
-        fits.append(fit)
-        progress(f"random set {number + 1} of {count}: rms {fit.rms_percent:.2f} %, max {fit.max_percent:.2f} %")
-    return fits
-
-
-def fit_sets(
-    solve: Solve[AnyDesign],
-    target: Target,
-    parameters: Sequence[Parameter],
-    starts: Sequence[AnyDesign],
-    effort: Effort,
-    sets: Sequence[FloatArray],
-    each: Each = one_by_one,
-) -> Iterator[NullFit]:
-    """Fit sets of frequencies, each from the nearest of some designs, a few at a time; see :func:`null_fits`."""
-    tasks = []
-    for number, frequencies in enumerate(sets):
-        null = replace(target, frequencies=frequencies)
-        start = min(starts, key=lambda design: measure(null, design.state, design.coordinates).value)
-        tasks.append((null, start, effort.seed + number))
-    ended = _in_batches(each, _Fit(solve, tuple(parameters), effort), tasks)
-    for drawn, (misfit, _) in zip(sets, ended, strict=True):
-        yield _null_fit(drawn, misfit)
-
-
-def _in_batches(
-    each: Each, fit: _Fit[AnyDesign], tasks: Sequence[tuple[Target, AnyDesign, int]]
-) -> Iterator[tuple[Misfit, Posterior]]:
-    """The results in the tasks' order, so many at a time that one hears of them on the way."""
-    for first in range(0, len(tasks), _BATCH):
-        yield from each(fit, tasks[first : first + _BATCH])
+    for number, (misfit, _) in enumerate(each(procedure, sets)):
+        fits.append(
+            NullFit(
+                frequencies=sets[number].frequencies,
+                rms_percent=misfit.rms_percent,
+                max_percent=misfit.max_percent,
+                gap=misfit.gap,
+                measures_agree=misfit.measures_agree,
+                count=misfit.count,
+                is_met=is_met(sets[number], misfit),
+            )
+        )
+        which = f"random set {number} of {count}" if number else "the measured set"
+        progress(f"{which}: rms {misfit.rms_percent:.2f} %, max {misfit.max_percent:.2f} %")
+    return fits[0], fits[1:]
 
 
 def random_frequencies(measured: FloatArray, generator: np.random.Generator) -> FloatArray:
@@ -233,7 +222,3 @@ def random_frequencies(measured: FloatArray, generator: np.random.Generator) -> 
         drawn = np.sort(generator.uniform(low, high, len(measured)))
         if len(drawn) == 1 or (np.diff(np.log(drawn)) > _APART).all():
             return np.asarray(drawn)
-
-
-def _null_fit(frequencies: FloatArray, misfit: Misfit) -> NullFit:
-    return NullFit(frequencies, misfit.rms_percent, misfit.max_percent, misfit.gap, misfit.measures_agree, misfit.value)

@@ -15,7 +15,7 @@ def test_results_come_in_the_order_of_the_tasks_from_other_processes() -> None:
         return factor * number, os.getpid(), os.environ["OMP_NUM_THREADS"]
 
     with side_by_side(2) as each:
-        rows = each(work, [5, 2, 9, 4])
+        rows = list(each(work, [5, 2, 9, 4]))
     assert [row[0] for row in rows] == [15, 6, 27, 12]
     assert os.getpid() not in {row[1] for row in rows}
     assert {row[2] for row in rows} == {"1"}
@@ -23,7 +23,7 @@ def test_results_come_in_the_order_of_the_tasks_from_other_processes() -> None:
 
 def test_one_worker_is_this_process() -> None:
     with side_by_side(1) as each:
-        assert each(lambda number: (number, os.getpid()), [1, 2]) == [(1, os.getpid()), (2, os.getpid())]
+        assert list(each(lambda number: (number, os.getpid()), [1, 2])) == [(1, os.getpid()), (2, os.getpid())]
 
 
 def test_what_goes_wrong_in_a_process_is_raised_here() -> None:
@@ -33,4 +33,4 @@ def test_what_goes_wrong_in_a_process_is_raised_here() -> None:
         return number
 
     with side_by_side(2) as each, pytest.raises(HousingError, match="walls meet"):
-        each(work, [1, 2, 3])
+        list(each(work, [1, 2, 3]))

@@ -17,6 +17,7 @@ from housing.updating import (
     ModalState,
     ModeCount,
     Parameter,
+    Procedure,
     Surrogate,
     Target,
     coordinate_bounds,
@@ -235,7 +236,7 @@ def test_two_springs_in_parallel_are_told_by_their_sum_only() -> None:
 def test_a_mode_that_nothing_else_tells_of_is_predicted_no_better_than_before() -> None:
     """Each oscillator has a parameter of its own: held back, it stays where the prior has it, with its uncertainty."""
     target = target_at(OWN * np.array([1.2, 0.9, 1.1]), noise=0.01)
-    rows = hold_back(solve, target, FREE, solve(np.zeros(3), None), Effort(trust=0.4, solves=20, starts=4))
+    rows = hold_back(Procedure(solve, FREE, solve(np.zeros(3), None), Effort(trust=0.4, solves=20), 2), target)
     assert [row.error_percent for row in rows] == pytest.approx([row.start_error_percent for row in rows], abs=0.2)
     assert [row.deviation for row in rows] == pytest.approx([np.hypot(0.5, 0.01)] * 3)
     assert [row.prior_deviation for row in rows] == pytest.approx([np.hypot(0.5, 0.01)] * 3)
@@ -249,7 +250,7 @@ def test_a_mode_that_the_others_tell_of_is_predicted() -> None:
         return Common(coordinates)
 
     target = target_at(OWN * 1.1, noise=0.005)
-    rows = hold_back(common, target, FREE[:1], common(np.zeros(1), None), Effort(trust=0.4, starts=4))
+    rows = hold_back(Procedure(common, FREE[:1], common(np.zeros(1), None), Effort(), 1), target)
     assert max(abs(row.error_percent) for row in rows) < 0.1
     assert max(abs(row.start_error_percent) for row in rows) > 9.0
     assert max(row.deviation for row in rows) < 0.007
@@ -272,14 +273,17 @@ class Common:
 
 def test_the_null_test_tells_a_model_that_fits_anything_from_one_that_does_not() -> None:
     target = target_at([100.0, 200.0, 300.0], noise=0.005)
-    anything = null_fits(solve, target, FREE, [solve(np.zeros(3), None)], Effort(trust=0.4, starts=4), 6)
+    anything = null_fits(Procedure(solve, FREE, solve(np.zeros(3), None), Effort(), 2), target, 6)
 
     def common(coordinates: FloatArray, near: Design | None) -> Common:
         return Common(coordinates)
 
-    stiff = null_fits(common, target, FREE[:1], [common(np.zeros(1), None)], Effort(trust=0.4, starts=4), 6)
-    assert max(fit.max_percent for fit in anything) < 0.5
-    assert np.median([fit.max_percent for fit in stiff]) > 5.0
+    stiff = null_fits(Procedure(common, FREE[:1], common(np.zeros(1), None), Effort(), 1), target, 6)
+    assert anything[0].frequencies == pytest.approx(target.frequencies)
+    assert len(anything[1]) == 6
+    assert all(fit.is_met and fit.max_percent < 1.0 for fit in anything[1])
+    assert np.median([fit.max_percent for fit in stiff[1]]) > 5.0
+    assert not any(fit.is_met for fit in stiff[1])
 
 
 @given(st.integers(0, 2**32 - 1))
