@@ -17,41 +17,62 @@ _HERTZ = 2.0 * np.pi
 _ALONG = 1e-4  # by which a direction may miss an axis and still be named after it
 
 
-def write_comparison(
-    folder: Path,
-    title: str,
-    comparison: Comparison,
-    model_frequencies: FloatArray,
-    geometry: MeasuredGeometry | None = None,
-) -> list[str]:
-    """Write ``comparison.csv`` and ``comparison.png``; with shapes also the matrices, and COMAC at each point.
+def write_comparison(folder: Path, comparison: Comparison, geometry: MeasuredGeometry | None = None) -> list[str]:
+    """Write ``comparison.csv``; with shapes also the MAC matrix, and COMAC at each point.
 
     Parameters
     ----------
     folder : path
-    title : str
-        Of the case.
     comparison : housing.Comparison
-    model_frequencies : ndarray, shape (n,)
-        Of all the model's modes [rad/s].
     geometry : housing.measured.MeasuredGeometry, optional
         Of the survey, which names the degrees of freedom; else they are numbered.
 
     Returns
     -------
     list of str
-        The files' names: ``mac.png`` and ``mac.csv`` with shapes, ``auto-mac.png`` of the measured ones,
-        ``cross-orthogonality.png`` where the survey allows it, ``comac.png`` and ``comac.csv`` where there are pairs.
+        The files' names: ``mac.csv`` with shapes, ``comac.csv`` where there are pairs.
+    """
+    _write_table(folder / "comparison.csv", *_pairs(comparison))
+    files, shapes = ["comparison.csv"], comparison.shapes
+    if shapes is not None:
+        files.append(_write_mac(folder, shapes))
+        if shapes.comac is not None:
+            files.append(_write_coordinates(folder, shapes, geometry))
+    return files
+
+
+def draw_comparison_pictures(
+    folder: Path,
+    title: str,
+    comparison: Comparison,
+    model_frequencies: FloatArray,
+    geometry: MeasuredGeometry | None = None,
+) -> list[str]:
+    """Draw ``comparison.png``; with shapes also the matrices, and COMAC at each point.
+
+    Parameters
+    ----------
+    folder, comparison, geometry
+        See :func:`write_comparison`.
+    title : str
+        Of the case.
+    model_frequencies : ndarray, shape (n,)
+        Of all the model's modes [rad/s].
+
+    Returns
+    -------
+    list of str
+        The files' names: ``mac.png`` with shapes, ``auto-mac.png`` of the measured ones, ``cross-orthogonality.png``
+        where the survey allows it, ``comac.png`` where there are pairs.
     """
     from gearwhine.figures import draw_comparison, save
 
-    _write_table(folder / "comparison.csv", *_pairs(comparison))
     figure = draw_comparison(f"Measured and model modes: {title}", comparison, model_frequencies)
-    files = ["comparison.csv", save(figure, folder / "comparison.png")]
-    if comparison.shapes is not None:
-        files += _write_matrices(folder, title, comparison, comparison.shapes)
-        if comparison.shapes.comac is not None:
-            files += _write_coordinates(folder, title, comparison.shapes, geometry)
+    files, shapes = [save(figure, folder / "comparison.png")], comparison.shapes
+    if shapes is not None:
+        files += _draw_matrices(folder, title, comparison, shapes)
+        if shapes.comac is not None:
+            files.append(_draw_coordinates(folder, title, shapes, geometry))
     return files
 
 
@@ -103,7 +124,15 @@ def _pairs(comparison: Comparison) -> tuple[list[str], list[list[object]]]:
     return heads, rows
 
 
-def _write_matrices(folder: Path, title: str, comparison: Comparison, shapes: ShapeCorrelation) -> list[str]:
+def _write_mac(folder: Path, shapes: ShapeCorrelation) -> str:
+    heads = ["mode", "model_hz", *(f"measured_{number + 1}" for number in range(len(shapes.measured_frequencies)))]
+    model = shapes.model_frequencies / _HERTZ
+    table = [[mode + 1, _short(model[mode]), *map(_short, shapes.mac[mode])] for mode in range(len(model))]
+    _write_table(folder / "mac.csv", heads, table)
+    return "mac.csv"
+
+
+def _draw_matrices(folder: Path, title: str, comparison: Comparison, shapes: ShapeCorrelation) -> list[str]:
     from gearwhine.figures import draw_mac_matrix, save
 
     model, measured = shapes.model_frequencies / _HERTZ, shapes.measured_frequencies / _HERTZ
@@ -111,10 +140,7 @@ def _write_matrices(folder: Path, title: str, comparison: Comparison, shapes: Sh
     near = (model >= 0.9 * measured[0]) & (model <= 1.1 * measured[-1])
     shown = [int(mode) for mode in range(len(model)) if near[mode] or mode in paired]
     columns = _names(range(len(measured)), measured)
-    files = ["mac.csv"]
-    heads = ["mode", "model_hz", *(f"measured_{number + 1}" for number in range(len(measured)))]
-    table = [[mode + 1, _short(model[mode]), *map(_short, shapes.mac[mode])] for mode in range(len(model))]
-    _write_table(folder / "mac.csv", heads, table)
+    files = []
     if shown:
         outlined = [(row, paired[mode]) for row, mode in enumerate(shown) if mode in paired]
         note = "pairs outlined; close modes are paired by their span, not by the single values"
@@ -145,21 +171,30 @@ def _write_matrices(folder: Path, title: str, comparison: Comparison, shapes: Sh
     return files
 
 
-def _write_coordinates(
-    folder: Path, title: str, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None
-) -> list[str]:
-    from gearwhine.figures import draw_coordinate_criteria, save
-
+def _write_coordinates(folder: Path, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None) -> str:
     assert shapes.comac is not None
     assert shapes.enhanced_comac is not None
-    names = [str(dof + 1) for dof in range(len(shapes.comac))] if geometry is None else dof_names(geometry)
+    names = _coordinate_names(len(shapes.comac), geometry)
     table = [
         [name, _short(plain), _short(enhanced)]
         for name, plain, enhanced in zip(names, shapes.comac, shapes.enhanced_comac, strict=True)
     ]
     _write_table(folder / "comac.csv", ["degree_of_freedom", "comac", "enhanced_comac"], table)
+    return "comac.csv"
+
+
+def _draw_coordinates(folder: Path, title: str, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None) -> str:
+    from gearwhine.figures import draw_coordinate_criteria, save
+
+    assert shapes.comac is not None
+    assert shapes.enhanced_comac is not None
+    names = _coordinate_names(len(shapes.comac), geometry)
     figure = draw_coordinate_criteria(f"Where shapes differ: {title}", shapes.comac, shapes.enhanced_comac, names)
-    return ["comac.csv", save(figure, folder / "comac.png")]
+    return save(figure, folder / "comac.png")
+
+
+def _coordinate_names(count: int, geometry: MeasuredGeometry | None) -> list[str]:
+    return [str(dof + 1) for dof in range(count)] if geometry is None else dof_names(geometry)
 
 
 def _names(modes: Iterable[int], hertz: FloatArray) -> list[str]:

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from gearwhine.case import load_case
-from gearwhine.comparison_files import write_comparison
+from gearwhine.comparison_files import draw_comparison_pictures, write_comparison
 from gearwhine.failures import run_script
 from gearwhine.output import finite, json_text, staging
 from gearwhine.stages.comparison import compare_housing
@@ -23,7 +23,8 @@ def main(case_name: str, folder: str, *changes: str) -> None:
     document = comparison_document(comparison, housing)
     with staging(Path(folder)) as place:
         keep_modes(place, housing)
-        write_comparison(place, case.title, comparison, housing.modes.frequencies)
+        write_comparison(place, comparison)
+        draw_comparison_pictures(place, case.title, comparison, housing.modes.frequencies)
         (place / "comparison.json").write_text(json_text(finite(document)) + "\n", encoding="utf-8")
     print("measured [Hz]  model [Hz]  error")
     for pair in document["pairs"]:

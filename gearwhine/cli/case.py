@@ -13,7 +13,15 @@ if TYPE_CHECKING:
     from gearwhine.progress import Progress
 
 
-def run(case: CaseName, *, fresh: FreshRun = False, common: Common = NONE_GIVEN) -> None:
+def run(
+    case: CaseName,
+    *,
+    fresh: FreshRun = False,
+    pictures: Annotated[
+        bool, Parameter(name=["--pictures"], help="Whether to draw; --no-pictures saves time, and needs no renderer.")
+    ] = True,
+    common: Common = NONE_GIVEN,
+) -> None:
     """Everything the case asks for, start to end; results go to OUT (default: ./<case>-results).
 
     A run that was interrupted or killed goes on from its last checkpoint when the same case is run into OUT again.
@@ -22,7 +30,7 @@ def run(case: CaseName, *, fresh: FreshRun = False, common: Common = NONE_GIVEN)
     from gearwhine.work import run_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return run_case(given, results_folder(case, common), progress, fresh=fresh)
+        return run_case(given, results_folder(case, common), progress, fresh=fresh, pictures=pictures)
 
     on_case(case, common, work, show_run)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine.case import Case, require
-from gearwhine.comparison_files import write_comparison, write_likeness
+from gearwhine.comparison_files import draw_comparison_pictures, write_comparison, write_likeness
 from gearwhine.drawings import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output import staging
 from gearwhine.progress import Progress
@@ -79,7 +79,8 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
     def write(place: Path) -> None:
         progress("writing results")
         geometry = None if survey is None else survey.geometry
-        write_comparison(place, case.title, comparison, housing.modes.frequencies, geometry)
+        write_comparison(place, comparison, geometry)
+        draw_comparison_pictures(place, case.title, comparison, housing.modes.frequencies, geometry)
         if likeness is not None:
             write_likeness(place, likeness)
 

@@ -1,13 +1,15 @@
 """What the command ``run`` does: every stage that the case asks for, and all their files."""
 
+from __future__ import annotations
+
 import time
 from contextlib import ExitStack
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gearwhine.case import Case, dump_case, mesh_frequencies, require
-from gearwhine.comparison_files import write_comparison
+from gearwhine.comparison_files import draw_comparison_pictures, write_comparison
 from gearwhine.drawings import draw_modes
 from gearwhine.march_files import kept_march
 from gearwhine.output import SUMMARY, finite, json_text, staging
@@ -26,26 +28,44 @@ from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
 from gearwhine.stages.system_documents import system_document
 from gearwhine.work.results_folder import files_in
 
+if TYPE_CHECKING:
+    from gearwhine.stages.gear_analysis import PairAnalysis
+    from gearwhine.stages.housing import SolvedHousing
+    from gearwhine.stages.rotors import SolvedRotor
+    from gearwhine.stages.run_up import RunSignature
+    from gearwhine.stages.signature import SolvedSignature
+    from gearwhine.stages.system import SolvedSystem
+    from gearwhine.stages.transient import SolvedTransient
+    from housing.correlation import Comparison
 
-def run_case(case: Case, folder: Path, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
+
+def run_case(
+    case: Case, folder: Path, progress: Progress, *, fresh: bool = False, pictures: bool = True
+) -> dict[str, Any]:
     """Everything that the case asks for, and the results folder.
 
     What is marched of the transient is kept in the folder until the results are written: a run that dies goes on from
-    there when it is started again. ``fresh`` starts anew.
+    there when it is started again. ``fresh`` starts anew. Without ``pictures`` nothing is drawn, and no
+    renderer is needed.
     """
     with ExitStack() as until_written:
-        return _run_case(case, folder, progress, until_written, fresh=fresh)
+        return _run_case(case, folder, progress, until_written, fresh=fresh, pictures=pictures)
 
 
-def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitStack, *, fresh: bool) -> dict[str, Any]:
-    from gearwhine import figures, results
+def _run_case(
+    case: Case, folder: Path, progress: Progress, until_written: ExitStack, *, fresh: bool, pictures: bool
+) -> dict[str, Any]:
+    from housing.errors import RendererUnavailableError
     from housing.renderer import find_renderer
 
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
-    if case.housing is not None:
+    if case.housing is not None and pictures:
         # Found out before the work, not after it.
-        find_renderer()
+        try:
+            find_renderer()
+        except RendererUnavailableError as error:
+            raise RendererUnavailableError(f"{error}\nor do without pictures: --no-pictures") from error
     start = time.perf_counter()
     seconds: dict[str, float] = {}
     document: dict[str, Any] = {"title": case.title}
@@ -109,24 +129,67 @@ def _run_case(case: Case, folder: Path, progress: Progress, until_written: ExitS
     begin = time.perf_counter()
     with staging(folder, replacing=True) as place:
         progress("writing results")
-        (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
-        results.write(place / "results.nc", case, housing, rotors, analysed, system, transient, signature, run=run)
-        if analysed:
-            figures.draw_gear_pairs(place, analysed, progress)
-        if system is not None:
-            figures.draw_system(place, case, system)
-        if transient is not None:
-            figures.draw_transient(place, case, transient, signature, housing, comparison)
-        if run is not None:
-            figures.draw_run(place, case, run, housing)
-        if housing is not None:
-            results.write_shapes(place / "modes.vtu", housing)
-            keep_modes(place, housing)
-            draw_modes(housing, comparison, "dominant", "iso", "png", place, progress)
-        if housing is not None and comparison is not None:
-            write_comparison(place, case.title, comparison, housing.modes.frequencies)
+        solved = _Solved(rotors, analysed, housing, comparison, system, transient, signature, run)
+        _write(place, case, solved)
+        if pictures:
+            _draw(place, case, solved, progress)
         timed("writing", begin)
         seconds["total"] = time.perf_counter() - start
         document |= {"seconds": seconds, "folder": str(folder), "files": files_in(place, housing)}
         (place / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
     return document
+
+
+@dataclass(frozen=True)
+class _Solved:
+    """All that a run has found, and None or empty for what the case does not ask for."""
+
+    rotors: tuple[SolvedRotor, ...]
+    pairs: tuple[PairAnalysis, ...]
+    housing: SolvedHousing | None
+    comparison: Comparison | None
+    system: SolvedSystem | None
+    transient: SolvedTransient | None
+    signature: SolvedSignature | None
+    run: RunSignature | None
+
+
+def _write(place: Path, case: Case, solved: _Solved) -> None:
+    """The files of results."""
+    from gearwhine import results
+
+    (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
+    results.write(
+        place / "results.nc",
+        case,
+        solved.housing,
+        solved.rotors,
+        solved.pairs,
+        solved.system,
+        solved.transient,
+        solved.signature,
+        run=solved.run,
+    )
+    if solved.housing is not None:
+        results.write_shapes(place / "modes.vtu", solved.housing)
+        keep_modes(place, solved.housing)
+        if solved.comparison is not None:
+            write_comparison(place, solved.comparison)
+
+
+def _draw(place: Path, case: Case, solved: _Solved, progress: Progress) -> None:
+    """The pictures of what there is."""
+    from gearwhine import figures
+
+    if solved.pairs:
+        figures.draw_gear_pairs(place, solved.pairs, progress)
+    if solved.system is not None:
+        figures.draw_system(place, case, solved.system)
+    if solved.transient is not None:
+        figures.draw_transient(place, case, solved.transient, solved.signature, solved.housing, solved.comparison)
+    if solved.run is not None:
+        figures.draw_run(place, case, solved.run, solved.housing)
+    if solved.housing is not None:
+        if solved.comparison is not None:
+            draw_comparison_pictures(place, case.title, solved.comparison, solved.housing.modes.frequencies)
+        draw_modes(solved.housing, solved.comparison, "dominant", "iso", "png", place, progress)

@@ -68,7 +68,7 @@ def test_an_interrupted_run_goes_on_to_the_same_results(start_process, tmp_path:
     (kept,) = (tmp_path / "out").glob(".resume-*")
     first = (kept / "block-00000000.npz").stat().st_mtime_ns
 
-    process = start_process(*arguments, "out")
+    process = start_process(*arguments, "out", "--no-pictures")
     wait_for_a_block(process, tmp_path / "out", len(list(kept.glob("block-*"))) + 1)
     assert (kept / "block-00000000.npz").stat().st_mtime_ns == first
     _, errors = process.communicate(timeout=300)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from gearwhine.cli import run_command
-from housing import read_modes
+from housing import read_modes, renderer
 
 COARSE = ("--set", 'housing.box.mesh_size="45 mm"')
 CLOCK = ("seconds", "seconds_when_solved")
@@ -158,13 +158,14 @@ def test_every_command_that_needs_modes_reads_them(gearwhine, tmp_path: Path) ->
     assert len(models["files"]) == 3
 
 
-def test_a_run_reads_modes_and_clears_the_pictures_of_the_last_one(gearwhine, out: Path) -> None:
+def test_a_run_reads_modes_and_clears_the_pictures_of_the_last_one(
+    gearwhine, out: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     few = (*COARSE, "--set", "housing.frequency_limit=", "--set", "housing.modes=2", "--set", "housing.seat=")
 
-    def run(wall: str) -> dict:
-        outcome = gearwhine(
-            "run", "steel-box", "-q", "--json", "-o", "out", *few, "--set", f'housing.box.wall="{wall}"'
-        )
+    def run(wall: str, *options: str) -> dict:
+        changes = (*few, "--set", f'housing.box.wall="{wall}"')
+        outcome = gearwhine("run", "steel-box", "-q", "--json", "-o", "out", *changes, *options)
         assert outcome.code == 0, outcome.err
         return outcome.document
 
@@ -178,11 +179,17 @@ def test_a_run_reads_modes_and_clears_the_pictures_of_the_last_one(gearwhine, ou
     assert other["reused"] is False
     assert len(first) == 3
     assert first & pictures() == {"mode-99-mine.png"}
-    again = run("12 mm")
+    # Without pictures none is left of other results, and nothing that draws is needed.
+    monkeypatch.setattr(renderer, "_LIBRARIES", ())
+    again = run("12 mm", "--no-pictures")
     assert again["reused"] is True
     assert again["housing"]["reused"] is True
-    assert set(again["files"]) == set(other["files"])
+    assert set(again["files"]) == {name for name in other["files"] if not name.endswith(".png")}
     assert {"modes.nc", "modes.vtu", "results.nc"} <= set(again["files"])
+    assert pictures() == {"mode-99-mine.png"}
+    refused = gearwhine("run", "steel-box", "-q", "-o", "out", *few)
+    assert refused.code == 1
+    assert "--no-pictures" in refused.err
 
 
 def test_runs_at_once_in_one_folder_both_end_well(start_process, tmp_path: Path) -> None:
