@@ -27,7 +27,7 @@ def run(
     A run that was interrupted or killed goes on from its last checkpoint when the same case is run into OUT again.
     """
     from gearwhine.screen import show_run
-    from gearwhine.work import run_case
+    from gearwhine.work.run import run_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return run_case(given, results_folder(case, common), progress, fresh=fresh, pictures=pictures)
@@ -51,7 +51,7 @@ def examples(
 ) -> None:
     """List the bundled cases, or copy one here (or to OUT) to change it: examples copy NAME."""
     from gearwhine.screen import show_examples, show_files
-    from gearwhine.work import copy_example, list_examples
+    from gearwhine.work.case import copy_example, list_examples
 
     if action == "list":
         hand_over(list_examples(), common, show_examples)
@@ -62,6 +62,6 @@ def examples(
 def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     """The results folder OUT (default: ./<case>-results) as one HTML page, report.html in it."""
     from gearwhine.screen import show_files
-    from gearwhine.work import report_case
+    from gearwhine.work.case import report_case
 
     on_case(case, common, lambda given, progress: report_case(results_folder(case, common)), show_files)

@@ -23,7 +23,7 @@ def mesh(
 ) -> None:
     """Mesh the housing and write the mesh file to OUT (default: ./<case>-results)."""
     from gearwhine.screen import show_mesh
-    from gearwhine.work import mesh_case
+    from gearwhine.work.housing import mesh_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return mesh_case(given, results_folder(case, common), format, progress)
@@ -47,7 +47,7 @@ def modes(
 ) -> None:
     """Housing modes, proved complete, with a report on the model's health."""
     from gearwhine.screen import show_modes, show_modes_in_detail
-    from gearwhine.work import modes_case
+    from gearwhine.work.housing import modes_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return modes_case(given, common.output, progress, detail=detail, fresh=fresh)
@@ -58,7 +58,7 @@ def modes(
 def compare(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN) -> None:
     """Model modes of the housing against measured ones."""
     from gearwhine.screen import show_comparison
-    from gearwhine.work import compare_case
+    from gearwhine.work.housing import compare_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return compare_case(given, common.output, progress, fresh=fresh)
@@ -80,7 +80,7 @@ def survey(
 ) -> None:
     """Where to put sensors and the hammer for a modal survey, as files in OUT (default: ./<case>-results)."""
     from gearwhine.screen import show_survey
-    from gearwhine.work import survey_case
+    from gearwhine.work.housing import survey_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return survey_case(given, sensors, modes, results_folder(case, common), progress, fresh=fresh)
@@ -108,7 +108,7 @@ def update(
 ) -> None:
     """Fit the numbers of [update] to the measured modes; writes updated.toml to OUT (default: ./<case>-results)."""
     from gearwhine.screen import show_update
-    from gearwhine.work import update_case
+    from gearwhine.work.housing import update_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return update_case(given, results_folder(case, common), progress, null=null, held_back=held_back)
@@ -149,7 +149,7 @@ def render(
 ) -> None:
     """Shapes of modes, of a run's lines, or measured: pictures, films, models in OUT (default: ./<case>-results)."""
     from gearwhine.screen import show_files
-    from gearwhine.work import render_case
+    from gearwhine.work.housing import render_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return render_case(

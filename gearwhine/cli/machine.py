@@ -28,7 +28,7 @@ def rotors(
 ) -> None:
     """Each rotor's lateral and torsional modes, whirl and critical speeds; of a case, or of a rotor saved by ROSS."""
     from gearwhine.screen import show_rotors
-    from gearwhine.work import rotors_case
+    from gearwhine.work.machine import rotors_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common) if write_ross else common.output
@@ -40,7 +40,7 @@ def rotors(
 def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     """Each gear pair: geometry, stiffness, transmission error, load sharing, pressure, Harris map, best tip relief."""
     from gearwhine.screen import show_gears
-    from gearwhine.work import gears_case
+    from gearwhine.work.machine import gears_case
 
     on_case(case, common, lambda given, progress: gears_case(given, common.output, progress), show_gears)
 
@@ -72,7 +72,7 @@ def system(
 ) -> None:
     """Complex natural modes of the whole coupled system, who moves and damps; what reaches bearings and sensors."""
     from gearwhine.screen import show_system
-    from gearwhine.work import system_case
+    from gearwhine.work.machine import system_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return system_case(
@@ -111,7 +111,7 @@ def steady(
 ) -> None:
     """The motion that repeats with the excitation, without marching to it; whether it is stable, and over speed."""
     from gearwhine.screen import show_steady
-    from gearwhine.work import steady_case
+    from gearwhine.work.machine import steady_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         over_speed = curve or down
@@ -149,7 +149,7 @@ def sweep(
     """The transient over the speeds of [sweep] or any keys, in parallel; resumes in OUT (default: ./<case>-results)."""
     from gearwhine.failures import PartlyFailedError
     from gearwhine.screen import show_sweep
-    from gearwhine.work import sweep_case
+    from gearwhine.work.machine import sweep_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)

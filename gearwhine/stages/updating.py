@@ -6,6 +6,7 @@ each meshed anew.
 """
 
 import time
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 
 from gearwhine.case import Case, CaseError, Problem, require
@@ -21,7 +22,6 @@ from housing.updating import (
     HeldBack,
     Meshes,
     Misfit,
-    ModalState,
     Posterior,
     Raced,
     Step,
@@ -109,12 +109,8 @@ def update_housing(
     begin = time.perf_counter()
     fine = HousingDesigns(fitted_case(case), given.modes, measured.observer, threads=threads, as_written=True)
     coarse = replace(fine, case=fitted_case(case, given.mesh_size))
-    progress("solving the housing as it stands")
-    same = coarse.case_at(coarse.start) == fine.case_at(fine.start)
-    effort = Effort(solves=given.solves, seed=given.seed)
-    with side_by_side(min(threads, default_workers())) as each:
-        before, start = _started(fine, fine if same else coarse, each)
-        raced = _raced(fine, start, None if same else before.state, target, effort, 1 + given.explore, each, progress)
+    effort, count = Effort(solves=given.solves, seed=given.seed), 1 + given.explore
+    before, start, raced = _raced(fine, coarse, target, effort, count, threads, progress)
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
     progress("going on with the housing's own mesh")
@@ -122,12 +118,10 @@ def update_housing(
     # On the way modes were not counted; those that are told of have their proof.
     after = replace(fine.solve(found.design.coordinates), known=found.design.surrogate())
     seconds["own_mesh"] = time.perf_counter() - begin
-    spread = posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates))
     rows: list[HeldBack] = []
     null_test: NullTest | None = None
-    # One thread each, as in the race.
-    with side_by_side(min(threads, default_workers()) if held_back or null else 1) as each:
-        procedure = whole_search(start, effort, 1 + given.explore)
+    with _sharing(threads, len(target.noise) * held_back + null) as each:
+        procedure = whole_search(start, effort, count)
         if held_back:
             begin = time.perf_counter()
             rows = held_back_modes(procedure, target, each, progress)
@@ -145,7 +139,7 @@ def update_housing(
         start=start,
         target=target,
         left_out=measured.left_out,
-        posterior=spread,
+        posterior=posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates)),
         steps=raced.steps + found.steps,
         held_back=rows,
         null=null_test,
@@ -153,16 +147,38 @@ def update_housing(
     )
 
 
-def _started(fine: HousingDesigns, coarse: HousingDesigns, each: Each) -> tuple[HousingDesign, HousingDesign]:
-    """The housing as it stands on both meshes.
+def _sharing(threads: int, tasks: int) -> AbstractContextManager[Each]:
+    """Who shares tasks of one thread each; one task, or none, is done here."""
+    return side_by_side(min(threads, tasks, default_workers()))
 
-    By one thread each, as all that follows in the race: with other numbers of threads sums are rounded otherwise, and a
-    search that is led by its last digits ends elsewhere.
+
+def _raced(
+    fine: HousingDesigns,
+    coarse: HousingDesigns,
+    target: Target,
+    effort: Effort,
+    count: int,
+    threads: int,
+    progress: Progress,
+) -> tuple[HousingDesign, HousingDesign, Raced[HousingDesign]]:
+    """The housing as it stands on both meshes, and the search from there and from other starts.
+
+    Where there are several starts all is done by one thread each, from the first solution on: with other numbers of
+    threads sums are rounded otherwise, and a search that is led by its last digits ends elsewhere.
     """
-    alone = replace(fine, threads=1)
-    tasks = [(alone, coarse is fine), (replace(coarse, threads=1), True)]
-    solved = list(each(_as_it_stands, tasks[: 1 if coarse is fine else 2]))
-    return solved[0], solved[-1]
+    progress("solving the housing as it stands")
+    each_has = threads if count == 1 else 1
+    fine, coarse = replace(fine, threads=each_has), replace(coarse, threads=each_has)
+    same = coarse.case_at(coarse.start) == fine.case_at(fine.start)
+    with _sharing(threads, count) as each:
+        tasks = [(fine, True)] if same else [(fine, False), (coarse, True)]
+        solved: list[HousingDesign] = list(each(_as_it_stands, tasks))
+        before, start = solved[0], solved[-1]
+        own = None if same else replace(fine, draft=True).solve
+        meshes = Meshes(replace(coarse, draft=True).solve, own, HousingDesign.light)
+        judged = None if same else before.state
+        raced = race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
+    return before, start, raced
 
 
 def _as_it_stands(task: tuple[HousingDesigns, bool]) -> HousingDesign:
@@ -170,19 +186,3 @@ def _as_it_stands(task: tuple[HousingDesigns, bool]) -> HousingDesign:
     designs, wanted = task
     design = designs.solve(designs.start)
     return replace(design, known=design.surrogate()) if wanted else design
-
-
-def _raced(
-    fine: HousingDesigns,
-    start: HousingDesign,
-    judged: ModalState | None,
-    target: Target,
-    effort: Effort,
-    count: int,
-    each: Each,
-    progress: Progress,
-) -> Raced[HousingDesign]:
-    """The search from the start and others on the coarse mesh, judged by the fine one, one thread for each."""
-    coarse, own = (replace(designs, threads=1, draft=True) for designs in (start.designs, fine))
-    meshes = Meshes(coarse.solve, None if judged is None else own.solve, HousingDesign.light)
-    return race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)

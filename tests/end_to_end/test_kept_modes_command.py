@@ -216,7 +216,7 @@ def test_runs_at_once_in_one_folder_both_end_well(start_process, tmp_path: Path)
 DROPPED = """
 import os, sys
 from gearwhine.cli import run_command
-import gearwhine.work
+import gearwhine.work.housing
 assert run_command(["check", sys.argv[1], "-q"]) == 0  # loads what another user may not read
 if os.getuid() == 0:
     os.setgroups([])

@@ -7,7 +7,7 @@ import pytest
 
 from gearwhine.case import load_case
 from gearwhine.stages.housing import solve_housing
-from gearwhine.work import compare_case
+from gearwhine.work.housing import compare_case
 from housing.measured import MeasuredGeometry, MeasuredModes
 from housing.measured.survey_data import SurveyData
 from housing.measured.survey_file import write_survey
