@@ -84,8 +84,8 @@ class SurfacePoint:
     normal: FloatArray
 
 
-def surface_point(mesh: Mesh, facets: Facets, place: FloatArray, *, along: FloatArray | None = None) -> SurfacePoint:
-    """The point of some boundary facets nearest to a place.
+class NearestOnSurface:
+    """Finds the point of some boundary facets that is nearest to a place.
 
     Told by the true, curved or twisted, shape of the few facets that are nearest by the plane triangles between their
     corners.
@@ -95,59 +95,123 @@ def surface_point(mesh: Mesh, facets: Facets, place: FloatArray, *, along: Float
     mesh : Mesh
     facets : tuple of ElementBlock
         Outward facets to search.
-    place : ndarray, shape (3,)
-        [m].
     along : ndarray, shape (3,), optional
-        A unit vector; distances are then taken across it only, so that the place is projected along it.
+        A unit vector; distances are then taken across it only, so that places are projected along it.
 
     Raises
     ------
     HousingError
         Where there are no facets.
     """
-    across = np.eye(3) if along is None else np.eye(3) - np.outer(along, along)
-    target = across @ place
-    nearest: tuple[float, IntArray, FloatArray, FloatArray] | None = None
-    for distance, block, member, start in _candidates(mesh, facets, across, target):
-        nodes = block.nodes[member]
-        corners = mesh.points[nodes] @ across
-        bulge, slack = _bulge(corners, block), _ROUNDING * float(np.ptp(mesh.points[nodes], axis=0).max())
-        # Where facets are equally near, as at their common edge, the first is taken, whatever the rounding.
-        if nearest is not None and distance - bulge > nearest[0] - slack:
-            continue
-        coordinates = _closest_on_facet(corners, block, start, target) if bulge > slack else start
-        values, gradients = shape_functions(block.kind, coordinates[:, None])
-        gap = float(np.linalg.norm(values[0] @ corners - target))
-        if nearest is None or gap < nearest[0] - slack:
-            tangents = mesh.points[nodes].T @ gradients[0]
-            nearest = (gap, nodes, values[0], np.cross(tangents[:, 0], tangents[:, 1]))
-    if nearest is None:
-        raise HousingError("there are no facets to find a point on")
-    _, nodes, weights, normal = nearest
-    return SurfacePoint(
-        nodes=nodes,
-        weights=weights,
-        position=weights @ mesh.points[nodes],
-        normal=normal / np.linalg.norm(normal),
-    )
+
+    def __init__(self, mesh: Mesh, facets: Facets, along: FloatArray | None = None) -> None:
+        self._points = mesh.points
+        self._across = np.eye(3) if along is None else np.eye(3) - np.outer(along, along)
+        self._triangles = [
+            _Triangles.of(mesh, block, triangle, self._across)
+            for block in facets
+            for triangle in (_CORNER_TRIANGLES[block.of.n_corners] if len(block) else ())
+        ]
+        if not self._triangles:
+            raise HousingError("there are no facets to find a point on")
+
+    def point(self, place: FloatArray) -> SurfacePoint:
+        """The point nearest to a place [m], shape (3,)."""
+        points, target = self._points, self._across @ place
+        nearest: tuple[float, IntArray, FloatArray, FloatArray] | None = None
+        for distance, block, member, start in self._candidates(target):
+            nodes = block.nodes[member]
+            corners = points[nodes] @ self._across
+            bulge, slack = _bulge(corners, block), _ROUNDING * float(np.ptp(points[nodes], axis=0).max())
+            # Where facets are equally near, as at their common edge, the first is taken, whatever the rounding.
+            if nearest is not None and distance - bulge > nearest[0] - slack:
+                continue
+            coordinates = _closest_on_facet(corners, block, start, target) if bulge > slack else start
+            values, gradients = shape_functions(block.kind, coordinates[:, None])
+            gap = float(np.linalg.norm(values[0] @ corners - target))
+            if nearest is None or gap < nearest[0] - slack:
+                tangents = points[nodes].T @ gradients[0]
+                nearest = (gap, nodes, values[0], np.cross(tangents[:, 0], tangents[:, 1]))
+        assert nearest is not None
+        _, nodes, weights, normal = nearest
+        return SurfacePoint(
+            nodes=nodes,
+            weights=weights,
+            position=weights @ points[nodes],
+            normal=normal / np.linalg.norm(normal),
+        )
+
+    def _candidates(self, target: FloatArray) -> list[tuple[float, ElementBlock, int, FloatArray]]:
+        """The facets nearest to the target by the plane triangles between their corners, nearest first.
+
+        Each with its distance, block, number in the block, and the reference coordinates of the triangle's nearest
+        point.
+        """
+        found: list[tuple[float, int, ElementBlock, int, FloatArray]] = []
+        for triangles in self._triangles:
+            near = triangles.near(target)
+            shares, distance = _closest_on_triangles(triangles.corners[near], target)
+            for place in np.argsort(distance, kind="stable")[:_NEIGHBOURS].tolist():
+                start = shares[place] @ triangles.places
+                found.append((float(distance[place]), len(found), triangles.block, int(near[place]), start))
+        return [(one[0], *one[2:]) for one in sorted(found, key=lambda one: one[:2])[:_NEIGHBOURS]]
 
 
-def _candidates(
-    mesh: Mesh, facets: Facets, across: FloatArray, target: FloatArray
-) -> list[tuple[float, ElementBlock, int, FloatArray]]:
-    """The facets nearest to the target by the plane triangles between their corners, nearest first.
+@dataclass(frozen=True)
+class _Triangles:
+    """One plane triangle of each facet of a block, and the ball around it.
 
-    Each with its distance, block, number in the block, and the reference coordinates of the triangle's nearest point.
+    Attributes
+    ----------
+    block : ElementBlock
+    places : ndarray, shape (3, 2)
+        Reference coordinates of the corners.
+    corners : ndarray, shape (n_facets, 3, 3)
+        [m].
+    centers : ndarray, shape (n_facets, 3)
+    radii : ndarray, shape (n_facets,)
+        [m].
     """
-    found: list[tuple[float, int, ElementBlock, int, FloatArray]] = []
-    for block in facets:
-        for triangle in _CORNER_TRIANGLES[block.of.n_corners] if len(block) else ():
-            corners = mesh.points[block.nodes[:, triangle]] @ across
-            shares, distance = _closest_on_triangles(corners, target)
-            places = np.array(block.of.places)[list(triangle)]
-            for member in np.argsort(distance, kind="stable")[:_NEIGHBOURS].tolist():
-                found.append((float(distance[member]), len(found), block, member, shares[member] @ places))
-    return [(one[0], *one[2:]) for one in sorted(found, key=lambda one: one[:2])[:_NEIGHBOURS]]
+
+    block: ElementBlock
+    places: FloatArray
+    corners: FloatArray
+    centers: FloatArray
+    radii: FloatArray
+
+    @classmethod
+    def of(cls, mesh: Mesh, block: ElementBlock, triangle: tuple[int, ...], across: FloatArray) -> "_Triangles":
+        corners = mesh.points[block.nodes[:, triangle]] @ across
+        centers = corners.mean(axis=1)
+        radii = np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1)
+        places = np.array(block.of.places, dtype=np.float64)[list(triangle)]
+        return cls(block, places, corners, centers, radii)
+
+    def near(self, target: FloatArray) -> IntArray:
+        """The triangles that may be among the nearest few: those whose ball comes as near as that many centres lie."""
+        apart = np.linalg.norm(self.centers - target, axis=1)
+        few = min(_NEIGHBOURS, len(apart)) - 1
+        reach = np.partition(apart, few)[few] * (1.0 + _ROUNDING)
+        return np.flatnonzero(apart - self.radii * (1.0 + _ROUNDING) <= reach)
+
+
+def surface_point(mesh: Mesh, facets: Facets, place: FloatArray) -> SurfacePoint:
+    """The point of some boundary facets nearest to a place; see :class:`NearestOnSurface`, which many places share.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    facets : tuple of ElementBlock
+        Outward facets to search.
+    place : ndarray, shape (3,)
+        [m].
+
+    Raises
+    ------
+    HousingError
+        Where there are no facets.
+    """
+    return NearestOnSurface(mesh, facets).point(place)
 
 
 def _bulge(nodes: FloatArray, block: ElementBlock) -> float:

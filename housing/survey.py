@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import HousingError
-from housing.surface import surface_point
+from housing.surface import NearestOnSurface
 from meshes import Mesh, facet_centers, facet_normals, pick_facets
 
 FloatArray = npt.NDArray[np.float64]
@@ -94,12 +94,13 @@ def survey_grid(
         outer = pick_facets(boundary, (facing @ normal > _FACING) & ((centers - middle) @ normal > 0.0))
         if not outer:  # as on a cone: what comes nearest to looking that way
             outer = pick_facets(boundary, facing @ normal > _FACING * (facing @ normal).max())
+        nearest = NearestOnSurface(mesh, outer, along=normal)
         for column in (np.arange(columns) + 0.5) / columns:
             for row in (np.arange(rows) + 0.5) / rows:
                 place = middle.copy()
                 place[column_axis] = box[0, column_axis] + column * (box[1] - box[0])[column_axis]
                 place[row_axis] = box[0, row_axis] + row * (box[1] - box[0])[row_axis]
-                points.append((surface_point(mesh, outer, place, along=normal), normal))
+                points.append((nearest.point(place), normal))
     entries = sparse.lil_array((3 * len(points), 3 * len(mesh.points)))
     for number, (point, _) in enumerate(points):
         for component in range(3):

@@ -11,7 +11,7 @@ from housing.measured.alignment import Alignment, size_hint
 from housing.measured.geometry import MeasuredGeometry
 from housing.measured.outer_surface import outer_facets
 from housing.patches import point_matrix
-from housing.surface import surface_point
+from housing.surface import NearestOnSurface
 from meshes import Mesh
 from meshes.lengths import length_text
 
@@ -95,7 +95,8 @@ def map_survey(
     if len(geometry.labels) > 2 and (hint := size_hint(geometry, mesh, _SMALLEST)):
         raise MeasuredDataError(f"the survey is not as large as the housing: {hint}")
     facets = outer_facets(mesh)
-    found = [surface_point(mesh, facets, position) for position in geometry.positions]
+    nearest = NearestOnSurface(mesh, facets)
+    found = [nearest.point(position) for position in geometry.positions]
     positions = np.array([point.position for point in found]).reshape(-1, 3)
     distances = np.linalg.norm(positions - geometry.positions, axis=1)
     if np.count_nonzero(distances > limit) > len(found) / 2:

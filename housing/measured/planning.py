@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from housing.errors import HousingError
 from housing.measured.geometry import MeasuredGeometry
 from housing.measured.outer_surface import outer_facets, sample_surface
-from housing.surface import surface_point
+from housing.surface import NearestOnSurface
 from meshes import Facets, Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -163,7 +163,8 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
         chosen.append(int(np.argmax(nearest)))
     labels = tuple(str(number) for number in range(1, count + 1))
     # Samples lie between the corners of facets, off a curved surface.
-    found = [surface_point(mesh, facets, place) for place in points[chosen]]
+    surface = NearestOnSurface(mesh, facets)
+    found = [surface.point(place) for place in points[chosen]]
     normals = np.array([point.normal for point in found]) + 0.0  # zeros without a sign
     return MeasuredGeometry(labels, np.array([point.position for point in found]), np.arange(count), normals)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from housing import Material, Seat, Sensor, Support, assemble, attach, seat_matrix, sensor_port
-from housing.surface import surface_point, surface_quadrature
+from housing.surface import NearestOnSurface, surface_point, surface_quadrature
 from meshes import KINDS, Mesh, facet_centers, facet_nodes, facet_normals, pick_facets
 from meshes.elements import SOLIDS
 
@@ -109,6 +109,6 @@ def test_a_place_projected_along_a_direction_keeps_its_other_coordinates(block_o
             mesh.boundary, np.linalg.norm(facet_centers(mesh.points, mesh.boundary)[:, [0, 2]], axis=1) > 1.45
         )
         place = np.array([0.61, 0.33, 9.0])
-        point = surface_point(mesh, outer, place, along=np.array([0.0, 0.0, 1.0]))
+        point = NearestOnSurface(mesh, outer, along=np.array([0.0, 0.0, 1.0])).point(place)
         np.testing.assert_allclose(point.position[:2], place[:2], atol=1e-9)
         assert np.hypot(point.position[0], point.position[2]) == pytest.approx(1.5, abs=5e-3)
