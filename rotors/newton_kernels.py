@@ -32,9 +32,9 @@ FORWARD = 1e-6
 
 @inner(error_model="python", fastmath=FUSED)
 def form(rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexArray, right: ComplexArray) -> complex:
-    """yᴴ A x of one matrix."""
+    """yᴴ A x of one matrix, of the entries given."""
     total = 0.0j
-    for entry in range(rows.size):
+    for entry in range(values.size):
         total += np.conj(left[rows[entry]]) * values[entry] * right[columns[entry]]
     return total
 
@@ -62,8 +62,8 @@ def newton(
     """
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]
-    beams, rods = scratch(table)
-    values, slopes = np.empty(rows.size, dtype=np.complex128), np.empty(rows.size, dtype=np.complex128)
+    beams, rods, values, varying = scratch(table, rows.size)
+    slopes = np.empty(varying, dtype=np.complex128)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
     left, side = np.empty((1, order), dtype=np.complex128), np.empty(order, dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
@@ -83,7 +83,7 @@ def newton(
                 ahead = at * (1.0 + FORWARD)
                 put_entries(ahead, base + rate * ahead, scale, table, beams, rods, slopes)
                 over = 1.0 / (ahead - at)
-                for entry in range(rows.size):
+                for entry in range(varying):
                     slopes[entry] = (slopes[entry] - values[entry]) * over
             turned = 0.0
             if held:

@@ -121,8 +121,7 @@ def walk(
     scale = force_unit(complex(math.exp(bounds[1]), 0.0), mass)
     rows, columns, envelope, lower, upper = pattern
     order, corners = envelope.shape[0], edge.size - 1
-    beams, rods = scratch(table)
-    values = np.empty(rows.size, dtype=np.complex128)
+    beams, rods, values, _ = scratch(table, rows.size)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
     both = np.empty(2, dtype=np.complex128)
