@@ -162,7 +162,7 @@ class _Terms:
         for k, coefficient in enumerate(numerator):
             top[..., k] = coefficient
         bottom[:] = denominator
-        there = top.any(axis=-1)
+        there = np.asarray(top.any(axis=-1))
         self.places.append(_where(there, rows, columns))
         self.numerators.append(top[there])
         self.denominators.append(bottom[there])
