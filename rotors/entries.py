@@ -10,6 +10,7 @@ stiff directions and soft ones count alike; their forces by c₄. Ones and direc
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -22,10 +23,11 @@ from .spatial_ties import MEMBERS, Tie
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-Runs = tuple[FloatArray, FloatArray, IntArray, IntArray]
+Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
 
 OVER_FORCE = np.array([1.0, 0.0])
-NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), np.zeros(0, dtype=np.intp), np.zeros(1, dtype=np.intp))
+NOWHERE = np.zeros(0, dtype=np.intp)
+NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), NOWHERE, np.zeros(1, dtype=np.intp), NOWHERE)
 
 
 @dataclass(frozen=True)
@@ -39,8 +41,9 @@ class EntryTable:
     blocks
         1 for r+, −1 for r−, 0 for z.
     beams, rods
-        Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), and
-        the nodes with unknowns, between which pieces run together, (r + 1,); no rods without z.
+        Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), the
+        nodes with unknowns, between which pieces run together, (r + 1,), and the first run of the same pieces as each,
+        (r,); no rods without z.
     numerators, denominators
         (t, 5) complex and (t, 2): of the entries that are no transfer matrix's, and stand behind those.
     constants
@@ -107,7 +110,10 @@ def entry_table(
 
 
 def _runs(chain: Chain, kept: IntArray) -> Runs:
-    return chain.table.lengths, chain.table.coefficients, chain.element, kept
+    first: dict[bytes, int] = {}
+    pieces = [chain.element[left:right].tobytes() for left, right in pairwise(kept.tolist())]
+    like = [first.setdefault(same, run) for run, same in enumerate(pieces)]
+    return chain.table.lengths, chain.table.coefficients, chain.element, kept, np.array(like, dtype=np.intp)
 
 
 def _inertias(chain: Chain, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:

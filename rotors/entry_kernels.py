@@ -15,9 +15,9 @@ from .piece_kernels import whole_transfer
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-# Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), and the nodes
-# between which pieces run together, (r + 1,).
-Runs = tuple[FloatArray, FloatArray, IntArray, IntArray]
+# Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), the nodes
+# between which pieces run together, (r + 1,), and the first run of the same pieces as each, (r,).
+Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
 # Blocks (of which 1 and −1 are bending, 0 axial motion), beams, rods, numerators (t, 5), denominators (t, 2) and
 # constants (c,).
 Table = tuple[IntArray, Runs, Runs, ComplexArray, FloatArray, ComplexArray]
@@ -44,13 +44,18 @@ def _put_runs(
     runs: Runs, translation: complex, rotation: complex, scale: float, transfers: Any, out: ComplexArray
 ) -> int:
     """−T of every run of pieces, forces in the given unit, into the beginning of ``out``; how many entries they are."""
-    lengths, given, element, kept = runs
+    lengths, given, element, kept, like = runs
     whole, over = np.ones(1), 1.0 / scale
     size, half, spare = transfers.shape[2], transfers.shape[2] // 2, lengths.size
     for e in range(lengths.size):
         whole_transfer(lengths[e], given[e], translation, rotation, whole, transfers[e])
     entry = 0
     for run in range(kept.size - 1):
+        if like[run] < run:
+            for same in range(like[run] * size * size, (like[run] + 1) * size * size):
+                out[entry] = out[same]
+                entry += 1
+            continue
         product = element[kept[run]]
         for piece in range(kept[run] + 1, kept[run + 1]):
             # Two spare matrices take turns.
@@ -148,7 +153,7 @@ def node_states(
     Of ``solutions`` (w, order) the unknowns at ``places`` (r + 1, 2n) are the states where runs end, zero where a place
     is negative, their forces in units of ``scale`` (w,); ω² are those of ``translation`` and ``rotation``, (w,) both.
     """
-    lengths, given, element, kept = runs
+    lengths, given, element, kept, _ = runs
     size, whole = states.shape[2], np.ones(1)
     transfers = np.empty((lengths.size, 1, size, size), dtype=np.complex128)
     for w in range(states.shape[0]):
