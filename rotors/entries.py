@@ -25,6 +25,7 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
 
+ALONE = np.array([0.0, 1.0])
 OVER_FORCE = np.array([1.0, 0.0])
 NOWHERE = np.zeros(0, dtype=np.intp)
 NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), NOWHERE, np.zeros(1, dtype=np.intp), NOWHERE)
@@ -92,20 +93,21 @@ def entry_table(
         transfers.append(np.array(np.broadcast_arrays(rows[:, :, None], columns[:, None])).reshape(2, -1))
         first = own.stop
     terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, kept, blocks)], OVER_FORCE)
-    terms.hold(layout.continuity, layout.displacements[1:], 1.0)
-    terms.hold(layout.balances[:-1], layout.forces, 1.0)
-    for tie, places in zip(ties, layout.ties, strict=True):
+    terms.add(layout.continuity, layout.displacements[1:], [1.0])
+    terms.add(layout.balances[:-1], layout.forces, [1.0])
+    for tie, own_places in zip(ties, layout.ties, strict=True):
         node = int(kept.searchsorted(tie.node))
-        _add_tie(terms, tie, layout.balances[node], layout.displacements[node], places)
-    rows, columns = np.concatenate(transfers + terms.places + terms.held, axis=1)
+        _add_tie(terms, tie, layout.balances[node], layout.displacements[node], own_places)
+    places, numerators, denominators, constants = terms.parted()
+    rows, columns = np.concatenate(transfers + places, axis=1)
     return EntryTable(
         BandPattern.of(rows, columns, layout.order),
         np.array(blocks, dtype=np.intp),
         _runs(bending, kept),
         NO_RUNS if axial is None else _runs(axial, kept),
-        np.concatenate(terms.numerators),
-        np.concatenate(terms.denominators),
-        np.concatenate(terms.constants),
+        numerators,
+        denominators,
+        constants,
     )
 
 
@@ -132,7 +134,7 @@ def _add_tie(terms: "_Terms", tie: Tie, balance: IntArray, node: IntArray, place
     held = _over(tie.stiffness)
     grounded = _over(tie.foot_stiffness)
     force, foot = places.force_rows, places.foot_rows
-    terms.hold(balance[:, None], places.forces, -tie.frame.conj().T)
+    terms.add(balance[:, None], places.forces, [-tie.frame.conj().T])
     terms.add(force[:, None], node, [-tie.stiffness @ tie.frame, -tie.damping @ tie.frame], held[:, None])
     terms.add(force, places.forces, [0.0, 0.0, 0.0, 0.0, 1.0], held)
     if shared:
@@ -150,37 +152,32 @@ def _over(stiffness: ComplexArray) -> FloatArray:
 
 
 class _Terms:
-    """Entries as they come, block by block, without those that vanish."""
+    """Entries as they come, block by block."""
 
     def __init__(self) -> None:
         self.places: list[IntArray] = []
         self.numerators: list[ComplexArray] = []
         self.denominators: list[FloatArray] = []
-        self.held: list[IntArray] = []
-        self.constants: list[ComplexArray] = []
 
     def add(
-        self, rows: IntArray, columns: IntArray, numerator: Sequence[npt.ArrayLike], denominator: FloatArray
+        self, rows: IntArray, columns: IntArray, numerator: Sequence[npt.ArrayLike], denominator: FloatArray = ALONE
     ) -> None:
         """Entries at rows and columns that broadcast, with the leading coefficients of their numerators."""
         shape = np.broadcast(rows, columns).shape
+        places = np.empty((2, *shape), dtype=np.intp)
+        places[0], places[1] = rows, columns
         top, bottom = np.zeros((*shape, 5), dtype=np.complex128), np.empty((*shape, 2))
         for k, coefficient in enumerate(numerator):
             top[..., k] = coefficient
         bottom[:] = denominator
-        there = np.asarray(top.any(axis=-1))
-        self.places.append(_where(there, rows, columns))
-        self.numerators.append(top[there])
-        self.denominators.append(bottom[there])
+        self.places.append(places.reshape(2, -1))
+        self.numerators.append(top.reshape(-1, 5))
+        self.denominators.append(bottom.reshape(-1, 2))
 
-    def hold(self, rows: IntArray, columns: IntArray, value: npt.ArrayLike) -> None:
-        """Entries that do not vary."""
-        values = np.empty(np.broadcast(rows, columns).shape, dtype=np.complex128)
-        values[:] = value
-        self.held.append(_where(values != 0.0, rows, columns))
-        self.constants.append(values[values != 0.0])
-
-
-def _where(there: npt.NDArray[np.bool_], rows: IntArray, columns: IntArray) -> IntArray:
-    """Rows and columns of those of some entries that are there, (2, entries)."""
-    return np.array([np.broadcast_to(places, there.shape)[there] for places in (rows, columns)], dtype=np.intp)
+    def parted(self) -> tuple[list[IntArray], ComplexArray, FloatArray, ComplexArray]:
+        """Without entries that vanish: places of those that vary and of others, what makes the former, the latter."""
+        places = np.concatenate(self.places, axis=1)
+        top, bottom = np.concatenate(self.numerators), np.concatenate(self.denominators)
+        held = ~top[:, 1:].any(axis=1) & (bottom == ALONE).all(axis=1)
+        varying, others = top.any(axis=1) & ~held, held & (top[:, 0] != 0.0)
+        return [places[:, varying], places[:, others]], top[varying], bottom[varying], top[others, 0]
