@@ -8,6 +8,9 @@ segments are one; of the stepped shaft, on which every diameter is another by up
 ROSS does. Both are warm: compiled code is compiled, a rotor holds what its speed does not change, as ROSS's holds its
 matrices, and every call has a speed of its own, because ROSS keeps what it solved before. One row has a rotor of ours
 that is new in every call, while ROSS's is not.
+
+Times are processor times, of runs in turn; each of ours follows two that do not count, as ROSS's leave nothing of it in
+the caches. Shown are the medians of both, and of the ratios the median, the least and the greatest.
 """
 
 import contextlib
@@ -15,6 +18,7 @@ import io
 import math
 import statistics
 import tempfile
+import time
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -23,7 +27,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from timing import arguments, machine, timed
+from timing import arguments, machine
 
 from rotors import (
     Bearing,
@@ -42,6 +46,8 @@ STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 LENGTH = 1.5
 SPEED = 4000 * 2 * np.pi / 60
 CAMPBELL_SPEEDS = 100
+# Runs of ours before each that counts.
+UNCOUNTED = 2
 # Part of the diameter by which the stepped shaft's vary.
 STEPS = 0.02
 
@@ -112,11 +118,22 @@ def rows(ross: Any, elements: int, stepped: bool, modes: int, repeats: int, fold
     ]
 
 
-def median_seconds(work: Callable[[float], Any], speeds: Iterator[float], repeats: int) -> float:
-    """The median of some runs, after one that does not count where there is more than one."""
-    if repeats > 1:
-        work(next(speeds))
-    return statistics.median(timed(lambda: work(next(speeds)))[1] for _ in range(repeats))
+def seconds(work: Callable[[float], Any], speed: float) -> float:
+    """Processor time of one run."""
+    begun = time.process_time()
+    work(speed)
+    return time.process_time() - begun
+
+
+def in_turn(row: Row, speeds: Iterator[float]) -> tuple[list[float], list[float]]:
+    """Seconds of our runs and of ROSS's, as many of either."""
+    if row.repeats > 1:
+        row.theirs(next(speeds))
+    mine, found = [], []
+    for _ in range(row.repeats):
+        found.append(seconds(row.theirs, next(speeds)))
+        mine.append([seconds(row.ours, next(speeds)) for _ in range(1 + UNCOUNTED)][-1])
+    return mine, found
 
 
 def apart(row: Row, speed: float) -> float:
@@ -137,19 +154,21 @@ def main() -> None:
     options = arguments(
         __doc__.splitlines()[0],
         modes=(int, 6, "frequencies of both planes together"),
-        repeats=(int, 5, "runs of each, of which the median is shown; ROSS runs its Campbell diagram once"),
+        repeats=(int, 11, "runs of each, of which the median is shown; Campbell diagrams are made once"),
     )
     ross = imported_ross()
     speeds = (SPEED * (1.0 + 1e-5 * number) for number in count())
     print(f"{machine()}\n{options.modes} frequencies; the difference is ROSS's discretisation\n")
-    print(f"{'elements':>16}  {'':24}{'ours':>12}{'ROSS':>12}{'ratio':>9}{'difference':>13}")
+    print(f"{'elements':>16}  {'':24}{'ours':>12}{'ROSS':>12}{'ratio':>9}{'least':>8}{'most':>8}{'difference':>13}")
     with tempfile.TemporaryDirectory() as folder:
         for elements, stepped in ((6, False), (24, False), (60, False), (24, True), (60, True)):
             name = f"{elements} {'stepped' if stepped else 'plain'}"
             for row in rows(ross, elements, stepped, options.modes, options.repeats, Path(folder)):
-                mine = median_seconds(row.ours, speeds, options.repeats)
-                found = median_seconds(row.theirs, speeds, row.repeats)
-                line = f"{name:>16}  {row.name:24}{1e3 * mine:9.2f} ms{1e3 * found:9.2f} ms{found / mine:9.1f}"
+                mine, found = in_turn(row, speeds)
+                ratios = [theirs / ours for ours, theirs in zip(mine, found, strict=True)]
+                middle, ours, theirs = (statistics.median(values) for values in (ratios, mine, found))
+                line = f"{name:>16}  {row.name:24}{1e3 * ours:9.2f} ms{1e3 * theirs:9.2f} ms"
+                line += f"{middle:9.1f}{min(ratios):8.1f}{max(ratios):8.1f}"
                 difference = f"{apart(row, next(speeds)):.1e}" if row.repeats > 1 else ""
                 print(f"{line}{difference:>13}", flush=True)
 

@@ -16,6 +16,8 @@ IntArray = npt.NDArray[np.intp]
 
 # An exactly vanishing pivot is replaced by this part of the matrix's largest entry: a root met to the last digit.
 TINY = 1e-18
+# Pivots are gathered while their product's square is between these, before its logarithm is taken.
+SMALL, LARGE = 1e-100, 1e100
 
 
 @inner(error_model="python")
@@ -38,12 +40,12 @@ def factor(
 ) -> complex:
     """Factor in place; the logarithm of the determinant.
 
-    ``ends`` (order,) takes the last column of every row of U: rows are short where nothing reaches far, and
-    interchanges and what they fill in carry their ends along.
+    The diagonal takes the reciprocals of the pivots, and ``ends`` (order,) the last column of every row of U: rows are
+    short where nothing reaches far, and interchanges and what they fill in carry their ends along.
     """
     order = matrix.shape[0]
     logarithm = 0.0
-    phase = 1.0 + 0.0j
+    product = 1.0 + 0.0j
     for k in range(order):
         ends[k] = envelope[k, 1]
     for k in range(order):
@@ -60,7 +62,7 @@ def factor(
         pivots[k] = chosen
         last = ends[chosen]
         if chosen != k:
-            phase = -phase
+            product = -product
             ends[chosen], ends[k] = ends[k], last
             for j in range(k, max(last, ends[chosen]) + 1):
                 kept = matrix[k, j - k + lower]
@@ -70,10 +72,14 @@ def factor(
             matrix[k, lower] = least
             best = least * least
         pivot = matrix[k, lower]
-        logarithm += 0.5 * math.log(best)
-        size = math.sqrt(best)
-        phase *= complex(pivot.real / size, pivot.imag / size)
-        inverse = 1.0 / pivot
+        product *= pivot
+        size = product.real * product.real + product.imag * product.imag
+        if size < SMALL or size > LARGE:
+            size = math.sqrt(size)
+            logarithm += math.log(size)
+            product = complex(product.real / size, product.imag / size)
+        inverse = complex(pivot.real / best, -pivot.imag / best)
+        matrix[k, lower] = inverse
         above = matrix[k, lower + 1 : last - k + lower + 1]
         for i in range(k + 1, last_row + 1):
             place = k - i + lower
@@ -86,7 +92,7 @@ def factor(
             own = matrix[i, place + 1 : place + 1 + above.size]
             for j in range(above.size):
                 own[j] -= multiplier * above[j]
-    return complex(logarithm, math.atan2(phase.imag, phase.real))
+    return complex(logarithm + math.log(abs(product)), math.atan2(product.imag, product.real))
 
 
 @inner(error_model="python", fastmath=FUSED)
@@ -107,7 +113,7 @@ def forward_back(
         total = side[k]
         for j in range(k + 1, ends[k] + 1):
             total -= matrix[k, j - k + lower] * side[j]
-        side[k] = total / matrix[k, lower]
+        side[k] = total * matrix[k, lower]
 
 
 @inner(error_model="python", fastmath=FUSED)
@@ -117,7 +123,7 @@ def adjoint(
     """Solve Aᴴ x = side in place."""
     order = matrix.shape[0]
     for k in range(order):
-        side[k] = side[k] / np.conj(matrix[k, lower])
+        side[k] = side[k] * np.conj(matrix[k, lower])
         for j in range(k + 1, ends[k] + 1):
             side[j] -= np.conj(matrix[k, j - k + lower]) * side[k]
     for k in range(order - 1, -1, -1):
@@ -152,12 +158,12 @@ def orthonormalise(vectors: ComplexArray) -> None:
             size = 0.0
             for i in range(vectors.shape[1]):
                 size = max(size, abs(vectors[k, i].real), abs(vectors[k, i].imag))
-            total = 0.0
+            total, over = 0.0, 1.0 / size
             for i in range(vectors.shape[1]):
-                total += (vectors[k, i].real / size) ** 2 + (vectors[k, i].imag / size) ** 2
-            norm = size * math.sqrt(total)
+                total += (vectors[k, i].real * over) ** 2 + (vectors[k, i].imag * over) ** 2
+            over = over / math.sqrt(total)
             for i in range(vectors.shape[1]):
-                vectors[k, i] = complex(vectors[k, i].real / norm, vectors[k, i].imag / norm)
+                vectors[k, i] = complex(vectors[k, i].real * over, vectors[k, i].imag * over)
 
 
 @counted(error_model="python")

@@ -45,7 +45,7 @@ def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArra
     From one speed to the next, branches and roots are paired so that the sum of what they differ by is least:
     the distance of the root from the branch's linear continuation, as a part of it, and a little of 1 − MAC.
     """
-    inside = chain.starts[:-1, None] + np.arange(chain.size)
+    inside = chain.layout.displacements
     ways = _directions_of_all(chain, roots, speeds)
     branches: list[tuple[ComplexArray, FloatArray]] = []
     active: list[tuple[int, ComplexArray]] = []

@@ -4,28 +4,31 @@ Beside the transfer matrices of runs of pieces every entry is, with Ω the speed
 
     (c₀ + c₁ λ + c₂ λ² + c₃ λΩ + c₄ s) / (d₁ s + d₀):
 
-ones and directions by c₀ = d₀ = 1; inertias by c₂, c₃ and d₁; bearings and pedestals by c₀, c₁, c₂ over s plus the
-largest stiffness of their row, so that stiff directions and soft ones count alike; their forces by c₄.
+inertias by c₂, c₃ and d₁; bearings and pedestals by c₀, c₁, c₂ over s plus the largest stiffness of their row, so that
+stiff directions and soft ones count alike; their forces by c₄. Ones and directions do not vary.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from .banded import BandPattern
 from .chain import Chain
+from .layout import Layout, TiePlaces
 from .spatial_ties import MEMBERS, Tie
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-Runs = tuple[FloatArray, FloatArray, IntArray, IntArray]
+Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
 
 ALONE = np.array([0.0, 1.0])
 OVER_FORCE = np.array([1.0, 0.0])
-NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), np.zeros(0, dtype=np.intp), np.zeros(1, dtype=np.intp))
+NOWHERE = np.zeros(0, dtype=np.intp)
+NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), NOWHERE, np.zeros(1, dtype=np.intp), NOWHERE)
 
 
 @dataclass(frozen=True)
@@ -39,10 +42,13 @@ class EntryTable:
     blocks
         1 for r+, −1 for r−, 0 for z.
     beams, rods
-        Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), and
-        the nodes with unknowns, between which pieces run together, (r + 1,); no rods without z.
+        Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), the
+        nodes with unknowns, between which pieces run together, (r + 1,), and the first run of the same pieces as each,
+        (r,); no rods without z.
     numerators, denominators
         (t, 5) complex and (t, 2): of the entries that are no transfer matrix's, and stand behind those.
+    constants
+        (c,) complex: entries that do not vary, behind the others.
     """
 
     pattern: BandPattern
@@ -51,6 +57,7 @@ class EntryTable:
     rods: Runs
     numerators: ComplexArray
     denominators: FloatArray
+    constants: ComplexArray
 
     def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Entries at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
@@ -67,52 +74,48 @@ class EntryTable:
         return np.asarray(determinants(eigenvalues, speeds, scale, self.arrays, self.pattern.arrays))
 
     @property
-    def arrays(self) -> tuple[IntArray, Runs, Runs, ComplexArray, FloatArray]:
+    def arrays(self) -> tuple[IntArray, Runs, Runs, ComplexArray, FloatArray, ComplexArray]:
         """The table as compiled functions take it."""
-        return self.blocks, self.beams, self.rods, self.numerators, self.denominators
+        return self.blocks, self.beams, self.rods, self.numerators, self.denominators, self.constants
 
 
 def entry_table(
-    bending: Chain,
-    axial: Chain | None,
-    blocks: tuple[int, ...],
-    ties: Sequence[tuple[Tie, tuple[IntArray, IntArray]]],
-    kept: IntArray,
-    bounds: IntArray,
+    bending: Chain, axial: Chain | None, blocks: tuple[int, ...], ties: Sequence[Tie], kept: IntArray, layout: Layout
 ) -> EntryTable:
-    """The table of a chain; ``bounds`` (r + 2,) are those of the unknowns of the nodes ``kept``, (r + 1,)."""
-    starts, order = bounds[:-1], int(bounds[-1])
-    n = sum(len(MEMBERS[block]) for block in blocks)
-    across, right, first = np.arange(n), starts[1:, None], 0
-    terms, transfers = _Terms(), []
-    # Equations stand n above the unknowns: the first node has no piece to its left.
+    """The table of a chain with unknowns at the nodes ``kept``, (r + 1,), laid out as given."""
+    first, terms, transfers = 0, _Terms(), []
+    states = np.stack([layout.displacements[:-1], layout.forces])
+    reached = np.stack([layout.continuity, layout.balances[1:]])
     for block in blocks:
-        own = first + np.arange(len(MEMBERS[block]))
-        local = np.concatenate([own, n + own])
-        places = np.empty((2, starts.size - 1, local.size, local.size), dtype=np.intp)
-        places[0], places[1] = right[:, :, None] - n + local[:, None], starts[:-1, None, None] + local
-        transfers.append(places.reshape(2, -1))
-        first += own.size
-    terms.add(right - n + across, right + across, [1.0])
-    node = starts[:, None] + across
-    terms.add(node, node + n, [1.0])
-    terms.add(node, node, [0.0, 0.0, *_inertias(bending, kept, blocks)], OVER_FORCE)
-    for tie, (force, foot) in ties:
-        _add_tie(terms, tie, starts[kept.searchsorted(tie.node)] + across, force, foot, n)
-    terms.add(order - n + across, starts[-1] + n + across, [1.0])
-    rows, columns = np.concatenate(transfers + terms.places, axis=1)
+        own = slice(first, first + len(MEMBERS[block]))
+        # (r, 2n) each, displacements before forces.
+        rows, columns = (np.concatenate([*places[:, :, own]], axis=1) for places in (reached, states))
+        transfers.append(np.array(np.broadcast_arrays(rows[:, :, None], columns[:, None])).reshape(2, -1))
+        first = own.stop
+    terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, kept, blocks)], OVER_FORCE)
+    terms.add(layout.continuity, layout.displacements[1:], [1.0])
+    terms.add(layout.balances[:-1], layout.forces, [1.0])
+    for tie, own_places in zip(ties, layout.ties, strict=True):
+        node = int(kept.searchsorted(tie.node))
+        _add_tie(terms, tie, layout.balances[node], layout.displacements[node], own_places)
+    places, numerators, denominators, constants = terms.parted()
+    rows, columns = np.concatenate(transfers + places, axis=1)
     return EntryTable(
-        BandPattern.of(rows, columns, order),
+        BandPattern.of(rows, columns, layout.order),
         np.array(blocks, dtype=np.intp),
         _runs(bending, kept),
         NO_RUNS if axial is None else _runs(axial, kept),
-        np.concatenate(terms.numerators),
-        np.concatenate(terms.denominators),
+        numerators,
+        denominators,
+        constants,
     )
 
 
 def _runs(chain: Chain, kept: IntArray) -> Runs:
-    return chain.table.lengths, chain.table.coefficients, chain.element, kept
+    first: dict[bytes, int] = {}
+    pieces = [chain.element[left:right].tobytes() for left, right in pairwise(kept.tolist())]
+    like = [first.setdefault(same, run) for run, same in enumerate(pieces)]
+    return chain.table.lengths, chain.table.coefficients, chain.element, kept, np.array(like, dtype=np.intp)
 
 
 def _inertias(chain: Chain, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
@@ -125,20 +128,21 @@ def _inertias(chain: Chain, kept: IntArray, blocks: tuple[int, ...]) -> tuple[Fl
     return np.stack(squared, axis=1), np.stack(turning, axis=1)
 
 
-def _add_tie(terms: "_Terms", tie: Tie, own: IntArray, force: IntArray, foot: IntArray, n: int) -> None:
-    """Entries of a bearing with forces g and a pedestal's displacements p, behind its node's force balance."""
+def _add_tie(terms: "_Terms", tie: Tie, balance: IntArray, node: IntArray, places: TiePlaces) -> None:
+    """Entries of a bearing's forces g and a pedestal's displacements p; of its node the balance and displacements."""
     shared = list(tie.foot)
     held = _over(tie.stiffness)
     grounded = _over(tie.foot_stiffness)
-    terms.add(own[:, None], force, [-tie.frame.conj().T])
-    terms.add(force[:, None] - n, own, [-tie.stiffness @ tie.frame, -tie.damping @ tie.frame], held[:, None])
-    terms.add(force - n, force, [0.0, 0.0, 0.0, 0.0, 1.0], held)
+    force, foot = places.force_rows, places.foot_rows
+    terms.add(balance[:, None], places.forces, [-tie.frame.conj().T])
+    terms.add(force[:, None], node, [-tie.stiffness @ tie.frame, -tie.damping @ tie.frame], held[:, None])
+    terms.add(force, places.forces, [0.0, 0.0, 0.0, 0.0, 1.0], held)
     if shared:
         felt = [tie.stiffness[:, shared], tie.damping[:, shared]]
-        terms.add(force[:, None] - n, foot, felt, held[:, None])
+        terms.add(force[:, None], places.feet, felt, held[:, None])
         ground = [tie.foot_stiffness, tie.foot_damping, tie.foot_mass]
-        terms.add(foot[:, None] - n, foot, ground, grounded[:, None])
-        terms.add(foot - n, force[shared], [0.0, 0.0, 0.0, 0.0, -1.0], grounded)
+        terms.add(foot[:, None], places.feet, ground, grounded[:, None])
+        terms.add(foot, places.forces[shared], [0.0, 0.0, 0.0, 0.0, -1.0], grounded)
 
 
 def _over(stiffness: ComplexArray) -> FloatArray:
@@ -169,3 +173,11 @@ class _Terms:
         self.places.append(places.reshape(2, -1))
         self.numerators.append(top.reshape(-1, 5))
         self.denominators.append(bottom.reshape(-1, 2))
+
+    def parted(self) -> tuple[list[IntArray], ComplexArray, FloatArray, ComplexArray]:
+        """Without entries that vanish: places of those that vary and of others, what makes the former, the latter."""
+        places = np.concatenate(self.places, axis=1)
+        top, bottom = np.concatenate(self.numerators), np.concatenate(self.denominators)
+        held = ~top[:, 1:].any(axis=1) & (bottom == ALONE).all(axis=1)
+        varying, others = top.any(axis=1) & ~held, held & (top[:, 0] != 0.0)
+        return [places[:, varying], places[:, others]], top[varying], bottom[varying], top[others, 0]

@@ -8,18 +8,19 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .banded_kernels import TINY, factor, fill
+from .banded_kernels import TINY, factor, fill, put
 from .compiled import FUSED, counted, inner
 from .piece_kernels import whole_transfer
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-# Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), and the nodes
-# between which pieces run together, (r + 1,).
-Runs = tuple[FloatArray, FloatArray, IntArray, IntArray]
-# Blocks (of which 1 and −1 are bending, 0 axial motion), beams, rods, numerators (t, 5) and denominators (t, 2).
-Table = tuple[IntArray, Runs, Runs, ComplexArray, FloatArray]
+# Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), the nodes
+# between which pieces run together, (r + 1,), and the first run of the same pieces as each, (r,).
+Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
+# Blocks (of which 1 and −1 are bending, 0 axial motion), beams, rods, numerators (t, 5), denominators (t, 2) and
+# constants (c,).
+Table = tuple[IntArray, Runs, Runs, ComplexArray, FloatArray, ComplexArray]
 # Rows and columns of the entries (nnz,), envelope (order, 2), and how many diagonals lie below and above the main one.
 Pattern = tuple[IntArray, IntArray, IntArray, int, int]
 
@@ -43,13 +44,18 @@ def _put_runs(
     runs: Runs, translation: complex, rotation: complex, scale: float, transfers: Any, out: ComplexArray
 ) -> int:
     """−T of every run of pieces, forces in the given unit, into the beginning of ``out``; how many entries they are."""
-    lengths, given, element, kept = runs
+    lengths, given, element, kept, like = runs
     whole, over = np.ones(1), 1.0 / scale
     size, half, spare = transfers.shape[2], transfers.shape[2] // 2, lengths.size
     for e in range(lengths.size):
         whole_transfer(lengths[e], given[e], translation, rotation, whole, transfers[e])
     entry = 0
     for run in range(kept.size - 1):
+        if like[run] < run:
+            for same in range(like[run] * size * size, (like[run] + 1) * size * size):
+                out[entry] = out[same]
+                entry += 1
+            continue
         product = element[kept[run]]
         for piece in range(kept[run] + 1, kept[run + 1]):
             # Two spare matrices take turns.
@@ -73,18 +79,24 @@ def force_unit(at: complex, mass: float) -> float:
 
 
 @counted(error_model="python", no_cpython_wrapper=True)
-def scratch(table: Table) -> tuple[ComplexArray, ComplexArray]:
-    """Room for the transfer matrices of beams and rods that `put_entries` makes, and for two products of each."""
+def scratch(table: Table, size: int) -> tuple[ComplexArray, ComplexArray, ComplexArray, int]:
+    """Room for the transfer matrices of beams and rods and two products of each, and for the entries, (nnz,).
+
+    Those of the entries that do not vary are in place, behind the others, of which the last number tells how many.
+    """
     beams = np.empty((table[1][0].size + 2, 1, 4, 4), dtype=np.complex128)
-    return beams, np.empty((table[2][0].size + 2, 1, 2, 2), dtype=np.complex128)
+    rods = np.empty((table[2][0].size + 2, 1, 2, 2), dtype=np.complex128)
+    values, varying = np.empty(size, dtype=np.complex128), size - table[5].size
+    put(table[5], values[varying:])
+    return beams, rods, values, varying
 
 
 @counted(error_model="python", no_cpython_wrapper=True, fastmath=FUSED)
 def put_entries(
     at: complex, speed: complex, scale: float, table: Table, beams: ComplexArray, rods: ComplexArray, out: ComplexArray
 ) -> None:
-    """Entries at one λ, speed Ω and unit of force, (nnz,); ``beams`` and ``rods`` are for `scratch`."""
-    blocks, beam_runs, rod_runs, numerators, denominators = table
+    """The varying entries at one λ, speed Ω and unit of force; all arrays are those of `scratch`."""
+    blocks, beam_runs, rod_runs, numerators, denominators, _ = table
     squared, turning = at * at, speed * at
     first = 0
     for block in blocks:
@@ -102,9 +114,10 @@ def put_entries(
 @counted(error_model="python")
 def entries(at: ComplexArray, speeds: ComplexArray, scale: FloatArray, table: Table, out: ComplexArray) -> None:
     """Entries at every λ, (b, nnz)."""
-    beams, rods = scratch(table)
+    beams, rods, values, _ = scratch(table, out.shape[1])
     for b in range(at.size):
-        put_entries(at[b], speeds[b], scale[b], table, beams, rods, out[b])
+        put_entries(at[b], speeds[b], scale[b], table, beams, rods, values)
+        put(values, out[b])
 
 
 @counted(error_model="python")
@@ -114,8 +127,8 @@ def determinants(
     """Logarithm of the determinant at every λ, (b,), its imaginary part within (−π, π]."""
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]
-    beams, rods = scratch(table)
-    values, logarithms = np.empty(rows.size, dtype=np.complex128), np.empty(at.size, dtype=np.complex128)
+    beams, rods, values, _ = scratch(table, rows.size)
+    logarithms = np.empty(at.size, dtype=np.complex128)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
     for b in range(at.size):
@@ -137,10 +150,10 @@ def node_states(
 ) -> None:
     """Fill in the states (w, p + 1, 2n) of one block at all nodes, those inside runs from the nodes before them.
 
-    Of ``solutions`` (w, order) the unknowns at ``places`` (r + 1, 2n) are the states where runs end, their forces in
-    units of ``scale`` (w,); ω² are those of ``translation`` and ``rotation``, (w,) both.
+    Of ``solutions`` (w, order) the unknowns at ``places`` (r + 1, 2n) are the states where runs end, zero where a place
+    is negative, their forces in units of ``scale`` (w,); ω² are those of ``translation`` and ``rotation``, (w,) both.
     """
-    lengths, given, element, kept = runs
+    lengths, given, element, kept, _ = runs
     size, whole = states.shape[2], np.ones(1)
     transfers = np.empty((lengths.size, 1, size, size), dtype=np.complex128)
     for w in range(states.shape[0]):
@@ -148,8 +161,8 @@ def node_states(
             whole_transfer(lengths[e], given[e], translation[w], rotation[w], whole, transfers[e])
         for end in range(kept.size):
             for i in range(size):
-                unit = scale[w] if i >= size // 2 else 1.0
-                states[w, kept[end], i] = unit * solutions[w, places[end, i]]
+                unit, place = scale[w] if i >= size // 2 else 1.0, places[end, i]
+                states[w, kept[end], i] = unit * solutions[w, place] if place >= 0 else 0.0j
         for run in range(kept.size - 1):
             for node in range(kept[run] + 1, kept[run + 1]):
                 transfer = transfers[element[node - 1], 0]

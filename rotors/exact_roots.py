@@ -61,11 +61,6 @@ class Speed:
         """Ω at every λ, (w,)."""
         return np.asarray(self.base + self.rate * eigenvalues, dtype=np.complex128)
 
-    @property
-    def is_real(self) -> bool | npt.NDArray[np.bool_]:
-        """Whether it is real at real λ, so that Ω(λ̄) is the conjugate of Ω(λ)."""
-        return (np.imag(self.base) == 0.0) & (complex(self.rate).imag == 0.0)
-
 
 @dataclass(frozen=True)
 class ExactRoots:
@@ -154,9 +149,11 @@ def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tu
 
 def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
     """The roots that have settled, each once, and where the others stand."""
+    from .place_kernels import are_done
+
+    if are_done(roots.eigenvalues, roots.residuals, ACCEPTED, SAME):
+        return roots, NO_PLACES
     good = roots.residuals <= ACCEPTED
-    if good.all():
-        return distinct(roots), NO_PLACES
     return distinct(roots.take(good)), roots.eigenvalues[~good]
 
 

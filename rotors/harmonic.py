@@ -193,7 +193,7 @@ def solve_harmonic(
         )
         for run, tied in runs:
             values = tied.values(eigenvalues[run], speeds[run].astype(np.complex128), scale[run])
-            solutions[run] = chain.pattern.solve(values, sides[run, None])[:, 0]
+            solutions[run] = tied.pattern.solve(values, sides[run, None])[:, 0]
             forces[run] += bearing_forces(tied, solutions[run], scale[run])
         part = SpatialMotion.of(chain, eigenvalues, speeds.astype(np.complex128), solutions, scale)
         motion = part if motion is None else motion.plus(part)
@@ -205,9 +205,9 @@ def bearing_forces(chain: SpatialChain, solutions: ComplexArray, scale: FloatArr
     """Forces on the bearings' carriers (b, ties, 5) over x, y, z and about x and y, in SI."""
     length, angle = chain.bending.displacement_unit
     forces = np.zeros((solutions.shape[0], len(chain.ties), 5), dtype=np.complex128)
-    for index, (tie, (force, _)) in enumerate(zip(chain.ties, chain.tie_unknowns, strict=True)):
+    for index, (tie, places) in enumerate(zip(chain.ties, chain.layout.ties, strict=True)):
         own = np.zeros((solutions.shape[0], 5), dtype=np.complex128)
-        own[:, list(tie.directions)] = solutions[:, force] * scale[:, None]
+        own[:, list(tie.directions)] = solutions[:, places.forces] * scale[:, None]
         if tie.circular:
             # The change of coordinates is unitary: its inverse is its adjoint.
             own = (own / np.array([length, angle, length, angle, length])) @ CIRCULAR.conj()
@@ -222,7 +222,7 @@ def _sides(chain: SpatialChain, places: Sequence[float], loads: Loads) -> Comple
     members = [member for block in chain.blocks for member in MEMBERS[block]]
     sides = np.zeros((loads.shape[0], chain.pattern.order), dtype=np.complex128)
     for index, place in enumerate(places):
-        row = chain.starts[chain.bending.node_at(place)] + np.arange(chain.size)
+        row = chain.layout.balances[chain.bending.node_at(place)]
         sides[:, row] -= loads[:, index][:, members] * chain.units
     return sides
 

@@ -31,12 +31,23 @@ FORWARD = 1e-6
 
 
 @inner(error_model="python", fastmath=FUSED)
-def form(rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexArray, right: ComplexArray) -> complex:
-    """yᴴ A x of one matrix."""
-    total = 0.0j
-    for entry in range(rows.size):
-        total += np.conj(left[rows[entry]]) * values[entry] * right[columns[entry]]
-    return total
+def forms(
+    rows: IntArray,
+    columns: IntArray,
+    values: ComplexArray,
+    slopes: ComplexArray,
+    left: ComplexArray,
+    right: ComplexArray,
+) -> tuple[complex, complex]:
+    """yᴴ N x and yᴴ N' x, of entries of which the first vary."""
+    top, bottom = 0.0j, 0.0j
+    for entry in range(slopes.size):
+        both = np.conj(left[rows[entry]]) * right[columns[entry]]
+        top += both * values[entry]
+        bottom += both * slopes[entry]
+    for entry in range(slopes.size, values.size):
+        top += np.conj(left[rows[entry]]) * right[columns[entry]] * values[entry]
+    return top, bottom
 
 
 @counted(error_model="python")
@@ -62,8 +73,8 @@ def newton(
     """
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]
-    beams, rods = scratch(table)
-    values, slopes = np.empty(rows.size, dtype=np.complex128), np.empty(rows.size, dtype=np.complex128)
+    beams, rods, values, varying = scratch(table, rows.size)
+    slopes = np.empty(varying, dtype=np.complex128)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
     left, side = np.empty((1, order), dtype=np.complex128), np.empty(order, dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
@@ -83,7 +94,7 @@ def newton(
                 ahead = at * (1.0 + FORWARD)
                 put_entries(ahead, base + rate * ahead, scale, table, beams, rods, slopes)
                 over = 1.0 / (ahead - at)
-                for entry in range(rows.size):
+                for entry in range(varying):
                     slopes[entry] = (slopes[entry] - values[entry]) * over
             turned = 0.0
             if held:
@@ -113,8 +124,7 @@ def newton(
                 put(right[0], left[0])
                 adjoint(matrix, lower, envelope, pivots, ends, left[0])
                 orthonormalise(left)
-            top = form(rows, columns, values, left[0], right[0])
-            bottom = form(rows, columns, slopes, left[0], right[0])
+            top, bottom = forms(rows, columns, values, slopes, left[0], right[0])
             change = -top / bottom if bottom != 0.0 else complex(math.inf, 0.0)
             share = abs(change) / abs(at)
             if share > LONGEST_STEP:

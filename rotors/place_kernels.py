@@ -50,6 +50,15 @@ def are_apart(values: ComplexArray, tolerance: float) -> bool:
 
 
 @uncounted(error_model="python")
+def are_done(values: ComplexArray, residuals: FloatArray, accepted: float, tolerance: float) -> bool:
+    """Whether no residual exceeds what is accepted, and no two values are nearer than a part of either's size."""
+    for residual in residuals:
+        if not residual <= accepted:
+            return False
+    return are_apart(values, tolerance)
+
+
+@uncounted(error_model="python")
 def inside(values: ComplexArray, bounds: FloatArray, out: BoolArray) -> None:
     """Which of the values lie in a sector of the bounds that `edge_distance` takes."""
     for k in range(values.size):

@@ -20,11 +20,11 @@ displacements p of pedestals; the equations are those of multiple shooting,
     f_{i+1} = T₂₁ u_i + T₂₂ f_i + (λ² M + λ G) u_{i+1} + Fᴴ g
     g = (K_b + λ C_b) (F u − p),        (K_p + λ C_p + λ² M_p) p = g
 
-with the forces g in a node's bearings along directions F u of their own, and no force beyond the right end. Every
+with the forces g in a node's bearings along directions F u of their own, and no force f right of the last node. Every
 entry is an entire function of λ, the pedestals' resonances included, and so is the determinant; its zeros are the
 eigenvalues, each with its multiplicity. (Elimination of the states shows it: the equations of the pieces and of
 the bearings' forces have unit diagonal, and what is left is the map from the displacements of the left end and of
-the pedestals to the forces on the right end and the pedestals.)
+the pedestals to the forces on the right end and the pedestals.) `rotors.layout` puts them in order.
 
 At a bare node nothing but the next piece begins. Roots need no unknowns there unless motion grows too much on the
 way: a run of pieces has the product of their transfer matrices (`SpatialChain.in_runs`), so that a shaft of sixty
@@ -46,6 +46,7 @@ from .banded import BandPattern
 from .bearing import Bearing, RadialSupport
 from .chain import Chain
 from .entries import EntryTable, entry_table
+from .layout import Layout
 from .rotor_lines import axial_chain_on, bending_chain
 from .shaft import Rotor
 from .spatial_ties import MEMBERS, Tie, make_tie
@@ -109,34 +110,15 @@ class SpatialChain:
         return float(along @ chain.lengths + chain.node_inertia[:, 0].sum())
 
     @cached_property
-    def starts(self) -> IntArray:
-        """Index of every kept node's first unknown, and their number, (r + 2,).
-
-        Forces in a node's ties and their pedestals' displacements follow its state.
-        """
-        sizes = np.full(self.kept.size, 2 * self.size)
-        for tie in self.ties:
-            sizes[self.kept.searchsorted(tie.node)] += len(tie.directions) + len(tie.foot)
-        return np.concatenate([[0], np.cumsum(sizes)])
-
-    @cached_property
-    def tie_unknowns(self) -> tuple[tuple[IntArray, IntArray], ...]:
-        """Unknowns of every tie's forces (m,) and of its pedestal's displacements (f,)."""
-        used = self.starts + 2 * self.size
-        unknowns = []
-        for tie in self.ties:
-            place = self.kept.searchsorted(tie.node)
-            first, m, f = int(used[place]), len(tie.directions), len(tie.foot)
-            unknowns.append((first + np.arange(m), first + m + np.arange(f)))
-            used[place] += m + f
-        return tuple(unknowns)
+    def layout(self) -> Layout:
+        """Where unknowns and equations stand."""
+        return Layout.of(self.blocks, self.kept, self.ties)
 
     @cached_property
     def entries(self) -> EntryTable:
         """What makes the entries of the equations at any λ."""
-        ties = tuple(zip(self.ties, self.tie_unknowns, strict=True))
         axial = self.axial if 0 in self.blocks else None
-        return entry_table(self.bending, axial, self.blocks, ties, self.kept, self.starts)
+        return entry_table(self.bending, axial, self.blocks, self.ties, self.kept, self.layout)
 
     @property
     def pattern(self) -> BandPattern:
@@ -207,12 +189,13 @@ class SpatialChain:
 
     @cached_property
     def _state_places(self) -> list[IntArray]:
-        """Of every block the unknowns that are its states at the kept nodes, (r + 1, 2 or 4)."""
-        first, places = 0, []
+        """Of every block the unknowns that are its states at the kept nodes, (r + 1, 2 or 4); −1 where none is."""
+        first, places, layout = 0, [], self.layout
+        forces = np.concatenate([layout.forces, np.full((1, self.size), -1)])
         for block in self.blocks:
-            local = first + np.arange(len(MEMBERS[block]))
-            places.append(self.starts[:-1, None] + np.concatenate([local, self.size + local]))
-            first += local.size
+            own = slice(first, first + len(MEMBERS[block]))
+            places.append(np.concatenate([layout.displacements[:, own], forces[:, own]], axis=1))
+            first = own.stop
         return places
 
     def in_runs(self) -> "SpatialChain":

@@ -195,22 +195,22 @@ def require_held(rotor: Rotor, chain: SpatialChain) -> None:
 def _solve(chain: SpatialChain, forces: Sequence[StaticForce], gravity: FloatArray) -> tuple[ComplexArray, FloatArray]:
     zero = np.zeros(1, dtype=np.complex128)
     scale = chain.response_scale(zero)
-    n, units, starts = chain.size, chain.units, chain.starts[:-1]
+    units, layout = chain.units, chain.layout
     members = [member for block in chain.blocks for member in MEMBERS[block]]
     sides = np.zeros((1, chain.pattern.order), dtype=np.complex128)
     first = 0
     for block in chain.blocks:
         width = len(MEMBERS[block])
-        local = np.concatenate([first + np.arange(width), n + first + np.arange(width)])
+        own = slice(first, first + width)
         planar = chain.bending if block else chain.axial
         pull = acceleration(gravity, block) / units[first]
         particular = pull * planar.transfers(np.array([TINY * 1j]))[:, 0].imag[:, :, 0] / TINY
         particular[:, width:] /= scale[0]
-        # The equations of a piece stand n above the unknowns of the node on its right.
-        sides[0, (starts[1:, None] - n + local)] += particular
-        sides[0, starts + first] -= pull * planar.node_inertia[:, 0] / scale[0]
+        sides[0, layout.continuity[:, own]] += particular[:, :width]
+        sides[0, layout.balances[1:, own]] += particular[:, width:]
+        sides[0, layout.balances[:, first]] -= pull * planar.node_inertia[:, 0] / scale[0]
         first += width
     for force in forces:
-        row = starts[chain.bending.node_at(force.at)] + np.arange(n)
+        row = layout.balances[chain.bending.node_at(force.at)]
         sides[0, row] -= force.circular[members] * units / scale[0]
     return chain.pattern.solve(chain.values(zero, zero, scale), sides[:, None])[:, 0], scale

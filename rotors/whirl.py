@@ -7,6 +7,7 @@ and their number is proved (`rotors.whirl_certificate`).
 """
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -243,15 +244,16 @@ def certified_whirl(
     from .place_kernels import ascending
 
     kept = [ascending(values, least, NO_OSCILLATION) for _, values in starts]
+    sizes: list[list[float]] = [np.abs(values).tolist() for values in kept]
     if limit is None:
         assert count is not None
-        reach = _reach_behind(np.sort(np.abs(_all(kept))), count)
+        reach = _reach_behind(sorted(size for own in sizes for size in own), count)
     else:
         reach = START_REACH * limit
     highest = max(START_REACH * reach, 10.0 * least)
     highest = whirl_reach(highest, highest if turning is None else turning)
     chains = [whirl_chain(rotor, bearings, blocks, highest) for blocks, _ in starts]
-    near = [int(np.abs(values).searchsorted(reach, side="right")) for values in kept]
+    near = [bisect_right(own, reach) for own in sizes]
     refined = [refine_roots(chain, values[:k], speed) for chain, values, k in zip(chains, kept, near, strict=True)]
     if limit is None:
         assert count is not None
@@ -282,14 +284,14 @@ def is_undriven(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
     return not rotor.is_compressed and is_conservative(bearings)
 
 
-def _reach_behind(ascending: FloatArray, count: int) -> float:
+def _reach_behind(ascending: Sequence[float], count: int) -> float:
     """The size of starting values that holds the lowest ``count``, their twins, and one behind them."""
-    if ascending.size == 0:
+    if not ascending:
         return 1.0
-    last = min(count, ascending.size - 1)
-    while last < ascending.size - 1 and ascending[last] <= ascending[last - 1] * (1.0 + WIDE_GAP):
+    last = min(count, len(ascending) - 1)
+    while last < len(ascending) - 1 and ascending[last] <= ascending[last - 1] * (1.0 + WIDE_GAP):
         last += 1
-    return float(ascending[last]) * (1.0 + LEAST_GAP)
+    return ascending[last] * (1.0 + LEAST_GAP)
 
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:

@@ -78,7 +78,7 @@ def certified_roots(
     if held.eigenvalues.size < expected:
         held = search(chain, roots, speed, sector)
     found = held.eigenvalues.size
-    certificate = WhirlCertificate(sector.most, expected, found, float(held.residuals.max(initial=0.0)), method)
+    certificate = WhirlCertificate(sector.most, expected, found, max(held.residuals.tolist(), default=0.0), method)
     if not certificate.complete:
         raise IncompleteModesError(
             f"{found} whirl modes are found below {sector.most:g} rad/s, but the exact equations have {expected} "

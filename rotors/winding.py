@@ -30,6 +30,7 @@ less those of known ones not divided out, give the polynomial of the missing (De
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -57,7 +58,7 @@ class Sector:
     first: float
     last: float
 
-    @property
+    @cached_property
     def bounds(self) -> FloatArray:
         """The least and the greatest ln |λ| and arg λ, (4,)."""
         return np.array([math.log(self.least), math.log(self.most), self.first, self.last])
@@ -89,26 +90,25 @@ class Winding:
         Roots inside, with multiplicity.
     samples
         How many determinants it took.
-    points, logarithms, slopes
-        Along the contour, the last the first again: w, ln q continued along it, d ln q/dw, (s + 1,).
+    path
+        Along the contour, the last the first again: w, ln q continued along it, d ln q/dw, (3, s + 1).
     left
         Known roots inside that q still has.
     """
 
     count: int
     samples: int
-    points: ComplexArray
-    logarithms: ComplexArray
-    slopes: ComplexArray
+    path: ComplexArray
     left: ComplexArray
 
     def missing(self, wanted: int) -> ComplexArray:
         """Estimates of so many roots inside that are not among the known ones, by the power sums."""
+        points, logs, slopes = self.path
         # About the middle of the contour and in its size, the powers stay of one order.
-        middle = self.points[:-1].mean()
-        size = float(np.abs(self.points - middle).max())
-        w, logs = (self.points - middle) / size, self.logarithms
-        slopes, h = self.slopes * size, np.diff(w)
+        middle = points[:-1].mean()
+        size = float(np.abs(points - middle).max())
+        w, slopes = (points - middle) / size, slopes * size
+        h = np.diff(w)
         rest = (np.log(self.left) - middle) / size
         sums = np.empty(wanted, dtype=np.complex128)
         for m in range(1, wanted + 1):
@@ -146,19 +146,19 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
     from .winding_kernels import walk
 
     entries = chain.entries
-    count, samples, inside, left, path = walk(
+    base, rate = complex(speed.base), complex(speed.rate)
+    points, samples, count, left, path = walk(
         sector.bounds,
-        (complex(speed.base), complex(speed.rate)),
+        (base, rate),
         chain.total_mass,
         known,
-        len(chain.blocks) > 1 and bool(speed.is_real),
+        # With both senses and a speed that is real at real λ, roots come in conjugate pairs.
+        len(chain.blocks) > 1 and base.imag == 0.0 == rate.imag,
         entries.arrays,
         entries.pattern.arrays,
     )
-    if count:
-        path = path[:, :count]
-        turns = round(float(path[1, -1].imag - path[1, 0].imag) / (2.0 * math.pi))
-        return Winding(inside + turns, samples, path[0], path[1], path[2], left)
+    if points:
+        return Winding(count, samples, path[:, :points], left)
     raise RootOnContourError(
         f"the count of whirl modes with {sector.least:g} < |λ| < {sector.most:g} rad/s does not settle, as one lies "
         "on the edge of the region; choose a limit a little apart from it"

@@ -106,8 +106,8 @@ def walk(
 ) -> tuple[int, int, int, ComplexArray, ComplexArray]:
     """Follow ln q along the edge of a sector: how many points that took, how many determinants, and what was found.
 
-    That is how many known roots inside are divided out, those that are left, and (3, s), of which as many columns as
-    there are points hold them, ln q and d ln q/dw; no points where the path does not settle.
+    That is how many roots are inside, the known ones of them that are not divided out, and (3, s), of which as many
+    columns as there are points hold them, ln q and d ln q/dw; no points where the path does not settle.
 
     ``bounds`` are as of `rotors.place_kernels.edge_distance`, Ω = ``speed[0]`` + ``speed[1]`` λ, and ``mass`` gives the
     unit of force. An interval that is not safe is halved: what its ends know of it does not depend on what was found
@@ -121,8 +121,7 @@ def walk(
     scale = force_unit(complex(math.exp(bounds[1]), 0.0), mass)
     rows, columns, envelope, lower, upper = pattern
     order, corners = envelope.shape[0], edge.size - 1
-    beams, rods = scratch(table)
-    values = np.empty(rows.size, dtype=np.complex128)
+    beams, rods, values, _ = scratch(table, rows.size)
     matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
     both = np.empty(2, dtype=np.complex128)
@@ -166,7 +165,8 @@ def walk(
                 count += 1
                 pending -= 1
             if pending == 0:
-                return count, samples, inside, left, found
+                turns = math.floor((found[1, count - 1].imag - found[1, 0].imag) / (2.0 * math.pi) + 0.5)
+                return count, samples, inside + turns, left, found
             if abs(h) < SHORTEST or samples > MOST_SAMPLES or pending == waiting.shape[1]:
                 return 0, samples, inside, left, found
             point, step = found[0, count - 1] + 0.5 * h, 0.5 * SLOPE_PART * h

@@ -1,0 +1,86 @@
+"""Where the unknowns and the equations of `rotors.spatial_chain` stand.
+
+Elimination goes from left to right, and its price is that of what it fills in. At every node the unknowns of ties come
+first, then those of one block after another, displacements before forces; the equations of a node stand in the order
+of the blocks too, those of ties behind them. So what a tie brings together is done with before the next run begins, and
+both senses hardly fill in each other's rows. Right of the last node there is no force.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .spatial_ties import MEMBERS, Tie
+
+IntArray = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class TiePlaces:
+    """Unknowns of a tie's forces (m,) and of its pedestal's displacements (f,), and the equations of both."""
+
+    forces: IntArray
+    feet: IntArray
+    force_rows: IntArray
+    foot_rows: IntArray
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Places of unknowns (columns) and equations (rows), for r + 1 nodes with n displacements each.
+
+    Attributes
+    ----------
+    order
+        How many there are of either.
+    displacements, forces
+        (r + 1, n) and (r, n): columns of the state right of a node.
+    continuity, balances
+        (r, n) and (r + 1, n): rows of the displacements at every node but the first, and of the forces at every node.
+    ties
+        Of every tie.
+    """
+
+    order: int
+    displacements: IntArray
+    forces: IntArray
+    continuity: IntArray
+    balances: IntArray
+    ties: tuple[TiePlaces, ...]
+
+    @classmethod
+    def of(cls, blocks: tuple[int, ...], kept: IntArray, ties: Sequence[Tie]) -> "Layout":
+        """For the blocks at nodes that have unknowns, (r + 1,), and the ties at some of them."""
+        widths = np.array([len(MEMBERS[block]) for block in blocks])
+        n, width = int(widths.sum()), np.repeat(widths, widths)
+        # A block's displacements and then its forces, behind those of the blocks before it.
+        own = np.arange(n) + np.repeat(np.cumsum(widths) - widths, widths)
+        at = [int(kept.searchsorted(tie.node)) for tie in ties]
+        extra = np.zeros(kept.size, dtype=np.intp)
+        for node, tie in zip(at, ties, strict=True):
+            extra[node] += len(tie.directions) + len(tie.foot)
+        # The first node has no displacement to meet, the last no force.
+        columns = np.concatenate([[0], np.cumsum(extra[:-1] + 2 * n)])
+        rows = np.concatenate([[0], np.cumsum(extra[:-1] + 2 * n) - n])
+        states = columns + extra
+        displacements, balances = states[:, None] + own, rows[:, None] + width + own
+        displacements[-1], balances[0] = states[-1] + np.arange(n), np.arange(n)
+        behind = rows + 2 * n
+        behind[0] = n
+        places = []
+        for node, tie in zip(at, ties, strict=True):
+            m, f = len(tie.directions), len(tie.foot)
+            column, row = np.arange(columns[node], columns[node] + m + f), np.arange(behind[node], behind[node] + m + f)
+            places.append(TiePlaces(column[:m], column[m:], row[:m], row[m:]))
+            columns[node] += m + f
+            behind[node] += m + f
+        return cls(
+            int(states[-1]) + n,
+            displacements,
+            states[:-1, None] + width + own,
+            rows[1:, None] + own,
+            balances,
+            tuple(places),
+        )
