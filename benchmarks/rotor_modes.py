@@ -9,8 +9,9 @@ ROSS does. Both are warm: compiled code is compiled, a rotor holds what its spee
 matrices, and every call has a speed of its own, because ROSS keeps what it solved before. One row has a rotor of ours
 that is new in every call, while ROSS's is not.
 
-Times are processor times, of runs in turn; each of ours follows two that do not count, as ROSS's leave nothing of it in
-the caches. Shown are the medians of both, and of the ratios the median, the least and the greatest.
+Times are processor times, of runs in turn; each that counts follows two of the same that do not, as the other program
+leaves nothing of it in the caches; but for ROSS's Campbell diagram, which takes seconds. Shown are the medians of both,
+and of the ratios the median, the least and the greatest.
 """
 
 import contextlib
@@ -46,7 +47,7 @@ STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 LENGTH = 1.5
 SPEED = 4000 * 2 * np.pi / 60
 CAMPBELL_SPEEDS = 100
-# Runs of ours before each that counts.
+# Runs of the same before each that counts.
 UNCOUNTED = 2
 # Part of the diameter by which the stepped shaft's vary.
 STEPS = 0.02
@@ -127,12 +128,12 @@ def seconds(work: Callable[[float], Any], speed: float) -> float:
 
 def in_turn(row: Row, speeds: Iterator[float]) -> tuple[list[float], list[float]]:
     """Seconds of our runs and of ROSS's, as many of either."""
-    if row.repeats > 1:
-        row.theirs(next(speeds))
-    mine, found = [], []
+    theirs_uncounted = UNCOUNTED if row.repeats > 1 else 0
+    mine: list[float] = []
+    found: list[float] = []
     for _ in range(row.repeats):
-        found.append(seconds(row.theirs, next(speeds)))
-        mine.append([seconds(row.ours, next(speeds)) for _ in range(1 + UNCOUNTED)][-1])
+        for work, times, uncounted in ((row.theirs, found, theirs_uncounted), (row.ours, mine, UNCOUNTED)):
+            times.append([seconds(work, next(speeds)) for _ in range(1 + uncounted)][-1])
     return mine, found
 
 
