@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import coupling as room
-from gearwhine.case import Case, CaseError, Problem, Transient, rotor_speeds, speed_ratios
+from gearwhine.case import Case, CaseError, Problem, rotor_speeds, speed_ratios
 
 _HERTZ = 2.0 * math.pi
 _OVERSAMPLING = 100.0  # of the march over the highest frequency of interest
@@ -100,8 +100,8 @@ def sampling(
     period = nominal / (1.0 if turning is None else float(turning.rates.max()))
     per_revolution = _power_of_two(max(given.points_per_revolution, _OVERSAMPLING * limit * period))
     settings = room.TransientSettings(
-        duration=_duration(given, nominal),
-        record_from=_record_from(given, nominal, turning),
+        duration=transient_duration(case),
+        record_from=_record_from(case, nominal, turning),
         sample_interval=period / per_revolution,
         largest_step=nominal / given.points_per_revolution,
         tolerance=given.tolerance,
@@ -125,15 +125,17 @@ def sampling(
     return Sampling(settings, block, decimation, stretch, "uniform" if repeats else "hann")
 
 
-def _duration(given: Transient, period: float) -> float:
-    """[s]."""
-    if given.run is not None:
-        return given.run.duration
-    assert given.revolutions is not None
-    return given.revolutions * period
+def transient_duration(case: Case) -> float:
+    """How long the machine turns, by its operation and its transient [s]."""
+    assert case.operation is not None
+    assert case.transient is not None
+    if case.transient.run is not None:
+        return case.transient.run.duration
+    assert case.transient.revolutions is not None
+    return case.transient.revolutions * (_HERTZ / abs(case.operation.speed))
 
 
-def _record_from(given: Transient, period: float, turning: room.Turning | None) -> float:
+def _record_from(case: Case, period: float, turning: room.Turning | None) -> float:
     """When the discarded revolutions are done [s].
 
     Raises
@@ -141,13 +143,16 @@ def _record_from(given: Transient, period: float, turning: room.Turning | None) 
     CaseError
         Where a run does not turn so far.
     """
-    if turning is None or given.discard == 0.0:
-        return given.discard * period
-    time = float(turning.times_of(np.array([given.discard * period]))[0])
-    if not time < _duration(given, period):
-        turned = float(turning.at(_duration(given, period))[0][0]) / period
+    assert case.transient is not None
+    discard = case.transient.discard
+    if turning is None or discard == 0.0:
+        return discard * period
+    time = float(turning.times_of(np.array([discard * period]))[0])
+    duration = transient_duration(case)
+    if not time < duration:
+        turned = float(turning.at(duration)[0][0]) / period
         expected = f"fewer revolutions than the {turned:g} that the run turns"
-        raise CaseError([Problem("transient.discard", given.discard, expected)])
+        raise CaseError([Problem("transient.discard", discard, expected)])
     return time
 
 

@@ -29,9 +29,10 @@ def side_by_side(workers: int) -> Iterator[Each]:
     if workers < 2:
         yield one_by_one
         return
-    from gearwhine.sweep.workers import connected
+    from gearwhine.sweep.workers import await_workers, connected
 
     with tempfile.TemporaryDirectory(prefix="gearwhine-") as place, connected(workers, None, Path(place)) as client:
+        await_workers(client, workers)
 
         def each(work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterator[Any]:
             with warnings.catch_warnings():

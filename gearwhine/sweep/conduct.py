@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 from gearwhine.failures import WorkersError
 from gearwhine.output import staging
 from gearwhine.progress import Progress
-from gearwhine.stages.housing import solve_housing
+from gearwhine.stages.housing import SolvedHousing, solve_housing
 from gearwhine.stages.kept_modes import keep_modes
 from gearwhine.stages.machine import HousingInMachine, housing_in_machine
 from gearwhine.sweep.point_files import read_point, stale_points, write_point
 from gearwhine.sweep.points import Point, code_digest
-from gearwhine.sweep.solution import PointFailure, PointResult, solve_point, solve_point_housing, warm_up
-from gearwhine.sweep.workers import connected
+from gearwhine.sweep.solution import PointFailure, PointResult, solve_point, solve_point_housing
+from gearwhine.sweep.workers import await_workers, connected
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -75,11 +75,19 @@ def conduct_sweep(
         with staging(folder) as place:
             progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
             with connected(workers, scheduler, place) as client:
-                _warm_up(client, workers)
-                shared = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
+                if scheduler is None:
+                    _rehearse(client)
+                # What takes long goes first, lest all wait for it at the end.
+                todo.sort(key=lambda number: -points[number].duration)
+                shared, unkept = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
+                if scheduler is None:
+                    await_workers(client, workers)
                 told = _teller(len(points), len(resumed), progress)
                 told(0)
                 futures = _submitted(client, {number: points[number] for number in todo}, shared)
+                # The workers need not wait for this.
+                _keep(unkept, folder)
+                _read_what_writes()
                 for count, (number, outcome) in enumerate(_as_they_end(client, futures), start=1):
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
@@ -89,29 +97,46 @@ def conduct_sweep(
     return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))
 
 
-def _warm_up(client: Client, workers: int) -> None:
-    """Let the workers read our code while the housing is solved here."""
-    from distributed import fire_and_forget
+def _rehearse(client: Client) -> None:
+    """Let the workers get ready while the housing is solved here."""
+    from gearwhine.sweep.rehearsal import Rehearsal
 
-    for number in range(workers):
-        fire_and_forget(client.submit(warm_up, key=f"warm-up-{number}", pure=False))
+    client.register_plugin(Rehearsal())
 
 
 def _shared_housings(
     points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
-) -> dict[str | None, HousingInMachine]:
-    """By its key, each housing of the points where all have the same modes; nothing where they differ or are none."""
-    if len({point.modes_key for point in points}) > 1 or points[0].modes_key is None:
-        return {}
+) -> tuple[dict[str | None, HousingInMachine], SolvedHousing | None]:
+    """By its key, each housing of the points where all have the same modes; nothing where they differ or are none.
+
+    Beside it the solution that is still to be kept.
+    """
     found: dict[str | None, HousingInMachine] = {}
+    solved = None
+    if len({point.modes_key for point in points}) > 1 or points[0].modes_key is None:
+        return found, solved
     for point in points:
         if point.housing_key in found:
             continue
+        # The next one reads the modes that this one keeps.
+        _keep(solved, folder)
         solved = solve_housing(point.case, progress, command="sweep", folder=folder, fresh=fresh and not found)
+        found[point.housing_key] = housing_in_machine(point.case, solved)
+    return found, solved
+
+
+def _keep(solved: SolvedHousing | None, folder: Path) -> None:
+    if solved is not None:
         with staging(folder) as place:
             keep_modes(place, solved)
-        found[point.housing_key] = housing_in_machine(point.case, solved)
-    return found
+
+
+def _read_what_writes() -> None:
+    """Import what takes seconds and is used only once there are results."""
+    import h5netcdf  # noqa: F401
+    import xarray  # noqa: F401
+
+    from gearwhine import figures  # noqa: F401
 
 
 def _submitted(

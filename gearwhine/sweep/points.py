@@ -16,6 +16,7 @@ from gearwhine.case import SPEED_KEY, Case, CaseError, Problem, SweptKey, case_d
 from gearwhine.output import file_stems
 from gearwhine.stages.contents import file_contents, installed, source_digest, with_contents
 from gearwhine.stages.kept_modes import solution_inputs
+from gearwhine.stages.sampling import transient_duration
 
 # Tables that no transient depends on.
 _WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "provenance"})
@@ -42,6 +43,8 @@ class Point:
         Of all that its machine takes of the housing, damping and sensors with it.
     file : str
         Name of its file.
+    duration : float
+        How long its machine turns [s].
     """
 
     place: tuple[int, ...]
@@ -51,6 +54,7 @@ class Point:
     modes_key: str | None
     housing_key: str | None
     file: str
+    duration: float
 
 
 def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey]) -> tuple[Point, ...]:
@@ -116,7 +120,7 @@ def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str
         modes_key = housing.content_key(inputs)
         whole: dict[str, Any] = {"modes": modes_key, "housing": case.housing.model_dump(mode="json")}
         housing_key = housing.content_key(whole)
-    return Point(place, texts, case, key, modes_key, housing_key, f"{stem}-{key[:12]}.nc")
+    return Point(place, texts, case, key, modes_key, housing_key, f"{stem}-{key[:12]}.nc", transient_duration(case))
 
 
 def _described(keys: Sequence[SweptKey], place: tuple[int, ...]) -> str:

@@ -100,10 +100,6 @@ def solve_point(case: Case, housing: HousingInMachine | PointFailure | None, cod
         return _failure(error)
 
 
-def warm_up() -> None:
-    """Do nothing, for which a worker has read all of this code."""
-
-
 def solve_point_housing(case: Case, code: str) -> HousingInMachine | PointFailure:
     """Solve the housing of a point, for its machine."""
     try:

@@ -23,6 +23,8 @@ _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
 )
 _FIND_SCHEDULER = "10s"
+# Longer than a process takes to start on the slowest machine; without an end, one that never comes is waited for.
+_WORKERS_COME = 300.0  # seconds
 
 
 def default_workers() -> int:
@@ -34,8 +36,8 @@ def default_workers() -> int:
 def connected(workers: int, scheduler: str | None, place: Path) -> Iterator[Client]:
     """A client of the workers; those started here end with the block, whatever ends it.
 
-    Workers of our own die with this process even where it is killed. A worker that dies is replaced, and what it was
-    at is done again.
+    They are not waited for here, but by :func:`await_workers`. Workers of our own die with this process even where it
+    is killed. A worker that dies is replaced, and what it was at is done again.
 
     Parameters
     ----------
@@ -51,13 +53,15 @@ def connected(workers: int, scheduler: str | None, place: Path) -> Iterator[Clie
     CaseError
         Where no scheduler answers at the address.
     WorkersError
-        Where the processes do not start.
+        Where no process can be started.
     """
     import dask
     import distributed  # noqa: F401 - its own settings must be there before ours, or they go with them
 
     settings = {
         "distributed.nanny.pre-spawn-environ": _ONE_THREAD,
+        # A worker is given a point when it has none: one in hand beside it would be missing elsewhere at the end.
+        "distributed.scheduler.worker-saturation": 1.0,
         "distributed.scheduler.http.routes": [],
         "distributed.worker.http.routes": [],
         "distributed.worker.profile.enabled": False,
@@ -72,6 +76,20 @@ def connected(workers: int, scheduler: str | None, place: Path) -> Iterator[Clie
         yield client
 
 
+def await_workers(client: Client, workers: int) -> None:
+    """Wait until so many workers are there.
+
+    Raises
+    ------
+    WorkersError
+        Where the processes do not start.
+    """
+    try:
+        client.wait_for_workers(workers, timeout=_WORKERS_COME)
+    except TimeoutError as error:
+        raise WorkersError(f"the workers did not start: {error}") from error
+
+
 @contextmanager
 def _own_processes(workers: int, scratch: str) -> Iterator[Client]:
     from distributed import Client, LocalCluster
@@ -79,7 +97,7 @@ def _own_processes(workers: int, scratch: str) -> Iterator[Client]:
     try:
         with _without_ctrl_c():
             cluster = LocalCluster(
-                n_workers=workers,
+                n_workers=0,
                 threads_per_worker=1,
                 processes=True,
                 # None: points hand back kilobytes, so nothing is to be spilled to disk.
@@ -90,6 +108,8 @@ def _own_processes(workers: int, scratch: str) -> Iterator[Client]:
                 dashboard_address="127.0.0.1:0",
                 scheduler_kwargs={"dashboard": False},
             )
+            # Started while this process goes on with its own work.
+            cluster.scale(workers)
     except (OSError, RuntimeError, TimeoutError) as error:
         raise WorkersError(f"the workers did not start: {error}") from error
     try:

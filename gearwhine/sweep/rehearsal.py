@@ -1,0 +1,34 @@
+"""A small point that every worker solves as it starts, while the housing is solved elsewhere.
+
+Reading the code and loading what numba has compiled takes seconds, which the first point would take longer otherwise.
+Importing this module imports Dask.
+"""
+
+from typing import Any
+
+from distributed import Worker, WorkerPlugin
+
+from gearwhine.case import Case, load_case
+from gearwhine.sweep.points import code_digest
+
+_BRIEF = ("transient.revolutions=1", "transient.discard=0", "transient.tolerance=1e-2")
+
+
+class Rehearsal(WorkerPlugin):
+    """Lets a worker march a pair of gears for a moment before its first point."""
+
+    name = "rehearsal"
+
+    def __init__(self) -> None:
+        self.case = load_case("spur-pair", _BRIEF).case
+
+    def setup(self, worker: Worker) -> None:
+        """Queue it where points are solved: they wait for it, what the worker has to say to others does not."""
+        worker.executors["default"].submit(_rehearse, self.case)
+
+
+def _rehearse(case: Case) -> Any:
+    # Read here, not by the thread that talks to the scheduler. What fails, the points will tell of.
+    from gearwhine.sweep.solution import solve_point
+
+    return solve_point(case, None, code_digest())
