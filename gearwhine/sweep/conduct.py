@@ -71,12 +71,12 @@ def conduct_sweep(
     resumed = frozenset(outcomes)
     todo = [number for number in range(len(points)) if number not in resumed]
     if todo:
+        from gearwhine.sweep.rehearsal import Rehearsal
+
         workers = min(workers, len(todo))
         with staging(folder) as place:
             progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
-            with connected(workers, scheduler, place) as client:
-                if scheduler is None:
-                    _rehearse(client)
+            with connected(workers, scheduler, place, [Rehearsal()]) as client:
                 # What takes long goes first, lest all wait for it at the end.
                 todo.sort(key=lambda number: -points[number].duration)
                 shared, unkept = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
@@ -95,13 +95,6 @@ def conduct_sweep(
     for path in stale_points(folder, tuple(points)):
         path.unlink(missing_ok=True)
     return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))
-
-
-def _rehearse(client: Client) -> None:
-    """Let the workers get ready while the housing is solved here."""
-    from gearwhine.sweep.rehearsal import Rehearsal
-
-    client.register_plugin(Rehearsal())
 
 
 def _shared_housings(

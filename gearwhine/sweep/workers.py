@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import logging
+import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -16,7 +18,7 @@ from gearwhine.case import CaseError, Problem
 from gearwhine.failures import WorkersError
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, WorkerPlugin
 
 # Every worker is one thread: BLAS and factorisations with threads of their own on top cost more than they give.
 _ONE_THREAD = dict.fromkeys(
@@ -33,7 +35,9 @@ def default_workers() -> int:
 
 
 @contextmanager
-def connected(workers: int, scheduler: str | None, place: Path) -> Iterator[Client]:
+def connected(
+    workers: int, scheduler: str | None, place: Path, plugins: Sequence[WorkerPlugin] = ()
+) -> Iterator[Client]:
     """A client of the workers; those started here end with the block, whatever ends it.
 
     They are not waited for here, but by :func:`await_workers`. Workers of our own die with this process even where it
@@ -47,6 +51,8 @@ def connected(workers: int, scheduler: str | None, place: Path) -> Iterator[Clie
         Address of a cluster that runs already, whose workers are used in place of our own.
     place
         In which Dask keeps files while it runs.
+    plugins
+        Of each worker of our own, as it starts.
 
     Raises
     ------
@@ -71,7 +77,7 @@ def connected(workers: int, scheduler: str | None, place: Path) -> Iterator[Clie
         _environment_restored(),
         _quiet(),
         TemporaryDirectory(prefix="dask-", dir=place, ignore_cleanup_errors=True) as scratch,
-        _own_processes(workers, scratch) if scheduler is None else _cluster_at(scheduler) as client,
+        _own_processes(workers, scratch, plugins) if scheduler is None else _cluster_at(scheduler) as client,
     ):
         yield client
 
@@ -91,9 +97,10 @@ def await_workers(client: Client, workers: int) -> None:
 
 
 @contextmanager
-def _own_processes(workers: int, scratch: str) -> Iterator[Client]:
+def _own_processes(workers: int, scratch: str, plugins: Sequence[WorkerPlugin]) -> Iterator[Client]:
     from distributed import Client, LocalCluster
 
+    others = set(multiprocessing.active_children())
     try:
         with _without_ctrl_c():
             cluster = LocalCluster(
@@ -103,27 +110,26 @@ def _own_processes(workers: int, scratch: str) -> Iterator[Client]:
                 # None: points hand back kilobytes, so nothing is to be spilled to disk.
                 memory_limit=0,
                 local_directory=scratch,
+                plugins=tuple(plugins),
                 silence_logs=logging.CRITICAL,
                 # No dashboard, and a port that nobody else has for what is left of its server.
                 dashboard_address="127.0.0.1:0",
                 scheduler_kwargs={"dashboard": False},
             )
-            # Started while this process goes on with its own work.
-            cluster.scale(workers)
     except (OSError, RuntimeError, TimeoutError) as error:
         raise WorkersError(f"the workers did not start: {error}") from error
     try:
         with Client(cluster, set_as_default=False) as client:
+            # Now, not before: a client waits for the workers that the cluster is starting.
+            cluster.scale(workers)
             yield client
-    except BaseException:
-        # Interrupted or failed: what the workers are at is not wanted, and waiting for it takes seconds.
+    finally:
+        # What they hold has been handed back or is not wanted, and waiting for them to end takes seconds; those that
+        # are starting still, the cluster does not know yet.
         for nanny in cluster.workers.values():
             nanny.auto_restart = False
-            if nanny.pid:
-                with suppress(ProcessLookupError):
-                    os.kill(nanny.pid, signal.SIGKILL)
-        raise
-    finally:
+        for process in set(multiprocessing.active_children()) - others:
+            process.kill()
         cluster.close()
 
 
@@ -150,6 +156,8 @@ def _without_ctrl_c() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+    # The first thread to start a process would start this, and take Ctrl-C again.
+    resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
