@@ -87,6 +87,19 @@ def interrupted_and_hurt(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path
     return folder / "out", document
 
 
+def test_ctrl_c_while_workers_start_is_quiet_and_leaves_none(tmp_path: Path) -> None:
+    process = start(tmp_path, ROTORS)
+    wait_for(lambda: workers_of(process), process)
+    hands = psutil.Process(process.pid).children(recursive=True)
+    os.killpg(process.pid, signal.SIGINT)
+    out, errors = process.communicate(timeout=60)
+    assert (process.returncode, out) == (130, "")
+    assert "Traceback" not in errors
+    _, alive = psutil.wait_procs(hands, timeout=10)
+    assert not alive
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_every_point_is_there_and_the_failed_ones_say_why(interrupted_and_hurt: tuple[Path, dict]) -> None:
     folder, document = interrupted_and_hurt
     assert (document["done"], document["failed"]) == (3, 3)
