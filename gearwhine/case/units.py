@@ -99,9 +99,41 @@ class _Unit:
         return tuple(item for item in self.powers if item[0] != "radian")
 
 
+def _common() -> dict[str, _Unit]:
+    """The symbols of nearly every case, for which the registry need not be read; as it has them, the tests say."""
+    force = (("kilogram", 1), ("meter", 1), ("second", -2))
+    pressure = (("kilogram", 1), ("meter", -1), ("second", -2))
+    # Power of ten and powers of base units, with prefixes.
+    prefixed = {
+        "m": (0, (("meter", 1),)),
+        "g": (-3, (("kilogram", 1),)),
+        "s": (0, (("second", 1),)),
+        "N": (0, force),
+        "Pa": (0, pressure),
+        "Hz": (0, (("cycle", 1), ("second", -1))),
+    }
+    prefixes = {"": 0, "k": 3, "M": 6, "G": 9, "c": -2, "m": -3, "u": -6, "\u00b5": -6, "\u03bc": -6}
+    units = {
+        prefix + symbol: _Unit(Decimal(1).scaleb(ten + power), powers)
+        for symbol, (ten, powers) in prefixed.items()
+        for prefix, power in prefixes.items()
+    }
+    degree = _Unit(Decimal(repr(math.pi / 180.0)), (("radian", 1),))
+    return units | {
+        "rad": _Unit(Decimal(1), (("radian", 1),)),
+        **dict.fromkeys(("deg", "degree", "°"), degree),
+        "rpm": _Unit(Decimal(repr(math.pi / 30.0)), (("radian", 1), ("second", -1))),
+        **dict.fromkeys(("in", "inch"), _Unit(Decimal("0.0254"), (("meter", 1),))),
+        "%": _Unit(Decimal("0.01"), ()),
+    }
+
+
+COMMON_UNITS = _common()
+
+
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[float]:
-    """Return the one shared unit registry, made when the first unit is read (half a second)."""
+    """Return the one shared unit registry, made when the first uncommon unit is read (a second)."""
     import pint
 
     return pint.UnitRegistry(cache_folder=None)
@@ -110,6 +142,11 @@ def _registry() -> pint.UnitRegistry[float]:
 @lru_cache(maxsize=256)
 def _symbol(symbol: str) -> _Unit | None:
     """Look up one unit symbol; None where there is no such (whole-power, multiplicative) unit."""
+    return COMMON_UNITS.get(symbol) or registered_unit(symbol)
+
+
+def registered_unit(symbol: str) -> _Unit | None:
+    """The same by the unit registry alone."""
     import pint
 
     registry = _registry()

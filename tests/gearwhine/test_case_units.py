@@ -55,6 +55,14 @@ DEFINED = [
 ]
 
 
+@pytest.mark.parametrize("symbol", units.COMMON_UNITS)
+def test_common_units_are_those_of_the_registry(symbol: str) -> None:
+    ours, registered = units.COMMON_UNITS[symbol], units.registered_unit(symbol)
+    assert registered is not None
+    assert ours.powers == registered.powers
+    assert float(ours.factor) == float(registered.factor)
+
+
 @pytest.mark.parametrize(("text", "dimension", "expected"), DEFINED)
 def test_units_have_the_scale_of_their_definition(text: object, dimension: Dimension, expected: float) -> None:
     assert parse_quantity(text, dimension) == pytest.approx(expected, rel=4e-16, abs=0.0)
