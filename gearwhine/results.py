@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
@@ -22,6 +21,7 @@ from gearwhine.stages.transient import SolvedTransient
 from gearwhine.steady_results import write_steady
 from gearwhine.system_results import write_system
 from gearwhine.transient_results import append_histories, write_transient
+from housing.netcdf import write_netcdf
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -67,8 +67,7 @@ def write(
         "case": dump_case(case),
         "amplitude_convention": "peak: the amplitude of a sine a sin(2 pi f t) is a",
     }
-    dataset = xr.Dataset(variables, coordinates, attributes)
-    dataset.to_netcdf(path, engine="h5netcdf")
+    write_netcdf(path, variables, attributes, coordinates=coordinates)
     if transient is not None:
         append_histories(path, transient)
 

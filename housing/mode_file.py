@@ -13,11 +13,10 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from housing.errors import HousingError, ModeFileError
 from housing.labelled import LabelledArray, digest
 from housing.mode_record import ModeRecord, record_arrays, record_attributes, record_of
+from housing.netcdf import read_netcdf, write_netcdf
 
 FORMAT = "gearwhine mode set"
 SCHEMA = "1"
@@ -33,8 +32,6 @@ def write_modes(path: str | Path, record: ModeRecord) -> None:
     OSError
         Where the file cannot be written.
     """
-    import xarray as xr
-
     path = Path(path)
     arrays = record_arrays(record)
     attributes = {
@@ -48,16 +45,14 @@ def write_modes(path: str | Path, record: ModeRecord) -> None:
         name: (array.dimensions, array.values, {"units": array.units, "long_name": array.long_name, **array.attributes})
         for name, array in arrays.items()
     }
-    try:
-        dataset = xr.Dataset(variables, attrs=attributes)
-    except ValueError as error:
-        raise HousingError(f"the arrays of a mode set do not fit each other: {error}") from error
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
         staged = Path(folder) / path.name
-        # Without a fill value no number is taken for a missing one.
-        encoding = {name: {"_FillValue": None} for name in dataset.variables}
-        dataset.to_netcdf(staged, engine="h5netcdf", encoding=encoding)
+        try:
+            # Without a fill value no number is taken for a missing one.
+            write_netcdf(staged, variables, attributes, fill=False)
+        except ValueError as error:
+            raise HousingError(f"the arrays of a mode set do not fit each other: {error}") from error
         os.replace(staged, path)
 
 
@@ -83,7 +78,6 @@ def read_modes(path: str | Path) -> ModeRecord:
 def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
     """The arrays and attributes of a file, once its kind, schema and digest are found right."""
     import h5py
-    import xarray as xr
 
     if not path.is_file():
         raise ModeFileError(f"mode file {path}: no such file")
@@ -96,9 +90,7 @@ def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
         if schema != SCHEMA:
             raise ModeFileError(f"mode file {path} has schema {schema}; this version reads schema {SCHEMA}")
         # Undecoded: bytes as they stand, no unit of time turned into dates.
-        with xr.open_dataset(path, engine="h5netcdf", decode_cf=False, cache=False) as dataset:
-            arrays = {str(name): _labelled(variable) for name, variable in dataset.variables.items()}
-            attributes = {str(name): value for name, value in dataset.attrs.items()}
+        arrays, attributes = read_netcdf(path)
         claimed = attributes.pop("digest", None)
         whole = digest(arrays, attributes) == claimed
     except ModeFileError:
@@ -108,11 +100,3 @@ def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
     if not whole:
         raise ModeFileError(f"mode file {path} is damaged or was changed: its content does not have its digest")
     return arrays, attributes
-
-
-def _labelled(variable: Any) -> LabelledArray:
-    labels = {str(name): str(text) for name, text in variable.attrs.items()}
-    dimensions = tuple(str(name) for name in variable.dims)
-    return LabelledArray(
-        dimensions, np.asarray(variable.values), labels.pop("units", ""), labels.pop("long_name", ""), labels
-    )

@@ -126,7 +126,6 @@ def _keep(solved: SolvedHousing | None, folder: Path) -> None:
 
 def _read_what_writes() -> None:
     """Import what takes seconds and is used only once there are results."""
-    import h5netcdf  # noqa: F401
     import xarray  # noqa: F401
 
     from gearwhine import figures  # noqa: F401

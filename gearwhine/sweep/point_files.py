@@ -5,18 +5,17 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import dump_case
 from gearwhine.output import finite, json_text
 from gearwhine.sweep.points import Point
 from gearwhine.sweep.solution import PointFailure, PointResult
-
-if TYPE_CHECKING:
-    import xarray as xr
+from housing.netcdf import read_netcdf, write_netcdf
 
 POINTS = "points"
 """Folder of the points within the results folder."""
@@ -44,8 +43,6 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
     point, result
         What to write.
     """
-    import xarray as xr
-
     attributes = {
         "source": f"gearwhine {__version__}",
         "key": point.key,
@@ -54,12 +51,12 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
     }
     if isinstance(result, PointFailure):
         attributes["failure"] = json_text({"message": result.message, "traceback": result.traceback})
-        dataset = xr.Dataset(attrs=attributes)
+        arrays = {}
     else:
         attributes |= {"document": json_text(finite(result.document)), "window": result.window}
-        dataset = _arrays(result).assign_attrs(attributes)
+        arrays = _arrays(result)
     staged = place / point.file
-    dataset.to_netcdf(staged, engine="h5netcdf")
+    write_netcdf(staged, arrays, attributes)
     (folder / POINTS).mkdir(exist_ok=True)
     os.replace(staged, folder / POINTS / point.file)
 
@@ -68,15 +65,13 @@ def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
     """Read a point; None where there is no file of it, or one that is of other content or cannot be read."""
     if not (folder / POINTS / point.file).exists():
         return None
-    import xarray as xr
-
     try:
-        with xr.open_dataset(folder / POINTS / point.file, engine="h5netcdf") as data:
-            if data.attrs.get("key") != point.key:
-                return None
-            if data.attrs["failure"]:
-                return PointFailure(**json.loads(data.attrs["failure"]))
-            return _result(data.load())
+        arrays, attributes = read_netcdf(folder / POINTS / point.file)
+        if attributes.get("key") != point.key:
+            return None
+        if attributes["failure"]:
+            return PointFailure(**json.loads(attributes["failure"]))
+        return _result({name: array.values for name, array in arrays.items()}, attributes)
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
@@ -87,46 +82,40 @@ def stale_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:
     return [path for path in sorted((folder / POINTS).glob("*.nc")) if path.name not in names]
 
 
-def _arrays(result: PointResult) -> xr.Dataset:
-    import xarray as xr
-
-    # Gathered first: a dataset takes its time over every variable that is put into it later.
-    arrays: dict[str, Any] = {
+def _arrays(result: PointResult) -> dict[str, tuple[Any, Any, dict[str, str]]]:
+    arrays: dict[str, tuple[Any, Any, dict[str, str]]] = {
         "order": ("order", result.orders, {"units": "1", "long_name": "cycles for each turn of the first driver"})
     }
     for group, (dimension, unit, what) in _SPECTRA.items():
         spectra = getattr(result, group)
         if spectra:
-            arrays[dimension] = (dimension, list(spectra))
+            arrays[dimension] = (dimension, list(spectra), {})
             values = np.array(list(spectra.values()))
             arrays[group] = ((dimension, "order"), values, {"units": unit, "long_name": what})
     for group, what in _FORCES.items():
         forces = getattr(result, group)
         if forces:
-            arrays |= {"bearing": ("bearing", list(forces)), "axis": ("axis", ["x", "y"])}
+            arrays |= {"bearing": ("bearing", list(forces), {}), "axis": ("axis", ["x", "y"], {})}
             values = np.array(list(forces.values()))
             arrays[group] = (("bearing", "axis"), values, {"units": "N", "long_name": what})
     attributes = {"units": "Hz", "long_name": "housing natural frequency"}
     arrays["housing_frequencies_hz"] = ("housing_mode", result.housing_frequencies_hz, attributes)
-    return xr.Dataset(arrays)
+    return arrays
 
 
-def _result(data: xr.Dataset) -> PointResult:
+def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> PointResult:
     named = {
-        group: {
-            str(name): row
-            for name, row in zip(data[dimension].values, np.asarray(data[group].values, dtype=np.float64), strict=True)
-        }
+        group: dict(zip(map(str, arrays[dimension]), arrays[group], strict=True))
         for group, dimension in (
             *((group, labels[0]) for group, labels in _SPECTRA.items()),
             *((group, "bearing") for group in _FORCES),
         )
-        if group in data
+        if group in arrays
     }
     return PointResult(
-        document=json.loads(data.attrs["document"]),
-        orders=np.asarray(data["order"].values, dtype=np.float64),
-        housing_frequencies_hz=np.asarray(data["housing_frequencies_hz"].values, dtype=np.float64),
-        window=data.attrs["window"],
+        document=json.loads(attributes["document"]),
+        orders=arrays["order"],
+        housing_frequencies_hz=arrays["housing_frequencies_hz"],
+        window=attributes["window"],
         **named,
     )
