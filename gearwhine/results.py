@@ -1,27 +1,27 @@
 """The results file: labelled arrays with units, as NetCDF4 that any tool opens."""
 
+from __future__ import annotations
+
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
-from gearwhine.gear_results import write_gears
-from gearwhine.rotor_results import Variables, write_rotors
-from gearwhine.signature_results import write_run_signature, write_signature
-from gearwhine.stages.gear_analysis import PairAnalysis
-from gearwhine.stages.housing import SolvedHousing
-from gearwhine.stages.rotors import SolvedRotor
-from gearwhine.stages.run_up import RunSignature
-from gearwhine.stages.signature import SolvedSignature
-from gearwhine.stages.steady import SolvedSteady
-from gearwhine.stages.system import SolvedSystem
-from gearwhine.stages.transient import SolvedTransient
-from gearwhine.steady_results import write_steady
-from gearwhine.system_results import write_system
-from gearwhine.transient_results import append_histories, write_transient
 from housing.netcdf import write_netcdf
+
+if TYPE_CHECKING:
+    from gearwhine.rotor_results import Variables
+    from gearwhine.stages.gear_analysis import PairAnalysis
+    from gearwhine.stages.housing import SolvedHousing
+    from gearwhine.stages.rotors import SolvedRotor
+    from gearwhine.stages.run_up import RunSignature
+    from gearwhine.stages.signature import SolvedSignature
+    from gearwhine.stages.steady import SolvedSteady
+    from gearwhine.stages.system import SolvedSystem
+    from gearwhine.stages.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -40,24 +40,38 @@ def write(
     steady: SolvedSteady | None = None,
     run: RunSignature | None = None,
 ) -> None:
-    """Write what was solved; the rest is left out."""
+    """Write what was solved; the rest is left out, and what would write it is not read."""
     variables: Variables = {}
     coordinates: Variables = {}
     if housing is not None:
         _housing(housing, variables, coordinates)
     if rotors:
+        from gearwhine.rotor_results import write_rotors
+
         write_rotors(rotors, variables, coordinates)
     if pairs:
+        from gearwhine.gear_results import write_gears
+
         write_gears(pairs, variables, coordinates)
     if system is not None:
+        from gearwhine.system_results import write_system
+
         write_system(system, variables, coordinates)
     if transient is not None:
+        from gearwhine.transient_results import write_transient
+
         write_transient(transient, variables, coordinates)
     if transient is not None and signature is not None:
+        from gearwhine.signature_results import write_signature
+
         write_signature(transient, signature, variables, coordinates)
     if run is not None:
+        from gearwhine.signature_results import write_run_signature
+
         write_run_signature(run, variables, coordinates)
     if steady is not None:
+        from gearwhine.steady_results import write_steady
+
         write_steady(steady, variables, coordinates)
     if case.operation is not None:
         coordinates["speed"] = ((), case.operation.speed * 60.0 / _HERTZ, _unit("rpm", "speed of the first driver"))
@@ -69,6 +83,8 @@ def write(
     }
     write_netcdf(path, variables, attributes, coordinates=coordinates)
     if transient is not None:
+        from gearwhine.transient_results import append_histories
+
         append_histories(path, transient)
 
 
