@@ -72,7 +72,7 @@ def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
         if attributes["failure"]:
             return PointFailure(**json.loads(attributes["failure"]))
         return _result({name: array.values for name, array in arrays.items()}, attributes)
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, RuntimeError, ValueError, KeyError, TypeError):
         return None
 
 
