@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 import coupling.gears as room
-from gearwhine.rotor_results import Variables, padded
+from gearwhine.rotor_results import padded
 from gearwhine.stages.gear_analysis import PairAnalysis, first_touch
+from housing.netcdf import Variables
 
 FloatArray = npt.NDArray[np.float64]
 

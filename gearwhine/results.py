@@ -10,10 +10,9 @@ import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
-from housing.netcdf import write_netcdf
+from housing.netcdf import Variables, write_netcdf
 
 if TYPE_CHECKING:
-    from gearwhine.rotor_results import Variables
     from gearwhine.stages.gear_analysis import PairAnalysis
     from gearwhine.stages.housing import SolvedHousing
     from gearwhine.stages.rotors import SolvedRotor

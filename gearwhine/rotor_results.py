@@ -1,16 +1,15 @@
 """The rotors' part of the results file: modes at rest, the Campbell diagram, and the response to unbalance and bow."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.stages.rotors import SolvedRotor
+from housing.netcdf import Variables
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
-Variables = dict[str, tuple[Any, Any, dict[str, str]]]
 
 _HERTZ = 2.0 * np.pi
 _RPM = 60.0 / (2.0 * np.pi)

@@ -5,11 +5,11 @@ import numpy as np
 import numpy.typing as npt
 
 import coupling as room
-from gearwhine.rotor_results import Variables
 from gearwhine.stages.run_up import RunSignature
 from gearwhine.stages.signature import SolvedSignature
 from gearwhine.stages.transient import SolvedTransient
 from gearwhine.transient_results import MODAL_COORDINATE
+from housing.netcdf import Variables
 
 FloatArray = npt.NDArray[np.float64]
 

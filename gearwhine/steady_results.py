@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from gearwhine.rotor_results import Variables
 from gearwhine.stages.steady import SolvedSteady
+from housing.netcdf import Variables
 
 _RPM = 60.0 / (2.0 * np.pi)
 

@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import FrequencyResponse, SystemCampbell
-from gearwhine.rotor_results import Variables
 from gearwhine.stages.system import SolvedSystem
+from housing.netcdf import Variables
 
 FloatArray = npt.NDArray[np.float64]
 

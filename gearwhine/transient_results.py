@@ -9,9 +9,9 @@ import h5netcdf
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotor_results import Variables
 from gearwhine.stages.march_record import Signals
 from gearwhine.stages.transient import SolvedTransient
+from housing.netcdf import Variables
 
 FloatArray = npt.NDArray[np.float64]
 

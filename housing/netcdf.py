@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from housing.labelled import LabelledArray
 
-Variables = Mapping[str, tuple[Any, Any, Mapping[str, Any]]]
+Variables = dict[str, tuple[Any, Any, dict[str, Any]]]
 """By name: its dimensions (one as plain text), its values, and its attributes."""
 
 

@@ -85,7 +85,7 @@ def conduct_sweep(
                 told = _teller(len(points), len(resumed), progress)
                 told(0)
                 futures = _submitted(client, {number: points[number] for number in todo}, shared)
-                # The workers need not wait for this.
+                # Now, not before: the points need not wait for this.
                 _keep(unkept, folder)
                 _read_what_writes()
                 for count, (number, outcome) in enumerate(_as_they_end(client, futures), start=1):

@@ -15,7 +15,7 @@ from gearwhine.case import dump_case
 from gearwhine.output import finite, json_text
 from gearwhine.sweep.points import Point
 from gearwhine.sweep.solution import PointFailure, PointResult
-from housing.netcdf import read_netcdf, write_netcdf
+from housing.netcdf import Variables, read_netcdf, write_netcdf
 
 POINTS = "points"
 """Folder of the points within the results folder."""
@@ -82,8 +82,8 @@ def stale_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:
     return [path for path in sorted((folder / POINTS).glob("*.nc")) if path.name not in names]
 
 
-def _arrays(result: PointResult) -> dict[str, tuple[Any, Any, dict[str, str]]]:
-    arrays: dict[str, tuple[Any, Any, dict[str, str]]] = {
+def _arrays(result: PointResult) -> Variables:
+    arrays: Variables = {
         "order": ("order", result.orders, {"units": "1", "long_name": "cycles for each turn of the first driver"})
     }
     for group, (dimension, unit, what) in _SPECTRA.items():

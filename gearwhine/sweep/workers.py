@@ -59,7 +59,7 @@ def connected(
     CaseError
         Where no scheduler answers at the address.
     WorkersError
-        Where no process can be started.
+        Where the scheduler of our own processes does not start.
     """
     import dask
     import distributed  # noqa: F401 - its own settings must be there before ours, or they go with them
