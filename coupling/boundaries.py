@@ -5,7 +5,6 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from coupling.condensation import highest_frequency
 from coupling.errors import TransientError
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
@@ -23,7 +22,7 @@ _MOST_BLOCKS = 1 << 24
 
 def coarsest_step(system: CoupledSystem, turning: Turning, largest: float) -> float:
     """The step that nothing refines [s]: enough for the highest natural frequency, and for the fastest turning."""
-    highest = highest_frequency(system)
+    highest = system.highest_frequency
     resolving = 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
     return float(min(largest / max(1.0, float(turning.rates.max())), resolving))
 

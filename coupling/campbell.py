@@ -219,7 +219,7 @@ def _described(machine: Machine, speed: float, limit: float) -> _Described:
     contacts = np.array([part.kind == "contact" for part in modes.shares.parts])
     return _Described(
         modes=ModesAtSpeed(
-            speed, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen], system.mean_damping()
+            speed, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen], system.mean_damping
         ),
         kinds=tuple(modes.kinds[i] for i in chosen),
         where=tuple(modes.where[i] for i in chosen),

@@ -107,12 +107,6 @@ def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
     )
 
 
-def highest_frequency(system: CoupledSystem) -> float:
-    """Highest natural frequency of the coordinates that are to be resolved, the residual ones held [rad/s]."""
-    stiffness = system.mean_stiffness()[np.ix_(system.resolved, system.resolved)]
-    return float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max(initial=0.0)))
-
-
 def _stiff(system: CoupledSystem) -> npt.NDArray[np.bool_]:
     """Residual coordinates beyond the highest frequency of the others, unless a load or a law acts on them."""
     loaded = system.load != 0.0
@@ -122,5 +116,5 @@ def _stiff(system: CoupledSystem) -> npt.NDArray[np.bool_]:
     sliding = [contact.sliding.directions for contact in system.contacts if contact.sliding is not None]
     for directions in (system.contact_directions, *sliding, *(one.directions for one in system.nonlinear)):
         loaded = loaded | np.any(directions != 0.0, axis=1)
-    beyond = np.diag(system.stiffness) > highest_frequency(system) ** 2
+    beyond = np.diag(system.stiffness) > system.highest_frequency**2
     return np.asarray(~system.resolved & beyond & ~loaded)

@@ -26,7 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.boundaries import same_time
-from coupling.condensation import condensed, highest_frequency
+from coupling.condensation import condensed
 from coupling.errors import PeriodicError, TransientError
 from coupling.exact_record import Record
 from coupling.kernel_arrays import Samples
@@ -95,7 +95,7 @@ def steady_part(system: CoupledSystem) -> LinearPart:
     """The linear part in units of the fastest mesh, load or mode."""
     rates = [2.0 * np.pi * abs(contact.rate) for contact in system.contacts]
     rates += [abs(load.frequency) for load in system.harmonic_loads]
-    return linear_part(system, max(rates, default=0.0) or highest_frequency(system) or 1.0, repeats=False)
+    return linear_part(system, max(rates, default=0.0) or system.highest_frequency or 1.0, repeats=False)
 
 
 class ExactRun(MarchRun):
@@ -114,7 +114,9 @@ class ExactRun(MarchRun):
         self.part = part
         self.record = Record(self.part, outputs, self.arrays.contacts)
         self._steps = element_sizes(self.part, np.zeros(_SIZES), self.base, inner=True)
-        self._trace = empty_trace(0, part.reference.eigenvalue.size, ORDER, len(part.system.contacts))
+        self._shape = part.reference.eigenvalue.size, ORDER, len(part.system.contacts)
+        self._trace, self._work = empty_trace(0, *self._shape), element_work(*self._shape)
+        self._undisturbed = np.zeros((0, 2 * self._shape[0]))
         # Below this the motion is rounding of the reference's.
         own = float(np.linalg.norm(self.part.mean) + np.abs(self.part.amplitudes).sum())
         self._quiet = (1e-9 * own) ** 2 + 1e-300
@@ -123,7 +125,10 @@ class ExactRun(MarchRun):
         self, number: int, before: Checkpoint, samples: Samples, progress: Callable[[float], None]
     ) -> Checkpoint:
         """One block."""
+        # New in every block, so that a march that goes on from a checkpoint does just the same: the sizes that have
+        # matrices of their own, and the forces that Newton's method begins with.
         settings, record, sizes = self.settings, self.record, _Sizes(self._steps, _SAME_SIZE * self.base)
+        self._work = element_work(*self._shape)
         bounds = self.bounds(number)
         first_record = int(np.searchsorted(bounds, settings.record_from - same_time(self.base)))
         if bounds[0] > settings.record_from:
@@ -199,19 +204,16 @@ class ExactRun(MarchRun):
         from coupling.periodic.kernels import NO_BALANCE, NO_ROOM, march
 
         reference, modes = self.part.reference, len(self.part.eigenvalues)
-        m, c = reference.eigenvalue.size, reference.stiffness.size
         length = np.repeat(np.diff(stretches) / pieces, pieces)
         within = np.arange(len(length)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
         starts = np.repeat(stretches[:-1], pieces) + within * length
         room = _CUTS + 5 * len(length)
         if room > len(self._trace.start):
-            self._trace = empty_trace(room, m, ORDER, c)
+            self._trace = empty_trace(room, *self._shape)
         trace, end = self._trace, z.copy()
         slots = sizes.slots(length)
-        none, work = np.zeros((0, 2 * modes)), element_work(m, ORDER, c)
-        count, _, wrong = march(
-            reference, self.arrays.contacts, self._steps, starts, length, slots, end, none, modes, trace, 0, work
-        )
+        head = reference, self.arrays.contacts, self._steps, starts, length, slots, end, self._undisturbed
+        count, _, wrong = march(*head, modes, trace, 0, self._work)
         where = f"after t = {trace.start[max(int(count) - 1, 0)]:.6g} s"
         if wrong == NO_BALANCE:
             raise TransientError(f"{where} the teeth's forces do not balance; expected a law that grows")
@@ -233,10 +235,7 @@ class ExactRun(MarchRun):
 
 
 class _Sizes:
-    """Which sizes of elements have matrices of their own; all others make do with the ladder's.
-
-    New in every block, so that a march that goes on from a checkpoint does just the same.
-    """
+    """Which sizes of elements have matrices of their own; all others make do with the ladder's."""
 
     def __init__(self, steps: Steps, unit: float) -> None:
         self._steps, self._unit, self._known = steps, unit, dict[int, int]()

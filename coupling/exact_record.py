@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from coupling.kernel_arrays import Contacts, Samples
 from coupling.marching import Checkpoint
-from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
+from coupling.periodic.arrays import FreeMotion, Powers, Steps, Trace
 from coupling.periodic.collocation import ORDER
 from coupling.periodic.element_work import element_work
 from coupling.periodic.linear_part import LinearPart
@@ -15,31 +15,36 @@ from coupling.settings import TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
 
+_BATCH = 128  # elements whose powers are found at once, within the processor's caches
+
 
 class Record:
     """Rows that turn amplitudes into what is recorded; n coordinates, M amplitudes."""
 
     def __init__(self, part: LinearPart, outputs: TransientOutputs, contacts: Contacts) -> None:
         self.part, self.contacts, system = part, contacts, part.system
-        modes = len(part.eigenvalues)
+        modes, count = len(part.eigenvalues), len(part.reference.eigenvalue)
         # Loads ride along as the reference's own response does: constant ones last, harmonic ones at its frequencies.
-        self.load = np.zeros((system.size, 2 * len(part.reference.eigenvalue)))
-        self.load[:, -2] = system.load
+        load = np.zeros((system.size, 2 * count))
+        load[:, count - 1] = system.load
         for one in system.harmonic_loads:
             if one.frequency == 0.0:
-                self.load[:, -2] += one.amplitude.real
+                load[:, count - 1] += one.amplitude.real
                 continue
-            column = 2 * (modes + int(np.searchsorted(part.frequencies, one.frequency)))
-            self.load[:, column] += one.amplitude.real
-            self.load[:, column + 1] -= one.amplitude.imag
-        moving = self.load - system.stiffness @ part.displacement_rows - system.damping @ part.velocity_rows
+            column = modes + int(np.searchsorted(part.frequencies, one.frequency))
+            load[:, column] += one.amplitude.real
+            load[:, count + column] -= one.amplitude.imag
+        self._constant = load[:, count - 1]
+        moving = load - system.stiffness @ part.displacement_rows - system.damping @ part.velocity_rows
         self._displacement = outputs.displacement @ part.displacement_rows, outputs.displacement @ part.rigid
         self._velocity = outputs.velocity @ part.velocity_rows, outputs.velocity @ part.rigid
         self._acceleration = outputs.acceleration @ moving, outputs.acceleration @ system.contact_directions
-        self._powers = self._rows_of_powers()
-        self._room = PowersRoom(np.zeros(self.load.shape[1]), np.zeros(system.size), np.zeros(ORDER))
+        self._powers = self._rows_of_powers(load)
+        self._weights = np.zeros((_BATCH, ORDER))
+        self._times = np.zeros(_BATCH * ORDER)
+        self._amplitudes = np.zeros((_BATCH * ORDER, 2 * count + part.rigid.shape[1]))
 
-    def _rows_of_powers(self) -> Powers:
+    def _rows_of_powers(self, load: FloatArray) -> Powers:
         part, system = self.part, self.part.system
         # In the principal directions of what damps the squares of the rates give the loss.
         loss, directions = np.linalg.eigh(0.5 * (system.damping + system.damping.T))
@@ -47,17 +52,17 @@ class Record:
         skew = (system.stiffness - system.stiffness.T) @ part.displacement_rows
         if np.abs(skew).max(initial=0.0) <= 1e-12 * np.abs(forces).max(initial=0.0):
             skew = skew[:, :0]
-        riding = np.flatnonzero(np.any(self.load, axis=0))
-        rows = part.velocity_rows, part.rigid, skew, self.load[:, riding]
-        rate, free, skew, pushing = (np.ascontiguousarray(row.T @ directions) for row in rows)
-        return Powers(rate, free, loss, skew, riding, pushing)
+        riding = np.flatnonzero(np.any(load, axis=0))
+        rows = np.hstack([part.velocity_rows, part.rigid]), skew, load[:, riding]
+        rate, skew, pushing = (np.ascontiguousarray(row.T @ directions) for row in rows)
+        return Powers(rate, loss, skew, riding, pushing)
 
     def free_motion(self, state: Checkpoint) -> FreeMotion:
         """From a state on."""
         rigid = self.part.rigid
         q, v = self.part.own_response(state.time)
         return FreeMotion(
-            np.array([state.time]), rigid.T @ (state.q - q), rigid.T @ (state.v - v), rigid.T @ self.load[:, -2]
+            np.array([state.time]), rigid.T @ (state.q - q), rigid.T @ (state.v - v), rigid.T @ self._constant
         )
 
     def motion(self, z: FloatArray, free: FreeMotion, time: float) -> tuple[FloatArray, FloatArray]:
@@ -84,17 +89,41 @@ class Record:
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion) -> Checkpoint:
         """The state with the work, the losses and the contacts' figures of a trace added."""
-        from coupling.record_kernels import add_contacts, add_powers
+        from coupling.record_kernels import add_contacts
 
         totals, figures = state.totals.copy(), state.contact_totals.copy()
-        add_powers(steps, trace, self._powers, free, self._room, totals)
-        stored = add_contacts(trace, self.contacts, state.stored, self._room.weights, totals, figures)
+        self._add_powers(steps, trace, free, totals)
+        stored = add_contacts(trace, self.contacts, state.stored, self._weights[0], totals, figures)
         return replace(state, totals=totals, stored=float(stored), contact_totals=figures)
+
+    def _add_powers(self, steps: Steps, trace: Trace, free: FreeMotion, totals: FloatArray) -> None:
+        """Add what the loads give and what damping without the teeth's takes [J], and keep the largest kinetic energy.
+
+        ``totals`` (5,) are those of :class:`coupling.marching.Checkpoint`.
+        """
+        from coupling.record_kernels import amplitudes_within
+
+        everywhere = np.ones(len(self._powers.loss))
+        powers, excess = self._powers, trace.excess.reshape(len(trace.start), ORDER * trace.excess.shape[2])
+        # A trace of nothing goes through as well: that compiles.
+        for first in range(0, max(len(trace.start), 1), _BATCH):
+            last = min(first + _BATCH, len(trace.start))
+            weights, places = self._weights[: last - first], slice(0, (last - first) * ORDER)
+            amplitudes, times = self._amplitudes[places], self._times[places]
+            amplitudes_within(steps, trace, excess, first, last, amplitudes, times, weights)
+            amplitudes[:, trace.state.shape[1] :] = free.at(times)[1]
+            rate = amplitudes @ powers.rate
+            squares, duration = rate * rate, weights.reshape(-1, 1)
+            totals[0] += np.vdot((duration * amplitudes[:, powers.riding]).T @ rate, powers.pushing)
+            totals[1] += (duration.T @ squares)[0] @ powers.loss
+            if powers.skew.size:
+                totals[1] += 0.5 * np.vdot((duration * amplitudes[:, : len(powers.skew)]).T @ rate, powers.skew)
+            totals[3] = max(totals[3], 0.5 * float((squares @ everywhere).max(initial=0.0)))
 
     def contact_figures(self, before: Checkpoint, trace: Trace) -> FloatArray:
         """Impulse, time apart, largest force and last touch, shape (c, 4), with those of a trace."""
         from coupling.record_kernels import add_contacts
 
         figures = before.contact_totals.copy()
-        add_contacts(trace, self.contacts, before.stored, self._room.weights, before.totals.copy(), figures)
+        add_contacts(trace, self.contacts, before.stored, self._weights[0], before.totals.copy(), figures)
         return figures

@@ -106,17 +106,45 @@ class Segments(NamedTuple):
 class Scratch(NamedTuple):
     """Room for one march, w the gyroscopic blocks' width and e + c the number of deflections; zeros at its start."""
 
-    coordinates: FloatArray  # (9, n)
-    ties: FloatArray  # (8, r)
-    directions: FloatArray  # (6, k)
-    deflections: FloatArray  # (6, e + c)
-    laws: FloatArray  # (2, c, 6)
+    a: FloatArray  # (n,) accelerations at the step's start ...
+    before: FloatArray  # (n,) ... and at that of the step before
+    free: FloatArray  # (n,) at its end, at last with the forces of the laws
+    q0: FloatArray  # (n,) q*
+    v0: FloatArray  # (n,) v*
+    load: FloatArray  # (n,)
+    pushed: FloatArray  # (n,) loads and all that resists q* and v*
+    x: FloatArray  # (n,) of a sample
+    y: FloatArray  # (n,)
+    tq: FloatArray  # (r,) what the ties see of q, v, a, q* and v* ...
+    tv: FloatArray  # (r,)
+    ta: FloatArray  # (r,)
+    tq0: FloatArray  # (r,)
+    tv0: FloatArray  # (r,)
+    seen: FloatArray  # (r,) ... and of the accelerations at the step's end
+    tie_push: FloatArray  # (r,)
+    response: FloatArray  # (r,)
+    linked: FloatArray  # (r,)
+    dq: FloatArray  # (k,) what the laws' directions see of q, v, a, q* and v*
+    dv: FloatArray  # (k,)
+    da: FloatArray  # (k,)
+    dq0: FloatArray  # (k,)
+    dv0: FloatArray  # (k,)
+    push: FloatArray  # (k,) forces of the laws
+    delta: FloatArray  # (e + c,) deflections and their rates, and without the laws' forces
+    rate: FloatArray  # (e + c,)
+    delta_free: FloatArray  # (e + c,)
+    rate_free: FloatArray  # (e + c,)
+    slip: FloatArray  # (e + c,) rates that runout takes from the contacts'
+    force_before: FloatArray  # (e + c,)
+    laws: FloatArray  # (c, 6)
+    spare: FloatArray  # (c, 6)
     drag: FloatArray  # (c, 4) slopes of friction
     jacobian: FloatArray  # (e + c, e + c)
     residual: FloatArray  # (e + c, 1)
     tangents: FloatArray  # (b, 5, 5) of bearings
     held: FloatArray  # (8, 5): `coupling.bearing_kernels.take_bearings`
-    powers: FloatArray  # (2, 4) and those before
+    powers: FloatArray  # (5,): `coupling.power_kernels.take_powers`
+    powers_before: FloatArray  # (5,)
     block: FloatArray  # (w,)
 
 

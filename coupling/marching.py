@@ -264,6 +264,7 @@ class MarchRun:
         self.ends = block_ends(settings.duration, settings.sample_interval, self.base, samples_per_block)
         pushing = sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
         self.pushing = np.linalg.norm(system.load) + np.linalg.norm(pushing)
+        self._cut = -1, np.zeros(0)
         # Nothing that stays together moves so much further than its loads press it.
         pushed = pushing + np.abs(system.load)
         self.reach = float(_resting(system, turning, pushed, settings.duration).max(initial=0.0))
@@ -272,7 +273,7 @@ class MarchRun:
         """Static equilibrium under the loads of the start, swinging where nothing resists; or a state that is given."""
         system, (_, rates, swings) = self.system, self.turning.at(0.0)
         load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.swing)
-        resting = replace(system, load=load)
+        resting = system if np.array_equal(load, system.load) else replace(system, load=load)
         q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)
         first = float(self.bounds(0)[1])
@@ -350,8 +351,10 @@ class MarchRun:
 
     def bounds(self, number: int) -> FloatArray:
         """Where a block is cut into stretches [s]."""
-        ends = float(self.ends[number]), float(self.ends[number + 1])
-        return boundaries(self.system, self.turning, *ends, self.base, (self.settings.record_from,))
+        if number != self._cut[0]:
+            ends = float(self.ends[number]), float(self.ends[number + 1])
+            self._cut = number, boundaries(self.system, self.turning, *ends, self.base, (self.settings.record_from,))
+        return self._cut[1]
 
     def _march(self, kernel: Any, state: Checkpoint, segments: Any, samples: Any) -> tuple[Checkpoint, float, float]:
         """The kernel on copies of what it changes."""
@@ -394,6 +397,6 @@ def _resting(system: CoupledSystem, turning: Turning, pushing: FloatArray | floa
     """Coordinates that the loads' amplitudes would hold if they stood still, shape (n,); what is free, F t²/2."""
     fastest = max(1.0, float(turning.rates.max())) ** 2
     loads = sum((fastest * np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size)) + pushing
-    stiffness = np.abs(np.diag(system.mean_stiffness()))
+    stiffness = np.abs(np.diag(system.mean_stiffness))
     compliance = np.full(system.size, 0.5 * duration**2)
     return np.asarray(loads * np.divide(1.0, stiffness, out=compliance, where=stiffness > 0.0))

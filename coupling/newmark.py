@@ -19,38 +19,19 @@ and Dᵀq, is carried along by the same recurrence as q. With β = 1/4, γ = 1/2
 unconditionally stable, and keeps the energy of an undamped linear system.
 """
 
-import math
-
 import numpy as np
 import numpy.typing as npt
 
-from coupling.contact_kernels import (
-    DAMPING,
-    ENERGY,
-    FORCE,
-    PHASE_SLOPE,
-    deviation_of,
-    settle,
-    take_forces,
-    take_law,
-)
-from coupling.kernel_arrays import (
-    BY_TIME,
-    BY_UNBALANCE,
-    Bearings,
-    Contacts,
-    Dynamics,
-    Outputs,
-    Samples,
-    Scratch,
-    Segments,
-    StepMatrices,
-)
-from coupling.step_kernels import add_gyroscopic, apply_base, project
+from coupling.contact_kernels import FORCE, deviation_of, settle, take_forces
+from coupling.kernel_arrays import Bearings, Contacts, Dynamics, Outputs, Samples, Scratch, Segments, StepMatrices
+from coupling.load_kernels import load_at
+from coupling.power_kernels import stored_in, take_powers
+from coupling.row_kernels import SUMS, add_rows, project
+from coupling.sample_kernels import write_samples
+from coupling.step_kernels import add_gyroscopic, apply_base
 from rotors.compiled import inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 # Contacts are evaluated this part of a segment inside its ends, so that a pair that enters or leaves exactly
 # there counts on one side only.
@@ -107,413 +88,287 @@ def march(
     unsettled : int
         Steps whose contact forces Newton's method left unsettled.
     """
-    r, n = dynamics.ties.shape
-    c, directions = contacts.phase.size, contacts.direction.shape[0]
-    u = c + bearings.axis.size
-    rows = scratch.coordinates
-    a, before, free, pushed, q0, v0 = rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]
-    load, x, y = rows[6], rows[7], rows[8]
-    # What the ties see of q, v and a, and what the laws do.
-    rows = scratch.ties
-    tq, tv, ta, tq0, tv0 = rows[0], rows[1], rows[2], rows[3], rows[4]
-    tie_push, seen_by_ties, response = rows[5], rows[6], rows[7]
-    rows = scratch.directions
-    dq, dv, da, dq0, dv0, push = rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]
-    rows = scratch.deflections
-    delta, rate, delta_free, rate_free, slip, force_before = rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]
-    laws, spare, jacobian, residual = scratch.laws[0], scratch.laws[1], scratch.jacobian, scratch.residual
-    drag, tangents, work, teeth = scratch.drag, scratch.tangents, scratch.block, contacts.direction[:c]
-    powers, powers_before, held = scratch.powers[0], scratch.powers[1], scratch.held
     curvature, acceleration, unsettled = 0.0, 0.0, 0
-    beta, gamma = dynamics.beta, dynamics.gamma
-    # Taken out of their tuples here, once.
-    gyroscopic, first, size = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size
-    changing, has_skew = dynamics.tie_rates.size > 1, dynamics.has_skew
-
     for segment in range(segments.start.size):
         t0, t1, count = segments.start[segment], segments.end[segment], segments.steps[segment]
         turned0, speed0, swing = segments.turned[segment, 0], segments.turned[segment, 1], segments.turned[segment, 2]
-        h = (t1 - t0) / count
-        inside = INSIDE * (t1 - t0)
-        slot = segments.kind[segment]
-        middle_speed = speed0 + 0.5 * swing * (t1 - t0)
-        stiffness, damping = matrices.tie_stiffness[slot], matrices.tie_damping[slot]
-        between, link = matrices.between[slot], matrices.link[slot]
-
-        # The teeth change at the event: forces, powers and energy start afresh from the new set of pairs.
-        project(dynamics.ties, q, tq)
-        project(dynamics.ties, v, tv)
-        project(contacts.direction, q, dq)
-        project(contacts.direction, v, dv)
+        slot, h, inside = segments.kind[segment], (t1 - t0) / count, INSIDE * (t1 - t0)
         speed = speed0 + swing * inside
         turned = turned0 + inside * (speed0 + 0.5 * swing * inside)
-        for k in range(c):
-            gone, slip[k] = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
-            delta[k], rate[k] = dq[k] - gone, dv[k] - slip[k]
-        for k in range(c, u):
-            delta[k] = dq[k]
-        take_forces(contacts, bearings, turned, delta, rate, laws, push, drag, tangents, held)
-        fresh = _stored(changing, stiffness, tq, laws) + held[0, 0]
+        load_at(dynamics, t0, turned0, speed0, swing, scratch.load)
+        fresh = _begin(
+            q, v, dynamics, contacts, bearings, matrices, slot, turned, speed, speed0 + 0.5 * swing * (t1 - t0), swing,
+            scratch,
+        )  # fmt: skip
         totals[2] += fresh - stored
         stored = fresh
-        _load_at(dynamics, t0, turned0, speed0, swing, load)
-        for i in range(n):
-            a[i] = load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
-        add_gyroscopic(gyroscopic, first, size, -middle_speed, v, a, work)
-        if swing != 0.0:
-            # The drive that speeds a tilted shaft up works on it: counted among the loads.
-            add_gyroscopic(gyroscopic, first, size, -swing, q, load, work)
-            add_gyroscopic(gyroscopic, first, size, -swing, q, a, work)
-        for j in range(r):
-            tie_push[j] = 0.0
-            for k in range(r):
-                tie_push[j] += stiffness[j, k] * tq[k] + damping[j, k] * tv[k]
-        for i in range(n):
-            for j in range(r):
-                a[i] -= dynamics.ties[j, i] * tie_push[j]
-            for k in range(directions):
-                a[i] -= contacts.direction[k, i] * push[k]
-        project(dynamics.ties, a, ta)
-        project(contacts.direction, a, da)
-        _powers(
-            dynamics.damping,
-            contacts.rate,
-            damping,
-            stiffness,
-            has_skew,
-            speed,
-            v,
-            load,
-            tq,
-            tv,
-            rate,
-            slip,
-            laws,
-            powers_before,
-        )
-        if directions > u:
-            _friction_power(contacts.friction_row, contacts.sliding, speed, dv, push, powers_before)
-        powers_before[2] += held[0, 1] * speed
-        for k in range(c):
-            force_before[k] = laws[k, FORCE]
-
         for step in range(count):
-            t = t0 + step * h
-            after = (step + 1) * h
-            speed_before = speed0 + swing * step * h
-            turned_before = turned0 + step * h * (speed0 + 0.5 * swing * step * h)
+            t, after = t0 + step * h, (step + 1) * h
             speed = speed0 + swing * after
             turned = turned0 + after * (speed0 + 0.5 * swing * after)
-            _load_at(dynamics, t0 + after, turned, speed, swing, load)
-            old, new = (0.5 - beta) * h * h, (1.0 - gamma) * h
-            for i in range(n):
-                q0[i] = q[i] + h * v[i] + old * a[i]
-                v0[i] = v[i] + new * a[i]
-                pushed[i] = load[i] - dynamics.stiffness[i] * q0[i] - dynamics.damping[i] * v0[i]
-            for j in range(r):
-                tq0[j] = tq[j] + h * tv[j] + old * ta[j]
-                tv0[j] = tv[j] + new * ta[j]
-            for k in range(directions):
-                dq0[k] = dq[k] + h * dv[k] + old * da[k]
-                dv0[k] = dv[k] + new * da[k]
-            if swing != 0.0:
-                add_gyroscopic(gyroscopic, first, size, -swing, q0, pushed, work)
-                add_gyroscopic(gyroscopic, first, size, beta / gamma * h * swing, v0, pushed, work)
-            # With D the diagonal of S₀ = D + (γ h s' + β h² s'') G, S₀ (a + v*/γh) = r + D v*/γh + β/γ h s'' G v* has
-            # no term s' G v*: most of the gyroscopic part comes without a product of its own.
-            for g in range(first.size):
-                for i in range(first[g], first[g] + size[g]):
-                    pushed[i] += v0[i] / (gamma * h * matrices.base[slot, i])
-            apply_base(matrices.base, matrices.blocks, first, size, slot, pushed, free, work)
-            for g in range(first.size):
-                for i in range(first[g], first[g] + size[g]):
-                    free[i] -= v0[i] / (gamma * h)
-
-            # a = B (r - U y) - B U link (Uᵀ B (r - U y)), y what the ties push.
-            project(dynamics.ties, free, seen_by_ties)
-            for j in range(r):
-                tie_push[j] = 0.0
-                for k in range(r):
-                    tie_push[j] += stiffness[j, k] * tq0[k] + damping[j, k] * tv0[k]
-            for j in range(r):
-                response[j] = seen_by_ties[j]
-                for k in range(r):
-                    response[j] -= between[j, k] * tie_push[k]
-            for j in range(r):
-                for k in range(r):
-                    tie_push[j] += link[j, k] * response[k]
-            for j in range(r):
-                value = tie_push[j]
-                for i in range(n):
-                    free[i] -= matrices.ties[slot, j, i] * value
-                for k in range(r):
-                    seen_by_ties[k] -= between[k, j] * value
-
-            displaced, moved = beta * h * h, gamma * h
-            if u > 0:
+            load_at(dynamics, t0 + after, turned, speed, swing, scratch.load)
+            _predict(q, v, dynamics, h, scratch)
+            _answer(dynamics, matrices, slot, h, swing, scratch)
+            if step == count - 1:
                 # The last look at the teeth is just inside the segment.
-                if step == count - 1:
-                    speed = speed0 + swing * (after - inside)
-                    turned = turned0 + (after - inside) * (speed0 + 0.5 * swing * (after - inside))
-                project(contacts.direction, free, da)
-                for k in range(c):
-                    gone, slip[k] = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
-                    delta_free[k] = dq0[k] + displaced * da[k] - gone
-                    rate_free[k] = dv0[k] + moved * da[k] - slip[k]
-                for k in range(c, u):
-                    delta_free[k] = dq0[k] + displaced * da[k]
-                settled = settle(
-                    contacts,
-                    bearings,
-                    turned,
-                    delta_free,
-                    rate_free,
-                    matrices.flexibility[slot],
-                    displaced,
-                    moved,
-                    delta,
-                    rate,
-                    laws,
-                    push,
-                    drag,
-                    tangents,
-                    held,
-                    jacobian,
-                    residual,
-                )
-                if not settled:
-                    unsettled += 1
-                for k in range(directions):
-                    force = push[k]
-                    if force != 0.0:
-                        for i in range(n):
-                            free[i] -= matrices.contact[slot, k, i] * force
-                        for j in range(r):
-                            seen_by_ties[j] -= matrices.contact_ties[slot, k, j] * force
-                        for j in range(directions):
-                            da[j] -= matrices.flexibility[slot, j, k] * force
-
+                speed = speed0 + swing * (after - inside)
+                turned = turned0 + (after - inside) * (speed0 + 0.5 * swing * (after - inside))
+            if not _press(dynamics, contacts, bearings, matrices, slot, h, turned, speed, scratch):
+                unsettled += 1
             if samples.first + next_sample * samples.interval <= t + h:
-                next_sample = _sample(
-                contacts, teeth, outputs, samples, next_sample, t, h, turned_before, speed_before, swing,
-                q, v, a, q0, v0, free, displaced, moved, x, y, spare, delta_free,
-            )  # fmt: skip
-            kinetic = 0.0
+                before = step * h
+                next_sample = write_samples(
+                    contacts, outputs, samples, next_sample, t, h, turned0 + before * (speed0 + 0.5 * swing * before),
+                    speed0 + swing * before, swing, q, v, dynamics.beta * h * h, dynamics.gamma * h, scratch,
+                )  # fmt: skip
             if step > 0:
-                for i in range(n):
-                    second = free[i] - 2.0 * a[i] + before[i]
-                    curvature += dynamics.resolved[i] * second * second
-                    acceleration += dynamics.resolved[i] * free[i] * free[i]
-            for i in range(n):
-                before[i], a[i] = a[i], free[i]
-                q[i], v[i] = q0[i] + displaced * free[i], v0[i] + moved * free[i]
-                kinetic += v[i] * v[i]
-            for j in range(r):
-                ta[j] = seen_by_ties[j]
-                tq[j], tv[j] = tq0[j] + displaced * ta[j], tv0[j] + moved * ta[j]
-            for k in range(directions):
-                dq[k], dv[k] = dq0[k] + displaced * da[k], dv0[k] + moved * da[k]
-
+                curved, size = _curvature(dynamics.resolved, scratch.before, scratch.a, scratch.free)
+                curvature += curved
+                acceleration += size
+            _accept(q, v, dynamics, h, scratch)
             if swing != 0.0:
-                add_gyroscopic(gyroscopic, first, size, -swing, q, load, work)
-            stored = _stored(changing, stiffness, tq, laws) + held[0, 0]
-            _powers(
-                dynamics.damping,
-                contacts.rate,
-                damping,
-                stiffness,
-                has_skew,
-                speed,
-                v,
-                load,
-                tq,
-                tv,
-                rate,
-                slip,
-                laws,
-                powers,
-            )
-            if directions > u:
-                _friction_power(contacts.friction_row, contacts.sliding, speed, dv, push, powers)
-            powers[2] += held[0, 1] * speed
-            totals[4] += 0.5 * h * (powers_before[3] + powers[3])
-            powers_before[3] = powers[3]
-            for k in range(3):
-                totals[k] += 0.5 * h * (powers_before[k] + powers[k])
-                powers_before[k] = powers[k]
-            totals[3] = max(totals[3], 0.5 * kinetic)
-            for k in range(c):
-                force = laws[k, FORCE]
-                contact_totals[k, IMPULSE] += 0.5 * h * (force_before[k] + force)
-                if force == 0.0:
-                    contact_totals[k, APART] += h
-                else:
-                    contact_totals[k, LAST_TOUCH] = t + h
-                contact_totals[k, PEAK] = max(contact_totals[k, PEAK], force)
-                force_before[k] = force
+                _swing_load(q, dynamics, swing, scratch)
+            stored = _account(v, dynamics, contacts, matrices, slot, t, h, speed, totals, contact_totals, scratch)
     return next_sample, stored, curvature, acceleration, unsettled
 
 
-@inner()
-def _stored(changing: bool, stiffness: FloatArray, tq: FloatArray, laws: FloatArray) -> float:
-    """Energy in the teeth, and in the ties where they change with the speed."""
-    energy = 0.0
-    if changing:
-        for i in range(tq.size):
-            for j in range(tq.size):
-                energy += 0.5 * tq[i] * stiffness[i, j] * tq[j]
-    for k in range(laws.shape[0]):
-        energy += laws[k, ENERGY]
-    return energy
-
-
-@inner()
-def _load_at(dynamics: Dynamics, time: float, turned: float, speed: float, swing: float, out: FloatArray) -> None:
-    """All loads at a time."""
-    n = out.size
-    for i in range(n):
-        out[i] = dynamics.constant[i] + swing * dynamics.swing[i]
-    for w in range(dynamics.frequency.size):
-        frequency, follows = dynamics.frequency[w], dynamics.follows[w]
-        angle = frequency * (time if follows == BY_TIME else turned)
-        cosine, sine = math.cos(angle), math.sin(angle)
-        if follows == BY_UNBALANCE:
-            # (s'² - i s''/w) e^{iws}: what an eccentric mass feels, by differentiating twice.
-            square, side = speed * speed, swing / frequency
-            cosine, sine = square * cosine + side * sine, square * sine - side * cosine
-        for i in range(n):
-            out[i] += cosine * dynamics.cosine[w, i] - sine * dynamics.sine[w, i]
-    for m in range(dynamics.timed_sizes.size):
-        last = dynamics.timed_sizes[m] - 1
-        low, high = 0, last
-        while high - low > 1:
-            middle = (low + high) // 2
-            if dynamics.timed_times[m, middle] <= time:
-                low = middle
-            else:
-                high = middle
-        begin, end = dynamics.timed_times[m, low], dynamics.timed_times[m, high]
-        part = min(max((time - begin) / (end - begin), 0.0), 1.0) if end > begin else 0.0
-        value = dynamics.timed_values[m, low] + part * (dynamics.timed_values[m, high] - dynamics.timed_values[m, low])
-        for i in range(n):
-            out[i] += value * dynamics.timed_rows[m, i]
-
-
-@inner()
-def _powers(
-    component_damping: FloatArray,
-    phase_rate: FloatArray,
-    damping: FloatArray,
-    stiffness: FloatArray,
-    has_skew: bool,
-    speed: float,
-    v: FloatArray,
-    load: FloatArray,
-    tq: FloatArray,
-    tv: FloatArray,
-    rate: FloatArray,
-    slip: FloatArray,
-    laws: FloatArray,
-    out: FloatArray,
-) -> None:
-    """Power of the loads, power lost, power of the turning teeth [W].
-
-    With the teeth's energy U(p, δ), δ = dᵀq - e: the turning teeth give ∂U/∂p p' - f e', and the damping takes
-    v C v + c δ'². Together with the loads they change the energy of motion, springs and teeth.
-    """
-    n, r = v.size, tv.size
-    given, lost, turning = 0.0, 0.0, 0.0
-    for i in range(n):
-        given += load[i] * v[i]
-        lost += component_damping[i] * v[i] * v[i]
-    for i in range(r):
-        for j in range(r):
-            lost += tv[i] * damping[i, j] * tv[j]
-    if has_skew:
-        for i in range(r):
-            for j in range(r):
-                lost += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
-    for k in range(laws.shape[0]):
-        turning += laws[k, PHASE_SLOPE] * phase_rate[k] * speed - laws[k, FORCE] * slip[k]
-        lost += laws[k, DAMPING] * rate[k] * rate[k]
-    out[0], out[1], out[2] = given, lost, turning
-
-
-@inner()
-def _friction_power(
-    friction_row: IntArray, sliding: FloatArray, speed: float, dv: FloatArray, push: FloatArray, out: FloatArray
-) -> None:
-    """Power that friction takes from the nominal rotation, into out[3], and gives to the coordinates, into out[2] [W].
-
-    The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. The former,
-    Σ μ F_j |w_j| and never negative, comes from whatever turns the machine. The latter is small, and shakes the
-    coordinates as often as it brakes them.
-    """
-    out[3] = 0.0
-    for k in range(friction_row.size):
-        row = friction_row[k]
-        if row >= 0:
-            out[2] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
-            out[3] += (push[row] * sliding[k, 0] + push[row + 1] * sliding[k, 1]) * speed
-
-
-@inner()
-def _sample(
-    contacts: Contacts,
-    teeth: FloatArray,
-    outputs: Outputs,
-    samples: Samples,
-    number: int,
-    t: float,
-    h: float,
-    turned0: float,
-    speed0: float,
-    swing: float,
+@inner(forceinline=True)
+def _begin(
     q: FloatArray,
     v: FloatArray,
-    a: FloatArray,
-    q0: FloatArray,
-    v0: FloatArray,
-    a1: FloatArray,
-    displaced: float,
-    moved: float,
-    x: FloatArray,
-    y: FloatArray,
-    laws: FloatArray,
-    work: FloatArray,
-) -> int:
-    """Write the samples that fall into the step from t to t + h.
+    dynamics: Dynamics,
+    contacts: Contacts,
+    bearings: Bearings,
+    matrices: StepMatrices,
+    slot: int,
+    turned: float,
+    speed: float,
+    middle_speed: float,
+    swing: float,
+    scratch: Scratch,
+) -> float:
+    """Accelerations, powers and energy just inside a segment, whose loads are given; returns what teeth and ties hold.
 
-    Displacement and velocity by cubic Hermite interpolation, acceleration linear: errors below the step's own.
+    The teeth change at the event: forces, powers and energy start afresh from the new set of pairs.
     """
-    n = q.size
-    while number - samples.offset < samples.force.shape[0]:
-        time = samples.first + number * samples.interval
-        if time > t + h:
-            break
-        row = number - samples.offset
-        s = max((time - t) / h, 0.0)
-        old, slope_old = (1.0 + 2.0 * s) * (1.0 - s) ** 2, s * (1.0 - s) ** 2 * h
-        new, slope_new = s * s * (3.0 - 2.0 * s), s * s * (s - 1.0) * h
-        for i in range(n):
-            q1, v1 = q0[i] + displaced * a1[i], v0[i] + moved * a1[i]
-            x[i] = old * q[i] + slope_old * v[i] + new * q1 + slope_new * v1
-            y[i] = old * v[i] + slope_old * a[i] + new * v1 + slope_new * a1[i]
-        project(outputs.displacement, x, samples.displacement[row])
-        project(outputs.velocity, y, samples.velocity[row])
-        if contacts.phase.size > 0:
-            after = s * h
-            speed = speed0 + swing * after
-            turned = turned0 + after * (speed0 + 0.5 * swing * after)
-            project(teeth, x, samples.compression[row])
-            project(teeth, y, work)
-            for k in range(contacts.phase.size):
-                gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
-                samples.compression[row, k] -= gone
-                take_law(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws, k)
-                samples.force[row, k] = laws[k, FORCE]
-        for i in range(n):
-            x[i] = (1.0 - s) * a[i] + s * a1[i]
-        project(outputs.acceleration, x, samples.acceleration[row])
-        number += 1
-    return number
+    a, dq, dv, delta, rate = scratch.a, scratch.dq, scratch.dv, scratch.delta, scratch.rate
+    c, push = contacts.phase.size, scratch.push
+    project(dynamics.ties, q, scratch.tq)
+    project(dynamics.ties, v, scratch.tv)
+    project(contacts.direction, q, dq)
+    project(contacts.direction, v, dv)
+    for k in range(c):
+        gone, scratch.slip[k] = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
+        delta[k], rate[k] = dq[k] - gone, dv[k] - scratch.slip[k]
+    for k in range(c, delta.size):
+        delta[k] = dq[k]
+    laws = scratch.laws
+    take_forces(contacts, bearings, turned, delta, rate, laws, push, scratch.drag, scratch.tangents, scratch.held)
+    for i in range(a.size):
+        a[i] = scratch.load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
+    blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
+    add_gyroscopic(blocks, first, size, -middle_speed, v, a, work)
+    if swing != 0.0:
+        add_gyroscopic(blocks, first, size, -swing, q, a, work)
+        _swing_load(q, dynamics, swing, scratch)
+    _push_ties(matrices, slot, scratch.tq, scratch.tv, scratch)
+    add_rows(dynamics.ties, scratch.tie_push, -1.0, a)
+    add_rows(contacts.direction, push, -1.0, a)
+    project(dynamics.ties, a, scratch.ta)
+    project(contacts.direction, a, scratch.da)
+    take_powers(dynamics, contacts, matrices.tie_stiffness[slot], matrices.tie_damping[slot], speed, v, scratch)
+    for k in range(scratch.powers.size):
+        scratch.powers_before[k] = scratch.powers[k]
+    for k in range(c):
+        scratch.force_before[k] = laws[k, FORCE]
+    return stored_in(dynamics, matrices.tie_stiffness[slot], scratch)
+
+
+@inner()
+def _swing_load(q: FloatArray, dynamics: Dynamics, swing: float, scratch: Scratch) -> None:
+    """The drive that speeds a tilted shaft up works on it: counted among the loads."""
+    first, size = dynamics.block_start, dynamics.block_size
+    add_gyroscopic(dynamics.gyroscopic, first, size, -swing, q, scratch.load, scratch.block)
+
+
+@inner(forceinline=True)
+def _push_ties(matrices: StepMatrices, slot: int, tq: FloatArray, tv: FloatArray, scratch: Scratch) -> None:
+    """What the ties push at displacements and rates along them: K_t Uᵀq + C_t Uᵀv."""
+    project(matrices.tie_stiffness[slot], tq, scratch.tie_push)
+    project(matrices.tie_damping[slot], tv, scratch.response)
+    for j in range(tq.size):
+        scratch.tie_push[j] += scratch.response[j]
+
+
+@inner(forceinline=True)
+def _predict(q: FloatArray, v: FloatArray, dynamics: Dynamics, h: float, scratch: Scratch) -> None:
+    """q* and v*, and what ties and laws see of them."""
+    old, new = (0.5 - dynamics.beta) * h * h, (1.0 - dynamics.gamma) * h
+    q0, v0, a = scratch.q0, scratch.v0, scratch.a
+    for i in range(q.size):
+        q0[i] = q[i] + h * v[i] + old * a[i]
+        v0[i] = v[i] + new * a[i]
+    for j in range(scratch.tq.size):
+        scratch.tq0[j] = scratch.tq[j] + h * scratch.tv[j] + old * scratch.ta[j]
+        scratch.tv0[j] = scratch.tv[j] + new * scratch.ta[j]
+    for k in range(scratch.dq.size):
+        scratch.dq0[k] = scratch.dq[k] + h * scratch.dv[k] + old * scratch.da[k]
+        scratch.dv0[k] = scratch.dv[k] + new * scratch.da[k]
+
+
+@inner(forceinline=True)
+def _answer(dynamics: Dynamics, matrices: StepMatrices, slot: int, h: float, swing: float, scratch: Scratch) -> None:
+    """Accelerations without the forces of the laws, into ``free``, and what the ties see of them."""
+    displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
+    per_moved, ratio = 1.0 / moved, displaced / moved
+    q0, v0, pushed, free = scratch.q0, scratch.v0, scratch.pushed, scratch.free
+    for i in range(q0.size):
+        pushed[i] = scratch.load[i] - dynamics.stiffness[i] * q0[i] - dynamics.damping[i] * v0[i]
+    blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
+    if swing != 0.0:
+        add_gyroscopic(blocks, first, size, -swing, q0, pushed, work)
+        add_gyroscopic(blocks, first, size, ratio * swing, v0, pushed, work)
+    # With D the diagonal of S₀ = D + (γ h s' + β h² s'') G, S₀ (a + v*/γh) = r + D v*/γh + β/γ h s'' G v* has
+    # no term s' G v*: most of the gyroscopic part comes without a product of its own.
+    for g in range(first.size):
+        among = slice(first[g], first[g] + size[g])
+        part, rates, stiffness, damping = pushed[among], v0[among], dynamics.stiffness[among], dynamics.damping[among]
+        for i in range(part.size):
+            part[i] += rates[i] * (per_moved + damping[i] + ratio * stiffness[i])
+    apply_base(matrices.base[slot], matrices.blocks[slot], first, size, pushed, free, work)
+    for g in range(first.size):
+        among = slice(first[g], first[g] + size[g])
+        part, rates = free[among], v0[among]
+        for i in range(part.size):
+            part[i] -= rates[i] * per_moved
+
+    # a = B (r - U y) - B U link (Uᵀ B (r - U y)), y what the ties push.
+    seen, tie_push, response = scratch.seen, scratch.tie_push, scratch.response
+    between = matrices.between[slot]
+    project(dynamics.ties, free, seen)
+    _push_ties(matrices, slot, scratch.tq0, scratch.tv0, scratch)
+    project(between, tie_push, response)
+    for j in range(seen.size):
+        response[j] = seen[j] - response[j]
+    project(matrices.link[slot], response, scratch.linked)
+    for j in range(seen.size):
+        tie_push[j] += scratch.linked[j]
+    add_rows(matrices.ties[slot], tie_push, -1.0, free)
+    project(between, tie_push, response)
+    for j in range(seen.size):
+        seen[j] -= response[j]
+
+
+@inner(forceinline=True)
+def _press(
+    dynamics: Dynamics,
+    contacts: Contacts,
+    bearings: Bearings,
+    matrices: StepMatrices,
+    slot: int,
+    h: float,
+    turned: float,
+    speed: float,
+    scratch: Scratch,
+) -> bool:
+    """The forces of the laws, and the accelerations with them; whether Newton's method found them."""
+    displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
+    free, da, push, delta, rate = scratch.free, scratch.da, scratch.push, scratch.delta_free, scratch.rate_free
+    if delta.size == 0:
+        return True
+    c, flexibility = contacts.phase.size, matrices.flexibility[slot]
+    project(contacts.direction, free, da)
+    for k in range(c):
+        gone, scratch.slip[k] = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
+        delta[k] = scratch.dq0[k] + displaced * da[k] - gone
+        rate[k] = scratch.dv0[k] + moved * da[k] - scratch.slip[k]
+    for k in range(c, delta.size):
+        delta[k] = scratch.dq0[k] + displaced * da[k]
+    settled = settle(
+        contacts,
+        bearings,
+        turned,
+        delta,
+        rate,
+        flexibility,
+        displaced,
+        moved,
+        scratch.delta,
+        scratch.rate,
+        scratch.laws,
+        push,
+        scratch.drag,
+        scratch.tangents,
+        scratch.held,
+        scratch.jacobian,
+        scratch.residual,
+    )
+    add_rows(matrices.contact[slot], push, -1.0, free)
+    add_rows(matrices.contact_ties[slot], push, -1.0, scratch.seen)
+    for j in range(da.size):
+        for k in range(push.size):
+            da[j] -= flexibility[j, k] * push[k]
+    return settled
+
+
+@inner(fastmath=SUMS, forceinline=True)
+def _curvature(resolved: FloatArray, before: FloatArray, a: FloatArray, a1: FloatArray) -> tuple[float, float]:
+    """|a₁ - 2 a + a₋₁|² and |a₁|² of the coordinates to be resolved."""
+    curvature, acceleration = 0.0, 0.0
+    for i in range(a.size):
+        second = a1[i] - 2.0 * a[i] + before[i]
+        curvature += resolved[i] * second * second
+        acceleration += resolved[i] * a1[i] * a1[i]
+    return curvature, acceleration
+
+
+@inner(forceinline=True)
+def _accept(q: FloatArray, v: FloatArray, dynamics: Dynamics, h: float, scratch: Scratch) -> None:
+    """The state at the step's end, and what ties and laws see of it."""
+    displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
+    a, before, free, q0, v0 = scratch.a, scratch.before, scratch.free, scratch.q0, scratch.v0
+    for i in range(q.size):
+        before[i], a[i] = a[i], free[i]
+        q[i], v[i] = q0[i] + displaced * free[i], v0[i] + moved * free[i]
+    for j in range(scratch.ta.size):
+        value = scratch.seen[j]
+        scratch.ta[j] = value
+        scratch.tq[j], scratch.tv[j] = scratch.tq0[j] + displaced * value, scratch.tv0[j] + moved * value
+    for k in range(scratch.da.size):
+        value = scratch.da[k]
+        scratch.dq[k], scratch.dv[k] = scratch.dq0[k] + displaced * value, scratch.dv0[k] + moved * value
+
+
+@inner(forceinline=True)
+def _account(
+    v: FloatArray,
+    dynamics: Dynamics,
+    contacts: Contacts,
+    matrices: StepMatrices,
+    slot: int,
+    t: float,
+    h: float,
+    speed: float,
+    totals: FloatArray,
+    contact_totals: FloatArray,
+    scratch: Scratch,
+) -> float:
+    """Add a step's work and losses, and the contacts' figures; returns what teeth and ties hold at its end."""
+    powers, powers_before = scratch.powers, scratch.powers_before
+    take_powers(dynamics, contacts, matrices.tie_stiffness[slot], matrices.tie_damping[slot], speed, v, scratch)
+    for k in range(3):
+        totals[k] += 0.5 * h * (powers_before[k] + powers[k])
+    totals[4] += 0.5 * h * (powers_before[3] + powers[3])
+    totals[3] = max(totals[3], 0.5 * powers[4])
+    for k in range(powers.size):
+        powers_before[k] = powers[k]
+    for k in range(contacts.phase.size):
+        force = scratch.laws[k, FORCE]
+        contact_totals[k, IMPULSE] += 0.5 * h * (scratch.force_before[k] + force)
+        if force == 0.0:
+            contact_totals[k, APART] += h
+        else:
+            contact_totals[k, LAST_TOUCH] = t + h
+        contact_totals[k, PEAK] = max(contact_totals[k, PEAK], force)
+        scratch.force_before[k] = force
+    return stored_in(dynamics, matrices.tie_stiffness[slot], scratch)

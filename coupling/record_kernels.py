@@ -1,6 +1,6 @@
-"""The figures of an exact march's proof, compiled: work, losses and what the contacts come to, from a trace.
+"""The figures of an exact march's proof, compiled: amplitudes within elements, and what the contacts come to.
 
-Importing this module imports numba. Element by element, with nothing kept between: memory costs more than sums here.
+Importing this module imports numba.
 """
 
 import math
@@ -9,13 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.kernel_arrays import Contacts
-from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
+from coupling.periodic.arrays import Steps, Trace
 from coupling.periodic.collocation import GAUSS, MONOMIALS, ORDER, PLACES
+from coupling.periodic.element import advance
 from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
-
-_SUMS = {"reassoc", "contract", "nsz"}
 
 
 @uncounted()
@@ -34,66 +33,29 @@ def weights_of(trace: Trace, element: int, out: FloatArray) -> None:
         out[j] = total
 
 
-@uncounted(fastmath=_SUMS)
-def amplitudes_within(steps: Steps, trace: Trace, element: int, i: int, out: FloatArray) -> None:
-    """Amplitudes (2 m,) at a place of an element."""
-    slot = trace.slot[element]
-    for k in range(out.size // 2):
-        x, y = steps.inner_decay[slot, i, k].real, steps.inner_decay[slot, i, k].imag
-        out[2 * k] = x * trace.state[element, 2 * k] - y * trace.state[element, 2 * k + 1]
-        out[2 * k + 1] = x * trace.state[element, 2 * k + 1] + y * trace.state[element, 2 * k]
-    c = trace.excess.shape[2]
-    for j in range(ORDER):
-        for a in range(c):
-            g = trace.excess[element, j, a]
-            for k in range(out.size):
-                out[k] -= steps.inner_source[slot, i, j * c + a, k] * g
-
-
-@uncounted(fastmath=_SUMS)
-def add_powers(
-    steps: Steps, trace: Trace, powers: Powers, free: FreeMotion, room: PowersRoom, totals: FloatArray
+@uncounted()
+def amplitudes_within(
+    steps: Steps,
+    trace: Trace,
+    excess: FloatArray,
+    first: int,
+    last: int,
+    out: FloatArray,
+    times: FloatArray,
+    weights: FloatArray,
 ) -> None:
-    """Add what the loads give and what damping without the teeth's takes [J], and keep the largest kinetic energy.
+    """Amplitudes (b s, 2 m) at the places of b elements, the places' times (b s,), and weights of integrals (b, s).
 
-    ``totals`` (5,) are those of :class:`coupling.marching.Checkpoint`.
+    ``excess`` (e, s c) is the trace's. Columns of ``out`` beyond the amplitudes are left as they are.
     """
-    amplitude, rate = room.amplitude, room.rate
-    n = rate.size
-    for element in range(trace.start.size):
-        weights_of(trace, element, room.weights)
-        h = trace.size[element] / trace.part[element]
+    for element in range(first, last):
+        weights_of(trace, element, weights[element - first])
+        slot, h = trace.slot[element], trace.size[element] / trace.part[element]
         for i in range(ORDER):
-            amplitudes_within(steps, trace, element, i, amplitude)
-            after = trace.start[element] + PLACES[i] * h - free.time[0]
-            for k in range(n):
-                rate[k] = 0.0
-            for j in range(amplitude.size):
-                value = amplitude[j]
-                for k in range(n):
-                    rate[k] += value * powers.rate[j, k]
-            for j in range(free.rate.size):
-                value = free.rate[j] + free.acceleration[j] * after
-                for k in range(n):
-                    rate[k] += value * powers.free[j, k]
-            taken, held, pushed = 0.0, 0.0, 0.0
-            for k in range(n):
-                square = rate[k] * rate[k]
-                taken += powers.loss[k] * square
-                held += square
-            for j in range(powers.skew.shape[0]):
-                along = 0.0
-                for k in range(n):
-                    along += powers.skew[j, k] * rate[k]
-                taken += 0.5 * amplitude[j] * along
-            for j in range(powers.riding.size):
-                along = 0.0
-                for k in range(n):
-                    along += powers.pushing[j, k] * rate[k]
-                pushed += amplitude[powers.riding[j]] * along
-            totals[0] += room.weights[i] * pushed
-            totals[1] += room.weights[i] * taken
-            totals[3] = max(totals[3], 0.5 * held)
+            row = (element - first) * ORDER + i
+            times[row] = trace.start[element] + PLACES[i] * h
+            decay, source = steps.inner_decay[slot, i], steps.inner_source[slot, i]
+            advance(decay, source, trace.state[element], excess[element], out[row, : trace.state.shape[1]])
 
 
 @uncounted()

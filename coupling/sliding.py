@@ -25,7 +25,6 @@ from coupling.component import Component
 from coupling.connector import ContactConnector, Sliding
 from coupling.gears import GearPairGeometry, SlidingFriction
 from coupling.loads import LoadedParts
-from coupling.statics import unresisted_motions
 from coupling.system import CoupledSystem, embed
 
 FloatArray = npt.NDArray[np.float64]
@@ -117,7 +116,7 @@ def held_at_speed(system: CoupledSystem) -> CoupledSystem:
     """The system with friction that does nothing to motions which nothing resists."""
     if all(contact.sliding is None for contact in system.contacts):
         return system
-    free = unresisted_motions(system)[0]
+    free = system.unresisted_motions[0]
 
     def held(contact: ContactConnector) -> ContactConnector:
         if contact.sliding is None:

@@ -10,7 +10,7 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
+_ROUNDING = 1e-12  # part of the loads that is rounding of what a motion is
 _PUSHED = 1e-9  # part of a load below which its share in a motion is rounding
 _STEPS = 60
 _HALVINGS = 12  # of a step that leads away from balance
@@ -33,11 +33,11 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     TransientError
         Where teeth or bearings find no equilibrium.
     """
-    rigid, stiffest = unresisted_motions(system)
+    rigid, stiffest = system.unresisted_motions
     if rigid.size:
         driven = rigid.T @ system.load
         # Beside a load that balances in itself, and beside the rounding of what a motion is.
-        scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _RIGID * np.linalg.norm(system.load)
+        scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _ROUNDING * np.linalg.norm(system.load)
         if np.any(np.abs(driven) > scale):
             raise CouplingError(
                 "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
@@ -57,7 +57,7 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
         about, _ = _bearing(bearing, bearing.law.reference[bearing.axes], time)
         closing += bearing.directions @ (bearing.stiffness @ bearing.law.reference[bearing.axes] - about)
     q: FloatArray = np.asarray(
-        np.linalg.solve(system.mean_stiffness() + penalty, system.load + closing), dtype=np.float64
+        np.linalg.solve(system.mean_stiffness + penalty, system.load + closing), dtype=np.float64
     )
     pressing = float(np.linalg.norm(system.load) + np.linalg.norm(closing)) or 1e-300
     residual, tangent = _out_of_balance(system, penalty, q, time)
@@ -140,25 +140,15 @@ def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
     as a train does that a ripple of its torque has pushed once. ``rate`` is the speed as a part of the nominal one.
     """
     velocity = np.zeros(system.size)
-    rigid = None
     for load in system.harmonic_loads:
         frequency = load.frequency if load.follows == "time" else load.frequency * rate
         if frequency == 0.0:
             continue
-        rigid = unresisted_motions(system)[0] if rigid is None else rigid
+        rigid = system.unresisted_motions[0]
         pushed = rigid.T @ load.amplitude
         if np.abs(pushed).max(initial=0.0) > _PUSHED * np.linalg.norm(load.amplitude):
             velocity += rigid @ (pushed / (1j * frequency)).real
     return velocity
-
-
-def unresisted_motions(system: CoupledSystem) -> tuple[FloatArray, float]:
-    """Orthonormal motions that no spring resists, in columns, and the largest stiffness [1/s²].
-
-    Teeth and nonlinear bearings count with their linear stiffness.
-    """
-    values, vectors = np.linalg.eigh(0.5 * (system.mean_stiffness() + system.mean_stiffness().T))
-    return vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)], float(values[-1])
 
 
 def _phase(contact: ContactConnector, time: float) -> float:

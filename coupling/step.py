@@ -75,20 +75,23 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
     r, n = arrays.dynamics.ties.shape
     c, k = arrays.contacts.phase.size, len(arrays.contacts.direction)
     u, b = c + arrays.bearings.axis.size, arrays.bearings.preload.size
-    return Scratch(
-        coordinates=np.zeros((9, n)),
-        ties=np.zeros((8, r)),
-        directions=np.zeros((6, k)),
-        deflections=np.zeros((6, u)),
-        laws=np.zeros((2, c, 6)),
-        drag=np.zeros((c, 4)),
-        jacobian=np.zeros((u, u)),
-        residual=np.zeros((u, 1)),
-        tangents=np.zeros((b, 5, 5)),
-        held=np.zeros((8, 5)),
-        powers=np.zeros((2, 4)),
-        block=np.zeros(arrays.dynamics.gyroscopic.shape[2]),
-    )
+    shapes: dict[str, tuple[int, ...]] = {
+        "laws": (c, 6),
+        "spare": (c, 6),
+        "drag": (c, 4),
+        "jacobian": (u, u),
+        "residual": (u, 1),
+        "tangents": (b, 5, 5),
+        "held": (8, 5),
+        "powers": (5,),
+        "powers_before": (5,),
+        "block": (arrays.dynamics.gyroscopic.shape[2],),
+    }
+    shapes |= dict.fromkeys(("a", "before", "free", "q0", "v0", "load", "pushed", "x", "y"), (n,))
+    shapes |= dict.fromkeys(("tq", "tv", "ta", "tq0", "tv0", "seen", "tie_push", "response", "linked"), (r,))
+    shapes |= dict.fromkeys(("dq", "dv", "da", "dq0", "dv0", "push"), (k,))
+    shapes |= dict.fromkeys(("delta", "rate", "delta_free", "rate_free", "slip", "force_before"), (u,))
+    return Scratch(**{name: np.zeros(shape) for name, shape in shapes.items()})
 
 
 class StepCache:

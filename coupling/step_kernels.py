@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.kernel_arrays import Contacts, Dynamics, StepMatrices
+from coupling.row_kernels import add_rows, project
 from coupling.small_systems import solve_in_place
 from rotors.compiled import counted, inner
 
@@ -42,65 +43,46 @@ def tie_matrices(dynamics: Dynamics, speed: float, stiffness: FloatArray, dampin
             damping[i, j] = low + part * (high - low)
 
 
-# Sums may be taken in any order, so that they vectorise; the compiled order is always the same.
-@inner(fastmath={"reassoc", "contract", "nsz"})
-def project(rows: FloatArray, x: FloatArray, out: FloatArray) -> None:
-    """Rows x, for a few rows (k, n)."""
-    for j in range(rows.shape[0]):
-        value = 0.0
-        for i in range(rows.shape[1]):
-            value += rows[j, i] * x[i]
-        out[j] = value
-
-
 @inner()
 def add_gyroscopic(
     blocks: FloatArray, first: IntArray, size: IntArray, factor: float, x: FloatArray, out: FloatArray, work: FloatArray
 ) -> None:
     """Add factor G x, by G's blocks; ``work`` (b,) is overwritten."""
     for g in range(first.size):
-        # Of the padded width: loops of sixteen vectorise, those of the block's own size may not.
-        for i in range(work.size):
-            work[i] = 0.0
-        for j in range(size[g]):
-            value = factor * x[first[g] + j]
-            for i in range(work.size):
-                work[i] += blocks[g, j, i] * value
-        for i in range(size[g]):
-            out[first[g] + i] += work[i]
+        among = slice(first[g], first[g] + size[g])
+        apply_block(blocks[g], x[among], factor, work)
+        part = out[among]
+        for i in range(part.size):
+            part[i] += work[i]
 
 
-@inner()
+@inner(forceinline=True)
+def apply_block(block: FloatArray, x: FloatArray, factor: float, out: FloatArray) -> None:
+    """Factor B x by the rows of Bᵀ, which are of the padded width: loops of sixteen vectorise, shorter ones may not."""
+    for i in range(out.size):
+        out[i] = 0.0
+    add_rows(block, x, factor, out)
+
+
+@inner(forceinline=True)
 def apply_base(
     base: FloatArray,
     blocks: FloatArray,
     first: IntArray,
     size: IntArray,
-    slot: int,
     x: FloatArray,
     out: FloatArray,
     work: FloatArray,
 ) -> None:
-    """B x, into another array; ``work`` (b,) is overwritten."""
+    """B x, into another array, with the base and the blocks of a step size; ``work`` (b,) is overwritten."""
     for i in range(x.size):
-        out[i] = base[slot, i] * x[i]
+        out[i] = base[i] * x[i]
     for g in range(first.size):
-        begin, n = first[g], size[g]
-        for i in range(work.size):
-            work[i] = 0.0
-        # Four columns at a time, so that what is added up is fetched and stored four times less.
-        for j in range(0, n - n % 4, 4):
-            x0, x1, x2, x3 = x[begin + j], x[begin + j + 1], x[begin + j + 2], x[begin + j + 3]
-            for i in range(work.size):
-                work[i] += (blocks[slot, g, j, i] * x0 + blocks[slot, g, j + 1, i] * x1) + (
-                    blocks[slot, g, j + 2, i] * x2 + blocks[slot, g, j + 3, i] * x3
-                )
-        for j in range(n - n % 4, n):
-            value = x[begin + j]
-            for i in range(work.size):
-                work[i] += blocks[slot, g, j, i] * value
-        for i in range(n):
-            out[begin + i] = work[i]
+        among = slice(first[g], first[g] + size[g])
+        apply_block(blocks[g], x[among], 1.0, work)
+        part = out[among]
+        for i in range(part.size):
+            part[i] = work[i]
 
 
 @counted()
@@ -145,9 +127,7 @@ def build_steps(
         for k in range(r):
             for i in range(n):
                 column[i] = dynamics.ties[k, i]
-            apply_base(
-                matrices.base, matrices.blocks, dynamics.block_start, dynamics.block_size, slot, column, found, work
-            )
+            apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, found, work)
             for i in range(n):
                 matrices.ties[slot, k, i] = found[i]
             project(dynamics.ties, found, tied)
@@ -168,9 +148,7 @@ def build_steps(
         for k in range(c):
             for i in range(n):
                 column[i] = contacts.direction[k, i]
-            apply_base(
-                matrices.base, matrices.blocks, dynamics.block_start, dynamics.block_size, slot, column, found, work
-            )
+            apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, found, work)
             project(dynamics.ties, found, tied)
             for j in range(r):
                 held[j] = 0.0

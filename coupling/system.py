@@ -15,6 +15,8 @@ from coupling.errors import CouplingError
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+_RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
+
 
 @dataclass(frozen=True)
 class HarmonicLoad:
@@ -179,13 +181,30 @@ class CoupledSystem:
         """Whether neither friction nor a bearing's own law is in it: the tooth contacts are all that is not linear."""
         return not self.nonlinear and all(contact.sliding is None for contact in self.contacts)
 
+    @cached_property
     def mean_stiffness(self) -> FloatArray:
         """K with every drive flank at its mean mesh stiffness [1/s²], shape (n, n)."""
         return self.stiffness + self._contact_sum([c.contact.mean_stiffness for c in self.contacts])
 
+    @cached_property
     def mean_damping(self) -> FloatArray:
         """C with every drive flank's damping [1/s], shape (n, n)."""
         return self.damping + self._contact_sum([c.contact.damping for c in self.contacts])
+
+    @cached_property
+    def highest_frequency(self) -> float:
+        """Highest natural frequency of the coordinates that are to be resolved, the residual ones held [rad/s]."""
+        stiffness = self.mean_stiffness[np.ix_(self.resolved, self.resolved)]
+        return float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max(initial=0.0)))
+
+    @cached_property
+    def unresisted_motions(self) -> tuple[FloatArray, float]:
+        """Orthonormal motions that no spring resists, in columns, and the largest stiffness [1/s²].
+
+        Teeth and nonlinear bearings count with their linear stiffness.
+        """
+        values, vectors = np.linalg.eigh(0.5 * (self.mean_stiffness + self.mean_stiffness.T))
+        return vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)], float(values[-1])
 
     def _contact_sum(self, values: Sequence[float]) -> FloatArray:
         """Σ value d dᵀ over the flanks that drive."""

@@ -1,7 +1,7 @@
 """The plain arrays that the kernels of the periodic response and of the exact march take, by name.
 
-Amplitudes are kept as 2 m real numbers, real and imaginary parts in turn. c contacts, s places in an element, h
-harmonics, k sizes of elements.
+Amplitudes are kept as 2 m real numbers, the real parts and then the imaginary ones. c contacts, s places in an element,
+h harmonics, k sizes of elements.
 """
 
 from typing import NamedTuple
@@ -42,14 +42,12 @@ class Steps(NamedTuple):
     size: FloatArray  # (k,)
     filled: IntArray  # (k,) whether
     ladder: IntArray  # (1,) where it begins
-    decay: ComplexArray  # (k, m) exp(λ h)
-    felt: FloatArray  # (k, 2 m, 2 s c) compressions at the places from the amplitudes at the start; rates
+    decay: FloatArray  # (k, 2, m) exp(λ h), real and imaginary part
+    felt: FloatArray  # (k, 2 s c, 2 m) compressions at the places from the amplitudes at the start; rates
     flexibility: FloatArray  # (k, 2 s c, s c) compressions at the places from the forces there, taken off; rates
     source: FloatArray  # (k, s c, 2 m) amplitudes at the end from the forces, taken off
     missed: FloatArray  # (k, 2 c, 2 m) and from what their polynomial misses at the start and at the end
-    felt_by: FloatArray  # (k, 2 s c, 2 m) as felt, of real parts and then imaginary ones; of no sizes where ...
-    sent_by: FloatArray  # (k, s c, 2 m) ... no disturbances are carried; as the source
-    inner_decay: ComplexArray  # (k, s, m) exp(λ h u) at the places; of no sizes where it is not asked for ...
+    inner_decay: FloatArray  # (k, s, 2, m) exp(λ h u) at the places; of no sizes where it is not asked for ...
     inner_source: FloatArray  # (k, s, s c, 2 m) ... nor amplitudes there from the forces, taken off
 
 
@@ -96,24 +94,20 @@ def first_elements(trace: Trace, count: int) -> Trace:
     return Trace._make(rows[:count] for rows in trace)
 
 
-def empty_steps(
-    sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner: bool = False, varied: bool = False
-) -> Steps:
+def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner: bool = False) -> Steps:
     """Room for some sizes of elements, of which the ladder begins at a number."""
     k, n = len(sizes), s * c
-    within, by = k if inner else 0, k if varied else 0
+    within = k if inner else 0
     return Steps(
         size=sizes,
         filled=np.zeros(k, dtype=np.int64),
         ladder=np.array([ladder], dtype=np.int64),
-        decay=np.zeros((k, m), dtype=np.complex128),
-        felt=np.zeros((k, 2 * m, 2 * n)),
+        decay=np.zeros((k, 2, m)),
+        felt=np.zeros((k, 2 * n, 2 * m)),
         flexibility=np.zeros((k, 2 * n, n)),
         source=np.zeros((k, n, 2 * m)),
         missed=np.zeros((k, 2 * c, 2 * m)),
-        felt_by=np.zeros((by, 2 * n, 2 * m)),
-        sent_by=np.zeros((by, n, 2 * m)),
-        inner_decay=np.zeros((within, s, m), dtype=np.complex128),
+        inner_decay=np.zeros((within, s, 2, m)),
         inner_source=np.zeros((within, s, n, 2 * m)),
     )
 
@@ -138,17 +132,8 @@ class FreeMotion(NamedTuple):
 class Powers(NamedTuple):
     """Rows that turn amplitudes into powers, in the n principal directions of what damps."""
 
-    rate: FloatArray  # (2 m, n) rates of the amplitudes ...
-    free: FloatArray  # (r, n) ... and of what is free
+    rate: FloatArray  # (2 m + r, n) rates of the amplitudes, and of what is free
     loss: FloatArray  # (n,) principal values: the squares of the rates times these give the loss
-    skew: FloatArray  # (2 m, n) forces of a stiffness that is not symmetric, twice; (0, n) where it is
+    skew: FloatArray  # (2 m, n) forces of a stiffness that is not symmetric, twice; (0, n) where it is symmetric
     riding: IntArray  # (k,) amplitudes that carry loads ...
     pushing: FloatArray  # (k, n) ... and these
-
-
-class PowersRoom(NamedTuple):
-    """Room for powers."""
-
-    amplitude: FloatArray  # (2 m,)
-    rate: FloatArray  # (n,)
-    weights: FloatArray  # (s,)

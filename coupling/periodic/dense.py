@@ -68,13 +68,13 @@ def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> Floa
                 shifted[p, a] = scale * total
             scale *= spacing / h
         for k in range(m):
-            value = grown[k] * complex(out[i - 1, 2 * k], out[i - 1, 2 * k + 1])
+            value = grown[k] * complex(out[i - 1, k], out[i - 1, m + k])
             for a in range(c):
                 sent = 0.0j
                 for p in range(ORDER):
                     sent += shares[p, k] * shifted[p, a]
                 value -= sent * reference.source[k, a]
-            out[i, 2 * k], out[i, 2 * k + 1] = value.real, value.imag
+            out[i, k], out[i, m + k] = value.real, value.imag
     return out
 
 

@@ -13,11 +13,11 @@ from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.collocation import AT_ENDS, BARYCENTRIC, INSIDE, MONOMIALS, ORDER, PLACES, POINTS
 from coupling.periodic.element_work import Work
+from coupling.row_kernels import SUMS, add_rows
 from coupling.small_systems import solve_in_place
 from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _NEWTON_STEPS = 40
 _NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is found, and to which one is told of
@@ -43,7 +43,7 @@ def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
     return 4 * touching + 3
 
 
-@uncounted(fastmath={"reassoc", "contract", "nsz"})
+@uncounted(fastmath=SUMS)
 def product(row: FloatArray, a: int, z: FloatArray) -> float:
     """A row of a matrix times the amplitudes."""
     total = 0.0
@@ -52,19 +52,16 @@ def product(row: FloatArray, a: int, z: FloatArray) -> float:
     return total
 
 
-@uncounted()
-def advance(
-    decay: ComplexArray, slot: int, source: FloatArray, z: FloatArray, excess: FloatArray, end: FloatArray
-) -> None:
-    """Amplitudes at the end from those at the start and the excess forces, with the matrices of a slot."""
-    for m in range(decay.shape[1]):
-        x, y = decay[slot, m].real, decay[slot, m].imag
-        end[2 * m] = x * z[2 * m] - y * z[2 * m + 1]
-        end[2 * m + 1] = x * z[2 * m + 1] + y * z[2 * m]
-    for column in range(excess.size):
-        g = excess[column]
-        for i in range(z.size):
-            end[i] -= source[slot, column, i] * g
+@uncounted(fastmath={"contract"})
+def advance(decay: FloatArray, source: FloatArray, z: FloatArray, excess: FloatArray, end: FloatArray) -> None:
+    """Amplitudes at the end, or at a place, from those at the start and the excess forces."""
+    count = decay.shape[1]
+    # Rows by names of their own: through indices the compiler does not see that it may take several numbers at once.
+    u, v, x, y, real, imag = decay[0], decay[1], z[:count], z[count:], end[:count], end[count:]
+    for m in range(count):
+        real[m] = u[m] * x[m] - v[m] * y[m]
+        imag[m] = u[m] * y[m] + v[m] * x[m]
+    add_rows(source, excess, -1.0, end)
 
 
 @uncounted(forceinline=True)
@@ -81,7 +78,7 @@ def interpolated(values: FloatArray, a: int, u: float) -> float:
     return above / below
 
 
-@uncounted()
+@uncounted(forceinline=True)
 def solve_element(
     reference: Reference, contacts: Contacts, steps: Steps, slot: int, time: float, z: FloatArray, work: Work
 ) -> bool:
@@ -91,12 +88,8 @@ def solve_element(
     base, excess, move, laws = work.base, work.excess, work.move, work.laws
     delta, rate, slope, rate_slope = work.delta, work.rate, work.slope, work.rate_slope
     matrix, right, end = work.matrix, work.right, work.end
-    for i in range(2 * n):
-        base[i] = 0.0
-    for i in range(z.size):
-        value = z[i]
-        for row in range(2 * n):
-            base[row] += steps.felt[slot, i, row] * value
+    for row in range(2 * n):
+        base[row] = product(steps.felt[slot], row, z)
     for a in range(c):
         delta[0, a], rate[0, a] = product(reference.displacement, a, z), product(reference.rate, a, z)
     solved = n == 0
@@ -143,14 +136,14 @@ def solve_element(
         for row in range(n):
             move[row] = right[row, 0]
             excess[row] += move[row]
-    advance(steps.decay, slot, steps.source, z, excess, end)
+    advance(steps.decay[slot], steps.source[slot], z, excess, end)
     for a in range(c):
         delta[ORDER + 1, a] = product(reference.displacement, a, end)
         rate[ORDER + 1, a] = product(reference.rate, a, end)
     return solved or best <= 1e-9 * scale
 
 
-@uncounted()
+@uncounted(forceinline=True)
 def first_switch(
     reference: Reference, contacts: Contacts, time: float, h: float, stop: float, furthest: float, work: Work
 ) -> tuple[float, int]:
@@ -200,7 +193,7 @@ def first_switch(
     return first, which
 
 
-@uncounted()
+@uncounted(fastmath=SUMS, forceinline=True)
 def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: FloatArray, modes: int, work: Work) -> None:
     """What the polynomial of the excess misses, carried to the end: squares of error and amplitudes.
 
@@ -210,8 +203,8 @@ def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: Floa
     """
     c = reference.stiffness.size
     n = ORDER * c
-    error, h = work.end_error, steps.size[slot]
-    for i in range(2 * modes):
+    error, h, count = work.end_error, steps.size[slot], reference.eigenvalue.size
+    for i in range(error.size):
         error[i] = 0.0
     for a in range(c):
         k, d = reference.stiffness[a], reference.damping[a]
@@ -228,16 +221,18 @@ def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: Floa
         triangle = 0.5 * h * (1.0 - part) * last
         if part != 1.0:
             last = -first
-        for m in range(modes):
-            source = reference.source[m, a]
-            error[2 * m] += triangle * source.real
-            error[2 * m + 1] += triangle * source.imag
-        for i in range(2 * modes):
+        if triangle != 0.0:
+            for m in range(modes):
+                error[m] += triangle * reference.source[m, a].real
+                error[count + m] += triangle * reference.source[m, a].imag
+        for i in range(error.size):
             error[i] += steps.missed[slot, a, i] * first + steps.missed[slot, c + a, i] * last
+    # What rides along has no source, and so no error.
     wrong, size = 0.0, 0.0
-    for i in range(2 * modes):
+    for i in range(error.size):
         wrong += error[i] * error[i]
-        size += z[i] * z[i]
+    for m in range(modes):
+        size += z[m] * z[m] + z[count + m] * z[count + m]
     work.measure[0], work.measure[1] = wrong, size
 
 

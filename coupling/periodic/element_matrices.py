@@ -19,22 +19,25 @@ ComplexArray = npt.NDArray[np.complex128]
 _MOMENTS = ORDER + 2
 _NEAR_END = 1.0  # largest |λ t| of a series of powers: no term of it is larger than its sum
 _SERIES_WITHIN = 0.7  # of |z|: beyond, the recursion upwards loses no more than two digits of the highest
+_TERMS = 40
+_OVER: FloatArray = 1.0 / np.arange(1.0, _MOMENTS + _TERMS)
+"""1 / 1, 1 / 2, ...: a division takes as long as all the rest of a term."""
 
 
 @uncounted()
 def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
     """∫₀¹ e^{z(1-u)} uᵏ du for k = 0 ... count - 1, e^z being known."""
     if z.real * z.real + z.imag * z.imag < _SERIES_WITHIN**2:
-        term = complex(1.0 / count)
+        term = complex(_OVER[count - 1])
         total = term
-        for i in range(1, 40):
-            term *= z * (1.0 / (count + i))
+        for i in range(_TERMS - 1):
+            term *= z * _OVER[count + i]
             total += term
             if abs(term.real) + abs(term.imag) < 1e-17 * (abs(total.real) + abs(total.imag)):
                 break
         out[count - 1] = total
         for k in range(count - 1, 0, -1):
-            out[k - 1] = (1.0 + z * out[k]) * (1.0 / k)
+            out[k - 1] = (1.0 + z * out[k]) * _OVER[k - 1]
     else:
         inverse = 1.0 / z
         out[0] = (grown - 1.0) * inverse
@@ -44,14 +47,15 @@ def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
 
 @uncounted()
 def end_matrices(
-    reference: Reference, h: float, part: float, decay: ComplexArray, source: FloatArray, integral: ComplexArray
+    reference: Reference, h: float, part: float, decay: FloatArray, source: FloatArray, integral: ComplexArray
 ) -> None:
     """From the amplitudes at the start of an element of size h to those at a part of it, and from its forces."""
-    c = reference.stiffness.size
-    for m in range(reference.eigenvalue.size):
+    c, count = reference.stiffness.size, reference.eigenvalue.size
+    for m in range(count):
         z = reference.eigenvalue[m] * h * part
-        decay[m] = cmath.exp(z)
-        moments(z, decay[m], ORDER, integral)
+        grown = cmath.exp(z)
+        decay[0, m], decay[1, m] = grown.real, grown.imag
+        moments(z, grown, ORDER, integral)
         for j in range(ORDER):
             total, power = 0.0j, h * part
             for k in range(ORDER):
@@ -59,7 +63,7 @@ def end_matrices(
                 power *= part
             for b in range(c):
                 sent = total * reference.source[m, b]
-                source[j * c + b, 2 * m], source[j * c + b, 2 * m + 1] = sent.real, sent.imag
+                source[j * c + b, m], source[j * c + b, count + m] = sent.real, sent.imag
 
 
 @uncounted()
@@ -74,7 +78,7 @@ def advance_to(
     integral: ComplexArray,
 ) -> None:
     """Amplitudes at a part of an element of size h from those at its start and the excess forces at its places."""
-    c = reference.stiffness.size
+    c, count = reference.stiffness.size, reference.eigenvalue.size
     power = h
     for k in range(ORDER):
         power *= part
@@ -82,20 +86,20 @@ def advance_to(
             coefficient[k, b] = 0.0
             for j in range(ORDER):
                 coefficient[k, b] += power * MONOMIALS[j, k] * excess[j * c + b]
-    for m in range(reference.eigenvalue.size):
+    for m in range(count):
         turned = reference.eigenvalue[m] * h * part
         grown = cmath.exp(turned)
-        total = grown * complex(z[2 * m], z[2 * m + 1])
+        total = grown * complex(z[m], z[count + m])
         moments(turned, grown, ORDER, integral)
         for b in range(c):
             sent = 0.0j
             for k in range(ORDER):
                 sent += integral[k] * coefficient[k, b]
             total -= sent * reference.source[m, b]
-        end[2 * m], end[2 * m + 1] = total.real, total.imag
+        end[m], end[count + m] = total.real, total.imag
 
 
-@uncounted()
+@uncounted(fastmath={"contract"})
 def carry_on(
     reference: Reference,
     h: float,
@@ -105,14 +109,15 @@ def carry_on(
     end: FloatArray,
     coefficient: FloatArray,
     integral: ComplexArray,
+    term: FloatArray,
 ) -> None:
     """As :func:`advance_to`, where the amplitudes at the end of the element are known already, for a part near 1.
 
     From there on by their power series, of as many terms as the fastest mode asks for.
     """
-    c = reference.stiffness.size
+    c, count = reference.stiffness.size, reference.eigenvalue.size
     beyond, fastest = h * (part - 1.0), 0.0
-    for m in range(reference.eigenvalue.size):
+    for m in range(count):
         value = reference.eigenvalue[m]
         fastest = max(fastest, value.real * value.real + value.imag * value.imag)
     fastest = math.sqrt(fastest) * abs(beyond)
@@ -131,50 +136,58 @@ def carry_on(
     while size > 1e-17:
         terms += 1
         size *= fastest / terms
-    for m in range(reference.eigenvalue.size):
-        rate, term = reference.eigenvalue[m] * beyond, complex(end[2 * m], end[2 * m + 1])
-        total = term
-        for k in range(terms):
-            term *= rate
-            if k < ORDER:
-                for b in range(c):
-                    term -= coefficient[k, b] * reference.source[m, b]
-            term *= 1.0 / (k + 1)
-            total += term
-        end[2 * m], end[2 * m + 1] = total.real, total.imag
+    for i in range(end.size):
+        term[i] = end[i]
+    for k in range(terms):
+        # All modes together, term by term: no sum waits for the one before.
+        over = 1.0 / (k + 1)
+        for m in range(count):
+            x, y = reference.eigenvalue[m].real * beyond, reference.eigenvalue[m].imag * beyond
+            p, q = term[m], term[count + m]
+            term[m], term[count + m] = (x * p - y * q) * over, (x * q + y * p) * over
+        if k < ORDER:
+            for b in range(c):
+                sent = coefficient[k, b] * over
+                for m in range(count):
+                    term[m] -= sent * reference.source[m, b].real
+                    term[count + m] -= sent * reference.source[m, b].imag
+        for i in range(end.size):
+            end[i] += term[i]
 
 
 @uncounted()
 def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexArray, values: ComplexArray) -> None:
     """Fill in what an element of a slot's size needs."""
-    c, h = reference.stiffness.size, steps.size[slot]
+    c, h, count = reference.stiffness.size, steps.size[slot], reference.eigenvalue.size
     n = ORDER * c
     for row in range(2 * n):
         for column in range(n):
             steps.flexibility[slot, row, column] = 0.0
     end_matrices(reference, h, 1.0, steps.decay[slot], steps.source[slot], integral)
-    for m in range(reference.eigenvalue.size):
-        moments(reference.eigenvalue[m] * h, steps.decay[slot, m], _MOMENTS, integral)
+    for m in range(count):
+        moments(
+            reference.eigenvalue[m] * h, complex(steps.decay[slot, 0, m], steps.decay[slot, 1, m]), _MOMENTS, integral
+        )
         for end in range(2):
             total = 0.0j
             for k in range(_MOMENTS):
                 total += integral[k] * (h * MISSING[end, k])
             for b in range(c):
                 sent = total * reference.source[m, b]
-                steps.missed[slot, end * c + b, 2 * m] = sent.real
-                steps.missed[slot, end * c + b, 2 * m + 1] = sent.imag
+                steps.missed[slot, end * c + b, m] = sent.real
+                steps.missed[slot, end * c + b, count + m] = sent.imag
         for i in range(ORDER):
             place = PLACES[i]
             z = reference.eigenvalue[m] * h * place
             grown = cmath.exp(z)
             for a in range(c):
                 # Re(d z) is the product of the rows Re d, -Im d with Re z, Im z.
-                seen = complex(reference.displacement[a, 2 * m], -reference.displacement[a, 2 * m + 1]) * grown
-                steps.felt[slot, 2 * m, i * c + a] = seen.real
-                steps.felt[slot, 2 * m + 1, i * c + a] = -seen.imag
-                seen = complex(reference.rate[a, 2 * m], -reference.rate[a, 2 * m + 1]) * grown
-                steps.felt[slot, 2 * m, n + i * c + a] = seen.real
-                steps.felt[slot, 2 * m + 1, n + i * c + a] = -seen.imag
+                seen = complex(reference.displacement[a, m], -reference.displacement[a, count + m]) * grown
+                steps.felt[slot, i * c + a, m] = seen.real
+                steps.felt[slot, i * c + a, count + m] = -seen.imag
+                seen = complex(reference.rate[a, m], -reference.rate[a, count + m]) * grown
+                steps.felt[slot, n + i * c + a, m] = seen.real
+                steps.felt[slot, n + i * c + a, count + m] = -seen.imag
             moments(z, grown, ORDER, integral)
             for j in range(ORDER):
                 values[j] = 0.0j
@@ -183,7 +196,7 @@ def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexAr
                     values[j] += integral[k] * (power * MONOMIALS[j, k])
                     power *= place
             if steps.inner_decay.shape[0] > 0:
-                steps.inner_decay[slot, i, m] = grown
+                steps.inner_decay[slot, i, 0, m], steps.inner_decay[slot, i, 1, m] = grown.real, grown.imag
             for j in range(ORDER):
                 for b in range(c):
                     sent = values[j] * reference.source[m, b]
@@ -192,28 +205,12 @@ def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexAr
                         continue
                     for a in range(c):
                         steps.flexibility[slot, i * c + a, j * c + b] += (
-                            reference.displacement[a, 2 * m] * x + reference.displacement[a, 2 * m + 1] * y
+                            reference.displacement[a, m] * x + reference.displacement[a, count + m] * y
                         )
                         steps.flexibility[slot, n + i * c + a, j * c + b] += (
-                            reference.rate[a, 2 * m] * x + reference.rate[a, 2 * m + 1] * y
+                            reference.rate[a, m] * x + reference.rate[a, count + m] * y
                         )
                     if steps.inner_decay.shape[0] > 0:
-                        steps.inner_source[slot, i, j * c + b, 2 * m] = x
-                        steps.inner_source[slot, i, j * c + b, 2 * m + 1] = y
-    if steps.felt_by.shape[0] > 0:
-        arrange(steps, slot)
+                        steps.inner_source[slot, i, j * c + b, m] = x
+                        steps.inner_source[slot, i, j * c + b, count + m] = y
     steps.filled[slot] = 1
-
-
-@uncounted()
-def arrange(steps: Steps, slot: int) -> None:
-    """The same in the order of the disturbances: real parts, then imaginary ones."""
-    n, modes = steps.source.shape[1], steps.decay.shape[1]
-    for m in range(modes):
-        for row in range(2 * n):
-            steps.felt_by[slot, row, m] = steps.felt[slot, 2 * m, row]
-            steps.felt_by[slot, row, modes + m] = steps.felt[slot, 2 * m + 1, row]
-    for row in range(n):
-        for m in range(modes):
-            steps.sent_by[slot, row, m] = steps.source[slot, row, 2 * m]
-            steps.sent_by[slot, row, modes + m] = steps.source[slot, row, 2 * m + 1]

@@ -27,11 +27,12 @@ class Work(NamedTuple):
     end: FloatArray  # (2 m,) amplitudes
     end_error: FloatArray  # (2 m,)
     measure: FloatArray  # (2,)
-    cut_decay: ComplexArray  # (1, m) to a part of an element
+    cut_decay: FloatArray  # (1, 2, m) to a part of an element
     cut_source: FloatArray  # (1, n, 2 m)
     integral: ComplexArray  # (s + 2,)
     values: ComplexArray  # (s,)
     coefficient: FloatArray  # (s, c) of the excess as a power series
+    term: FloatArray  # (2 m,) of the amplitudes' power series
     shares: FloatArray  # (n, 2 n) of the slopes in the forces
     feedback: FloatArray  # (n, 2 m) forces that disturbances change; of no rows where there are none ...
     sent: FloatArray  # (n, 2 m) ... what these send to the end ...
@@ -59,11 +60,12 @@ def element_work(m: int, s: int, c: int, *, varied: bool = False) -> Work:
         end=np.zeros(2 * m),
         end_error=np.zeros(2 * m),
         measure=np.zeros(2),
-        cut_decay=np.zeros((1, m), dtype=np.complex128),
+        cut_decay=np.zeros((1, 2, m)),
         cut_source=np.zeros((1, n, 2 * m)),
         integral=np.zeros(s + 2, dtype=np.complex128),
         values=np.zeros(s, dtype=np.complex128),
         coefficient=np.zeros((s, c)),
+        term=np.zeros(2 * m),
         shares=np.zeros((rows, 2 * n)),
         feedback=np.zeros((rows, 2 * m)),
         sent=np.zeros((rows, 2 * m)),

@@ -65,7 +65,7 @@ def rung(reference: Reference, steps: Steps, length: float, work: Work) -> int:
     return slot
 
 
-@uncounted()
+@uncounted(forceinline=True)
 def write_element(
     reference: Reference,
     contacts: Contacts,
@@ -140,29 +140,27 @@ def march(
                 slot = rung(reference, steps, left, work)
             elif steps.filled[slot] == 0:
                 fill_step(reference, steps, slot, work.integral, work.values)
-            solved = solve_element(reference, contacts, steps, slot, time, z, work)
-            h = steps.size[slot]
-            # Of a size that occurs, the element is all of it.
-            part = 1.0 if slot < steps.ladder[0] else left / h
-            furthest = min(part - INSIDE, 1.0 + _BEYOND)
-            which, at = -1, 2.0
-            if cuts_here < _MOST_CUTS:
-                at, which = first_switch(reference, contacts, time, h, stop, furthest, work)
-            if at * h > (1.0 - 1e-9) * left or at * h < 1e-11 * whole:
-                which = -1
             tries = 0
-            while which >= 0 and at <= PLACES[ORDER - 1] and tries < _TRIES:
+            while True:
+                solved = solve_element(reference, contacts, steps, slot, time, z, work)
+                h = steps.size[slot]
+                # Of a size that occurs, the element is all of it; beyond a size's end only so far as was looked.
+                part = 1.0 if slot < steps.ladder[0] else left / h
+                furthest = min(part - INSIDE, 1.0 + _BEYOND)
+                if part >= 1.0 + _BEYOND:
+                    part = 1.0
+                which, at = -1, 2.0
+                if cuts_here < _MOST_CUTS:
+                    at, which = first_switch(reference, contacts, time, h, stop, furthest, work)
+                if at * h > (1.0 - 1e-9) * left or at * h < 1e-11 * whole:
+                    which = -1
+                if which < 0 or at > PLACES[ORDER - 1] or tries == _TRIES:
+                    break
                 # Some places stand beyond the switch: again with a size that ends near it.
                 closer = rung(reference, steps, at * h, work)
                 if closer == slot:
                     break
-                tries += 1
-                slot, h = closer, steps.size[closer]
-                solved = solve_element(reference, contacts, steps, slot, time, z, work)
-                furthest = min(left / h - INSIDE, 1.0 + _BEYOND)
-                at, which = first_switch(reference, contacts, time, h, stop, furthest, work)
-                # Where it is gone, so far as was looked.
-                part = left / h if left / h < 1.0 + _BEYOND else 1.0
+                tries, slot = tries + 1, closer
             if which >= 0:
                 part = at
             if which < 0 and not solved:
@@ -175,7 +173,7 @@ def march(
             if columns.shape[0] > 0:
                 vary(reference, steps, slot, part, columns, work)
             if part != 1.0:
-                carry_on(reference, h, part, z, work.excess, work.end, work.coefficient, work.integral)
+                carry_on(reference, h, part, z, work.excess, work.end, work.coefficient, work.integral, work.term)
             for i in range(z.size):
                 z[i] = work.end[i]
             if left - length <= 1e-12 * whole:

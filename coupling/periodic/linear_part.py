@@ -91,7 +91,8 @@ class LinearPart:
     def amplitudes_of(self, state: FloatArray, time: float | FloatArray = 0.0) -> FloatArray:
         """A state as the kernels march it, with what rides along, shape (2 M,); or (K, 2 M) of states at K times."""
         own = np.exp(np.multiply.outer(time, self.reference.eigenvalue[len(self.eigenvalues) :]))
-        return np.concatenate([state @ self.left.T, own], axis=-1).view(np.float64)
+        whole = np.concatenate([state @ self.left.T, own], axis=-1)
+        return np.concatenate([whole.real, whole.imag], axis=-1)
 
     @cached_property
     def to_amplitudes(self) -> FloatArray:
@@ -155,8 +156,8 @@ class LinearPart:
 
 
 def real_rows(rows: ComplexArray) -> FloatArray:
-    """Rows d whose Re(d z) is wanted, as those that multiply Re z and Im z in turn, shape (k, 2 m)."""
-    return np.ascontiguousarray(np.stack([rows.real, -rows.imag], axis=-1).reshape(len(rows), 2 * rows.shape[1]))
+    """Rows d whose Re(d z) is wanted, as those that multiply Re z and then Im z, shape (k, 2 m)."""
+    return np.concatenate([rows.real, -rows.imag], axis=1)
 
 
 def linear_part(

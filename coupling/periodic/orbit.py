@@ -158,19 +158,17 @@ def cut_period(part: LinearPart, period: float, largest: float, segments: int = 
     within = np.arange(len(size)) - np.repeat(np.cumsum(counts) - counts, counts)
     # What rounding alone holds apart is one size.
     _, first, slots = np.unique(np.rint(size / (_SAME_SIZE * largest)), return_index=True, return_inverse=True)
-    steps = element_sizes(part, size[first], float(size.max()), varied=True)
+    steps = element_sizes(part, size[first], float(size.max()))
     nodes = np.concatenate([[0], np.cumsum(counts)])[np.searchsorted(bounds, marks)]
     return Elements(np.repeat(bounds[:-1], counts) + within * size, size, slots.astype(np.int64), steps, nodes)
 
 
-def element_sizes(
-    part: LinearPart, values: FloatArray, largest: float, *, inner: bool = False, varied: bool = False
-) -> Steps:
+def element_sizes(part: LinearPart, values: FloatArray, largest: float, *, inner: bool = False) -> Steps:
     """Room for elements of some sizes, and for a ladder from the largest down; see :class:`Steps`."""
     reference = part.reference
     sizes = np.concatenate([values, largest / _LADDER ** np.arange(_RUNGS)])
     m, c = reference.eigenvalue.size, reference.stiffness.size
-    return empty_steps(sizes, len(values), m, ORDER, c, inner=inner, varied=varied)
+    return empty_steps(sizes, len(values), m, ORDER, c, inner=inner)
 
 
 def one_pass(
@@ -197,6 +195,7 @@ def one_pass(
     begun = np.eye(2 * m)[there if varied else []]
     columns = np.empty_like(begun)
     work, rows = element_work(m, ORDER, c, varied=varied), real_rows(part.right)
+    moving = np.concatenate([np.arange(modes), m + np.arange(modes)])
     length = switches = 0
     times = elements.starts[elements.nodes[:-1]]
     amplitudes = part.amplitudes_of(start, times) if start.ndim == 2 else None
@@ -221,7 +220,7 @@ def one_pass(
         )
         if wrong:
             _refuse(wrong, room)
-        ends[k] = rows @ z[: 2 * modes]
+        ends[k] = rows @ z[moving]
         if varied:
             pieces[k] = columns.T[there]
         length = int(held)

@@ -20,19 +20,19 @@ from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.element import law
 from coupling.periodic.element_matrices import end_matrices
 from coupling.periodic.element_work import Work
+from coupling.row_kernels import SUMS
 from coupling.small_systems import solve_part_in_place
 from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
-_FAST = {"reassoc", "contract", "nsz"}
 _UNROLLED = 5  # forces that :func:`carry` is written for: as many as one contact has with elements of order 5
 
 
 @uncounted()
 def feed_back(steps: Steps, slot: int, work: Work) -> int:
     """Rows that give the forces of a disturbance; how many forces there are, ``work.active`` says which."""
-    n, size = work.excess.size, steps.felt_by.shape[2]
+    n, size = work.excess.size, steps.felt.shape[2]
     matrix, shares, felt = work.matrix, work.shares, work.feedback
     active = 0
     for row in range(n):
@@ -56,36 +56,22 @@ def feed_back(steps: Steps, slot: int, work: Work) -> int:
         for j in range(active):
             row, x, v = work.active[j], shares[i, j], shares[i, active + j]
             for m in range(size):
-                felt[i, m] += x * steps.felt_by[slot, row, m] + v * steps.felt_by[slot, n + row, m]
+                felt[i, m] += x * steps.felt[slot, row, m] + v * steps.felt[slot, n + row, m]
     return active
 
 
 @uncounted()
-def send_whole(steps: Steps, slot: int, active: int, work: Work) -> None:
-    """Rows that the forces of an element send to its end."""
+def send(decay: FloatArray, source: FloatArray, slot: int, active: int, work: Work) -> None:
+    """Rows that the forces of an element send to its end, and how what was there at its start decays."""
     for i in range(active):
         row = work.active[i]
         for m in range(work.sent.shape[1]):
-            work.sent[i, m] = steps.sent_by[slot, row, m]
-    for m in range(steps.decay.shape[1]):
-        work.decay[0, m], work.decay[1, m] = steps.decay[slot, m].real, steps.decay[slot, m].imag
+            work.sent[i, m] = source[slot, row, m]
+    for m in range(decay.shape[2]):
+        work.decay[0, m], work.decay[1, m] = decay[slot, 0, m], decay[slot, 1, m]
 
 
-@uncounted()
-def send_cut(active: int, work: Work) -> None:
-    """And to a part of it."""
-    modes = work.cut_decay.shape[1]
-    for m in range(modes):
-        work.decay[0, m], work.decay[1, m] = work.cut_decay[0, m].real, work.cut_decay[0, m].imag
-        for i in range(active):
-            row = work.active[i]
-            work.sent[i, m], work.sent[i, modes + m] = (
-                work.cut_source[0, row, 2 * m],
-                work.cut_source[0, row, 2 * m + 1],
-            )
-
-
-@uncounted(fastmath=_FAST)
+@uncounted(fastmath=SUMS)
 def carry(columns: FloatArray, decay: FloatArray, felt: FloatArray, sent: FloatArray) -> None:
     """Disturbances at the end from those at the start, by ``_UNROLLED`` forces."""
     size = columns.shape[1]
@@ -108,7 +94,7 @@ def carry(columns: FloatArray, decay: FloatArray, felt: FloatArray, sent: FloatA
             columns[k, j] = p * y + q * x - two
 
 
-@uncounted(fastmath=_FAST)
+@uncounted(fastmath=SUMS)
 def carry_any(
     columns: FloatArray, decay: FloatArray, felt: FloatArray, sent: FloatArray, active: int, force: FloatArray
 ) -> None:
@@ -136,26 +122,26 @@ def vary(reference: Reference, steps: Steps, slot: int, part: float, columns: Fl
     """Carry the disturbances over an element of a slot's size, or over a part of it."""
     active = feed_back(steps, slot, work)
     if part == 1.0:
-        send_whole(steps, slot, active, work)
+        send(steps.decay, steps.source, slot, active, work)
     else:
         end = 0 * slot  # 0, in a form that is no constant: a constant would compile all anew
         end_matrices(reference, steps.size[slot], part, work.cut_decay[end], work.cut_source[end], work.integral)
-        send_cut(active, work)
+        send(work.cut_decay, work.cut_source, end, active, work)
     if active == _UNROLLED:
         carry(columns, work.decay, work.feedback, work.sent)
     else:
         carry_any(columns, work.decay, work.feedback, work.sent, active, work.moved)
 
 
-@uncounted(fastmath=_FAST)
+@uncounted(fastmath=SUMS)
 def cross(reference: Reference, a: int, jump: float, columns: FloatArray) -> None:
     """Carry the disturbances over a moment at which the force of a contact steps: the sooner, the longer it acts."""
     modes = columns.shape[1] // 2
     for k in range(columns.shape[0]):
         moved = 0.0
         for m in range(modes):
-            moved += reference.displacement[a, 2 * m] * columns[k, m]
-            moved += reference.displacement[a, 2 * m + 1] * columns[k, modes + m]
+            moved += reference.displacement[a, m] * columns[k, m]
+            moved += reference.displacement[a, modes + m] * columns[k, modes + m]
         for m in range(modes):
             columns[k, m] -= jump * moved * reference.source[m, a].real
             columns[k, modes + m] -= jump * moved * reference.source[m, a].imag

@@ -184,7 +184,7 @@ def test_a_rigid_motion_deflects_nothing(psi: float, sense: int, stiffness: Floa
 def test_free_machine_has_its_rigid_motions(matrix: FloatArray | None) -> None:
     """Six of the body, of which z moves radial bearings' housing alone, and the train's own rotation of the shafts."""
     parts = machine(housing=True, stiffness=matrix)
-    stiffness = parts.system.mean_stiffness()
+    stiffness = parts.system.mean_stiffness
     np.testing.assert_allclose(stiffness, stiffness.T, rtol=0.0, atol=1e-12 * np.abs(stiffness).max())
     values = np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T))
     zero = np.abs(values) < 1e-9 * values[-1]

@@ -30,7 +30,7 @@ def test_from_the_end_as_from_the_start(part: float, fastest: float, damped: flo
     expected, found = np.zeros(2 * m), np.zeros(2 * m)
     advance_to(reference, h, part, z, excess, expected, coefficient, integral)
     advance_to(reference, h, 1.0, z, excess, found, coefficient, integral)
-    carry_on(reference, h, part, z, excess, found, coefficient, integral)
+    carry_on(reference, h, part, z, excess, found, coefficient, integral, np.zeros(2 * m))
     # The moments' recursion loses two digits where it begins, and the polynomials' coefficients two more.
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=5e-11 * max(1.0, float(np.abs(expected).max())))
 
@@ -50,5 +50,5 @@ def test_a_slow_mode_gathers_the_force() -> None:
     excess, coefficient, integral = PLACES**2, np.zeros((ORDER, 1)), np.zeros(ORDER + 2, dtype=np.complex128)
     assert MONOMIALS.T @ excess == pytest.approx([0.0, 0.0, 1.0, 0.0, 0.0], abs=1e-12)
     end[0] = -h / 3.0
-    carry_on(reference, h, part, np.zeros(2), excess, end, coefficient, integral)
+    carry_on(reference, h, part, np.zeros(2), excess, end, coefficient, integral, np.zeros(2))
     assert end == pytest.approx([-h * part**3 / 3.0, 0.0], abs=1e-14)

@@ -69,7 +69,7 @@ def aligned(step: float, count: int, beta: float = 0.25, gamma: float = 0.5) -> 
 def held_energy(system: CoupledSystem, result: TransientResult) -> FloatArray:
     """Of motion, springs and contact, less the potential of the load, about the equilibrium [J]."""
     q = result.displacement - static_equilibrium(system)
-    strain = 0.5 * np.einsum("si,ij,sj->s", q, system.mean_stiffness(), q)
+    strain = 0.5 * np.einsum("si,ij,sj->s", q, system.mean_stiffness, q)
     return np.asarray(0.5 * (result.velocity**2).sum(axis=1) + strain)
 
 
@@ -83,10 +83,10 @@ def test_stiffness_of_every_tie_is_symmetric() -> None:
     bearing = LinearConnector("bearing", np.eye(SIZE)[:, :2], np.diag([2.0, 3.0]), np.zeros((2, 2)))
     tied = CoupledSystem(system.components, (0.0,), (bearing,), system.contacts, system.load)
     np.testing.assert_array_equal(tied.stiffness, tied.stiffness.T)
-    np.testing.assert_allclose(tied.mean_stiffness(), tied.mean_stiffness().T, rtol=1e-15)
+    np.testing.assert_allclose(tied.mean_stiffness, tied.mean_stiffness.T, rtol=1e-15)
     expected = drawn_stiffness() + np.diag([2.0, 3.0, 0.0, 0.0]) + 2.0 * np.outer(DIRECTION, DIRECTION)
-    np.testing.assert_allclose(tied.mean_stiffness(), expected, rtol=1e-14, atol=1e-15)
-    assert np.linalg.eigvalsh(tied.mean_stiffness()).min() > 0.0
+    np.testing.assert_allclose(tied.mean_stiffness, expected, rtol=1e-14, atol=1e-15)
+    assert np.linalg.eigvalsh(tied.mean_stiffness).min() > 0.0
 
 
 # Steps whose size has more digits than a round number: the matrices of the step must be those of this size.

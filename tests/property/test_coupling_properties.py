@@ -92,7 +92,7 @@ def run(system: CoupledSystem, tolerance: float, duration: float = 60.0) -> Tran
 @patient
 @given(systems(symmetric=True))
 def test_symmetric_parts_make_a_symmetric_whole(system: CoupledSystem) -> None:
-    for matrix in (system.stiffness, system.mean_stiffness()):
+    for matrix in (system.stiffness, system.mean_stiffness):
         np.testing.assert_allclose(matrix, matrix.T, rtol=0.0, atol=1e-13 * np.abs(matrix).max())
         assert np.linalg.eigvalsh(matrix).min() > 0.0
     # What is skew in the damping is the gyroscopic part, and it does no work.
@@ -112,7 +112,7 @@ def test_passive_systems_do_not_grow(system: CoupledSystem) -> None:
     modes = coupled_modes(system)
     assert modes.damping_ratios.min() > -1e-9
     np.testing.assert_allclose(np.linalg.norm(modes.shapes, axis=1), 1.0, rtol=1e-12)
-    stiffness, damping = system.mean_stiffness(), system.mean_damping()
+    stiffness, damping = system.mean_stiffness, system.mean_damping
     assert np.all(np.diff(modes.frequencies_hz) >= -1e-12)
     for value, shape in zip(modes.eigenvalues, modes.shapes, strict=True):
         left = value**2 * shape + value * damping @ shape + stiffness @ shape

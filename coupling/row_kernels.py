@@ -1,0 +1,44 @@
+"""Products with a few rows of numbers, compiled: what most of a step's arithmetic is.
+
+Importing this module imports numba. Put in place where they are called, for passing arrays on would cost as much again.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.compiled import inner
+
+FloatArray = npt.NDArray[np.float64]
+
+# Sums may be taken in any order, so that they vectorise; the compiled order is always the same.
+SUMS = {"reassoc", "contract", "nsz"}
+
+
+@inner(fastmath=SUMS, forceinline=True)
+def project(rows: FloatArray, x: FloatArray, out: FloatArray) -> None:
+    """Rows x, for a few rows (k, n)."""
+    for j in range(rows.shape[0]):
+        value = 0.0
+        for i in range(rows.shape[1]):
+            value += rows[j, i] * x[i]
+        out[j] = value
+
+
+@inner(fastmath={"contract"}, forceinline=True)
+def add_rows(rows: FloatArray, factors: FloatArray, sign: float, out: FloatArray) -> None:
+    """Add as many rows as there are factors, each times its factor and the sign.
+
+    Four at a time, so that what is added to is fetched and stored four times less; each by a name of its own, for
+    through two indices the compiler does not see that it may take several numbers at once.
+    """
+    count = factors.size
+    fours = count - count % 4
+    for j in range(0, fours, 4):
+        a, b, c, d = sign * factors[j], sign * factors[j + 1], sign * factors[j + 2], sign * factors[j + 3]
+        by_a, by_b, by_c, by_d = rows[j], rows[j + 1], rows[j + 2], rows[j + 3]
+        for i in range(out.size):
+            out[i] += (by_a[i] * a + by_b[i] * b) + (by_c[i] * c + by_d[i] * d)
+    for j in range(fours, count):
+        a, by_a = sign * factors[j], rows[j]
+        for i in range(out.size):
+            out[i] += by_a[i] * a
