@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
 from gearwhine.figures.waterfall import draw_waterfall
@@ -93,6 +94,26 @@ def test_a_point_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> N
     assert read_point(tmp_path, point) is None
     assert stale_points(tmp_path, (point,)) == []
     assert stale_points(tmp_path, ()) == [file]
+
+
+def test_a_damaged_point_is_no_point(solved: tuple, tmp_path: Path) -> None:
+    """Whichever bits of its file have flipped, and wherever it was cut: it is solved again, and never waited for."""
+    point, _, result = solved
+    write_point(tmp_path, tmp_path, point, result)
+    file = tmp_path / "points" / point.file
+    whole, random = file.read_bytes(), np.random.default_rng(5)
+    for place in random.integers(0, len(whole), 300):
+        damaged = bytearray(whole)
+        damaged[place] ^= 1 << int(random.integers(8))
+        file.write_bytes(damaged)
+        assert read_point(tmp_path, point) is None
+        file.write_bytes(whole[:place])
+        assert read_point(tmp_path, point) is None
+    file.write_bytes(whole)
+    assert read_point(tmp_path, point) is not None
+    # Whoever reads NetCDF reads it.
+    with xr.open_dataset(file) as opened:
+        np.testing.assert_array_equal(opened["order"], result.orders)
 
 
 def test_a_failure_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> None:
