@@ -7,15 +7,13 @@ import numpy.typing as npt
 
 from coupling.kernel_arrays import Contacts, Samples
 from coupling.marching import Checkpoint
-from coupling.periodic.arrays import FreeMotion, Powers, Steps, Trace
+from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
 from coupling.periodic.collocation import ORDER
 from coupling.periodic.element_work import element_work
 from coupling.periodic.linear_part import LinearPart
 from coupling.settings import TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
-
-_BATCH = 128  # elements whose powers are found at once, within the processor's caches
 
 
 class Record:
@@ -40,9 +38,8 @@ class Record:
         self._velocity = outputs.velocity @ part.velocity_rows, outputs.velocity @ part.rigid
         self._acceleration = outputs.acceleration @ moving, outputs.acceleration @ system.contact_directions
         self._powers = self._rows_of_powers(load)
-        self._weights = np.zeros((_BATCH, ORDER))
-        self._times = np.zeros(_BATCH * ORDER)
-        self._amplitudes = np.zeros((_BATCH * ORDER, 2 * count + part.rigid.shape[1]))
+        amplitudes = np.zeros(2 * count + part.rigid.shape[1])
+        self._room = PowersRoom(amplitudes, np.zeros(system.size), np.zeros(2 * count), np.zeros(ORDER))
 
     def _rows_of_powers(self, load: FloatArray) -> Powers:
         part, system = self.part, self.part.system
@@ -89,41 +86,18 @@ class Record:
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion) -> Checkpoint:
         """The state with the work, the losses and the contacts' figures of a trace added."""
-        from coupling.record_kernels import add_contacts
+        from coupling.record_kernels import add_contacts, add_powers
 
         totals, figures = state.totals.copy(), state.contact_totals.copy()
-        self._add_powers(steps, trace, free, totals)
-        stored = add_contacts(trace, self.contacts, state.stored, self._weights[0], totals, figures)
+        excess = trace.excess.reshape(len(trace.start), ORDER * trace.excess.shape[2])
+        add_powers(steps, trace, excess, self._powers, free, self._room, totals)
+        stored = add_contacts(trace, self.contacts, state.stored, self._room.weights, totals, figures)
         return replace(state, totals=totals, stored=float(stored), contact_totals=figures)
-
-    def _add_powers(self, steps: Steps, trace: Trace, free: FreeMotion, totals: FloatArray) -> None:
-        """Add what the loads give and what damping without the teeth's takes [J], and keep the largest kinetic energy.
-
-        ``totals`` (5,) are those of :class:`coupling.marching.Checkpoint`.
-        """
-        from coupling.record_kernels import amplitudes_within
-
-        everywhere = np.ones(len(self._powers.loss))
-        powers, excess = self._powers, trace.excess.reshape(len(trace.start), ORDER * trace.excess.shape[2])
-        # A trace of nothing goes through as well: that compiles.
-        for first in range(0, max(len(trace.start), 1), _BATCH):
-            last = min(first + _BATCH, len(trace.start))
-            weights, places = self._weights[: last - first], slice(0, (last - first) * ORDER)
-            amplitudes, times = self._amplitudes[places], self._times[places]
-            amplitudes_within(steps, trace, excess, first, last, amplitudes, times, weights)
-            amplitudes[:, trace.state.shape[1] :] = free.at(times)[1]
-            rate = amplitudes @ powers.rate
-            squares, duration = rate * rate, weights.reshape(-1, 1)
-            totals[0] += np.vdot((duration * amplitudes[:, powers.riding]).T @ rate, powers.pushing)
-            totals[1] += (duration.T @ squares)[0] @ powers.loss
-            if powers.skew.size:
-                totals[1] += 0.5 * np.vdot((duration * amplitudes[:, : len(powers.skew)]).T @ rate, powers.skew)
-            totals[3] = max(totals[3], 0.5 * float((squares @ everywhere).max(initial=0.0)))
 
     def contact_figures(self, before: Checkpoint, trace: Trace) -> FloatArray:
         """Impulse, time apart, largest force and last touch, shape (c, 4), with those of a trace."""
         from coupling.record_kernels import add_contacts
 
         figures = before.contact_totals.copy()
-        add_contacts(trace, self.contacts, before.stored, self._weights[0], before.totals.copy(), figures)
+        add_contacts(trace, self.contacts, before.stored, self._room.weights, before.totals.copy(), figures)
         return figures

@@ -1,6 +1,6 @@
-"""The figures of an exact march's proof, compiled: amplitudes within elements, and what the contacts come to.
+"""The figures of an exact march's proof, compiled: work, losses and what the contacts come to, from a trace.
 
-Importing this module imports numba.
+Importing this module imports numba. Not by BLAS, whose threads take longer to meet than such small products take.
 """
 
 import math
@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.kernel_arrays import Contacts
-from coupling.periodic.arrays import Steps, Trace
+from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
 from coupling.periodic.collocation import GAUSS, MONOMIALS, ORDER, PLACES
 from coupling.periodic.element import advance
-from rotors.compiled import uncounted
+from coupling.row_kernels import SUMS, add_rows, project
+from rotors.compiled import inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,29 +34,57 @@ def weights_of(trace: Trace, element: int, out: FloatArray) -> None:
         out[j] = total
 
 
+@inner(fastmath=SUMS, forceinline=True)
+def lost_and_held(loss: FloatArray, rate: FloatArray) -> tuple[float, float]:
+    """Power that damping takes at some rates (n,), and twice their kinetic energy."""
+    lost, held = 0.0, 0.0
+    for k in range(rate.size):
+        square = rate[k] * rate[k]
+        lost += loss[k] * square
+        held += square
+    return lost, held
+
+
 @uncounted()
-def amplitudes_within(
+def add_powers(
     steps: Steps,
     trace: Trace,
     excess: FloatArray,
-    first: int,
-    last: int,
-    out: FloatArray,
-    times: FloatArray,
-    weights: FloatArray,
+    powers: Powers,
+    free: FreeMotion,
+    room: PowersRoom,
+    totals: FloatArray,
 ) -> None:
-    """Amplitudes (b s, 2 m) at the places of b elements, the places' times (b s,), and weights of integrals (b, s).
+    """Add what the loads give and what damping without the teeth's takes [J], and keep the largest kinetic energy.
 
-    ``excess`` (e, s c) is the trace's. Columns of ``out`` beyond the amplitudes are left as they are.
+    ``excess`` (e, s c) is the trace's, ``totals`` (5,) are those of :class:`coupling.marching.Checkpoint`.
     """
-    for element in range(first, last):
-        weights_of(trace, element, weights[element - first])
+    size = trace.state.shape[1]
+    amplitude, rate, along = room.amplitude, room.rate, room.along
+    for element in range(trace.start.size):
+        weights_of(trace, element, room.weights)
         slot, h = trace.slot[element], trace.size[element] / trace.part[element]
         for i in range(ORDER):
-            row = (element - first) * ORDER + i
-            times[row] = trace.start[element] + PLACES[i] * h
             decay, source = steps.inner_decay[slot, i], steps.inner_source[slot, i]
-            advance(decay, source, trace.state[element], excess[element], out[row, : trace.state.shape[1]])
+            advance(decay, source, trace.state[element], excess[element], amplitude[:size])
+            after = trace.start[element] + PLACES[i] * h - free.time[0]
+            for j in range(free.rate.size):
+                amplitude[size + j] = free.rate[j] + free.acceleration[j] * after
+            for k in range(rate.size):
+                rate[k] = 0.0
+            add_rows(powers.rate, amplitude, 1.0, rate)
+            taken, held = lost_and_held(powers.loss, rate)
+            if powers.skew.shape[0] > 0:
+                project(powers.skew, rate, along)
+                for j in range(size):
+                    taken += 0.5 * amplitude[j] * along[j]
+            pushed = 0.0
+            project(powers.pushing, rate, along)
+            for j in range(powers.riding.size):
+                pushed += amplitude[powers.riding[j]] * along[j]
+            totals[0] += room.weights[i] * pushed
+            totals[1] += room.weights[i] * taken
+            totals[3] = max(totals[3], 0.5 * held)
 
 
 @uncounted()

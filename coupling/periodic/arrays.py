@@ -137,3 +137,12 @@ class Powers(NamedTuple):
     skew: FloatArray  # (2 m, n) forces of a stiffness that is not symmetric, twice; (0, n) where it is symmetric
     riding: IntArray  # (k,) amplitudes that carry loads ...
     pushing: FloatArray  # (k, n) ... and these
+
+
+class PowersRoom(NamedTuple):
+    """Room for powers."""
+
+    amplitude: FloatArray  # (2 m + r,)
+    rate: FloatArray  # (n,)
+    along: FloatArray  # (2 m,)
+    weights: FloatArray  # (s,)
