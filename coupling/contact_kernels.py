@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from coupling.bearing_kernels import take_bearings
 from coupling.gears.friction_kernels import friction_shares
-from coupling.gears.kernels import tooth_force
+from coupling.gears.kernels import ranked_nearness, tooth_force
 from coupling.kernel_arrays import Bearings, Contacts
 from coupling.small_systems import solve_in_place
 from rotors.compiled import inner
@@ -43,6 +43,12 @@ def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: floa
     law = tooth_force(phase, delta, rate, contacts.law, contacts.law_at[k])
     laws[row, FORCE], laws[row, TANGENT], laws[row, DAMPING] = law[0], law[1], law[2]
     laws[row, ENERGY], laws[row, PHASE_SLOPE], laws[row, TOUCHING] = law[3], law[4], law[5]
+
+
+@inner()
+def nearness_of(contacts: Contacts, k: int, turned: float, delta: float, rank: int) -> float:
+    """By how much a contact's pair that is so many down from the most pressed one is pressed together [m]."""
+    return ranked_nearness(contacts.phase[k] + contacts.rate[k] * turned, delta, contacts.law, contacts.law_at[k], rank)
 
 
 @inner()

@@ -204,14 +204,14 @@ class ExactRun(MarchRun):
         from coupling.periodic.kernels import NO_BALANCE, NO_ROOM, march
 
         reference, modes = self.part.reference, len(self.part.eigenvalues)
-        length = np.repeat(np.diff(stretches) / pieces, pieces)
+        lengths = np.diff(stretches) / pieces
+        length, slots = np.repeat(lengths, pieces), np.repeat(sizes.slots(lengths), pieces)
         within = np.arange(len(length)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
         starts = np.repeat(stretches[:-1], pieces) + within * length
         room = _CUTS + 5 * len(length)
         if room > len(self._trace.start):
             self._trace = empty_trace(room, *self._shape)
         trace, end = self._trace, z.copy()
-        slots = sizes.slots(length)
         head = reference, self.arrays.contacts, self._steps, starts, length, slots, end, self._undisturbed
         count, _, wrong = march(*head, modes, trace, 0, self._work)
         where = f"after t = {trace.start[max(int(count) - 1, 0)]:.6g} s"

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from coupling.kernel_arrays import Contacts, Samples
 from coupling.marching import Checkpoint
-from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
+from coupling.periodic.arrays import FreeMotion, Powers, Steps, Trace, powers_room
 from coupling.periodic.collocation import ORDER
 from coupling.periodic.element_work import element_work
 from coupling.periodic.linear_part import LinearPart
@@ -38,8 +38,7 @@ class Record:
         self._velocity = outputs.velocity @ part.velocity_rows, outputs.velocity @ part.rigid
         self._acceleration = outputs.acceleration @ moving, outputs.acceleration @ system.contact_directions
         self._powers = self._rows_of_powers(load)
-        amplitudes = np.zeros(2 * count + part.rigid.shape[1])
-        self._room = PowersRoom(amplitudes, np.zeros(system.size), np.zeros(2 * count), np.zeros(ORDER))
+        self._room = powers_room(2 * count + part.rigid.shape[1], system.size, ORDER)
 
     def _rows_of_powers(self, load: FloatArray) -> Powers:
         part, system = self.part, self.part.system
@@ -91,7 +90,7 @@ class Record:
         totals, figures = state.totals.copy(), state.contact_totals.copy()
         excess = trace.excess.reshape(len(trace.start), ORDER * trace.excess.shape[2])
         add_powers(steps, trace, excess, self._powers, free, self._room, totals)
-        stored = add_contacts(trace, self.contacts, state.stored, self._room.weights, totals, figures)
+        stored = add_contacts(trace, self.contacts, state.stored, self._room.weights[0], totals, figures)
         return replace(state, totals=totals, stored=float(stored), contact_totals=figures)
 
     def contact_figures(self, before: Checkpoint, trace: Trace) -> FloatArray:
@@ -99,5 +98,5 @@ class Record:
         from coupling.record_kernels import add_contacts
 
         figures = before.contact_totals.copy()
-        add_contacts(trace, self.contacts, before.stored, self._room.weights, before.totals.copy(), figures)
+        add_contacts(trace, self.contacts, before.stored, self._room.weights[0], before.totals.copy(), figures)
         return figures

@@ -1,6 +1,6 @@
 """The figures of an exact march's proof, compiled: work, losses and what the contacts come to, from a trace.
 
-Importing this module imports numba. Not by BLAS, whose threads take longer to meet than such small products take.
+Importing this module imports numba.
 """
 
 import math
@@ -12,8 +12,8 @@ from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import FreeMotion, Powers, PowersRoom, Steps, Trace
 from coupling.periodic.collocation import GAUSS, MONOMIALS, ORDER, PLACES
 from coupling.periodic.element import advance
-from coupling.row_kernels import SUMS, add_rows, project
-from rotors.compiled import inner, uncounted
+from coupling.row_kernels import SUMS, project
+from rotors.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -34,6 +34,29 @@ def weights_of(trace: Trace, element: int, out: FloatArray) -> None:
         out[j] = total
 
 
+@uncounted()
+def amplitudes_of(
+    steps: Steps, trace: Trace, excess: FloatArray, free: FreeMotion, first: int, room: PowersRoom
+) -> int:
+    """Amplitudes at the places of a batch of elements, and weights of integrals; returns how many elements it has.
+
+    ``excess`` (e, s c) is the trace's.
+    """
+    size, count = trace.state.shape[1], int(min(room.weights.shape[0], trace.start.size - first))
+    for number in range(count):
+        element = first + number
+        weights_of(trace, element, room.weights[number])
+        slot, h = trace.slot[element], trace.size[element] / trace.part[element]
+        for i in range(ORDER):
+            amplitude = room.amplitude[number * ORDER + i]
+            decay, source = steps.inner_decay[slot, i], steps.inner_source[slot, i]
+            advance(decay, source, trace.state[element], excess[element], amplitude[:size])
+            after = trace.start[element] + PLACES[i] * h - free.time[0]
+            for j in range(free.rate.size):
+                amplitude[size + j] = free.rate[j] + free.acceleration[j] * after
+    return count
+
+
 @inner(fastmath=SUMS, forceinline=True)
 def lost_and_held(loss: FloatArray, rate: FloatArray) -> tuple[float, float]:
     """Power that damping takes at some rates (n,), and twice their kinetic energy."""
@@ -46,6 +69,26 @@ def lost_and_held(loss: FloatArray, rate: FloatArray) -> tuple[float, float]:
 
 
 @uncounted()
+def add_batch(powers: Powers, room: PowersRoom, count: int, totals: FloatArray) -> None:
+    """Add the powers of a batch whose amplitudes and rates are known, and keep the largest kinetic energy."""
+    for number in range(count):
+        for i in range(ORDER):
+            amplitude, rate = room.amplitude[number * ORDER + i], room.rate[number * ORDER + i]
+            taken, held = lost_and_held(powers.loss, rate)
+            if powers.skew.shape[0] > 0:
+                project(powers.skew, rate, room.along)
+                for j in range(powers.skew.shape[0]):
+                    taken += 0.5 * amplitude[j] * room.along[j]
+            pushed = 0.0
+            project(powers.pushing, rate, room.along)
+            for j in range(powers.riding.size):
+                pushed += amplitude[powers.riding[j]] * room.along[j]
+            totals[0] += room.weights[number, i] * pushed
+            totals[1] += room.weights[number, i] * taken
+            totals[3] = max(totals[3], 0.5 * held)
+
+
+@counted()
 def add_powers(
     steps: Steps,
     trace: Trace,
@@ -57,34 +100,13 @@ def add_powers(
 ) -> None:
     """Add what the loads give and what damping without the teeth's takes [J], and keep the largest kinetic energy.
 
-    ``excess`` (e, s c) is the trace's, ``totals`` (5,) are those of :class:`coupling.marching.Checkpoint`.
+    ``excess`` (e, s c) is the trace's, ``totals`` (5,) are those of :class:`coupling.marching.Checkpoint`. Rates of a
+    batch of elements are one product, for their rows do not fit the innermost cache beside an element's matrices.
     """
-    size = trace.state.shape[1]
-    amplitude, rate, along = room.amplitude, room.rate, room.along
-    for element in range(trace.start.size):
-        weights_of(trace, element, room.weights)
-        slot, h = trace.slot[element], trace.size[element] / trace.part[element]
-        for i in range(ORDER):
-            decay, source = steps.inner_decay[slot, i], steps.inner_source[slot, i]
-            advance(decay, source, trace.state[element], excess[element], amplitude[:size])
-            after = trace.start[element] + PLACES[i] * h - free.time[0]
-            for j in range(free.rate.size):
-                amplitude[size + j] = free.rate[j] + free.acceleration[j] * after
-            for k in range(rate.size):
-                rate[k] = 0.0
-            add_rows(powers.rate, amplitude, 1.0, rate)
-            taken, held = lost_and_held(powers.loss, rate)
-            if powers.skew.shape[0] > 0:
-                project(powers.skew, rate, along)
-                for j in range(size):
-                    taken += 0.5 * amplitude[j] * along[j]
-            pushed = 0.0
-            project(powers.pushing, rate, along)
-            for j in range(powers.riding.size):
-                pushed += amplitude[powers.riding[j]] * along[j]
-            totals[0] += room.weights[i] * pushed
-            totals[1] += room.weights[i] * taken
-            totals[3] = max(totals[3], 0.5 * held)
+    for first in range(0, trace.start.size, room.weights.shape[0]):
+        count = amplitudes_of(steps, trace, excess, free, first, room)
+        np.dot(room.amplitude, powers.rate, room.rate)
+        add_batch(powers, room, count, totals)
 
 
 @uncounted()

@@ -217,6 +217,29 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     return force + damping * rate, tangent, damping, energy, slope, touching
 
 
+@uncounted(fastmath={"contract"})
+def ranked_nearness(phase: float, compression: float, law: FloatArray, at: int, rank: int) -> float:
+    """By how much the flanks of the pair that is ``rank``-th by that are pressed together [m]; -inf with fewer pairs.
+
+    So ``rank`` pairs or more touch where it is positive, as `tooth_force` counts them, whose other arguments these are.
+    Unlike their number it tells how far the next change is.
+    """
+    number, interval, u, _ = place(law, at, phase)
+    pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
+    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
+    first = int(number) - int(number_at(law, at + FIRST_PAIR))
+    for pair in range(pairs):
+        own, _ = nearness(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
+        before = 0
+        for rival in range(pairs):
+            other, _ = nearness(law, at, hunting, first - rival, u, compression, start + PAIR * rival)
+            if other > own or (other == own and rival < pair):
+                before += 1
+        if before == rank - 1:
+            return own
+    return -math.inf
+
+
 @counted()
 def tooth_force_history(
     phase: FloatArray, compression: FloatArray, rate: FloatArray, law: FloatArray, at: int

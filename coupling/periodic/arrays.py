@@ -13,6 +13,9 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
+_LARGEST_BATCH = 24  # elements whose powers are found at once, within the processor's caches
+_BY_ONE_THREAD = 2**18  # of numbers: larger products of matrices OpenBLAS shares out among threads, at a loss
+
 
 class Reference(NamedTuple):
     """The linear machine with its teeth at their mean, as the contacts see it.
@@ -102,13 +105,13 @@ def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner
         size=sizes,
         filled=np.zeros(k, dtype=np.int64),
         ladder=np.array([ladder], dtype=np.int64),
-        decay=np.zeros((k, 2, m)),
-        felt=np.zeros((k, 2 * n, 2 * m)),
-        flexibility=np.zeros((k, 2 * n, n)),
-        source=np.zeros((k, n, 2 * m)),
-        missed=np.zeros((k, 2 * c, 2 * m)),
-        inner_decay=np.zeros((within, s, 2, m)),
-        inner_source=np.zeros((within, s, n, 2 * m)),
+        decay=np.empty((k, 2, m)),
+        felt=np.empty((k, 2 * n, 2 * m)),
+        flexibility=np.empty((k, 2 * n, n)),
+        source=np.empty((k, n, 2 * m)),
+        missed=np.empty((k, 2 * c, 2 * m)),
+        inner_decay=np.empty((within, s, 2, m)),
+        inner_source=np.empty((within, s, n, 2 * m)),
     )
 
 
@@ -140,9 +143,15 @@ class Powers(NamedTuple):
 
 
 class PowersRoom(NamedTuple):
-    """Room for powers."""
+    """Room for the powers of a batch of b elements."""
 
-    amplitude: FloatArray  # (2 m + r,)
-    rate: FloatArray  # (n,)
+    amplitude: FloatArray  # (b s, 2 m + r)
+    rate: FloatArray  # (b s, n)
     along: FloatArray  # (2 m,)
-    weights: FloatArray  # (s,)
+    weights: FloatArray  # (b, s)
+
+
+def powers_room(size: int, n: int, s: int) -> PowersRoom:
+    """Room for as many elements, of so many amplitudes each, as BLAS multiplies by one thread."""
+    batch = max(1, min(_LARGEST_BATCH, _BY_ONE_THREAD // (s * size * n)))
+    return PowersRoom(np.zeros((batch * s, size)), np.zeros((batch * s, n)), np.zeros(size), np.zeros((batch, s)))

@@ -1,4 +1,4 @@
-r"""One element of time, compiled: the contacts' forces at its places, and where a law changes its branch.
+r"""One element of time, compiled: the contacts' forces at its places, and what their polynomial misses.
 
 Importing this module imports numba.
 """
@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, TOUCHING, take_law
+from coupling.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, take_law
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.collocation import AT_ENDS, BARYCENTRIC, INSIDE, MONOMIALS, ORDER, PLACES, POINTS
@@ -20,27 +20,12 @@ from rotors.compiled import uncounted
 FloatArray = npt.NDArray[np.float64]
 
 _NEWTON_STEPS = 40
-_NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is found, and to which one is told of
-_FULL = 1.0 - 1e-14
 
 
 @uncounted(forceinline=True)
 def law(contacts: Contacts, a: int, time: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
     """The law of one contact, into a row."""
     take_law(contacts, a, time, delta, rate, laws, row)
-
-
-@uncounted()
-def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
-    """Which smooth branch a law is on: the number of touching pairs, and what the damping does."""
-    touching = int(laws[row, TOUCHING])
-    if touching == 0:
-        return 0
-    if laws[row, FORCE] == 0.0 and laws[row, TANGENT] == 0.0:
-        return 4 * touching + 1
-    if laws[row, DAMPING] < reference.full_damping[a] * _FULL:
-        return 4 * touching + 2
-    return 4 * touching + 3
 
 
 @uncounted(fastmath=SUMS)
@@ -141,56 +126,6 @@ def solve_element(
         delta[ORDER + 1, a] = product(reference.displacement, a, end)
         rate[ORDER + 1, a] = product(reference.rate, a, end)
     return solved or best <= 1e-9 * scale
-
-
-@uncounted(forceinline=True)
-def first_switch(
-    reference: Reference, contacts: Contacts, time: float, h: float, stop: float, furthest: float, work: Work
-) -> tuple[float, int]:
-    """Where a law first changes its branch, as a part of h, and of which contact; beyond ``furthest`` where none does.
-
-    No law is looked at later than ``stop``. The laws just after the start are left in the rows behind those of the
-    places.
-    """
-    c = reference.stiffness.size
-    n = ORDER * c
-    delta, rate, laws = work.delta, work.rate, work.laws
-    first, which = 2.0, -1
-    for a in range(c):
-        before, row = INSIDE, n + a
-        x, v = interpolated(delta, a, before), interpolated(rate, a, before)
-        law(contacts, a, time + before * h, x, v, laws, row)
-        work.looked[0, a], work.looked[1, a] = x, v
-        old = branch(reference, a, laws, row)
-        row = n + c + a
-        x, v = interpolated(delta, a, furthest), interpolated(rate, a, furthest)
-        law(contacts, a, min(time + furthest * h, stop), x, v, laws, row)
-        for i in range(ORDER + 1):
-            # The places, then the furthest point.
-            at_place = i < ORDER and PLACES[i] < furthest
-            u = PLACES[i] if at_place else furthest
-            if before >= first:
-                break
-            if branch(reference, a, laws, i * c + a if at_place else row) == old:
-                before = u
-                if not at_place:
-                    break
-                continue
-            low, high = before, u
-            # Before the last place it is to be found again, with places that stand before it.
-            near = _NEAR if u > PLACES[ORDER - 1] else _ROUGHLY
-            while high - low > near:
-                middle = 0.5 * (low + high)
-                at = min(time + middle * h, stop)
-                law(contacts, a, at, interpolated(delta, a, middle), interpolated(rate, a, middle), laws, n + 2 * c)
-                if branch(reference, a, laws, n + 2 * c) == old:
-                    low = middle
-                else:
-                    high = middle
-            if high < first:
-                first, which = high, a
-            break
-    return first, which
 
 
 @uncounted(fastmath=SUMS, forceinline=True)

@@ -201,6 +201,9 @@ def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexAr
                 for b in range(c):
                     sent = values[j] * reference.source[m, b]
                     x, y = sent.real, sent.imag
+                    if steps.inner_decay.shape[0] > 0:
+                        steps.inner_source[slot, i, j * c + b, m] = x
+                        steps.inner_source[slot, i, j * c + b, count + m] = y
                     if x == 0.0 and y == 0.0:
                         continue
                     for a in range(c):
@@ -210,7 +213,4 @@ def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexAr
                         steps.flexibility[slot, n + i * c + a, j * c + b] += (
                             reference.rate[a, m] * x + reference.rate[a, count + m] * y
                         )
-                    if steps.inner_decay.shape[0] > 0:
-                        steps.inner_source[slot, i, j * c + b, m] = x
-                        steps.inner_source[slot, i, j * c + b, count + m] = y
     steps.filled[slot] = 1

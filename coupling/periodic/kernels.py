@@ -32,9 +32,7 @@ from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps, Trace
 from coupling.periodic.collocation import INSIDE, ORDER, PLACES
 from coupling.periodic.element import (
-    branch,
     estimate,
-    first_switch,
     held_energy,
     interpolated,
     law,
@@ -42,6 +40,7 @@ from coupling.periodic.element import (
 )
 from coupling.periodic.element_matrices import carry_on, fill_step
 from coupling.periodic.element_work import Work
+from coupling.periodic.switches import branch, first_switch
 from coupling.periodic.variations import cross, jump_at, vary
 from rotors.compiled import uncounted
 

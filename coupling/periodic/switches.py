@@ -1,0 +1,151 @@
+"""Where a law changes its branch within an element of time, compiled.
+
+Importing this module imports numba.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.contact_kernels import DAMPING, FORCE, TANGENT, TOUCHING, nearness_of
+from coupling.kernel_arrays import Contacts
+from coupling.periodic.arrays import Reference
+from coupling.periodic.collocation import INSIDE, ORDER, PLACES
+from coupling.periodic.element import interpolated, law
+from coupling.periodic.element_work import Work
+from rotors.compiled import uncounted
+
+FloatArray = npt.NDArray[np.float64]
+
+_NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is found, and to which one is told of
+_FULL = 1.0 - 1e-14
+_PAIR = 4  # a branch is this times the touching pairs, and what the damping does
+
+
+@uncounted()
+def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
+    """Which smooth branch a law is on: the number of touching pairs, and what the damping does."""
+    touching = int(laws[row, TOUCHING])
+    if touching == 0:
+        return 0
+    if laws[row, FORCE] == 0.0 and laws[row, TANGENT] == 0.0:
+        return _PAIR * touching + 1
+    if laws[row, DAMPING] < reference.full_damping[a] * _FULL:
+        return _PAIR * touching + 2
+    return _PAIR * touching + 3
+
+
+@uncounted()
+def by_pairs(old: int, new: int) -> bool:
+    """Whether the first change from one branch to another is that a pair begins or ceases to touch."""
+    if old // _PAIR == new // _PAIR:
+        return False
+    return old == 0 or old % _PAIR == new % _PAIR or (new == 0 and old % _PAIR == 2)
+
+
+@uncounted()
+def next_part(x: float, other: float, third: float, f: float, f_other: float, f_third: float, near: float) -> float:
+    """Where to look next for a zero, as a part of the way from one bound to the other.
+
+    By inverse quadratic interpolation where it can be trusted, else half-way: T. R. Chandrupatla, Advances in
+    Engineering Software 28 (1997) 145-149.
+    """
+    part = 0.5
+    way, change = (x - other) / (third - other), (f - f_other) / (f_third - f_other)
+    if change * change < way and (1.0 - change) * (1.0 - change) < 1.0 - way:
+        part = f / (f_other - f) * f_third / (f_other - f_third)
+        part += (third - x) / (other - x) * f / (f_third - f) * f_other / (f_third - f_other)
+    # A look at least so far from a bound that the zero falls between both at last.
+    least = min(0.5 * near / abs(x - other), 0.5)
+    return float(min(max(part, least), 1.0 - least))
+
+
+@uncounted()
+def placed(
+    reference: Reference,
+    contacts: Contacts,
+    a: int,
+    time: float,
+    h: float,
+    stop: float,
+    before: float,
+    after: float,
+    old: int,
+    new: int,
+    near: float,
+    work: Work,
+) -> float:
+    """Where a contact leaves its old branch, as a part of h: beyond that by ``near`` at most.
+
+    It does so between two places. Where a pair begins or ceases to touch, how near its flanks are tells where, in few
+    looks; all else is found by halving.
+    """
+    trial = work.laws.shape[0] - 1
+    gained, told = new > old, by_pairs(old, new)
+    rank = old // _PAIR + 1 if gained else old // _PAIR
+    f = f_other = f_third = 0.0
+    if told:
+        at = min(time + after * h, stop)
+        f = nearness_of(contacts, a, at, interpolated(work.delta, a, after), rank)
+        f_other = nearness_of(contacts, a, min(time + before * h, stop), interpolated(work.delta, a, before), rank)
+        told = f * f_other < 0.0
+    x, other, third, beyond, part = after, before, before, True, 0.5
+    while abs(x - other) > near:
+        u = x + part * (other - x)
+        at, delta, value, left = min(time + u * h, stop), interpolated(work.delta, a, u), 0.0, False
+        if told:
+            value = nearness_of(contacts, a, at, delta, rank)
+            left = (value > 0.0) == gained
+        else:
+            law(contacts, a, at, delta, interpolated(work.rate, a, u), work.laws, trial)
+            left = branch(reference, a, work.laws, trial) != old
+        if left == beyond:
+            third, f_third = x, f
+        else:
+            third, f_third, other, f_other = other, f_other, x, f
+        x, f, beyond = u, value, left
+        if told:
+            part = next_part(x, other, third, f, f_other, f_third, near)
+    return x if beyond else other
+
+
+@uncounted(forceinline=True)
+def first_switch(
+    reference: Reference, contacts: Contacts, time: float, h: float, stop: float, furthest: float, work: Work
+) -> tuple[float, int]:
+    """Where a law first changes its branch, as a part of h, and of which contact; beyond ``furthest`` where none does.
+
+    No law is looked at later than ``stop``. The laws just after the start are left in the rows behind those of the
+    places.
+    """
+    c = reference.stiffness.size
+    n = ORDER * c
+    delta, rate, laws = work.delta, work.rate, work.laws
+    first, which = 2.0, -1
+    for a in range(c):
+        before, row = INSIDE, n + a
+        x, v = interpolated(delta, a, before), interpolated(rate, a, before)
+        law(contacts, a, time + before * h, x, v, laws, row)
+        work.looked[0, a], work.looked[1, a] = x, v
+        old = branch(reference, a, laws, row)
+        row = n + c + a
+        x, v = interpolated(delta, a, furthest), interpolated(rate, a, furthest)
+        law(contacts, a, min(time + furthest * h, stop), x, v, laws, row)
+        for i in range(ORDER + 1):
+            # The places, then the furthest point.
+            at_place = i < ORDER and PLACES[i] < furthest
+            u = PLACES[i] if at_place else furthest
+            if before >= first:
+                break
+            if branch(reference, a, laws, i * c + a if at_place else row) == old:
+                before = u
+                if not at_place:
+                    break
+                continue
+            # Before the last place it is to be found again, with places that stand before it.
+            near = _NEAR if u > PLACES[ORDER - 1] else _ROUGHLY
+            new = branch(reference, a, laws, i * c + a if at_place else row)
+            found = placed(reference, contacts, a, time, h, stop, before, u, old, new, near, work)
+            if found < first:
+                first, which = found, a
+            break
+    return first, which
