@@ -17,6 +17,7 @@ from housing.errors import HousingError, ModeFileError
 from housing.labelled import LabelledArray, digest
 from housing.mode_record import ModeRecord, record_arrays, record_attributes, record_of
 from housing.netcdf import read_netcdf, write_netcdf
+from housing.seals import seal, seal_holds
 
 FORMAT = "gearwhine mode set"
 SCHEMA = "1"
@@ -51,6 +52,7 @@ def write_modes(path: str | Path, record: ModeRecord) -> None:
         try:
             # Without a fill value no number is taken for a missing one.
             write_netcdf(staged, variables, attributes, fill=False)
+            seal(staged)
         except ValueError as error:
             raise HousingError(f"the arrays of a mode set do not fit each other: {error}") from error
         os.replace(staged, path)
@@ -82,6 +84,9 @@ def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
     if not path.is_file():
         raise ModeFileError(f"mode file {path}: no such file")
     try:
+        # Copies by other programs have no seal; the digest is theirs too.
+        if seal_holds(path) is False:
+            raise ModeFileError(f"mode file {path} is damaged: its bytes do not have the digest at its end")
         # A look through HDF5 alone: on a file cut short it fails without a sound, which the layers above it do not.
         with h5py.File(path, "r") as file:
             kind, schema = file.attrs.get("format"), file.attrs.get("schema")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 from pathlib import Path
@@ -17,12 +16,10 @@ from gearwhine.output import finite, json_text
 from gearwhine.sweep.points import Point
 from gearwhine.sweep.solution import PointFailure, PointResult
 from housing.netcdf import Variables, read_netcdf, write_netcdf
+from housing.seals import seal, seal_holds
 
 POINTS = "points"
 """Folder of the points within the results folder."""
-
-_SEAL = 8 + 64
-"""Bytes of a seal."""
 
 # Group of results, its dimension, unit, and what it is.
 _SPECTRA = {
@@ -61,8 +58,7 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
         arrays = _arrays(result)
     staged = place / point.file
     write_netcdf(staged, arrays, attributes)
-    with staged.open("ab") as file:
-        file.write(_seal(staged.read_bytes()))
+    seal(staged)
     (folder / POINTS).mkdir(exist_ok=True)
     os.replace(staged, folder / POINTS / point.file)
 
@@ -71,9 +67,8 @@ def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
     """Read a point; None where there is no file of it, or one that is of other content or damaged."""
     file = folder / POINTS / point.file
     try:
-        content = file.read_bytes()
         # Before HDF5 sees it, which may read a damaged file for ever.
-        if content[-_SEAL:] != _seal(content[:-_SEAL]):
+        if not seal_holds(file):
             return None
         arrays, attributes = read_netcdf(file)
         if attributes.get("key") != point.key:
@@ -83,11 +78,6 @@ def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
         return _result({name: array.values for name, array in arrays.items()}, attributes)
     except (OSError, RuntimeError, ValueError, KeyError, TypeError):
         return None
-
-
-def _seal(content: bytes) -> bytes:
-    """What follows the bytes of a whole file: readers of NetCDF pay no heed to what stands behind its end."""
-    return b"\nsha256 " + hashlib.sha256(content).hexdigest().encode()
 
 
 def stale_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:

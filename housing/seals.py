@@ -1,0 +1,47 @@
+"""A digest of a file's bytes at its end, by which damage is found before any reader opens it.
+
+HDF5 may read a damaged file for ever. It pays no heed to what stands behind the end that the file itself tells.
+"""
+
+import hashlib
+import os
+from pathlib import Path
+
+_MARK = b"\nsha256 "
+_SEAL = len(_MARK) + 64
+
+
+def seal(path: Path) -> None:
+    """Add the seal to a file that is whole."""
+    line = _MARK + _digest(path, path.stat().st_size)
+    with path.open("ab") as file:
+        file.write(line)
+
+
+def seal_holds(path: Path) -> bool | None:
+    """Whether a file's bytes are those that were sealed; None where it ends with no seal.
+
+    Raises
+    ------
+    OSError
+        Where the file cannot be read.
+    """
+    size = path.stat().st_size - _SEAL
+    if size < 0:
+        return None
+    with path.open("rb") as file:
+        file.seek(-_SEAL, os.SEEK_END)
+        line = file.read()
+    if not line.startswith(_MARK):
+        return None
+    return line == _MARK + _digest(path, size)
+
+
+def _digest(path: Path, size: int) -> bytes:
+    """SHA-256 of the first bytes of a file, in hexadecimal."""
+    total = hashlib.sha256()
+    with path.open("rb") as file:
+        while size > 0 and (piece := file.read(min(size, 1 << 20))):
+            total.update(piece)
+            size -= len(piece)
+    return total.hexdigest().encode()
