@@ -17,8 +17,9 @@ from rotors.compiled import uncounted
 FloatArray = npt.NDArray[np.float64]
 
 _NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is found, and to which one is told of
-_FULL = 1.0 - 1e-14
-_PAIR = 4  # a branch is this times the touching pairs, and what the damping does
+_ALMOST = 1.0 - 1e-14
+# A branch is four times the number of touching pairs, and what their damping does.
+_PAIR, _HELD, _FADING, _FULL = 4, 1, 2, 3
 
 
 @uncounted()
@@ -28,10 +29,10 @@ def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
     if touching == 0:
         return 0
     if laws[row, FORCE] == 0.0 and laws[row, TANGENT] == 0.0:
-        return _PAIR * touching + 1
-    if laws[row, DAMPING] < reference.full_damping[a] * _FULL:
-        return _PAIR * touching + 2
-    return _PAIR * touching + 3
+        return _PAIR * touching + _HELD
+    if laws[row, DAMPING] < reference.full_damping[a] * _ALMOST:
+        return _PAIR * touching + _FADING
+    return _PAIR * touching + _FULL
 
 
 @uncounted()
@@ -39,7 +40,7 @@ def by_pairs(old: int, new: int) -> bool:
     """Whether the first change from one branch to another is that a pair begins or ceases to touch."""
     if old // _PAIR == new // _PAIR:
         return False
-    return old == 0 or old % _PAIR == new % _PAIR or (new == 0 and old % _PAIR == 2)
+    return old == 0 or old % _PAIR == new % _PAIR or (new == 0 and old % _PAIR == _FADING)
 
 
 @uncounted()
