@@ -31,7 +31,6 @@ class Reference(NamedTuple):
     stiffness: FloatArray  # (c,) of the reference, k̄
     damping: FloatArray  # (c,) of the reference, c̄
     full_damping: FloatArray  # (c,) the law's damping where it has faded in
-    scale: FloatArray  # (c,) a compression that is not small
 
 
 class Steps(NamedTuple):

@@ -151,7 +151,6 @@ class LinearPart:
             stiffness=stiffness,
             damping=_reference_values(self.system, [contact.contact.damping for contact in contacts]),
             full_damping=np.array([contact.contact.damping for contact in contacts], dtype=np.float64),
-            scale=np.abs(mean) + np.abs(phasor).sum(axis=1) + 1e-300,
         )
 
 

@@ -11,10 +11,12 @@ f its compressions and rates there, F those of the forces, S the slopes of the l
 the small system makes of S f serves all disturbances, of which each is then read and written once.
 """
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
-from coupling.contact_kernels import DAMPING, FORCE, TOUCHING
+from coupling.contact_kernels import DAMPING, FORCE, TOUCHING, nearness_of
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.element import law
@@ -148,39 +150,6 @@ def cross(reference: Reference, a: int, jump: float, columns: FloatArray) -> Non
 
 
 @uncounted()
-def touches(contacts: Contacts, a: int, time: float, delta: float, laws: FloatArray, row: int) -> bool:
-    """Whether any pair touches at a time and a compression."""
-    law(contacts, a, time, delta, 0.0, laws, row)
-    return bool(laws[row, TOUCHING] > 0.0)
-
-
-@uncounted()
-def first_touch(
-    reference: Reference, contacts: Contacts, a: int, time: float, near: float, laws: FloatArray, row: int
-) -> float:
-    """Compression at which the first pair touches at a time, near a compression."""
-    reach = 1e-12 * reference.scale[a] + 1e-9 * abs(near)
-    low, high = near, near
-    for _ in range(200):
-        if not touches(contacts, a, time, low, laws, row):
-            break
-        low -= reach
-        reach *= 1.5
-    for _ in range(200):
-        if touches(contacts, a, time, high, laws, row):
-            break
-        high += reach
-        reach *= 1.5
-    for _ in range(100):
-        middle = 0.5 * (low + high)
-        if touches(contacts, a, time, middle, laws, row):
-            high = middle
-        else:
-            low = middle
-    return high
-
-
-@uncounted()
 def jump_at(
     reference: Reference,
     contacts: Contacts,
@@ -203,8 +172,9 @@ def jump_at(
         force, damping, sign = laws[row, FORCE], laws[row, DAMPING], 1.0
     if force == 0.0 or damping < reference.full_damping[a] * (1.0 - 1e-14):
         return 0.0  # held at zero by the law, or its damping only fades in: no step
-    later = first_touch(reference, contacts, a, time + inside, delta, laws, row)
-    sooner = first_touch(reference, contacts, a, time - inside, delta, laws, row)
+    # Flanks first touch by as much less compression as the nearest are pressed together.
+    later = delta - nearness_of(contacts, a, time + inside, delta, 1)
+    sooner = delta - nearness_of(contacts, a, time - inside, delta, 1)
     crossing = rate - (later - sooner) / (2.0 * inside)
     # The springs start from nothing; only the damping can step.
-    return sign * damping * rate / crossing if crossing != 0.0 else 0.0
+    return sign * damping * rate / crossing if math.isfinite(crossing) and crossing != 0.0 else 0.0

@@ -24,7 +24,7 @@ def test_from_the_end_as_from_the_start(part: float, fastest: float, damped: flo
     values = fastest * random.uniform(0.0, 1.0, m) * np.exp(1j * (np.pi / 2 + damped * np.pi / 2)) / h
     source = random.normal(size=(m, c)) + 1j * random.normal(size=(m, c))
     none = np.zeros((c, 2 * m))
-    reference = Reference(values, source, none, none, *np.zeros((3, c)), np.ones(c))
+    reference = Reference(values, source, none, none, *np.zeros((3, c)))
     z, excess = random.normal(size=2 * m), random.normal(size=ORDER * c)
     coefficient, integral = np.zeros((ORDER, c)), np.zeros(ORDER + 2, dtype=np.complex128)
     expected, found = np.zeros(2 * m), np.zeros(2 * m)
@@ -44,7 +44,6 @@ def test_a_slow_mode_gathers_the_force() -> None:
         none,
         none,
         *np.zeros((3, 1)),
-        np.ones(1),
     )
     end, h, part = np.zeros(2), 0.3, 1.05
     excess, coefficient, integral = PLACES**2, np.zeros((ORDER, 1)), np.zeros(ORDER + 2, dtype=np.complex128)

@@ -27,7 +27,7 @@ LENGTH, NEAR = 1e-4, 1e-14
 APART, HELD, FADING, FULL = 0, 1, 2, 3
 REFERENCE = Reference(
     np.zeros(0, dtype=np.complex128), np.zeros((0, 1), dtype=np.complex128), *np.zeros((2, 1, 0)), *np.zeros((2, 1)),
-    np.full(1, 300.0), np.ones(1),
+    np.full(1, 300.0),
 )  # fmt: skip
 
 
