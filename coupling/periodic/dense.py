@@ -12,7 +12,7 @@ from coupling.contact_kernels import FORCE
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Trace
 from coupling.periodic.collocation import BINOMIAL, MONOMIALS, ORDER
-from coupling.periodic.element import law
+from coupling.periodic.element import advance, law
 from coupling.periodic.element_matrices import advance_to, moments
 from coupling.periodic.element_work import Work
 from rotors.compiled import counted
@@ -32,16 +32,19 @@ def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> Floa
     c, m = reference.stiffness.size, reference.eigenvalue.size
     out = np.empty((times.size, 2 * m))
     integral, coefficient = np.empty(ORDER, dtype=np.complex128), np.empty((ORDER, c))
-    series, shifted = np.empty((ORDER, c)), np.empty((ORDER, c))
+    series, shifted = np.empty((ORDER, c)), np.empty(ORDER * c)
     excess = trace.excess.reshape(trace.start.size, ORDER * c)
     spacing = times[1] - times[0] if times.size > 1 else 0.0
-    grown, shares = np.empty(m, dtype=np.complex128), np.empty((ORDER, m), dtype=np.complex128)
+    decay, source = np.empty((2, m)), np.empty((ORDER * c, 2 * m))
     for k in range(m):
         z = reference.eigenvalue[k] * spacing
-        grown[k] = cmath.exp(z)
-        moments(z, grown[k], ORDER, integral)
+        grown = cmath.exp(z)
+        decay[0, k], decay[1, k] = grown.real, grown.imag
+        moments(z, grown, ORDER, integral)
         for p in range(ORDER):
-            shares[p, k] = integral[p] * spacing
+            for a in range(c):
+                sent = integral[p] * spacing * reference.source[k, a]
+                source[p * c + a, k], source[p * c + a, m + k] = sent.real, sent.imag
     element, of = 0, -1
     for i in range(times.size):
         while element < trace.start.size - 1 and times[i] >= trace.start[element + 1]:
@@ -65,16 +68,9 @@ def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> Floa
                 total = 0.0
                 for j in range(ORDER - 1, p - 1, -1):
                     total = total * u + BINOMIAL[j, p] * series[j, a]
-                shifted[p, a] = scale * total
+                shifted[p * c + a] = scale * total
             scale *= spacing / h
-        for k in range(m):
-            value = grown[k] * complex(out[i - 1, k], out[i - 1, m + k])
-            for a in range(c):
-                sent = 0.0j
-                for p in range(ORDER):
-                    sent += shares[p, k] * shifted[p, a]
-                value -= sent * reference.source[k, a]
-            out[i, k], out[i, m + k] = value.real, value.imag
+        advance(decay, source, out[i - 1], shifted, out[i])
     return out
 
 
