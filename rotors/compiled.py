@@ -9,12 +9,17 @@ an array, be it for the message of an error that ``a[:] = b`` could raise: write
 
 What a kernel calls is compiled on its own, then again with every kernel above it that it ends up in. Hence few kernels
 that call many, and no entrances from Python or C where only kernels call.
+
+Compiled kernels are cached by :mod:`rotors.kernel_cache`.
 """
 
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
+import numba
 from numba import njit
+
+from .kernel_cache import cache_folder
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
@@ -30,7 +35,13 @@ def counted(**options: Any) -> Callable[[Kernel], Kernel]:
     """Compile a function that makes arrays; further options are numba's."""
 
     def compiled(function: Kernel) -> Kernel:
-        return cast(Kernel, njit(**(_ALL | options))(function))
+        # numba asks where to cache when a function is decorated; other packages' functions keep their own place.
+        config: Any = numba.config
+        given, config.CACHE_DIR = config.CACHE_DIR, cache_folder()
+        try:
+            return cast(Kernel, njit(**(_ALL | options))(function))
+        finally:
+            config.CACHE_DIR = given
 
     return compiled
 
