@@ -34,16 +34,12 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
         Where teeth or bearings find no equilibrium.
     """
     rigid, stiffest = system.unresisted_motions
-    if rigid.size:
-        driven = rigid.T @ system.load
-        # Beside a load that balances in itself, and beside the rounding of what a motion is.
-        scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _ROUNDING * np.linalg.norm(system.load)
-        if np.any(np.abs(driven) > scale):
-            raise CouplingError(
-                "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
-                "rotation or a housing without supports; check the torques in and out against the gear ratios, and the "
-                "supports' stiffness"
-            )
+    if not load_balances(system):
+        raise CouplingError(
+            "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
+            "rotation or a housing without supports; check the torques in and out against the gear ratios, and the "
+            "supports' stiffness"
+        )
     penalty = stiffest * rigid @ rigid.T
     # Newton's method starts from teeth that touch: deviations and runout may hold them further apart than the load
     # presses, and from open teeth it would stop at a motion that nothing holds.
@@ -74,6 +70,15 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
         f"no static equilibrium of teeth and bearings after {_STEPS} Newton steps; the torque may be too small to "
         "close the mesh, or the play of a bearing leave its shaft loose"
     )
+
+
+def load_balances(system: CoupledSystem) -> bool:
+    """Whether the constant load does no work in any motion that nothing resists."""
+    rigid, _ = system.unresisted_motions
+    driven = rigid.T @ system.load
+    # Beside a load that balances in itself, and beside the rounding of what a motion is.
+    scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _ROUNDING * np.linalg.norm(system.load)
+    return not np.any(np.abs(driven) > scale)
 
 
 def _out_of_balance(

@@ -92,9 +92,10 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
             corner_contact=meets_with_corners(pair),
             faces=uneven_faces(case, pair, geometry),
         )
-        depth = _FADING * force / contact.mean_stiffness
-        contact = contact.with_damping(_damping(case, pair, contact), depth)
         static = room.static_transmission_error(contact, force)
+        # The ratio is of the mesh as it vibrates about its mean load, as linear analyses take it.
+        mean_stiffness = static.mean_stiffness if force > 0.0 else contact.mean_stiffness
+        contact = contact.with_damping(_damping(case, pair, mean_stiffness), _FADING * force / contact.mean_stiffness)
         hunting = room.hunting_mesh(contact, force) if contact.hunting_period > 1 else None
         solved.append(SolvedPair(pair, geometry, model, contact, static, hunting, frequency))
     return tuple(solved)
@@ -173,7 +174,7 @@ def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
     return columns[0], columns[1]
 
 
-def _damping(case: Case, pair: GivenPair, contact: room.ToothContact) -> float:
+def _damping(case: Case, pair: GivenPair, mean_stiffness: float) -> float:
     """The mesh's damping coefficient [N s/m] from the ratio, with the inertia that sits where the gears do."""
     if pair.damping is not None:
         return pair.damping
@@ -186,7 +187,7 @@ def _damping(case: Case, pair: GivenPair, contact: room.ToothContact) -> float:
         build_gear(case, driver).base_radius,
         build_gear(case, driven).base_radius,
     )
-    return room.mesh_damping(pair.damping_ratio, contact.mean_stiffness, mass)
+    return room.mesh_damping(pair.damping_ratio, mean_stiffness, mass)
 
 
 def _inertia_at(case: Case, given: GivenGear) -> float:
