@@ -147,11 +147,22 @@ def _harris_map(geometry: room.GearPairGeometry, harris: room.HarrisMap) -> dict
 def _optimum(pair: PairAnalysis, optimum: room.ReliefOptimum) -> dict[str, Any]:
     """The relief that suits the torque, beside that of the case and none at all."""
     gears = pair.solved.geometry.driver, pair.solved.geometry.driven
-    starts = (relief_document(gear, optimum.relief)["start_roll_angle_rad"] for gear in gears)
+    relief, given = optimum.relief, pair.solved.given.relief_aim
+    starts = (None if relief is None else relief_document(gear, relief)["start_roll_angle_rad"] for gear in gears)
+    kind = "peak-to-peak" if given is None else "harmonics" if given.sensor is None else "sensor"
+    unit = "m/s^2" if kind == "sensor" else "m"
     return {
-        "shape": optimum.relief.shape,
-        "amount_m": optimum.relief.amount,
-        "length_m": optimum.relief.length,
+        "aim": {
+            "kind": kind,
+            "sensor": None if given is None else given.sensor,
+            "weights": None if given is None else {str(n): weight for n, weight in given.weights.items()},
+            "unit": unit,
+            "without_relief": float(optimum.value_unmodified[0]),
+            "best": float(optimum.value[0]),
+        },
+        "shape": None if relief is None else relief.shape,
+        "amount_m": 0.0 if relief is None else relief.amount,
+        "length_m": None if relief is None else relief.length,
         **dict(zip(("driver_start_roll_angle_rad", "driven_start_roll_angle_rad"), starts, strict=True)),
         "torque_n_m": pair.solved.torque,
         "peak_to_peak_m": float(optimum.peak_to_peak[0]),
