@@ -47,7 +47,8 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     for contact in system.contacts:
         if contact.drives:
             first_touch = float(contact.contact.pairs(_phase(contact, time)).deviation.min())
-            closing += contact.contact.mean_stiffness * (first_touch + _error(contact, time)) * contact.direction
+            gap = first_touch + contact.clearance + _error(contact, time)
+            closing += contact.contact.mean_stiffness * gap * contact.direction
     for bearing in system.nonlinear:
         # Bearings begin where their mean load puts them, for with play they would begin in it, held by nothing.
         about, _ = _bearing(bearing, bearing.law.reference[bearing.axes], time)
@@ -66,10 +67,26 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
             if np.linalg.norm(trial) < np.linalg.norm(residual):
                 break
         q, residual, tangent = q + 0.5**halving * step, trial, slope
+    _require_pressed(system, penalty)
     raise TransientError(
         f"no static equilibrium of teeth and bearings after {_STEPS} Newton steps; the torque may be too small to "
         "close the mesh, or the play of a bearing leave its shaft loose"
     )
+
+
+def _require_pressed(system: CoupledSystem, penalty: FloatArray) -> None:
+    """Raise `CouplingError` where the mean torque pulls flanks apart that have no back flanks behind them."""
+    q = np.linalg.solve(system.mean_stiffness + penalty, system.load)
+    for contact in system.contacts:
+        force = contact.contact.mean_stiffness * float(contact.direction @ q)
+        if contact.drives and force < -_PUSHED * contact.contact.mean_stiffness * float(
+            np.abs(contact.direction) @ np.abs(q)
+        ):
+            raise CouplingError(
+                f"the torque pulls the flanks of {contact.name} apart with {-force:.5g} N and nothing stops them: the "
+                "driver is driven, and without backlash its back flanks never meet; give the pair a backlash, or turn "
+                "the sign of the torque or of the speed"
+            )
 
 
 def load_balances(system: CoupledSystem) -> bool:

@@ -116,7 +116,7 @@ def _check_balance(operation: Operation, ratios: Mapping[str, Fraction]) -> Iter
     if not operation.output:
         return
     taken = sum(output.torque * abs(float(ratios[output.rotor])) for output in operation.output)
-    if abs(taken - operation.torque) > LARGEST_IMBALANCE * max(operation.torque, taken):
+    if abs(taken - operation.torque) > LARGEST_IMBALANCE * max(abs(operation.torque), abs(taken)):
         expected = (
             f"outputs that balance the input torque of {operation.torque:g} N*m; through the tooth ratios they "
             f"amount to {taken:g} N*m"
@@ -133,7 +133,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
     for shaft, place in first.items():
         entering = operation.torque if place == 0 else 0.0
         taken = sum(output.torque for output in operation.output if output.rotor == shaft)
-        if abs(taken - entering) > LARGEST_IMBALANCE * max(entering, taken):
+        if abs(taken - entering) > LARGEST_IMBALANCE * max(abs(entering), abs(taken)):
             expected = (
                 f'torques that balance on {kind} "{shaft}", as no gear pair leads to or from it; it takes in '
                 f"{entering:g} N*m and gives out {taken:g} N*m"
@@ -152,7 +152,14 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
         gear_pair=tuple(pair for _, pair in draft.gear_pairs),
         operation=operation,
     )
-    for (index, _), torque in zip(draft.gear_pairs, pair_torques(turning), strict=True):
-        if torque < -_NO_TORQUE * operation.torque:
+    sense = 1.0 if operation.torque > 0.0 else -1.0
+    for (index, pair), torque in zip(draft.gear_pairs, pair_torques(turning), strict=True):
+        if sense * torque < -_NO_TORQUE * abs(operation.torque):
             expected = "power to flow from driver to driven; swap the two names"
             yield Finding(("gear_pair", index), expected, UNSAID)
+        elif torque < -_NO_TORQUE * abs(operation.torque) and pair.backlash is None:
+            expected = (
+                "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet "
+                "without one"
+            )
+            yield Finding(("gear_pair", index, "backlash"), expected, NOTHING)
