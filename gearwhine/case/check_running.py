@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from gearwhine.case.check_shafts import check_station
 from gearwhine.case.draft import Draft
+from gearwhine.case.gears import GearPair
 from gearwhine.case.model import Case
 from gearwhine.case.motion import pair_torques
 from gearwhine.case.problems import NOTHING, UNSAID, Finding
@@ -157,9 +158,15 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
         if sense * torque < -_NO_TORQUE * abs(operation.torque):
             expected = "power to flow from driver to driven; swap the two names"
             yield Finding(("gear_pair", index), expected, UNSAID)
-        elif torque < -_NO_TORQUE * abs(operation.torque) and pair.backlash is None:
+        elif torque < -_NO_TORQUE * abs(operation.torque) and not _has_backlash(turning, pair):
             expected = (
                 "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet "
                 "without one"
             )
             yield Finding(("gear_pair", index, "backlash"), expected, NOTHING)
+
+
+def _has_backlash(case: Case, pair: GearPair) -> bool:
+    """Whether a backlash is given, or the teeth are thinned for one."""
+    thinned = any(case.gear_named(name).tooth_thinning > 0.0 for name in (pair.driver, pair.driven))
+    return pair.backlash is not None or thinned

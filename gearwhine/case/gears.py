@@ -196,7 +196,8 @@ class GearPair(Table):
     `damping` [N s/m] stands in place of `damping_ratio`. `corner_contact`: whether teeth touch beyond their path of
     contact, where a load closes the gap to a corner; None: where the stiffness model is one of pairs of teeth.
     `misalignment` [rad] is the angle between the flanks in the plane of action, open towards +z.
-    `backlash` [m] is measured along the line of action; None: the back flanks never touch. `centre_distance`
+    `backlash` [m] is measured along the line of action; None: that of thicknesses and distance, and where these leave
+    none the back flanks never touch. `centre_distance`
     [m] is checked against the rotors' axes, and needed only in a case without rotors where it is not nominal.
     `friction` is the coefficient of friction between the teeth, in the transient. `relief_aim` is what `gears` seeks
     the best tip relief for; None: the peak-to-peak transmission error.

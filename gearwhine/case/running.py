@@ -42,8 +42,9 @@ class Output(Table):
 class Operation(Table):
     """`[operation]`: speed [rad/s] and torque [N m] of the first driver's rotor.
 
-    Positive speeds are counter-clockwise seen from +z. The torque drives in the direction of turning,
-    or brakes where it is negative, at station `at` [m] (None: the left end). Without outputs, the rotors that drive no other share the power equally.
+    Positive speeds are counter-clockwise seen from +z. The torque drives in the direction of turning, or brakes where
+    it is negative, at station `at` [m] (None: the left end). Without outputs, the rotors that drive no other share the
+    power equally.
     `over_time` is added to the torque, and the outputs take it in their proportions unless one has its own; `ripple`
     swings about it. `motor` and `load` are torque over speed of a run whose speed is free: what drives, and what
     the outputs together take, both at the first driver's rotor (without `load`: `torque`, whatever the speed).

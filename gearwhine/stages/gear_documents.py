@@ -8,7 +8,7 @@ import numpy.typing as npt
 import coupling.gears as room
 from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.gear_shapes import doubts, gear_document, path_document, relief_document
-from gearwhine.stages.gears import SolvedPair
+from gearwhine.stages.gears import SolvedPair, backlash_doubts
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -18,8 +18,13 @@ _MOST_YIELDING = 0.1
 
 def gears_document(pairs: tuple[PairAnalysis, ...]) -> dict[str, Any]:
     """The gear pairs as the command's JSON."""
-    warnings = [doubt for pair in pairs for doubt in [*doubts(pair.solved.geometry), *_left_out(pair)]]
+    warnings = [doubt for pair in pairs for doubt in _all_doubts(pair)]
     return {"pairs": [_pair_document(pair) for pair in pairs]} | ({"warnings": warnings} if warnings else {})
+
+
+def _all_doubts(pair: PairAnalysis) -> list[dict[str, str]]:
+    geometry = pair.solved.geometry
+    return [*doubts(geometry), *backlash_doubts(pair.solved.given, geometry), *_left_out(pair)]
 
 
 def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
@@ -35,7 +40,7 @@ def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
         "total_contact_ratio": geometry.total_contact_ratio,
         "centre_distance_m": geometry.working_centre_distance,
         "working_pressure_angle_rad": geometry.working_pressure_angle,
-        "backlash_m": solved.given.backlash,
+        "backlash_m": solved.backlash,
         "mesh_frequency_hz": solved.mesh_frequency,
         "torque_n_m": solved.torque,
         "mean_force_n": solved.static.force,
