@@ -147,7 +147,8 @@ def backlash_doubts(pair: GivenPair, geometry: room.GearPairGeometry) -> list[di
         return []
     message = (
         f"{geometry.label}: the backlash of {1e3 * pair.backlash:.4g} mm is not the {1e3 * made:.4g} mm that the "
-        "thickness of the teeth and the distance of the shafts leave along the line of action; leave 'backlash' out for that"
+        "thickness of the teeth and the distance of the shafts leave along the line of action; leave 'backlash' out "
+        "for that"
     )
     return [{"name": "backlash", "message": message}]
 
