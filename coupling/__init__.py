@@ -28,7 +28,14 @@ from coupling.boundaries import SAMPLES_PER_BLOCK
 from coupling.campbell import SystemCampbell, SystemCrossing, system_campbell
 from coupling.component import Component, HousingComponent, RotorComponent, housing_component, rotor_component
 from coupling.connector import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
-from coupling.contact_state import ContactState, contact_at, linear_matrices, mean_contact, time_of_phase
+from coupling.contact_state import (
+    ContactState,
+    contact_at,
+    linear_matrices,
+    mean_contact,
+    time_of_phase,
+    unloaded_contact,
+)
 from coupling.decimation import Decimation, decimation
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
 from coupling.exact_march import march_method
@@ -175,5 +182,6 @@ __all__ = [
     "transient_figures",
     "transient_outputs",
     "unbalance_response",
+    "unloaded_contact",
     "with_modal_rows",
 ]

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.branches import ModesAtSpeed, matched
+from coupling.contact_state import ContactState, linear_matrices, mean_contact
 from coupling.crossings import refined_crossing
 from coupling.errors import CouplingError
 from coupling.excitation import ExcitationLine, excitation_lines
@@ -106,6 +107,7 @@ def system_campbell(
     *,
     frequency_limit: float,
     lines: Sequence[ExcitationLine] | None = None,
+    contact: ContactState | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> SystemCampbell:
     """Follow the coupled modes about the mean contact over speed, and refine where excitations meet them.
@@ -120,6 +122,8 @@ def system_campbell(
         Branches below it at some speed are followed [rad/s].
     lines : sequence of ExcitationLine, optional
         Those of :func:`coupling.excitation_lines` where not given.
+    contact : ContactState, optional
+        At every speed; that of :func:`coupling.mean_contact` under the machine's load where not given.
     progress : callable
         Told the part done.
 
@@ -139,14 +143,15 @@ def system_campbell(
     chosen = excitation_lines(machine) if lines is None else tuple(lines)
     stand_in = np.where(turning == 0.0, _AT_REST * turning[-1], turning)
     limit = _ABOVE * frequency_limit
+    state = mean_contact(machine.system) if contact is None else contact
 
     def solve(speed: float) -> ModesAtSpeed:
-        return _described(machine, speed, limit).modes
+        return _described(machine, speed, limit, state).modes
 
     known: list[_Described] = []
     places: list[list[int]] = []
     for number, speed in enumerate(stand_in):
-        here = _described(machine, float(speed), limit)
+        here = _described(machine, float(speed), limit, state)
         if known:
             partner = matched(known[-1].modes, here.modes, solve, limit)
             for branch in places:
@@ -171,7 +176,7 @@ def system_campbell(
             if not np.all(np.isfinite(gap[left : left + 2, branch])):
                 continue
             ends = [(known[i].modes, int(table[i, branch])) for i in (left, left + 1)]
-            found = refined_crossing(machine, line.order, ends)
+            found = refined_crossing(machine, line.order, ends, state)
             if found is None:
                 unsettled.append(
                     f"{line.name} meets the mode at {eigenvalues[left, branch].imag / (2.0 * np.pi):.5g} Hz between "
@@ -209,18 +214,17 @@ class _Described:
     teeth: FloatArray
 
 
-def _described(machine: Machine, speed: float, limit: float) -> _Described:
+def _described(machine: Machine, speed: float, limit: float, contact: ContactState) -> _Described:
     """The oscillating modes below a limit at a speed."""
     system = machine.at_speed(speed).system
-    modes = coupled_modes(system)
+    modes = coupled_modes(system, contact)
+    damping = linear_matrices(system, contact)[1]
     chosen = np.flatnonzero((modes.eigenvalues.imag > 0.0) & (np.abs(modes.eigenvalues) < limit))
     bending = np.where(np.isnan(modes.whirl[chosen]), -1.0, modes.shares.kinetic[chosen])
     most = np.argmax(bending, axis=1)
     contacts = np.array([part.kind == "contact" for part in modes.shares.parts])
     return _Described(
-        modes=ModesAtSpeed(
-            speed, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen], system.mean_damping
-        ),
+        modes=ModesAtSpeed(speed, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen], damping),
         kinds=tuple(modes.kinds[i] for i in chosen),
         where=tuple(modes.where[i] for i in chosen),
         whirl=modes.whirl[chosen, most],

@@ -1,11 +1,12 @@
-"""The tooth contacts as springs and dashpots: at their means, or as they stand at an instant."""
+"""The tooth contacts as springs and dashpots: at their means under load, or as they stand at an instant."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError
+from coupling.mean_mesh import mean_meshes
 from coupling.statics import static_equilibrium
 from coupling.system import CoupledSystem
 
@@ -24,14 +25,31 @@ class ContactState:
         Of each contact of the system, drive flanks and back flanks [N/m]; 0 where they are apart.
     damping : ndarray, shape (c,)
         [N s/m].
+    force : ndarray, shape (c,), or None
+        Mean force under which the stiffness is that of the contact [N]; 0 where it is that without load.
     """
 
     stiffness: FloatArray
     damping: FloatArray
+    force: FloatArray | None = None
 
 
 def mean_contact(system: CoupledSystem) -> ContactState:
-    """Every drive flank at its mean stiffness over a mesh period, every back flank apart."""
+    """Contacts linearised about the mean load: each pressed flank at its mean mesh stiffness under its mean force.
+
+    The mean mesh stiffness under load is the mean over a mesh period of the tangent dF/dδ at static equilibrium under
+    the contact's mean force: load sharing, reliefs, deviations, corner contact and uneven faces count. A flank that no
+    mean force presses has its mean stiffness without load, see :func:`unloaded_contact`.
+    """
+    state = unloaded_contact(system)
+    means = mean_meshes(system)
+    stiffness = [k if mean is None else mean.stiffness for k, mean in zip(state.stiffness, means, strict=True)]
+    force = [0.0 if mean is None else mean.force for mean in means]
+    return replace(state, stiffness=np.array(stiffness, dtype=np.float64), force=np.array(force, dtype=np.float64))
+
+
+def unloaded_contact(system: CoupledSystem) -> ContactState:
+    """Every pressed flank at its mean stiffness with all pairs on the path of contact touching, the others apart."""
     drives = np.array([float(contact.drives) for contact in system.contacts])
     laws = [contact.contact for contact in system.contacts]
     return ContactState(

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from coupling.branches import ModesAtSpeed
-from coupling.contact_state import linear_matrices, mean_contact
+from coupling.contact_state import ContactState, linear_matrices
 from coupling.eigenpairs import refine_pair
 from coupling.machine import Machine
 
@@ -15,7 +15,7 @@ _RESIDUAL = 1e-9
 
 
 def refined_crossing(
-    machine: Machine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]]
+    machine: Machine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]], contact: ContactState
 ) -> tuple[float, complex] | None:
     """Speed and eigenvalue where a branch has the frequency of an order, between two neighbours on it.
 
@@ -29,6 +29,8 @@ def refined_crossing(
         Frequency over the speed of the leading rotor.
     ends : two of (ModesAtSpeed, int)
         Modes at the speeds on either side, and the place of the branch among them.
+    contact : ContactState
+        Of all speeds.
     """
     (low, one), (high, other) = ends
     speeds = [low.speed, high.speed]
@@ -42,7 +44,7 @@ def refined_crossing(
         part = weights[0] / (weights[0] - weights[1])
         speed = speeds[0] + part * (speeds[1] - speeds[0])
         system = machine.at_speed(speed).system
-        stiffness, damping = linear_matrices(system, mean_contact(system))
+        stiffness, damping = linear_matrices(system, contact)
         start = values[0] + part * (values[1] - values[0])
         value, shape, residual = refine_pair(stiffness, damping, start, (1.0 - part) * shapes[0] + part * shapes[1])
         if residual > _RESIDUAL or not _between(value, values):

@@ -15,6 +15,7 @@ from coupling.errors import CouplingError
 from coupling.gear_phases import mesh_phases
 from coupling.gears import GearPairGeometry, ToothContact, sliding_friction
 from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance
+from coupling.pressed_flanks import with_pressed_flanks
 from coupling.sliding import held_at_speed, sliding_flanks
 from coupling.system import CoupledSystem, embed
 from rotors import Bearing
@@ -311,6 +312,9 @@ def couple(
         swing=parts.swing([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives),
         nonlinear=tuple(nonlinear),
     )
+    after = len(drive) + np.cumsum([mesh.backlash is not None for mesh in meshes]) - 1
+    backs = [None if mesh.backlash is None else int(at) for mesh, at in zip(meshes, after, strict=True)]
+    system = with_pressed_flanks(system, backs)
     return Machine(
         tuple(rotors),
         housing,

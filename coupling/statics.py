@@ -34,16 +34,12 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
         Where teeth or bearings find no equilibrium.
     """
     rigid, stiffest = system.unresisted_motions
-    if rigid.size:
-        driven = rigid.T @ system.load
-        # Beside a load that balances in itself, and beside the rounding of what a motion is.
-        scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _ROUNDING * np.linalg.norm(system.load)
-        if np.any(np.abs(driven) > scale):
-            raise CouplingError(
-                "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
-                "rotation or a housing without supports; check the torques in and out against the gear ratios, and the "
-                "supports' stiffness"
-            )
+    if not load_balances(system):
+        raise CouplingError(
+            "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
+            "rotation or a housing without supports; check the torques in and out against the gear ratios, and the "
+            "supports' stiffness"
+        )
     penalty = stiffest * rigid @ rigid.T
     # Newton's method starts from teeth that touch: deviations and runout may hold them further apart than the load
     # presses, and from open teeth it would stop at a motion that nothing holds.
@@ -51,7 +47,8 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     for contact in system.contacts:
         if contact.drives:
             first_touch = float(contact.contact.pairs(_phase(contact, time)).deviation.min())
-            closing += contact.contact.mean_stiffness * (first_touch + _error(contact, time)) * contact.direction
+            gap = first_touch + contact.clearance + _error(contact, time)
+            closing += contact.contact.mean_stiffness * gap * contact.direction
     for bearing in system.nonlinear:
         # Bearings begin where their mean load puts them, for with play they would begin in it, held by nothing.
         about, _ = _bearing(bearing, bearing.law.reference[bearing.axes], time)
@@ -70,10 +67,35 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
             if np.linalg.norm(trial) < np.linalg.norm(residual):
                 break
         q, residual, tangent = q + 0.5**halving * step, trial, slope
+    _require_pressed(system, penalty)
     raise TransientError(
         f"no static equilibrium of teeth and bearings after {_STEPS} Newton steps; the torque may be too small to "
         "close the mesh, or the play of a bearing leave its shaft loose"
     )
+
+
+def _require_pressed(system: CoupledSystem, penalty: FloatArray) -> None:
+    """Raise `CouplingError` where the mean torque pulls flanks apart that have no back flanks behind them."""
+    q = np.linalg.solve(system.mean_stiffness + penalty, system.load)
+    for contact in system.contacts:
+        force = contact.contact.mean_stiffness * float(contact.direction @ q)
+        if contact.drives and force < -_PUSHED * contact.contact.mean_stiffness * float(
+            np.abs(contact.direction) @ np.abs(q)
+        ):
+            raise CouplingError(
+                f"the torque pulls the flanks of {contact.name} apart with {-force:.5g} N and nothing stops them: the "
+                "driver is driven, and without backlash its back flanks never meet; give the pair a backlash, or turn "
+                "the sign of the torque or of the speed"
+            )
+
+
+def load_balances(system: CoupledSystem) -> bool:
+    """Whether the constant load does no work in any motion that nothing resists."""
+    rigid, _ = system.unresisted_motions
+    driven = rigid.T @ system.load
+    # Beside a load that balances in itself, and beside the rounding of what a motion is.
+    scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _ROUNDING * np.linalg.norm(system.load)
+    return not np.any(np.abs(driven) > scale)
 
 
 def _out_of_balance(

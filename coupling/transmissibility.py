@@ -120,7 +120,13 @@ def sensor_force_response(
     return _named(machine, state, frequencies, moved, f"force at {sensor}", "N")
 
 
-def unbalance_response(machine: Machine, speeds: Sequence[float] | FloatArray, *, rotor: str) -> FrequencyResponse:
+def unbalance_response(
+    machine: Machine,
+    speeds: Sequence[float] | FloatArray,
+    *,
+    rotor: str,
+    contact: ContactState | None = None,
+) -> FrequencyResponse:
     """Response to all unbalances of a rotor as they are, over the speed of the leading rotor, about the mean contact.
 
     The machine is coupled anew at each speed: gyroscopic terms and bearings with tables follow.
@@ -131,6 +137,8 @@ def unbalance_response(machine: Machine, speeds: Sequence[float] | FloatArray, *
     speeds : sequence of float
         Of the leading rotor [rad/s], none 0.
     rotor : str
+    contact : ContactState, optional
+        At every speed; the mean contact under the machine's load where not given.
 
     Returns
     -------
@@ -148,6 +156,7 @@ def unbalance_response(machine: Machine, speeds: Sequence[float] | FloatArray, *
     frequencies = np.array([one.speeds[rotor] for one in turned])
     if np.any(frequencies == 0.0):
         raise CouplingError("a speed of 0, where an unbalance has no force; expected others")
+    state = mean_contact(turned[0].system) if contact is None else contact
     number = [part.name for part in machine.system.components].index(rotor)
     rows = _rows_of(machine.system, number)
     parts = []
@@ -158,10 +167,8 @@ def unbalance_response(machine: Machine, speeds: Sequence[float] | FloatArray, *
             np.zeros(one.system.size, dtype=np.complex128),
         )
         alone = np.where(rows, load, 0.0)
-        moved = response(one.system, alone[None, None, :], np.array([w]))[:, 0]
-        parts.append(
-            _named(one, mean_contact(one.system), np.array([w]), moved, f"unbalance of {rotor}", "unbalance as it is")
-        )
+        moved = response(one.system, alone[None, None, :], np.array([w]), state)[:, 0]
+        parts.append(_named(one, state, np.array([w]), moved, f"unbalance of {rotor}", "unbalance as it is"))
     first = parts[0]
     return FrequencyResponse(
         excitation=first.excitation,

@@ -55,7 +55,7 @@ from coupling.gears.hunting import hunting_mesh
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
 from coupling.gears.modifications import RootRelief, TipRelief
-from coupling.gears.optimal_relief import ReliefOptimum, optimal_tip_relief
+from coupling.gears.optimal_relief import PeakToPeak, ReliefAim, ReliefOptimum, WeightedHarmonics, optimal_tip_relief
 from coupling.gears.outline import gear_outline, meshing_rotations, pair_outlines
 from coupling.gears.pair_curves import PairCurves
 from coupling.gears.pair_geometry import GearPairGeometry
@@ -132,10 +132,12 @@ __all__ = [
     "PairCurves",
     "PairStates",
     "PathOfContact",
+    "PeakToPeak",
     "PiecewiseCubic",
     "PointedToothError",
     "PotentialEnergyStiffness",
     "ProfileDeviation",
+    "ReliefAim",
     "ReliefOptimum",
     "RootRelief",
     "RootSection",
@@ -156,6 +158,7 @@ __all__ = [
     "UndercutError",
     "Wear",
     "WeberBanaschekStiffness",
+    "WeightedHarmonics",
     "back_flank_pitch_gaps",
     "chordal_thickness",
     "contact_curvature_radius",

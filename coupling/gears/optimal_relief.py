@@ -1,9 +1,11 @@
-"""Tip relief that makes the transmission error least: how much, and from where."""
+"""Optimal tip relief: amount and length that make the transmission error, or what follows from it, least."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -12,10 +14,11 @@ from scipy.optimize import minimize
 from coupling.gears.errors import GearError, require_finite
 from coupling.gears.face_slices import FaceSlices
 from coupling.gears.gear_contact import tooth_contact
+from coupling.gears.harris_map import transmission_error_harmonics
 from coupling.gears.modifications import ReliefShape, TipRelief
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
-from coupling.gears.static import static_transmission_error
+from coupling.gears.static import StaticMesh, mesh_period_phases, static_transmission_error
 from coupling.gears.stiffness_models import StiffnessModel
 from coupling.gears.tooth_contact import ToothContact
 
@@ -23,10 +26,62 @@ FloatArray = npt.NDArray[np.float64]
 
 _GRID = 14
 _POINTS = 128
+_HIGHEST = 32
+"""Multiple of the mesh frequency that an aim may weigh."""
 _LONGEST = 0.95
 """In halves of the path of contact: how far the relief may reach from the tip."""
 _DEEPEST = 3.0
 """In mean deflections at the largest load: how deep the relief may be."""
+
+
+class ReliefAim(Protocol):
+    """What a relief is to make least, of the loaded transmission error over one mesh period."""
+
+    def of(self, mesh: StaticMesh) -> float:
+        """Value at a loaded mesh, at least 0."""
+
+
+@dataclass(frozen=True)
+class PeakToPeak:
+    """Aim at the peak-to-peak transmission error [m]."""
+
+    def of(self, mesh: StaticMesh) -> float:
+        """Peak-to-peak transmission error [m]."""
+        return mesh.peak_to_peak_transmission_error
+
+
+@dataclass(frozen=True)
+class WeightedHarmonics:
+    """Aim at √(Σ (w_n e_n)²), e_n the amplitude of the transmission error at the n-th multiple of the mesh frequency.
+
+    With weights |H_n| / √2, H_n the transmissibility from the transmission error to a sensor, it is the root mean
+    square there.
+
+    Attributes
+    ----------
+    weights : mapping of int to float
+        w_n by n from 1; at least one above 0.
+
+    Raises
+    ------
+    GearError
+        For weights that are negative, not finite or all 0, or multiples that are not from 1 to 32.
+    """
+
+    weights: Mapping[int, float]
+
+    def __post_init__(self) -> None:
+        for multiple, weight in self.weights.items():
+            if not 1 <= multiple <= _HIGHEST:
+                raise GearError(f"relief aim: multiples of the mesh frequency must be 1 to {_HIGHEST}, got {multiple}")
+            require_finite(f"relief aim: the weight of multiple {multiple}", weight, minimum=0.0)
+        if not any(self.weights.values()):
+            raise GearError("relief aim: at least one multiple of the mesh frequency must have a weight above 0")
+
+    def of(self, mesh: StaticMesh) -> float:
+        """Weighted root of the sum of squares, in metres times the weights' unit."""
+        amplitudes = transmission_error_harmonics(mesh, max(self.weights))
+        return math.sqrt(sum((weight * amplitudes[n - 1]) ** 2 for n, weight in self.weights.items()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,10 +90,14 @@ class ReliefOptimum:
 
     Attributes
     ----------
-    relief : TipRelief
-        By its length along the line of action.
+    relief : TipRelief or None
+        By its length along the line of action; None where none that was tried is better than no relief.
     geometry : GearPairGeometry
         The pair with it.
+    value : ndarray, shape (f,)
+        What is aimed at with it, at each load.
+    value_unmodified : ndarray, shape (f,)
+        The same without any tip relief: its largest is never below that of `value`.
     peak_to_peak : ndarray, shape (f,)
         Transmission error with it at each load [m].
     unmodified : ndarray, shape (f,)
@@ -46,11 +105,13 @@ class ReliefOptimum:
     amounts, lengths : ndarray, shapes (a,), (l,)
         Tried on a grid [m].
     tried : ndarray, shape (a, l)
-        Largest peak to peak over the loads there [m].
+        Largest value over the loads there.
     """
 
-    relief: TipRelief
+    relief: TipRelief | None
     geometry: GearPairGeometry
+    value: FloatArray
+    value_unmodified: FloatArray
     peak_to_peak: FloatArray
     unmodified: FloatArray
     amounts: FloatArray
@@ -76,11 +137,14 @@ def optimal_tip_relief(
     shape: ReliefShape = "linear",
     corner_contact: bool = True,
     faces: FaceSlices | None = None,
+    searched_faces: FaceSlices | None = None,
+    aim: ReliefAim | None = None,
 ) -> ReliefOptimum:
-    """Tip relief of both gears with the least transmission error, the largest over the given loads.
+    """Tip relief of both gears that makes an aim least, its largest value over the given loads.
 
-    Amount and length are tried on a grid, and the best place of it is improved by the method of Nelder and Mead. Any
-    tip relief that the gears have is replaced; their other modifications and deviations stay.
+    Amount and length are tried on a grid, and the best place of it is improved by the method of Nelder and Mead. The
+    best is held against no relief at all, and given only where it is better. Any tip relief that the gears have is
+    replaced; their other modifications and deviations stay.
 
     Parameters
     ----------
@@ -91,6 +155,10 @@ def optimal_tip_relief(
     shape : {"linear", "parabolic"}
     corner_contact, faces
         As for `tooth_contact`.
+    searched_faces : FaceSlices or None
+        Coarser slices of the same face for the search alone; the result is that of `faces`.
+    aim : ReliefAim or None
+        `PeakToPeak` where not given.
 
     Raises
     ------
@@ -102,28 +170,36 @@ def optimal_tip_relief(
     for force in forces:
         require_finite("optimal relief: the load", force, minimum=0.0, strict=True)
     stiffness = _Known(model.pair_stiffness(geometry))
-    phases = np.arange(_POINTS) / _POINTS
 
-    def contact_of(relief: TipRelief | None) -> tuple[GearPairGeometry, ToothContact]:
+    target: ReliefAim = PeakToPeak() if aim is None else aim
+
+    def contact_of(
+        relief: TipRelief | None, slices: FaceSlices | None = faces
+    ) -> tuple[GearPairGeometry, ToothContact]:
         pair = replace(
             geometry,
             driver=replace(geometry.driver, tip_relief=relief),
             driven=replace(geometry.driven, tip_relief=relief),
         )
-        return pair, tooth_contact(pair, stiffness, corner_contact=corner_contact, faces=faces)
+        return pair, tooth_contact(pair, stiffness, corner_contact=corner_contact, faces=slices)
 
-    def swings(contact: ToothContact) -> FloatArray:
-        return np.array([static_transmission_error(contact, f, phases).peak_to_peak_transmission_error for f in forces])
+    def meshes(contact: ToothContact) -> list[StaticMesh]:
+        # Both sides of each step and every corner of this contact are among the phases.
+        at = mesh_period_phases(contact, _POINTS)
+        states = contact.pairs(at)
+        return [static_transmission_error(contact, force, at, states=states) for force in forces]
 
     def worst(amount: float, length: float) -> float:
         inside = 0.0 <= amount <= deepest and shortest <= length <= longest
         if not inside:
             return float("inf")
-        return float(swings(contact_of(TipRelief(amount, length=length, shape=shape))[1]).max())
+        _, contact = contact_of(TipRelief(amount, length=length, shape=shape), coarse)
+        return max(target.of(mesh) for mesh in meshes(contact))
 
-    _, plain = contact_of(None)
+    coarse = faces if searched_faces is None else searched_faces
+    bare, plain = contact_of(None)
     # Counted from first touch, which a crown or a deviation puts before or after nominal motion.
-    loaded, unloaded = (static_transmission_error(plain, force, phases) for force in (max(forces), 0.0))
+    loaded, unloaded = (static_transmission_error(plain, force) for force in (max(forces), 0.0))
     deflection = loaded.mean_transmission_error - unloaded.mean_transmission_error
     longest = _LONGEST * 0.5 * geometry.path_length
     shortest, deepest = 0.05 * longest, _DEEPEST * deflection
@@ -136,6 +212,14 @@ def optimal_tip_relief(
 
     start = np.array([amounts[row] / deepest, lengths[column] / longest])
     found = minimize(scaled, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-12, "maxfev": 200})
-    relief = TipRelief(float(found.x[0] * deepest), length=float(found.x[1] * longest), shape=shape)
+    relief: TipRelief | None = TipRelief(float(found.x[0] * deepest), length=float(found.x[1] * longest), shape=shape)
     pair, contact = contact_of(relief)
-    return ReliefOptimum(relief, pair, swings(contact), swings(plain), amounts, lengths, tried)
+    # The judgement is by all slices of the face, for which the search may be too coarse.
+    with_it, without = meshes(contact), meshes(plain)
+    value, value_without = (np.array([target.of(mesh) for mesh in each]) for each in (with_it, without))
+    if not value.max() < value_without.max():
+        relief, pair, with_it, value = None, bare, without, value_without
+    swings, swings_without = (
+        np.array([mesh.peak_to_peak_transmission_error for mesh in each]) for each in (with_it, without)
+    )
+    return ReliefOptimum(relief, pair, value, value_without, swings, swings_without, amounts, lengths, tried)

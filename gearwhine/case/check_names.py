@@ -47,6 +47,10 @@ def check_names(draft: Draft) -> Iterator[Finding]:
     for index, pair in draft.raw_entries("gear_pair"):
         for key in ("driver", "driven"):
             yield from _check_reference(pair, ("gear_pair", index, key), "gear", gears)
+        sensors = draft.names("housing", "sensor")
+        yield from _check_reference(
+            pair.get("relief_aim"), ("gear_pair", index, "relief_aim", "sensor"), "sensor", sensors
+        )
     for keys in (_PROBES, _TORSION_PROBES, (*_TORSION, "torques"), (*_TORSION, "springs")):
         for index, entry in draft.raw_entries(*keys):
             yield from _check_reference(entry, (*keys, index, "rotor"), "rotor", rotors)

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from gearwhine.case.check_shafts import check_station
 from gearwhine.case.draft import Draft
+from gearwhine.case.gears import GearPair
 from gearwhine.case.model import Case
 from gearwhine.case.motion import pair_torques
 from gearwhine.case.problems import NOTHING, UNSAID, Finding
@@ -116,7 +117,7 @@ def _check_balance(operation: Operation, ratios: Mapping[str, Fraction]) -> Iter
     if not operation.output:
         return
     taken = sum(output.torque * abs(float(ratios[output.rotor])) for output in operation.output)
-    if abs(taken - operation.torque) > LARGEST_IMBALANCE * max(operation.torque, taken):
+    if abs(taken - operation.torque) > LARGEST_IMBALANCE * max(abs(operation.torque), abs(taken)):
         expected = (
             f"outputs that balance the input torque of {operation.torque:g} N*m; through the tooth ratios they "
             f"amount to {taken:g} N*m"
@@ -133,7 +134,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
     for shaft, place in first.items():
         entering = operation.torque if place == 0 else 0.0
         taken = sum(output.torque for output in operation.output if output.rotor == shaft)
-        if abs(taken - entering) > LARGEST_IMBALANCE * max(entering, taken):
+        if abs(taken - entering) > LARGEST_IMBALANCE * max(abs(entering), abs(taken)):
             expected = (
                 f'torques that balance on {kind} "{shaft}", as no gear pair leads to or from it; it takes in '
                 f"{entering:g} N*m and gives out {taken:g} N*m"
@@ -152,7 +153,20 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
         gear_pair=tuple(pair for _, pair in draft.gear_pairs),
         operation=operation,
     )
-    for (index, _), torque in zip(draft.gear_pairs, pair_torques(turning), strict=True):
-        if torque < -_NO_TORQUE * operation.torque:
+    sense = 1.0 if operation.torque > 0.0 else -1.0
+    for (index, pair), torque in zip(draft.gear_pairs, pair_torques(turning), strict=True):
+        if sense * torque < -_NO_TORQUE * abs(operation.torque):
             expected = "power to flow from driver to driven; swap the two names"
             yield Finding(("gear_pair", index), expected, UNSAID)
+        elif torque < -_NO_TORQUE * abs(operation.torque) and not _has_backlash(turning, pair):
+            expected = (
+                "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet "
+                "without one"
+            )
+            yield Finding(("gear_pair", index, "backlash"), expected, NOTHING)
+
+
+def _has_backlash(case: Case, pair: GearPair) -> bool:
+    """Whether a backlash is given, or the teeth are thinned for one."""
+    thinned = any(case.gear_named(name).tooth_thinning > 0.0 for name in (pair.driver, pair.driven))
+    return pair.backlash is not None or thinned

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from gearwhine.case.analysis import HarmonicTorque, Probe, TorsionProbe, TorsionSpring
 from gearwhine.case.draft import Draft
 from gearwhine.case.housing import Seat
-from gearwhine.case.problems import Finding, Location
+from gearwhine.case.problems import UNSAID, Finding, Location
 from gearwhine.case.rotors import Rotor
 from gearwhine.case.shafts import Bearing
 
@@ -76,7 +76,13 @@ def check_station(rotor: Rotor, at: float, location: Location) -> Iterator[Findi
 
 
 def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
-    """Yield points of a bow where another one stands already."""
+    """Yield a bow of one point, which bends nothing, and points of a bow where another one stands already."""
+    if len(rotor.bow) == 1:
+        expected = (
+            "two points or more: the centre line through one is straight and bends no shaft; add the points that stay "
+            "on the axis, such as the bearings', with an amplitude of 0"
+        )
+        yield Finding(("rotor", index, "bow"), expected, UNSAID)
     for place, point in enumerate(rotor.bow):
         if any(abs(point.at - other.at) <= NEAREST_POINTS * rotor.length for other in rotor.bow[:place]):
             yield Finding(

@@ -31,6 +31,7 @@ Module = Annotated[float, Quantity(units.LENGTH, at_least=1e-5, at_most=0.2)]
 DiametralPitch = Annotated[float, Quantity(units.DIAMETRAL_PITCH, at_least=5.0, at_most=1e5)]
 Misalignment = Annotated[float, Quantity(units.ANGLE, at_least=-0.1, at_most=0.1)]
 FrictionCoefficient = Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=0.5)]
+HarmonicWeight = Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=1e6)]
 ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
 
 
@@ -160,15 +161,46 @@ class ToothStiffness(Table):
         return self
 
 
+class ReliefAim(Table):
+    """What the best tip relief is to make least, in place of the peak-to-peak transmission error.
+
+    `harmonics`: weights of the transmission error's amplitudes by the multiple of the mesh frequency. With `sensor` the
+    level there, by the transmissibility, of those multiples, or of all below the model's limit.
+    """
+
+    harmonics: Annotated[dict[str, HarmonicWeight], Field(default_factory=dict, max_length=32)]
+    sensor: Name | None = None
+
+    @model_validator(mode="after")
+    def _has_an_aim(self) -> ReliefAim:
+        for key in self.harmonics:
+            if not (key.isdecimal() and 1 <= int(key) <= 32):
+                raise wrong(
+                    "multiples of the mesh frequency from 1 to 32 as keys, such as { 1 = 1, 2 = 0.5 }", "harmonics"
+                )
+        if self.sensor is None and not self.harmonics:
+            raise wrong("'harmonics' with weights, or 'sensor'")
+        if self.harmonics and not any(self.harmonics.values()):
+            raise wrong("at least one weight above 0", "harmonics")
+        return self
+
+    @property
+    def weights(self) -> dict[int, float]:
+        """Weight by multiple of the mesh frequency."""
+        return {int(key): weight for key, weight in sorted(self.harmonics.items(), key=lambda one: int(one[0]))}
+
+
 class GearPair(Table):
     """`[[gear_pair]]`: two gears by name, and their contact.
 
     `damping` [N s/m] stands in place of `damping_ratio`. `corner_contact`: whether teeth touch beyond their path of
     contact, where a load closes the gap to a corner; None: where the stiffness model is one of pairs of teeth.
     `misalignment` [rad] is the angle between the flanks in the plane of action, open towards +z.
-    `backlash` [m] is measured along the line of action; None: the back flanks never touch. `centre_distance`
+    `backlash` [m] is measured along the line of action; None: that of thicknesses and distance, and where these leave
+    none the back flanks never touch. `centre_distance`
     [m] is checked against the rotors' axes, and needed only in a case without rotors where it is not nominal.
-    `friction` is the coefficient of friction between the teeth, in the transient.
+    `friction` is the coefficient of friction between the teeth, in the transient. `relief_aim` is what `gears` seeks
+    the best tip relief for; None: the peak-to-peak transmission error.
     """
 
     driver: Name
@@ -181,6 +213,7 @@ class GearPair(Table):
     backlash: LengthFromZero | None = None
     centre_distance: PositiveLength | None = None
     friction: FrictionCoefficient = 0.0
+    relief_aim: ReliefAim | None = None
 
     @model_validator(mode="after")
     def _slides(self) -> GearPair:

@@ -20,11 +20,10 @@ from gearwhine.case.fields import (
     Speed,
     SpeedFromZero,
     Table,
-    Torque,
     Whole,
     wrong,
 )
-from gearwhine.case.torques import Run, TorqueHistory, TorqueLine, TorqueRipple
+from gearwhine.case.torques import Run, SignedTorque, TorqueHistory, TorqueLine, TorqueRipple
 
 
 class Output(Table):
@@ -34,7 +33,7 @@ class Output(Table):
     """
 
     rotor: Name
-    torque: Torque
+    torque: SignedTorque
     at: LengthFromZero | None = None
     over_time: TorqueHistory | None = None
     ripple: tuple[TorqueRipple, ...] = Field(default=(), max_length=MOST_ENTRIES)
@@ -43,8 +42,9 @@ class Output(Table):
 class Operation(Table):
     """`[operation]`: speed [rad/s] and torque [N m] of the first driver's rotor.
 
-    Positive speeds are counter-clockwise seen from +z. The torque drives in the direction of turning, at station
-    `at` [m] (None: the left end). Without outputs, the rotors that drive no other share the power equally.
+    Positive speeds are counter-clockwise seen from +z. The torque drives in the direction of turning, or brakes where
+    it is negative, at station `at` [m] (None: the left end). Without outputs, the rotors that drive no other share the
+    power equally.
     `over_time` is added to the torque, and the outputs take it in their proportions unless one has its own; `ripple`
     swings about it. `motor` and `load` are torque over speed of a run whose speed is free: what drives, and what
     the outputs together take, both at the first driver's rotor (without `load`: `torque`, whatever the speed).
@@ -52,7 +52,7 @@ class Operation(Table):
     """
 
     speed: Speed
-    torque: Torque = 0.0
+    torque: SignedTorque = 0.0
     at: LengthFromZero | None = None
     over_time: TorqueHistory | None = None
     ripple: tuple[TorqueRipple, ...] = Field(default=(), max_length=MOST_ENTRIES)

@@ -146,13 +146,35 @@ def _relief(pair: dict[str, Any]) -> list[str]:
             lines.append(f"  it is quietest near {quietest:.3g} N·m")
     else:
         lines = [f"Without relief {given:.2f} µm peak to peak {at}{alike}"]
+    aim = best["aim"]
+    if best["length_m"] is None:
+        return [*lines, f"No tip relief, the same on both gears, lowers the {_aim(aim)}: leave it out"]
     starts = [math.degrees(best[f"{side}_start_roll_angle_rad"]) for side in ("driver", "driven")]
     text = (
         f"{_MM * best['amount_m']:.4f} mm on both gears from {_alike(starts, '.2f', '°')} of roll, over "
         f"{_MM * best['length_m']:.2f} mm of the line of action: {least:.2f} µm"
     )
+    if aim["kind"] != "peak-to-peak":
+        lines.append(
+            f"Aim, the {_aim(aim)}: {_value(aim, 'without_relief')} without relief, {_value(aim, 'best')} with the best"
+        )
+        return [*lines, f"Best {best['shape']} relief: {text} peak to peak"]
     close = least > _WORTH_IT * given
     return [*lines, f"Hardly better would be {text}" if close else f"Best {best['shape']} relief: {text}"]
+
+
+def _aim(aim: dict[str, Any]) -> str:
+    """What the relief is sought for."""
+    if aim["kind"] == "peak-to-peak":
+        return "peak-to-peak transmission error"
+    if aim["kind"] == "sensor":
+        return f"level at {aim['sensor']}, rms over the multiples of the mesh frequency"
+    weights = ", ".join(f"{weight:.4g} at {n}" for n, weight in aim["weights"].items())
+    return f"weighted harmonics of the mesh frequency ({weights})"
+
+
+def _value(aim: dict[str, Any], key: str) -> str:
+    return f"{aim[key]:.4g} m/s²" if aim["kind"] == "sensor" else f"{_MICRO * aim[key]:.3f} µm"
 
 
 def _given(pair: dict[str, Any]) -> str:

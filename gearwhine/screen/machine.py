@@ -21,8 +21,9 @@ def show_run(document: dict[str, Any]) -> None:
     if "compare" in document:
         comparison_table(console, document["compare"])
     for pair in document.get("gear_pairs", ()):
+        side = " on its back flanks" if pair.get("flanks") == "back" else ""
         console.print(
-            f"Gear mesh {pair['driver']} → {pair['driven']}: mean force {pair['mean_force_n']:.0f} N, "
+            f"Gear mesh {pair['driver']} → {pair['driven']}{side}: mean force {pair['mean_force_n']:.0f} N, "
             f"peak {pair['peak_force_n']:.0f} N, apart {percent(pair['contact_loss_fraction'])} of the time"
         )
         if pair.get("friction"):

@@ -22,6 +22,8 @@ def show_system(document: dict[str, Any]) -> None:
     phase = document.get("mesh_phase")
     about = "" if phase is None else f", the first pair's teeth at {phase:g} of their period"
     console.print(f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm{about}")
+    for mesh in document.get("mesh_stiffness", ()):
+        console.print(_mesh_stiffness(mesh))
     console.print(_modes_table(shown))
     console.print("Shares of the kinetic energy; teeth: share of the strain energy.")
     if any(mode["kind"] == "residual" for mode in shown):
@@ -43,6 +45,14 @@ def show_system(document: dict[str, Any]) -> None:
         _show_crossings(console, campbell)
     show_origin(console, document)
     show_written(console, document)
+
+
+def _mesh_stiffness(mesh: dict[str, Any]) -> str:
+    """Which mesh stiffness the modes are about, and the mean without load beside it."""
+    taken, unloaded = 1e-6 * mesh["stiffness_n_per_m"], 1e-6 * mesh["unloaded_mean_n_per_m"]
+    under = f" of {mesh['force_n']:.5g} N" if mesh["force_n"] else ""
+    beside = "" if mesh["taken"] == "mean without load" else f"; mean without load {unloaded:.4g} N/µm"
+    return f"Mesh stiffness of {mesh['name']}: {taken:.4g} N/µm, {mesh['taken']}{under}{beside}."
 
 
 def _modes_table(shown: list[dict[str, Any]]) -> Table:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 import coupling.gears as room
 from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.gear_shapes import doubts, gear_document, path_document, relief_document
-from gearwhine.stages.gears import SolvedPair
+from gearwhine.stages.gears import SolvedPair, backlash_doubts
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -18,8 +18,13 @@ _MOST_YIELDING = 0.1
 
 def gears_document(pairs: tuple[PairAnalysis, ...]) -> dict[str, Any]:
     """The gear pairs as the command's JSON."""
-    warnings = [doubt for pair in pairs for doubt in [*doubts(pair.solved.geometry), *_left_out(pair)]]
+    warnings = [doubt for pair in pairs for doubt in _all_doubts(pair)]
     return {"pairs": [_pair_document(pair) for pair in pairs]} | ({"warnings": warnings} if warnings else {})
+
+
+def _all_doubts(pair: PairAnalysis) -> list[dict[str, str]]:
+    geometry = pair.solved.geometry
+    return [*doubts(geometry), *backlash_doubts(pair.solved.given, geometry), *_left_out(pair)]
 
 
 def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
@@ -35,7 +40,7 @@ def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
         "total_contact_ratio": geometry.total_contact_ratio,
         "centre_distance_m": geometry.working_centre_distance,
         "working_pressure_angle_rad": geometry.working_pressure_angle,
-        "backlash_m": solved.given.backlash,
+        "backlash_m": solved.backlash,
         "mesh_frequency_hz": solved.mesh_frequency,
         "torque_n_m": solved.torque,
         "mean_force_n": solved.static.force,
@@ -147,11 +152,22 @@ def _harris_map(geometry: room.GearPairGeometry, harris: room.HarrisMap) -> dict
 def _optimum(pair: PairAnalysis, optimum: room.ReliefOptimum) -> dict[str, Any]:
     """The relief that suits the torque, beside that of the case and none at all."""
     gears = pair.solved.geometry.driver, pair.solved.geometry.driven
-    starts = (relief_document(gear, optimum.relief)["start_roll_angle_rad"] for gear in gears)
+    relief, given = optimum.relief, pair.solved.given.relief_aim
+    starts = (None if relief is None else relief_document(gear, relief)["start_roll_angle_rad"] for gear in gears)
+    kind = "peak-to-peak" if given is None else "harmonics" if given.sensor is None else "sensor"
+    unit = "m/s^2" if kind == "sensor" else "m"
     return {
-        "shape": optimum.relief.shape,
-        "amount_m": optimum.relief.amount,
-        "length_m": optimum.relief.length,
+        "aim": {
+            "kind": kind,
+            "sensor": None if given is None else given.sensor,
+            "weights": None if given is None else {str(n): weight for n, weight in given.weights.items()},
+            "unit": unit,
+            "without_relief": float(optimum.value_unmodified[0]),
+            "best": float(optimum.value[0]),
+        },
+        "shape": None if relief is None else relief.shape,
+        "amount_m": 0.0 if relief is None else relief.amount,
+        "length_m": None if relief is None else relief.length,
         **dict(zip(("driver_start_roll_angle_rad", "driven_start_roll_angle_rad"), starts, strict=True)),
         "torque_n_m": pair.solved.torque,
         "peak_to_peak_m": float(optimum.peak_to_peak[0]),

@@ -17,16 +17,21 @@ _SEARCHED_SLICES = 21  # of a face, while the best relief is sought
 _LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # of the case's torque, in a Harris map
 
 
-def over_torques(pairs: Sequence[PairAnalysis], progress: Progress = silent) -> tuple[PairAnalysis, ...]:
-    """The same pairs with their Harris maps and optimal reliefs, where the case has a torque."""
+def over_torques(
+    pairs: Sequence[PairAnalysis], progress: Progress = silent, aims: Sequence[room.ReliefAim] = ()
+) -> tuple[PairAnalysis, ...]:
+    """The same pairs with their Harris maps and optimal reliefs, where the case has a torque.
+
+    ``aims`` are those of the reliefs, one for each pair; all peak to peak where not given.
+    """
     found = []
-    for pair in pairs:
+    for pair, aim in zip(pairs, aims or [room.PeakToPeak()] * len(pairs), strict=True):
         if pair.solved.static.force > 0.0:
             progress(f"Harris map of {pair.label}")
             pair = replace(pair, harris=_harris_map(pair.solved))
             if pair.solved.has_single_pairs:
                 progress(f"best tip relief of {pair.label}")
-                pair = replace(pair, optimum=_best_relief(pair.solved))
+                pair = replace(pair, optimum=_best_relief(pair.solved, aim))
         found.append(pair)
     return tuple(found)
 
@@ -40,28 +45,20 @@ def _harris_map(pair: SolvedPair) -> room.HarrisMap:
     return room.harris_map(contact, pair.static.force * np.linspace(_LEAST, _MOST, _TORQUES))
 
 
-def _best_relief(pair: SolvedPair) -> room.ReliefOptimum:
+def _best_relief(pair: SolvedPair, aim: room.ReliefAim) -> room.ReliefOptimum:
     given = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
     geometry, force, faces = _alike(pair.geometry), pair.static.force, pair.contact.faces
     corners = pair.contact.has_corners
-    found = room.optimal_tip_relief(
+    return room.optimal_tip_relief(
         geometry,
         pair.model,
         [force],
         shape="linear" if given is None else given.shape,
         corner_contact=corners,
-        faces=None if faces is None else coarser_faces(faces, _SEARCHED_SLICES),
+        faces=faces,
+        searched_faces=None if faces is None else coarser_faces(faces, _SEARCHED_SLICES),
+        aim=aim,
     )
-    if faces is None:
-        return found
-
-    def swing(relief: room.TipRelief | None) -> FloatArray:
-        driver, driven = (replace(gear, tip_relief=relief) for gear in (geometry.driver, geometry.driven))
-        relieved = replace(geometry, driver=driver, driven=driven)
-        contact = room.tooth_contact(relieved, pair.model, corner_contact=corners, faces=faces)
-        return np.array([room.static_transmission_error(contact, force).peak_to_peak_transmission_error])
-
-    return replace(found, peak_to_peak=swing(found.relief), unmodified=swing(None))
 
 
 def coarser_faces(faces: room.FaceSlices, count: int) -> room.FaceSlices:

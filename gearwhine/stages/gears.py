@@ -27,6 +27,10 @@ FloatArray = npt.NDArray[np.float64]
 
 # The mesh's damping is all there from this part of the mean compression on.
 _FADING = 0.1
+# In modules: backlash below it is the rounding of printed sizes.
+_ROUNDED = 1e-3
+# Part of the geometry's backlash by which a given one may differ without a word.
+_DIFFERS = 0.1
 
 
 @dataclass(frozen=True)
@@ -64,6 +68,11 @@ class SolvedPair:
         return self.static.force * self.geometry.driver.base_radius
 
     @property
+    def backlash(self) -> float | None:
+        """Gap of the back flanks along their line of action [m]; None where they never meet."""
+        return pair_backlash(self.given, self.geometry)
+
+    @property
     def has_single_pairs(self) -> bool:
         """Whether the model is of pairs of teeth, which share the load, or of the mesh as one spring."""
         return math.isclose(self.contact.contact_ratio, self.geometry.contact_ratio, rel_tol=1e-9)
@@ -92,9 +101,10 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
             corner_contact=meets_with_corners(pair),
             faces=uneven_faces(case, pair, geometry),
         )
-        depth = _FADING * force / contact.mean_stiffness
-        contact = contact.with_damping(_damping(case, pair, contact), depth)
         static = room.static_transmission_error(contact, force)
+        # The ratio is of the mesh as it vibrates about its mean load, as linear analyses take it.
+        mean_stiffness = static.mean_stiffness if force > 0.0 else contact.mean_stiffness
+        contact = contact.with_damping(_damping(case, pair, mean_stiffness), _FADING * force / contact.mean_stiffness)
         hunting = room.hunting_mesh(contact, force) if contact.hunting_period > 1 else None
         solved.append(SolvedPair(pair, geometry, model, contact, static, hunting, frequency))
     return tuple(solved)
@@ -115,6 +125,32 @@ def uneven_faces(case: Case, pair: GivenPair, geometry: room.GearPairGeometry) -
         return None
     speed = rotor_speeds(case)[shaft_of(case.gear_named(pair.driver))] if case.operation else 1.0
     return room.face_slices(geometry, sense=1 if speed >= 0.0 else -1, misalignment=pair.misalignment)
+
+
+def pair_backlash(pair: GivenPair, geometry: room.GearPairGeometry) -> float | None:
+    """The backlash of the case, else that of the teeth's thickness and the shafts' distance; None where there is none.
+
+    Less than the rounding of printed sizes is none: nominal gears at their nominal distance have teeth as thick as the
+    spaces, and no allowance from which a backlash would follow.
+    """
+    if pair.backlash is not None:
+        return pair.backlash
+    return geometry.backlash if geometry.backlash > _ROUNDED * geometry.driver.module else None
+
+
+def backlash_doubts(pair: GivenPair, geometry: room.GearPairGeometry) -> list[dict[str, str]]:
+    """A warning where the given backlash is not the one that thicknesses and distance of the shafts say."""
+    made = geometry.backlash
+    if pair.backlash is None or made <= _ROUNDED * geometry.driver.module:
+        return []
+    if abs(pair.backlash - made) <= _DIFFERS * made:
+        return []
+    message = (
+        f"{geometry.label}: the backlash of {1e3 * pair.backlash:.4g} mm is not the {1e3 * made:.4g} mm that the "
+        "thickness of the teeth and the distance of the shafts leave along the line of action; leave 'backlash' out "
+        "for that"
+    )
+    return [{"name": "backlash", "message": message}]
 
 
 def pair_geometries(case: Case) -> tuple[room.GearPairGeometry, ...]:
@@ -173,7 +209,7 @@ def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
     return columns[0], columns[1]
 
 
-def _damping(case: Case, pair: GivenPair, contact: room.ToothContact) -> float:
+def _damping(case: Case, pair: GivenPair, mean_stiffness: float) -> float:
     """The mesh's damping coefficient [N s/m] from the ratio, with the inertia that sits where the gears do."""
     if pair.damping is not None:
         return pair.damping
@@ -186,7 +222,7 @@ def _damping(case: Case, pair: GivenPair, contact: room.ToothContact) -> float:
         build_gear(case, driver).base_radius,
         build_gear(case, driven).base_radius,
     )
-    return room.mesh_damping(pair.damping_ratio, contact.mean_stiffness, mass)
+    return room.mesh_damping(pair.damping_ratio, mean_stiffness, mass)
 
 
 def _inertia_at(case: Case, given: GivenGear) -> float:

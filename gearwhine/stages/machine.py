@@ -209,4 +209,4 @@ def _mesh(case: Case, pair: SolvedPair) -> room.GearMesh:
         assert gear.at is not None
         mounted.append(room.MountedGear(name, gear.rotor, gear.at, case.rotor_named(gear.rotor).axis))
     given = pair.given
-    return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, given.backlash, given.friction)
+    return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, pair.backlash, given.friction)

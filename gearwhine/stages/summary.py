@@ -22,7 +22,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.stages import mesh_health
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gear_shapes import doubts, geometry_document, pairs_document
-from gearwhine.stages.gears import pair_geometries
+from gearwhine.stages.gears import backlash_doubts, pair_geometries
 from gearwhine.stages.measured import measured_document
 
 _RPM = 60.0 / (2.0 * np.pi)
@@ -205,8 +205,8 @@ def _analysis(case: Case) -> list[dict[str, Any]]:
 def _add_gears(case: Case, document: dict[str, Any]) -> None:
     """Add the gear pairs, and warnings of their teeth to those there are."""
     document["gear_pairs"] = pairs_document(case)
-    for geometry, row in zip(pair_geometries(case), document["gear_pairs"], strict=True):
+    for pair, geometry, row in zip(case.gear_pair, pair_geometries(case), document["gear_pairs"], strict=True):
         row["stiffness_model"] = row.pop("model")
         row["geometry"] = geometry_document(geometry)
-        if found := doubts(geometry):
+        if found := [*doubts(geometry), *backlash_doubts(pair, geometry)]:
             document["warnings"] = [*document.get("warnings", ()), *found]

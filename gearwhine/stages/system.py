@@ -33,6 +33,8 @@ class SolvedSystem:
     machine : coupling.Machine
     mesh_phase : float or None
         Phase of the first mesh at which the contact stands; None for the mean contact.
+    contact : coupling.ContactState
+        About which the modes and the responses to mesh errors are.
     modes : coupling.CoupledModes
     stability : coupling.Stability
     responses : tuple of coupling.FrequencyResponse
@@ -49,6 +51,7 @@ class SolvedSystem:
 
     machine: room.Machine
     mesh_phase: float | None
+    contact: room.ContactState
     modes: room.CoupledModes
     stability: room.Stability
     responses: tuple[room.FrequencyResponse, ...]
@@ -95,7 +98,7 @@ def solve_system(
     contact = room.mean_contact(system) if mesh_phase is None else _instant(case, machine, mesh_phase)
     modes = room.coupled_modes(system, contact)
     responses, error = _mesh_responses(case, machine, housing, modes, contact)
-    solved = SolvedSystem(machine, mesh_phase, modes, room.stability(modes), responses, error)
+    solved = SolvedSystem(machine, mesh_phase, contact, modes, room.stability(modes), responses, error)
     return _over_speed(case, solved, housing, progress, sidebands) if over_speed else solved
 
 
@@ -183,6 +186,7 @@ def _over_speed(
     machine = solved.machine
     speeds = diagram_speeds(case)
     lines = room.excitation_lines(machine, sidebands=sidebands)
+    mean = solved.contact if solved.mesh_phase is None else room.mean_contact(machine.system)
     if housing is not None:
         limit = housing.modes.certificate.limit
     else:
@@ -194,6 +198,7 @@ def _over_speed(
         speeds,
         frequency_limit=limit,
         lines=lines,
+        contact=mean,
         progress=lambda fraction: progress("coupled modes over speed", fraction),
     )
     driven = list(dict.fromkeys(one.rotor for one in machine.unbalances if one.moment != 0.0))
@@ -203,5 +208,5 @@ def _over_speed(
         if machine.speeds[rotor] == 0.0:
             continue
         progress(f"response to the unbalance of {rotor}")
-        unbalance.append(room.unbalance_response(machine, turning, rotor=rotor))
+        unbalance.append(room.unbalance_response(machine, turning, rotor=rotor, contact=mean))
     return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning)

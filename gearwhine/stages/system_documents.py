@@ -25,6 +25,7 @@ def system_document(case: Case, solved: SolvedSystem, housing: SolvedHousing | N
     document: dict[str, Any] = {
         "speed_rpm": case.operation.speed * _RPM,
         "mesh_phase": solved.mesh_phase,
+        "mesh_stiffness": _mesh_stiffness(solved),
         "modes": [_mode(solved, i) for i in range(len(solved.modes.kinds))],
         "coordinates": solved.machine.system.size,
         "certificate": _certificate(solved.modes.certificate),
@@ -41,6 +42,33 @@ def system_document(case: Case, solved: SolvedSystem, housing: SolvedHousing | N
             _response(response, solved.unbalance_speeds * _RPM) for response in solved.unbalance
         ]
     return document
+
+
+def _mesh_stiffness(solved: SolvedSystem) -> list[dict[str, Any]]:
+    """The stiffness that each pressed flank is taken for, beside its mean without load."""
+    system, contact = solved.machine.system, solved.contact
+    unloaded = room.unloaded_contact(system).stiffness
+    found = []
+    for number, tooth in enumerate(system.contacts):
+        if not tooth.drives:
+            continue
+        force = None if contact.force is None else float(contact.force[number])
+        if force is None:
+            taken = "tangent at the mesh phase"
+        elif contact.stiffness[number] == 0.0:
+            taken = "parted by the mean load"
+        else:
+            taken = "mean under load" if force else "mean without load"
+        found.append(
+            {
+                "name": tooth.name,
+                "taken": taken,
+                "stiffness_n_per_m": float(contact.stiffness[number]),
+                "unloaded_mean_n_per_m": float(unloaded[number]),
+                "force_n": force,
+            }
+        )
+    return found
 
 
 def _mode(solved: SolvedSystem, i: int) -> dict[str, Any]:

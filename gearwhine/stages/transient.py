@@ -205,15 +205,17 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     drives = len(solved.machine.meshes)
     pairs = []
     for number, mesh in enumerate(solved.machine.meshes):
-        spectrum = solved.force_spectra[solved.machine.system.contacts[number].name]
+        pressed = _pressed_contact(solved, number, drives)
+        spectrum = solved.force_spectra[solved.machine.system.contacts[pressed].name]
         pairs.append(
             {
                 "driver": mesh.driver.name,
                 "driven": mesh.driven.name,
-                "mean_force_n": float(result.mean_force[number]),
-                "peak_force_n": float(result.peak_force[number]),
-                "contact_loss_fraction": float(result.contact_loss[number]),
-                "friction": _friction_document(solved, number),
+                "flanks": "drive" if pressed == number else "back",
+                "mean_force_n": float(result.mean_force[pressed]),
+                "peak_force_n": float(result.peak_force[pressed]),
+                "contact_loss_fraction": float(result.contact_loss[pressed]),
+                "friction": _friction_document(solved, pressed),
                 "back_flank_peak_force_n": _back_flank_peak(solved, number, drives),
                 "force_peaks": [
                     {"frequency_hz": peak.frequency, "amplitude_n": peak.amplitude} for peak in force_peaks(spectrum)
@@ -304,6 +306,13 @@ def _friction_document(solved: SolvedTransient, number: int) -> dict[str, float]
         "peak_power_w": float(found[:, 1].max()),
         "peak_force_n": float(np.abs(found[:, 0]).max()),
     }
+
+
+def _pressed_contact(solved: SolvedTransient, number: int, drives: int) -> int:
+    """Number of the contact of a mesh that its mean load presses: of the drive flanks, or of the back flanks."""
+    meshes, contacts = solved.machine.meshes, solved.machine.system.contacts
+    back = drives + sum(mesh.backlash is not None for mesh in meshes[:number])
+    return back if meshes[number].backlash is not None and contacts[back].drives else number
 
 
 def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float | None:

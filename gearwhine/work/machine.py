@@ -7,7 +7,14 @@ from typing import Any
 
 from gearwhine.case import Case, swept_keys
 from gearwhine.progress import Progress
-from gearwhine.stages import gear_analysis, gear_documents, gear_torques, housing_documents, rotor_documents
+from gearwhine.stages import (
+    gear_analysis,
+    gear_documents,
+    gear_torques,
+    housing_documents,
+    relief_aims,
+    rotor_documents,
+)
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
@@ -36,8 +43,9 @@ def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ro
 
 def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
     """The gear pairs, over torques too; with a folder, also as a results file and pictures."""
-    pairs = gear_analysis.analyse_pairs(case, gear_stage.solve_gears(case, progress))
-    pairs = gear_torques.over_torques(pairs, progress)
+    solved = gear_stage.solve_gears(case, progress)
+    aims = relief_aims.relief_aims(case, solved, progress, folder=folder)
+    pairs = gear_torques.over_torques(gear_analysis.analyse_pairs(case, solved), progress, aims)
 
     def write(place: Path) -> None:
         from gearwhine import figures, results

@@ -20,6 +20,7 @@ from coupling import (
     Unbalance,
     couple,
     coupled_modes,
+    mean_contact,
     rotor_component,
     static_equilibrium,
 )
@@ -353,3 +354,18 @@ def test_wrong_names() -> None:
         couple(both_rotors(), None, speeds={"input": 1.0})
     with pytest.raises(CouplingError, match="expected each name once"):
         couple([both_rotors()[0], both_rotors()[0]], None, speeds=speeds)
+
+
+def test_linear_analyses_stand_on_the_flanks_that_the_torque_presses() -> None:
+    """A machine that coasts is linear about its back flanks, under the same force along the mirrored line."""
+    reverse = machine(torque=-90.0, backlash=BACKLASH)
+    assert [contact.drives for contact in reverse.system.contacts] == [False, True]
+    force = 90.0 / PAIR.driver.base_radius
+    state = mean_contact(reverse.system)
+    np.testing.assert_allclose(state.stiffness, [0.0, MESH_STIFFNESS], rtol=1e-12)
+    np.testing.assert_allclose(state.force, [0.0, force], rtol=1e-6)
+
+
+def test_coasting_without_back_flanks_is_refused() -> None:
+    with pytest.raises(CouplingError, match="back flanks never meet"):
+        static_equilibrium(machine(torque=-90.0).system)

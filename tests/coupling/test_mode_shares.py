@@ -7,6 +7,7 @@ import pytest
 from coupling import (
     Component,
     ContactConnector,
+    ContactState,
     CoupledSystem,
     CouplingError,
     LinearConnector,
@@ -17,6 +18,7 @@ from coupling import (
     mean_contact,
     stability,
     time_of_phase,
+    unloaded_contact,
 )
 from coupling.gears import ToothContact, piecewise
 
@@ -166,3 +168,41 @@ def test_states_and_phases_that_do_not_fit() -> None:
         time_of_phase(system, 0.3, contact=1)
     with pytest.raises(CouplingError, match="expected \\(1,\\) both"):
         linear_matrices(system, mean_contact(geared(1.0, backlash=1.0)))
+
+
+def test_modes_stand_on_the_mesh_under_its_load() -> None:
+    """A relief of 0.06 m at the end that enters, linear to none at the other: no second pair by 1 N.
+
+    At phase p < 1/2 the pairs stand at p and 1 + p, their reliefs differ by 0.04: 1 N presses one spring of 100 N/m by
+    0.01 and the other never, so the mean stiffness is 100. 20 N close both, and 150 N/m are what no load shows too.
+    """
+    light, heavy, none = (geared(load, relief=0.06) for load in (1.0, 20.0, 0.0))
+    assert mean_contact(light).stiffness == pytest.approx([100.0], rel=1e-9)
+    assert mean_contact(light).force == pytest.approx([1.0], rel=1e-9)
+    assert mean_contact(heavy).stiffness == pytest.approx([150.0], rel=1e-9)
+    assert mean_contact(none).stiffness == pytest.approx([150.0], rel=1e-9)
+    assert mean_contact(none).force == pytest.approx([0.0], abs=0.0)
+    assert unloaded_contact(light).stiffness == pytest.approx([150.0], rel=1e-9)
+    assert abs(coupled_modes(light).eigenvalues[1]) == pytest.approx(np.sqrt(2.0 * 100.0), rel=1e-9)
+
+
+def test_two_meshes_share_a_torque_by_their_mean_curves() -> None:
+    """Two meshes side by side on one pair of inertias, one of them relieved by 0.02 m all over.
+
+    F = 100 (δ - 0.02) + 100 δ from δ = 0.02 m on: of 6 N the relieved one carries 2 and the other 4. Of 1 N it carries
+    none, and is apart.
+    """
+
+    def mesh(name: str, gap: float) -> ContactConnector:
+        law = ToothContact(1.0, piecewise.constant(100.0, 1.0), piecewise.constant(gap, 1.0))
+        return ContactConnector(name, np.array([1.0, 1.0]), law, 0.0, 10.0, np.empty((0, 3)))
+
+    def shared(load: float) -> ContactState:
+        inertias = (mass("one", kind="torsion"), mass("two", kind="torsion"))
+        contacts = (mesh("near", 0.0), mesh("far", 0.02))
+        return mean_contact(CoupledSystem(inertias, (1.0, -1.0), contacts=contacts, load=load * np.ones(2)))
+
+    assert shared(6.0).force == pytest.approx([4.0, 2.0], rel=1e-6)
+    assert shared(6.0).stiffness == pytest.approx([100.0, 100.0], rel=1e-9)
+    assert shared(1.0).force == pytest.approx([1.0, 0.0], rel=1e-6)
+    assert shared(1.0).stiffness == pytest.approx([100.0, 0.0], rel=1e-9)

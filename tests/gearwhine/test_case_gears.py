@@ -103,3 +103,23 @@ def test_undercut_and_thin_tips_are_warned_of() -> None:
     case = case_of(TOOTH | {"teeth": 12, "profile_shift": 0.7}, TOOTH)
     (warning,) = check_document(case)["warnings"]
     assert (warning["name"], "'pinion'" in warning["message"]) == ("thin tip", True)
+
+
+def test_backlash_is_that_of_thinned_teeth() -> None:
+    """Both thinned by 40 µm along the reference circle, at nominal distance: 80 µm cos 20° along the line of action."""
+    thin = TOOTH | {"tooth_thinning": "0.04 mm"}
+    (nominal,) = solve_gears(case_of(TOOTH, TOOTH))
+    assert nominal.backlash is None
+    (thinned,) = solve_gears(case_of(thin, thin))
+    expected = 80e-6 * math.cos(math.radians(20.0))
+    assert thinned.backlash == pytest.approx(expected, rel=1e-9)
+    (given,) = solve_gears(case_of(thin, thin, backlash="0.1 mm"))
+    assert given.backlash == 1e-4
+
+
+def test_a_backlash_that_is_not_the_geometrys_is_doubted() -> None:
+    thin = TOOTH | {"tooth_thinning": "0.04 mm"}
+    for backlash, doubted in (("0.2 mm", True), ("0.075 mm", False), ("0 mm", True)):
+        names = [one["name"] for one in check_document(case_of(thin, thin, backlash=backlash)).get("warnings", [])]
+        assert ("backlash" in names) is doubted
+    assert "warnings" not in check_document(case_of(TOOTH, TOOTH, backlash="0.1 mm"))

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from gearwhine.case import CaseError, pair_torques, parse_case
+from gearwhine.case import CaseError, load_case, pair_torques, parse_case
 
 STEEL = {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3, "density": 7800}}
 
@@ -106,3 +106,8 @@ def test_a_train_that_gears_beyond_all_measure_is_an_error() -> None:
         assert problems(document) == [
             "gear_pair: expected pairs that gear no shaft up or down more than 1e+12 times in all"
         ]
+
+
+def test_a_bow_of_one_point_is_refused() -> None:
+    with pytest.raises(CaseError, match="two points or more: the centre line through one is straight"):
+        load_case("spur-pair", ["rotor.0.bow=[{at='100 mm', amplitude='10 um'}]"])

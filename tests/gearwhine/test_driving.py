@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 
 import coupling as room
-from gearwhine.case import Case, CaseError, dump_case, parse_case
+from coupling import static_equilibrium
+from coupling.gears.kernels import tooth_force
+from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
 from gearwhine.screen.case import show_check
 from gearwhine.stages.driving import driving, train_inertia
 from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
+from gearwhine.stages.machine import build_machine, solve_machine
 from gearwhine.stages.summary import check_document
 from gearwhine.stages.transient import SolvedTransient, solve_transient, transient_document
 
@@ -222,3 +224,34 @@ def test_torques_of_a_case() -> None:
     np.testing.assert_allclose([added.values, taken.values], [[0.0, 6.0], [0.0, 6.0]])
     assert order == room.TorqueRipple("input", 0.0, 2.0, 0.0, order=3.0)
     assert frequency == room.TorqueRipple("input", 0.0, 1.0, 0.0, frequency=100.0 * math.pi)
+
+
+def test_a_braked_train_rests_on_its_back_flanks() -> None:
+    """The torque over the base radius presses the teeth behind, relieved and part of the time in pairs as they are."""
+    case = load_case("spur-pair", ["operation.torque=-100 N*m"]).case
+    _, pairs, machine = solve_machine(case)
+    drive, back = machine.system.contacts
+    q = static_equilibrium(machine.system)
+    compression = [float(contact.direction @ q) - contact.clearance for contact in (drive, back)]
+    forces = [
+        tooth_force(contact.phase + 1e-9, delta, 0.0, *contact.contact.kernel_arguments)[0]
+        for contact, delta in zip((drive, back), compression, strict=True)
+    ]
+    assert forces == pytest.approx([0.0, 100.0 / pairs[0].geometry.driver.base_radius], rel=1e-9)
+
+
+def test_a_braked_train_without_backlash_is_refused() -> None:
+    with pytest.raises(CaseError, match="back flanks, which never meet"):
+        load_case("spur-pair", ["operation.torque=-100 N*m", "gear_pair.0.backlash="])
+
+
+def test_a_braked_train_coasts_on_its_back_flanks() -> None:
+    case = parse_case(spur_pair({"revolutions": 2, "discard": 1}, torque="-100 N*m"))
+    solved = run(case)
+    (pair,) = transient_document(case, solved)["gear_pairs"]
+    assert pair["flanks"] == "back"
+    assert pair["contact_loss_fraction"] == 0.0
+    (mesh,) = solve_gears(case)
+    assert pair["mean_force_n"] == pytest.approx(100.0 / mesh.geometry.driver.base_radius, rel=1e-3)
+    # One constant spring under a constant torque: the start is the motion, so nothing sets in.
+    assert pair["peak_force_n"] == pytest.approx(pair["mean_force_n"], rel=1e-6)

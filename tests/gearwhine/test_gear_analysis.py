@@ -13,6 +13,7 @@ import pytest
 import xarray as xr
 
 import coupling.gears as room
+from coupling import mesh_error_response
 from gearwhine.case import Case, load_case, parse_case
 from gearwhine.results import write
 from gearwhine.screen import show_gears
@@ -20,6 +21,9 @@ from gearwhine.stages.gear_analysis import PairAnalysis, analyse_pairs
 from gearwhine.stages.gear_documents import gears_document
 from gearwhine.stages.gear_torques import coarser_faces, over_torques
 from gearwhine.stages.gears import solve_gears
+from gearwhine.stages.housing import solve_housing
+from gearwhine.stages.machine import build_machine
+from gearwhine.stages.relief_aims import relief_aims
 
 
 @cache
@@ -327,3 +331,27 @@ def test_what_the_curves_leave_out_or_no_teeth_bear_is_said() -> None:
     assert names("gear.pinion.errors.runout='30 um'") == ["runout"]
     assert names("operation.torque='1000 N*m'") == []
     assert names("operation.torque='5000 N*m'") == ["overload"]
+
+
+def test_the_relief_is_sought_for_the_aim_of_the_case() -> None:
+    """Weighted harmonics from the case; the sensor's weights are its transmissibility over the root of two."""
+    pair = analysed("spur-pair", "gear_pair.0.relief_aim.harmonics.2=1")
+    aim = document("spur-pair", "gear_pair.0.relief_aim.harmonics.2=1")["optimal_tip_relief"]["aim"]
+    assert (aim["kind"], aim["weights"], aim["unit"]) == ("harmonics", {"2": 1.0}, "m")
+    assert aim["best"] < aim["without_relief"]
+    assert pair.optimum is not None
+    assert aim["best"] == pair.optimum.value[0]
+
+
+def test_the_level_at_a_sensor_is_an_aim() -> None:
+    case = case_of("small-gearbox", "gear_pair.0.relief_aim.sensor=top", "operation.speed=1500 rpm")
+    solved = solve_gears(case)
+    housing = solve_housing(case)
+    (aim,) = relief_aims(case, solved)
+    assert isinstance(aim, room.WeightedHarmonics)
+    machine = build_machine(case, housing, solved)
+    assert solved[0].mesh_frequency is not None
+    for n, weight in aim.weights.items():
+        frequency = np.array([2.0 * math.pi * n * solved[0].mesh_frequency])
+        reached = mesh_error_response(machine, frequency).sensor_acceleration["top"][0]
+        assert weight == pytest.approx(abs(reached) / math.sqrt(2.0), rel=1e-9)
