@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case, mesh_frequencies
+from gearwhine.doubtful import add_warnings
 from gearwhine.failures import explain
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
@@ -136,7 +137,7 @@ def _reduced(case: Case, solved: SolvedTransient, housing: HousingInMachine | No
     drives = [contact.name for contact in solved.machine.system.contacts[: len(solved.machine.meshes)]]
     document = transient_document(case, solved)
     document["seconds"] = {"total": seconds, "time_stepping": solved.result.seconds}
-    document["warnings"] = [] if housing is None else list(housing.warnings)
+    add_warnings(document, () if housing is None else housing.warnings)
     forces = solved.histories.bearing_force
     return PointResult(
         document=document,

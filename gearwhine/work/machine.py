@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine.case import Case, swept_keys
+from gearwhine.doubtful import add_warnings, joined, warning
 from gearwhine.progress import Progress
 from gearwhine.stages import gear_analysis, gear_documents, gear_torques, housing_documents, rotor_documents
 from gearwhine.stages import gears as gear_stage
@@ -29,7 +30,7 @@ def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ro
         figures.draw_rotors(place, case, rotors, progress)
         if write_ross:
             remarks = rotor_stage.write_ross_files(place, rotors)
-            document["warnings"] = [{"name": "ross", "message": remark} for remark in remarks]
+            add_warnings(document, [warning("ross", remark) for remark in remarks])
 
     return kept_in(document, case, folder, write)
 
@@ -73,7 +74,7 @@ def system_case(
         results.write(place / "results.nc", case, housing, (), (), solved, None)
         figures.draw_system(place, case, solved)
 
-    return kept_in(document | housing_documents.origin_document(housing), case, folder, write, housing)
+    return kept_in(joined(document, housing_documents.origin_document(housing)), case, folder, write, housing)
 
 
 def steady_case(
@@ -100,7 +101,7 @@ def steady_case(
         results.write(place / "results.nc", case, housing, (), (), None, None, steady=solved)
         figures.draw_steady(place, case, solved)
 
-    return kept_in(document | housing_documents.origin_document(housing), case, folder, write, housing)
+    return kept_in(joined(document, housing_documents.origin_document(housing)), case, folder, write, housing)
 
 
 def sweep_case(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.case import Case, dump_case, mesh_frequencies, require
 from gearwhine.comparison_files import draw_comparison_pictures, write_comparison
+from gearwhine.doubtful import add_warnings, joined
 from gearwhine.drawings import draw_modes
 from gearwhine.march_files import kept_march
 from gearwhine.output import SUMMARY, finite, json_text, staging
@@ -82,13 +83,13 @@ def _run_case(
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     timed("housing", begin)
     if rotors:
-        document |= rotor_documents.rotors_document(rotors)
+        document = joined(document, rotor_documents.rotors_document(rotors))
     if pairs:
-        document |= gear_documents.gears_document(analysed)
+        document = joined(document, gear_documents.gears_document(analysed))
     comparison = None
     if housing is not None:
         document["housing"] = housing_documents.modes_document(housing)
-        document |= housing_documents.origin_document(housing)
+        document = joined(document, housing_documents.origin_document(housing))
         if case.measured is not None:
             comparison = comparison_stage.compare_housing(case, housing, progress)
             document["compare"] = comparison_documents.comparison_document(comparison, housing)
@@ -115,7 +116,7 @@ def _run_case(
                 housing=housing,
                 keep=lambda key: until_written.enter_context(kept_march(folder, key, fresh=fresh)),
             )
-            document |= transient_stage.transient_document(case, transient)
+            document = joined(document, transient_stage.transient_document(case, transient))
             if transient_stage.is_traced(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
@@ -126,6 +127,7 @@ def _run_case(
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
+    add_warnings(document)
     begin = time.perf_counter()
     with staging(folder, replacing=True) as place:
         progress("writing results")
