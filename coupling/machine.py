@@ -14,9 +14,10 @@ from coupling.connector import ContactConnector, LinearConnector, NonlinearConne
 from coupling.errors import CouplingError
 from coupling.gear_phases import mesh_phases
 from coupling.gears import GearPairGeometry, ToothContact, sliding_friction
-from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance
+from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance, constant_torques
 from coupling.sliding import held_at_speed, sliding_flanks
 from coupling.system import CoupledSystem, embed
+from coupling.thrust import ThrustPair, axial_forces, require_thrust_carried
 from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
@@ -178,8 +179,8 @@ def couple(
     Raises
     ------
     CouplingError
-        Where a name has no component, two components share one, a rotor has no speed, a seat no housing, or a train
-        more than one drive.
+        Where a name has no component, two components share one, a rotor has no speed, a seat no housing, a train more
+        than one drive, or helical gears push a rotor that no bearing holds along its axis.
     rotors.RotorError
         Where a bearing's table does not reach as far as the speeds.
     """
@@ -200,6 +201,7 @@ def couple(
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
     parts = LoadedParts(components, speeds)
 
+    _require_thrust_carried(rotors, speeds, bearings, meshes, torques)
     linear, nonlinear = [], []
     for mounted in bearings:
         which, rotor = parts.rotor(mounted.rotor)
@@ -324,6 +326,27 @@ def couple(
         base,
         None if gravity is None else tuple(gravity),
     )
+
+
+def _require_thrust_carried(
+    rotors: Sequence[RotorComponent],
+    speeds: dict[str, float],
+    bearings: Sequence[MountedBearing],
+    meshes: Sequence[GearMesh],
+    torques: Sequence[AnyTorque],
+) -> None:
+    pairs = [
+        ThrustPair((mesh.driver.rotor, mesh.driven.rotor), (mesh.driver.name, mesh.driven.name), mesh.geometry)
+        for mesh in meshes
+    ]
+    held = {
+        mounted.rotor
+        for mounted in bearings
+        if mounted.rotor in speeds and mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0
+    }
+    carriers = {rotor.name: rotor.modal.axial is not None and rotor.name in held for rotor in rotors}
+    if all(name in carriers for pair in pairs for name in pair.rotors):
+        require_thrust_carried(axial_forces(pairs, speeds, constant_torques(torques)), carriers)
 
 
 def _centre_line_angle(mesh: GearMesh) -> float:

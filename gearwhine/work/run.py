@@ -27,6 +27,7 @@ from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
 from gearwhine.stages.system_documents import system_document
+from gearwhine.stages.thrust import require_carried_thrust
 from gearwhine.work.results_folder import files_in
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ def _run_case(
 
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
+    require_carried_thrust(case)
     if case.housing is not None and pictures:
         # Found out before the work, not after it.
         try:
