@@ -22,6 +22,10 @@ from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 
+# Part of the normal module: the clearance between tip and root. Teeth pressed in by more would touch there, and no
+# steel bends so far.
+_GREATEST_COMPRESSION = 0.25
+
 _PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two speeds of its table
 
 
@@ -246,7 +250,12 @@ def couple(
             )
         linear.append(
             LinearConnector(
-                law.name, relative[held].T, law.spatial_stiffness[among], law.spatial_damping[among], over_speed=table
+                law.name,
+                relative[held].T,
+                law.spatial_stiffness[among],
+                law.spatial_damping[among],
+                over_speed=table,
+                axes=tuple(held.tolist()),
             )
         )
 
@@ -264,7 +273,19 @@ def couple(
         direction, errors = _flank(components, mesh, parts, speeds, sense)
         name = f"{mesh.driver.name} -> {mesh.driven.name}"
         sliding = _sliding(components, mesh, mesh.contact, parts, speeds, sense)
-        drive.append(ContactConnector(name, direction, mesh.contact, phase, rate, errors, sliding=sliding))
+        greatest = _GREATEST_COMPRESSION * mesh.geometry.driver.module
+        drive.append(
+            ContactConnector(
+                name,
+                direction,
+                mesh.contact,
+                phase,
+                rate,
+                errors,
+                sliding=sliding,
+                greatest_compression=greatest,
+            )
+        )
         if mesh.backlash is not None:
             direction, errors = _flank(components, mesh, parts, speeds, -sense)
             law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset - phase
@@ -279,6 +300,7 @@ def couple(
                     mesh.backlash,
                     drives=False,
                     sliding=_sliding(components, mesh, law_of_back, parts, speeds, -sense),
+                    greatest_compression=greatest,
                 )
             )
 

@@ -80,8 +80,8 @@ def axial_forces(
         if helix == 0.0:
             continue
         thrust = sense * force * float(np.tan(helix))
-        for rotor, gear, side in zip(pair.rotors, pair.gears, (1.0, -1.0), strict=True):
-            found.setdefault(rotor, []).append((gear, side * thrust))
+        for rotor, name, side in zip(pair.rotors, pair.gears, (1.0, -1.0), strict=True):
+            found.setdefault(rotor, []).append((name, side * thrust))
     return {
         rotor: AxialForces(tuple(gear for gear, _ in here), tuple(force for _, force in here))
         for rotor, here in found.items()

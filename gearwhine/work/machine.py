@@ -14,6 +14,7 @@ from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import steady as steady_stage
 from gearwhine.stages import system as system_stage
+from gearwhine.stages.instability import machine_warnings, unstable_modes_warnings
 from gearwhine.stages.system_documents import system_document
 from gearwhine.work.results_folder import kept_in
 
@@ -66,6 +67,7 @@ def system_case(
         case, machine, housing, progress, mesh_phase=mesh_phase, over_speed=over_speed or swept, sidebands=sidebands
     )
     document = system_document(case, solved, housing)
+    add_warnings(document, unstable_modes_warnings(solved.stability))
 
     def write(place: Path) -> None:
         from gearwhine import figures, results
@@ -93,6 +95,7 @@ def steady_case(
         case, machine, housing, progress, over_speed=over_speed, downwards=downwards, points=points
     )
     document = steady_stage.steady_document(case, solved)
+    add_warnings(document, machine_warnings(machine))
 
     def write(place: Path) -> None:
         from gearwhine import figures, results

@@ -25,6 +25,8 @@ from gearwhine.stages import run_up as run_up_stage
 from gearwhine.stages import signature as signature_stage
 from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
+from gearwhine.stages.bearing_loads import bearing_load_warnings
+from gearwhine.stages.instability import unstable_modes_warnings
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
 from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.thrust import require_carried_thrust
@@ -102,6 +104,7 @@ def _run_case(
         machine = machine_stage.build_machine(case, housing, pairs, progress)
         system = system_stage.solve_system(case, machine, housing, progress)
         document["system"] = system_document(case, system, housing)
+        add_warnings(document, unstable_modes_warnings(system.stability))
         timed("system", begin)
         if case.transient is not None:
             if housing is not None and not housing.source_holds:
@@ -119,6 +122,7 @@ def _run_case(
                 keep=lambda key: until_written.enter_context(kept_march(folder, key, fresh=fresh)),
             )
             document = joined(document, transient_stage.transient_document(case, transient))
+            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
             if transient_stage.is_traced(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)

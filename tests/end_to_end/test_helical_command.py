@@ -12,7 +12,7 @@ from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
-from gearwhine.stages.transient import solve_transient
+from gearwhine.stages.transient import mean_bearing_forces, solve_transient
 
 SHORTER = ("transient.revolutions=3", "transient.discard=1")
 
@@ -51,3 +51,14 @@ def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Pat
         helical = data["mesh_force"].isel(contact=0).values
     swings = [np.ptp(force) / np.mean(force) for force in (helical, spur)]
     assert swings[0] < 0.5 * swings[1]
+
+
+def test_the_axial_force_on_the_bearings_is_the_thrust_of_the_teeth() -> None:
+    """Closed form: F_a = T / r tan β, in opposite senses on both shafts; radial bearings carry none of it."""
+    case = load_case("helical-pair", SHORTER).case
+    solved = solve_transient(case, build_machine(case, None, solve_gears(case)), mesh_frequencies(case))
+    forces = mean_bearing_forces(solved)
+    thrust = 150.0 / (0.5 * 23 * 3e-3 / math.cos(math.radians(15.0))) * math.tan(math.radians(15.0))
+    assert abs(forces["input-left"][2]) == pytest.approx(thrust, rel=2e-3)
+    assert forces["output-left"][2] == pytest.approx(-forces["input-left"][2], rel=2e-3)
+    assert forces["input-right"][2] == forces["output-right"][2] == 0.0
