@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, fields, replace
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -104,7 +104,8 @@ class Histories:
                 width = math.prod(old.shape[1:])
                 groups[-1][signal] = columns[:, column : column + width].reshape(len(times), *old.shape[1:])
                 column += width
-        return replace(Histories(times, *groups), tie_axes=self.tie_axes)
+        signals: dict[str, Any] = dict(zip(_GROUPS, groups, strict=True))
+        return replace(self, times=times, **signals)
 
 
 _GROUPS = tuple(one.name for one in fields(Histories) if one.name not in ("times", "tie_axes"))

@@ -35,6 +35,18 @@ def test_helical_gears_run_and_balance_their_energy(results: Path) -> None:
     assert pair["contact_loss_fraction"] == 0.0
 
 
+def test_the_results_hold_the_axial_force_and_the_moments_of_bearings(results: Path) -> None:
+    with xr.open_dataset(results / "results.nc") as data:
+        thrust = data["bearing_axial_force"].sel(bearing="input-left").mean().item()
+        assert data["bearing_moment"].dims == ("bearing", "time", "moment_axis")
+        assert data["bearing_force"].sel(axis="x").dims == ("bearing", "time")
+    assert abs(thrust) == pytest.approx(1125.0, rel=2e-3)
+    summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+    (left,) = [row for row in summary["bearings"] if row["name"] == "input-left"]
+    assert left["mean_force_n"][2] == pytest.approx(thrust, rel=1e-5)
+    assert left["mean_moment_n_m"] == [0.0, 0.0]
+
+
 def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Path) -> None:
     """The spur gears by the stages of the run, for what it draws of them is not looked at."""
     straight = (
