@@ -65,6 +65,7 @@ from coupling.spectrum import (
 from coupling.stability import GrowingMode, Stability, stability
 from coupling.statics import static_equilibrium
 from coupling.system import CoupledSystem, HarmonicLoad, TimedLoad
+from coupling.thrust import AxialForces, ThrustPair, axial_forces, require_thrust_carried
 from coupling.transient import (
     EnergyBalance,
     TransientFigures,
@@ -83,6 +84,7 @@ from coupling.turning import Turning
 __all__ = [
     "SAMPLES_PER_BLOCK",
     "AnyTorque",
+    "AxialForces",
     "BaseHarmonic",
     "BaseHistory",
     "BaseMotion",
@@ -132,6 +134,7 @@ __all__ = [
     "Stability",
     "SystemCampbell",
     "SystemCrossing",
+    "ThrustPair",
     "TimedLoad",
     "Torque",
     "TorqueHistory",
@@ -147,6 +150,7 @@ __all__ = [
     "Window",
     "amplitude_spectrum",
     "averaged_spectrum",
+    "axial_forces",
     "contact_at",
     "couple",
     "coupled_modes",
@@ -167,6 +171,7 @@ __all__ = [
     "nothing_recorded",
     "periodic_response",
     "receptance",
+    "require_thrust_carried",
     "resonance_grid",
     "response_curve",
     "rotor_component",

@@ -32,6 +32,8 @@ class LinearConnector:
         C [N s/m].
     over_speed : SpeedTable, optional
         K and C at other speeds than the nominal one, where they depend on it.
+    axes : tuple of int
+        Of a bearing, which of x, y, z and the rotations about x and y (0 to 4) the directions are; empty otherwise.
     """
 
     name: str
@@ -39,6 +41,7 @@ class LinearConnector:
     stiffness: FloatArray
     damping: FloatArray
     over_speed: "SpeedTable | None" = None
+    axes: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         d = self.directions.shape[1]
@@ -154,6 +157,8 @@ class ContactConnector:
         Gap to close before the flanks touch [m]: 0 for the drive flanks, the backlash for the back flanks.
     drives : bool
         Whether the mean load presses these flanks together.
+    greatest_compression : float
+        What the teeth can be pressed together by [m]; a march that passes it is refused.
     sliding : Sliding or None
         Friction, which adds μ Σ ± F_j (a + x_j b) to what the pairs' forces F_j do along d; None for none.
     """
@@ -167,6 +172,7 @@ class ContactConnector:
     clearance: float = 0.0
     drives: bool = True
     sliding: Sliding | None = None
+    greatest_compression: float = np.inf
 
     @property
     def friction_law(self) -> tuple[FloatArray, bool]:

@@ -5,6 +5,10 @@ class CouplingError(ValueError):
     """The components, connectors or loads do not fit each other; the message says what was expected."""
 
 
+class DeflectionError(CouplingError):
+    """A motion beyond what the parts can follow: teeth pressed in by more than they can be."""
+
+
 class TransientError(RuntimeError):
     """A time integration that cannot be trusted: it diverged, stalled, or its energies do not balance."""
 

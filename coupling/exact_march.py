@@ -164,6 +164,7 @@ class ExactRun(MarchRun):
                 state = self._finer(state, float(bounds[position]), error, len(trace.start))
                 continue
             state = record.add(state, trace, self._steps, free)
+            self.require_possible(replace(state, q=q), float(bounds[position]), done)
             if done > settings.record_from:
                 times = self._times_until(done, state.sample)
                 record.write(trace, free, times, samples, state.sample)

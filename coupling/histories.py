@@ -1,8 +1,8 @@
 """What a transient or a periodic response tells, under the names of sensors, gears, bearings and gear pairs."""
 
 import math
-from dataclasses import dataclass, fields
-from typing import NamedTuple, Protocol
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -56,6 +56,8 @@ class Histories:
     mesh_friction : dict of str to ndarray, shape (s, 2)
         Of every contact with friction: its force across the line of action [N], and the power that it takes from the
         nominal rotation [W]; see :func:`coupling.sliding.friction_of`.
+    tie_axes : dict of str to tuple of int
+        Which of x, y, z and the rotations about x and y (0 to 4) the columns of each ``tie_force`` are.
     """
 
     times: FloatArray
@@ -65,11 +67,24 @@ class Histories:
     mesh_force: dict[str, FloatArray]
     mesh_compression: dict[str, FloatArray]
     mesh_friction: dict[str, FloatArray]
+    tie_axes: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
     @property
     def bearing_force(self) -> dict[str, FloatArray]:
         """Force of each shaft on its bearing along x and y [N], shape (s, 2) each."""
         return {name: force[:, :2] for name, force in self.tie_force.items()}
+
+    @property
+    def bearing_load(self) -> dict[str, FloatArray]:
+        """The shaft's load on each bearing, shape (s, 5): forces along x, y, z [N], moments about x, y [N m].
+
+        Components that a bearing does not hold are zero.
+        """
+        found = {}
+        for name, force in self.tie_force.items():
+            found[name] = np.zeros((len(force), 5))
+            found[name][:, list(self.tie_axes.get(name, range(force.shape[1])))] = force
+        return found
 
     @property
     def columns(self) -> FloatArray:
@@ -89,10 +104,11 @@ class Histories:
                 width = math.prod(old.shape[1:])
                 groups[-1][signal] = columns[:, column : column + width].reshape(len(times), *old.shape[1:])
                 column += width
-        return Histories(times, *groups)
+        signals: dict[str, Any] = dict(zip(_GROUPS, groups, strict=True))
+        return replace(self, times=times, **signals)
 
 
-_GROUPS = tuple(field.name for field in fields(Histories) if field.name != "times")
+_GROUPS = tuple(one.name for one in fields(Histories) if one.name not in ("times", "tie_axes"))
 
 
 def transient_outputs(machine: Machine) -> TransientOutputs:
@@ -166,6 +182,7 @@ def histories(machine: Machine, result: Recorded, turning: Turning | None = None
             for i, contact in enumerate(machine.system.contacts)
             if contact.sliding is not None
         },
+        tie_axes={connector.name: connector.axes for connector in _bearings(machine)},
     )
 
 

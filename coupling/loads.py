@@ -109,6 +109,21 @@ class TorqueSlope:
 AnyTorque = Torque | TorqueHistory | TorqueRipple | TorqueSlope
 
 
+def constant_torques(torques: "Sequence[AnyTorque]") -> dict[str, float]:
+    """Sum of the torques on each rotor [N m], of those that vary over time the largest value; ripples left out."""
+    total: dict[str, float] = {}
+    for torque in torques:
+        match torque:
+            case Torque():
+                value = torque.value
+            case TorqueHistory():
+                value = float(torque.values[np.abs(torque.values).argmax()])
+            case _:
+                continue
+        total[torque.rotor] = total.get(torque.rotor, 0.0) + value
+    return total
+
+
 @dataclass(frozen=True)
 class Drive:
     """Where the torque comes in that speeds a train up: a rotor, and a distance from its left end [m]."""

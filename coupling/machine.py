@@ -14,13 +14,18 @@ from coupling.connector import ContactConnector, LinearConnector, NonlinearConne
 from coupling.errors import CouplingError
 from coupling.gear_phases import mesh_phases
 from coupling.gears import GearPairGeometry, ToothContact, sliding_friction
-from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance
+from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance, constant_torques
 from coupling.pressed_flanks import with_pressed_flanks
 from coupling.sliding import held_at_speed, sliding_flanks
 from coupling.system import CoupledSystem, embed
+from coupling.thrust import ThrustPair, axial_forces, require_thrust_carried
 from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
+
+# Part of the normal module: the clearance between tip and root. Teeth pressed in by more would touch there, and no
+# steel bends so far.
+_GREATEST_COMPRESSION = 0.25
 
 _PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two speeds of its table
 
@@ -179,8 +184,8 @@ def couple(
     Raises
     ------
     CouplingError
-        Where a name has no component, two components share one, a rotor has no speed, a seat no housing, or a train
-        more than one drive.
+        Where a name has no component, two components share one, a rotor has no speed, a seat no housing, a train more
+        than one drive, or helical gears push a rotor that no bearing holds along its axis.
     rotors.RotorError
         Where a bearing's table does not reach as far as the speeds.
     """
@@ -201,6 +206,7 @@ def couple(
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
     parts = LoadedParts(components, speeds)
 
+    _require_thrust_carried(rotors, speeds, bearings, meshes, torques)
     linear, nonlinear = [], []
     for mounted in bearings:
         which, rotor = parts.rotor(mounted.rotor)
@@ -245,7 +251,12 @@ def couple(
             )
         linear.append(
             LinearConnector(
-                law.name, relative[held].T, law.spatial_stiffness[among], law.spatial_damping[among], over_speed=table
+                law.name,
+                relative[held].T,
+                law.spatial_stiffness[among],
+                law.spatial_damping[among],
+                over_speed=table,
+                axes=tuple(held.tolist()),
             )
         )
 
@@ -263,7 +274,19 @@ def couple(
         direction, errors = _flank(components, mesh, parts, speeds, sense)
         name = f"{mesh.driver.name} -> {mesh.driven.name}"
         sliding = _sliding(components, mesh, mesh.contact, parts, speeds, sense)
-        drive.append(ContactConnector(name, direction, mesh.contact, phase, rate, errors, sliding=sliding))
+        greatest = _GREATEST_COMPRESSION * mesh.geometry.driver.module
+        drive.append(
+            ContactConnector(
+                name,
+                direction,
+                mesh.contact,
+                phase,
+                rate,
+                errors,
+                sliding=sliding,
+                greatest_compression=greatest,
+            )
+        )
         if mesh.backlash is not None:
             direction, errors = _flank(components, mesh, parts, speeds, -sense)
             law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset - phase
@@ -278,6 +301,7 @@ def couple(
                     mesh.backlash,
                     drives=False,
                     sliding=_sliding(components, mesh, law_of_back, parts, speeds, -sense),
+                    greatest_compression=greatest,
                 )
             )
 
@@ -328,6 +352,27 @@ def couple(
         base,
         None if gravity is None else tuple(gravity),
     )
+
+
+def _require_thrust_carried(
+    rotors: Sequence[RotorComponent],
+    speeds: dict[str, float],
+    bearings: Sequence[MountedBearing],
+    meshes: Sequence[GearMesh],
+    torques: Sequence[AnyTorque],
+) -> None:
+    pairs = [
+        ThrustPair((mesh.driver.rotor, mesh.driven.rotor), (mesh.driver.name, mesh.driven.name), mesh.geometry)
+        for mesh in meshes
+    ]
+    held = {
+        mounted.rotor
+        for mounted in bearings
+        if mounted.rotor in speeds and mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0
+    }
+    carriers = {rotor.name: rotor.modal.axial is not None and rotor.name in held for rotor in rotors}
+    if all(name in carriers for pair in pairs for name in pair.rotors):
+        require_thrust_carried(axial_forces(pairs, speeds, constant_torques(torques)), carriers)
 
 
 def _centre_line_angle(mesh: GearMesh) -> float:

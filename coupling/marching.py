@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from coupling.boundaries import SAMPLES_PER_BLOCK, block_ends, boundaries, coarsest_step, same_time
 from coupling.condensation import condensed
-from coupling.errors import CouplingError, TransientError
+from coupling.errors import CouplingError, DeflectionError, TransientError
 from coupling.fingerprint import fingerprint
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.statics import coasting_velocity, static_equilibrium
@@ -327,6 +327,7 @@ class MarchRun:
                     )
                 state = replace(state, level=level, rejected=state.rejected + steps)
                 continue
+            self.require_possible(trial, float(bounds[position]), float(bounds[last]))
             energy = self.held(trial.q, trial.v) + trial.stored
             state = replace(
                 trial,
@@ -342,6 +343,29 @@ class MarchRun:
             position = last
             progress(float(bounds[position] / settings.duration))
         return replace(state, block=number + 1, seconds=time.perf_counter() - clock)
+
+    def require_possible(self, state: Checkpoint, begin: float, now: float) -> None:
+        """Refuse a motion that presses teeth together further than teeth can be, somewhere between two times [s].
+
+        The compression is the larger of that at the end and the one that the largest force so far stands for.
+
+        Raises
+        ------
+        DeflectionError
+        """
+        for contact, figures in zip(self.system.contacts, state.contact_totals, strict=True):
+            pressed = max(
+                float(contact.direction @ state.q) - contact.clearance,
+                float(figures[2]) / contact.contact.mean_stiffness,
+            )
+            if pressed > contact.greatest_compression:
+                raise DeflectionError(
+                    f"the teeth of {contact.name} are pressed together by {1e3 * pressed:.3g} mm between "
+                    f"t = {begin:.6g} s and {now:.6g} s, where teeth can follow "
+                    f"{1e3 * contact.greatest_compression:.3g} mm at most (a quarter of the module); expected loads "
+                    "that the teeth carry and a machine that is stable: look for negative damping ratios among the "
+                    "coupled modes (gearwhine system)"
+                )
 
     def limit(self, number: int, state: Checkpoint) -> float:
         """What no coordinate of a machine that holds together passes in a block."""

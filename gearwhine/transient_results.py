@@ -61,6 +61,20 @@ _QUANTITIES = (
         "force of the shaft on its bearing",
     ),
     _Quantity(
+        "bearing_axial_force",
+        ("bearing", "time"),
+        lambda signals: {name: load[:, 2] for name, load in signals.histories.bearing_load.items()},
+        "N",
+        "force of the shaft on its bearing along z",
+    ),
+    _Quantity(
+        "bearing_moment",
+        ("bearing", "time", "moment_axis"),
+        lambda signals: {name: load[:, 3:] for name, load in signals.histories.bearing_load.items()},
+        "N m",
+        "moment of the shaft on its bearing about x and y",
+    ),
+    _Quantity(
         "mesh_force",
         ("contact", "time"),
         lambda signals: signals.histories.mesh_force,
@@ -107,6 +121,8 @@ def write_transient(solved: SolvedTransient, variables: Variables, coordinates: 
             coordinates[quantity.dimensions[0]] = (quantity.dimensions[0], names, {})
             if "axis" in quantity.dimensions:
                 coordinates["axis"] = ("axis", ["x", "y"], {})
+            if "moment_axis" in quantity.dimensions:
+                coordinates["moment_axis"] = ("moment_axis", ["x", "y"], {})
     for name, spectra, dimension, unit, what in (
         ("sensor_spectrum", solved.sensor_spectra, "sensor", "m/s2", "peak amplitude of acceleration"),
         ("mesh_force_spectrum", solved.force_spectra, "contact", "N", "peak amplitude of the gear-mesh force"),

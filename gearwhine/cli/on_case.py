@@ -21,6 +21,7 @@ def on_case(
 ) -> dict[str, Any]:
     """Read the case, do the work under a progress display, hand the result over and return it."""
     from gearwhine.case import load_case
+    from gearwhine.doubtful import add_warnings
     from gearwhine.progress import shown
 
     loaded = load_case(name, common.settings)
@@ -30,7 +31,8 @@ def on_case(
         sys.stderr.write(f"warning: {warning}\n")
     with shown(quiet=common.quiet) as progress:
         document = work(loaded.case, progress)
-    for warning in document.get("warnings", ()):
+    add_warnings(document)
+    for warning in document["warnings"]:
         sys.stderr.write(f"warning: {warning['message']}\n")
     hand_over(document, common, show)
     return document

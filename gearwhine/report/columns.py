@@ -66,8 +66,9 @@ ROTORS = (
 )
 BEARINGS = (
     Column("name", "bearing"),
-    Column("mean_force_n", "mean force x, y [N]", ".1f"),
-    Column("rms_force_n", "a.c. force x, y [N rms]", ".2f"),
+    Column("mean_force_n", "mean force x, y, z [N]", ".1f"),
+    Column("rms_force_n", "a.c. force x, y, z [N rms]", ".2f"),
+    Column("mean_moment_n_m", "mean moment x, y [N m]", ".2f"),
 )
 PARAMETERS = (
     Column("name", "parameter"),

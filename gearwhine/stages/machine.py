@@ -18,6 +18,7 @@ from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import SolvedPair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, base_participation, solve_housing
 from gearwhine.stages.rotor_loads import given_bow
+from gearwhine.stages.thrust import require_carried_thrust
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -153,6 +154,7 @@ def solve_machine(
     ``folder`` and ``fresh`` are those of :func:`gearwhine.stages.housing.solve_housing`.
     """
     require(case, "rotor", "operation", command="system")
+    require_carried_thrust(case)
     pairs = solve_gears(case, progress) if case.gear_pair else ()
     housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     return housing, pairs, build_machine(case, housing, pairs, progress)

@@ -173,10 +173,18 @@ def add_signature(document: dict[str, Any], solved: SolvedTransient, found: Solv
             row |= _name_document(named, found.modes)
         pair["sidebands"] = _sidebands_document(found.force_sidebands[name], "n")
     document["bearings"] = []
-    for name, force in solved.histories.bearing_force.items():
-        parts = room.signal_parts(force.T)
+    for name, load in solved.histories.bearing_load.items():
+        parts = room.signal_parts(load.T)
+        mean, rms = parts.mean.tolist(), parts.rms.tolist()
+        # Forces along x, y, z and moments about x and y.
         document["bearings"].append(
-            {"name": name, "mean_force_n": parts.mean.tolist(), "rms_force_n": parts.rms.tolist()}
+            {
+                "name": name,
+                "mean_force_n": mean[:3],
+                "rms_force_n": rms[:3],
+                "mean_moment_n_m": mean[3:],
+                "rms_moment_n_m": rms[3:],
+            }
         )
     document["gears"] = []
     for name, motion in solved.histories.gear_motion.items():

@@ -20,16 +20,22 @@ from gearwhine.case import (
 )
 from gearwhine.progress import Progress, silent
 from gearwhine.stages import mesh_health
+from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gear_shapes import doubts, geometry_document, pairs_document
 from gearwhine.stages.gears import backlash_doubts, pair_geometries
 from gearwhine.stages.measured import measured_document
+from gearwhine.stages.thrust import require_carried_thrust
 
 _RPM = 60.0 / (2.0 * np.pi)
 
 
 def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
     """Everything that follows from the case by arithmetic alone, and what the file of its geometry holds."""
+    require_carried_thrust(case)
+    for rotor in case.rotor:
+        # A load that a rolling bearing cannot carry is refused here as by the commands that solve it.
+        build_bearings(case, rotor.name)
     document: dict[str, Any] = {"title": case.title}
     if case.housing is not None:
         foreseen, warnings = mesh_health.foresee(case, progress)

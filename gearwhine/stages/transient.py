@@ -198,6 +198,11 @@ def starting_state(case: Case, machine: room.Machine) -> tuple[FloatArray, Float
     return np.zeros(machine.system.size), np.zeros(machine.system.size)
 
 
+def mean_bearing_forces(solved: SolvedTransient) -> dict[str, FloatArray]:
+    """Mean force of the shaft on each bearing over the last stretch of the record: x, y, z [N], shape (3,)."""
+    return {name: load[:, :3].mean(axis=0) for name, load in solved.histories.bearing_load.items()}
+
+
 def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     """The transient as the command's JSON."""
     assert case.operation is not None

@@ -11,11 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case, mesh_frequencies
+from gearwhine.doubtful import add_warnings
 from gearwhine.failures import explain
+from gearwhine.stages.bearing_loads import bearing_load_warnings
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
+from gearwhine.stages.instability import machine_warnings
 from gearwhine.stages.machine import HousingInMachine, build_machine, housing_in_machine
-from gearwhine.stages.transient import SolvedTransient, solve_transient, transient_document
+from gearwhine.stages.transient import SolvedTransient, mean_bearing_forces, solve_transient, transient_document
 from gearwhine.sweep.points import code_digest
 
 FloatArray = npt.NDArray[np.float64]
@@ -136,7 +139,9 @@ def _reduced(case: Case, solved: SolvedTransient, housing: HousingInMachine | No
     drives = [contact.name for contact in solved.machine.system.contacts[: len(solved.machine.meshes)]]
     document = transient_document(case, solved)
     document["seconds"] = {"total": seconds, "time_stepping": solved.result.seconds}
-    document["warnings"] = [] if housing is None else list(housing.warnings)
+    add_warnings(document, () if housing is None else housing.warnings)
+    add_warnings(document, machine_warnings(solved.machine))
+    add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved)))
     forces = solved.histories.bearing_force
     return PointResult(
         document=document,

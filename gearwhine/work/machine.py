@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine.case import Case, swept_keys
+from gearwhine.doubtful import add_warnings, joined, warning
 from gearwhine.progress import Progress
 from gearwhine.stages import (
     gear_analysis,
@@ -20,6 +21,7 @@ from gearwhine.stages import machine as machine_stage
 from gearwhine.stages import rotors as rotor_stage
 from gearwhine.stages import steady as steady_stage
 from gearwhine.stages import system as system_stage
+from gearwhine.stages.instability import machine_warnings, unstable_modes_warnings
 from gearwhine.stages.system_documents import system_document
 from gearwhine.work.results_folder import kept_in
 
@@ -36,7 +38,7 @@ def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ro
         figures.draw_rotors(place, case, rotors, progress)
         if write_ross:
             remarks = rotor_stage.write_ross_files(place, rotors)
-            document["warnings"] = [{"name": "ross", "message": remark} for remark in remarks]
+            add_warnings(document, [warning("ross", remark) for remark in remarks])
 
     return kept_in(document, case, folder, write)
 
@@ -73,6 +75,7 @@ def system_case(
         case, machine, housing, progress, mesh_phase=mesh_phase, over_speed=over_speed or swept, sidebands=sidebands
     )
     document = system_document(case, solved, housing)
+    add_warnings(document, unstable_modes_warnings(solved.stability))
 
     def write(place: Path) -> None:
         from gearwhine import figures, results
@@ -81,7 +84,7 @@ def system_case(
         results.write(place / "results.nc", case, housing, (), (), solved, None)
         figures.draw_system(place, case, solved)
 
-    return kept_in(document | housing_documents.origin_document(housing), case, folder, write, housing)
+    return kept_in(joined(document, housing_documents.origin_document(housing)), case, folder, write, housing)
 
 
 def steady_case(
@@ -100,6 +103,7 @@ def steady_case(
         case, machine, housing, progress, over_speed=over_speed, downwards=downwards, points=points
     )
     document = steady_stage.steady_document(case, solved)
+    add_warnings(document, machine_warnings(machine))
 
     def write(place: Path) -> None:
         from gearwhine import figures, results
@@ -108,7 +112,7 @@ def steady_case(
         results.write(place / "results.nc", case, housing, (), (), None, None, steady=solved)
         figures.draw_steady(place, case, solved)
 
-    return kept_in(document | housing_documents.origin_document(housing), case, folder, write, housing)
+    return kept_in(joined(document, housing_documents.origin_document(housing)), case, folder, write, housing)
 
 
 def sweep_case(

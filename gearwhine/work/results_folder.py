@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine.case import Case, dump_case
+from gearwhine.doubtful import add_warnings
 from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
@@ -18,6 +19,7 @@ def kept_in(
     housing: SolvedHousing | None = None,
 ) -> dict[str, Any]:
     """The document; where a folder is given, also in it, with the resolved case, the modes and what ``write`` adds."""
+    add_warnings(document)
     if folder is None:
         return document
     with staging(folder) as place:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.case import Case, dump_case, mesh_frequencies, require
 from gearwhine.comparison_files import draw_comparison_pictures, write_comparison
+from gearwhine.doubtful import add_warnings, joined
 from gearwhine.drawings import draw_modes
 from gearwhine.march_files import kept_march
 from gearwhine.output import SUMMARY, finite, json_text, staging
@@ -24,8 +25,11 @@ from gearwhine.stages import run_up as run_up_stage
 from gearwhine.stages import signature as signature_stage
 from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
+from gearwhine.stages.bearing_loads import bearing_load_warnings
+from gearwhine.stages.instability import unstable_modes_warnings
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
 from gearwhine.stages.system_documents import system_document
+from gearwhine.stages.thrust import require_carried_thrust
 from gearwhine.work.results_folder import files_in
 
 if TYPE_CHECKING:
@@ -60,6 +64,7 @@ def _run_case(
 
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
+    require_carried_thrust(case)
     if case.housing is not None and pictures:
         # Found out before the work, not after it.
         try:
@@ -82,13 +87,13 @@ def _run_case(
     housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     timed("housing", begin)
     if rotors:
-        document |= rotor_documents.rotors_document(rotors)
+        document = joined(document, rotor_documents.rotors_document(rotors))
     if pairs:
-        document |= gear_documents.gears_document(analysed)
+        document = joined(document, gear_documents.gears_document(analysed))
     comparison = None
     if housing is not None:
         document["housing"] = housing_documents.modes_document(housing)
-        document |= housing_documents.origin_document(housing)
+        document = joined(document, housing_documents.origin_document(housing))
         if case.measured is not None:
             comparison = comparison_stage.compare_housing(case, housing, progress)
             document["compare"] = comparison_documents.comparison_document(comparison, housing)
@@ -99,6 +104,7 @@ def _run_case(
         machine = machine_stage.build_machine(case, housing, pairs, progress)
         system = system_stage.solve_system(case, machine, housing, progress)
         document["system"] = system_document(case, system, housing)
+        add_warnings(document, unstable_modes_warnings(system.stability))
         timed("system", begin)
         if case.transient is not None:
             if housing is not None and not housing.source_holds:
@@ -115,7 +121,8 @@ def _run_case(
                 housing=housing,
                 keep=lambda key: until_written.enter_context(kept_march(folder, key, fresh=fresh)),
             )
-            document |= transient_stage.transient_document(case, transient)
+            document = joined(document, transient_stage.transient_document(case, transient))
+            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
             if transient_stage.is_traced(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
@@ -126,6 +133,7 @@ def _run_case(
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
+    add_warnings(document)
     begin = time.perf_counter()
     with staging(folder, replacing=True) as place:
         progress("writing results")

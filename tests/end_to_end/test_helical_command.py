@@ -12,7 +12,7 @@ from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
-from gearwhine.stages.transient import solve_transient
+from gearwhine.stages.transient import mean_bearing_forces, solve_transient
 
 SHORTER = ("transient.revolutions=3", "transient.discard=1")
 
@@ -35,6 +35,18 @@ def test_helical_gears_run_and_balance_their_energy(results: Path) -> None:
     assert pair["contact_loss_fraction"] == 0.0
 
 
+def test_the_results_hold_the_axial_force_and_the_moments_of_bearings(results: Path) -> None:
+    with xr.open_dataset(results / "results.nc") as data:
+        thrust = data["bearing_axial_force"].sel(bearing="input-left").mean().item()
+        assert data["bearing_moment"].dims == ("bearing", "time", "moment_axis")
+        assert data["bearing_force"].sel(axis="x").dims == ("bearing", "time")
+    assert abs(thrust) == pytest.approx(1125.0, rel=2e-3)
+    summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+    (left,) = [row for row in summary["bearings"] if row["name"] == "input-left"]
+    assert left["mean_force_n"][2] == pytest.approx(thrust, rel=1e-5)
+    assert left["mean_moment_n_m"] == [0.0, 0.0]
+
+
 def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Path) -> None:
     """The spur gears by the stages of the run, for what it draws of them is not looked at."""
     straight = (
@@ -51,3 +63,14 @@ def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Pat
         helical = data["mesh_force"].isel(contact=0).values
     swings = [np.ptp(force) / np.mean(force) for force in (helical, spur)]
     assert swings[0] < 0.5 * swings[1]
+
+
+def test_the_axial_force_on_the_bearings_is_the_thrust_of_the_teeth() -> None:
+    """Closed form: F_a = T / r tan β, in opposite senses on both shafts; radial bearings carry none of it."""
+    case = load_case("helical-pair", SHORTER).case
+    solved = solve_transient(case, build_machine(case, None, solve_gears(case)), mesh_frequencies(case))
+    forces = mean_bearing_forces(solved)
+    thrust = 150.0 / (0.5 * 23 * 3e-3 / math.cos(math.radians(15.0))) * math.tan(math.radians(15.0))
+    assert abs(forces["input-left"][2]) == pytest.approx(thrust, rel=2e-3)
+    assert forces["output-left"][2] == pytest.approx(-forces["input-left"][2], rel=2e-3)
+    assert forces["input-right"][2] == forces["output-right"][2] == 0.0

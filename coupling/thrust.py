@@ -1,0 +1,117 @@
+"""Axial force of helical gears on each rotor, and the bearings that must carry it.
+
+A pair's force F acts along the normal of the teeth: in the transverse plane along the line of action, and along z by
+F tan β_b. At constant torque the moment about z of every rotor balances, s Σ F R_b = T, which gives the forces; a rotor
+on which their axial parts do not cancel needs a bearing that holds it along its axis. Without one it has no axial
+coordinate, and the thrust would vanish from the model.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from coupling.errors import CouplingError
+from coupling.gears import GearPairGeometry
+
+_CANCELLED = 1e-6  # part of the largest axial force of a gear on the rotor that may be left over
+
+
+@dataclass(frozen=True)
+class ThrustPair:
+    """A gear pair as far as its thrust goes: the rotors and the names of its gears, and their geometry."""
+
+    rotors: tuple[str, str]
+    gears: tuple[str, str]
+    geometry: GearPairGeometry
+
+
+@dataclass(frozen=True)
+class AxialForces:
+    """Axial forces of the gears on one rotor at its torques.
+
+    Attributes
+    ----------
+    gears : tuple of str
+        Those with a helix angle.
+    forces : tuple of float
+        Along z on each of them [N].
+    """
+
+    gears: tuple[str, ...]
+    forces: tuple[float, ...]
+
+    @property
+    def net(self) -> float:
+        """Their sum [N]; zero where they cancel but for rounding."""
+        total = sum(self.forces)
+        return total if abs(total) > _CANCELLED * max(map(abs, self.forces), default=0.0) else 0.0
+
+
+def axial_forces(
+    pairs: Sequence[ThrustPair], speeds: Mapping[str, float], torques: Mapping[str, float]
+) -> dict[str, AxialForces]:
+    """Axial forces of helical gears on each rotor that has any, at constant torques.
+
+    Parameters
+    ----------
+    pairs
+        All gear pairs.
+    speeds
+        Signed speed of each rotor [rad/s].
+    torques
+        About z on each rotor [N m]; a rotor without one is free to turn.
+
+    Notes
+    -----
+    Where several paths share a torque the forces of least squares are taken: alike pairs carry alike parts.
+    """
+    names = list(dict.fromkeys(name for pair in pairs for name in pair.rotors))
+    moments = np.zeros((len(names), len(pairs)))
+    senses = [1.0 if speeds[pair.rotors[0]] >= 0.0 else -1.0 for pair in pairs]
+    for number, (pair, sense) in enumerate(zip(pairs, senses, strict=True)):
+        for rotor, gear in zip(pair.rotors, (pair.geometry.driver, pair.geometry.driven), strict=True):
+            moments[names.index(rotor), number] += sense * gear.base_radius
+    acting = np.array([torques.get(name, 0.0) for name in names])
+    mesh_forces = np.linalg.lstsq(moments, acting, rcond=None)[0] if pairs else np.zeros(0)
+    found: dict[str, list[tuple[str, float]]] = {}
+    for pair, sense, force in zip(pairs, senses, mesh_forces.tolist(), strict=True):
+        helix = pair.geometry.driver.base_helix_angle
+        if helix == 0.0:
+            continue
+        thrust = sense * force * float(np.tan(helix))
+        for rotor, name, side in zip(pair.rotors, pair.gears, (1.0, -1.0), strict=True):
+            found.setdefault(rotor, []).append((name, side * thrust))
+    return {
+        rotor: AxialForces(tuple(gear for gear, _ in here), tuple(force for _, force in here))
+        for rotor, here in found.items()
+    }
+
+
+def require_thrust_carried(forces: Mapping[str, AxialForces], carriers: Mapping[str, bool]) -> None:
+    """Refuse thrust on rotors that no bearing holds along their axis.
+
+    Parameters
+    ----------
+    forces
+        Of :func:`axial_forces`.
+    carriers
+        Whether a bearing with axial stiffness holds each rotor.
+
+    Raises
+    ------
+    CouplingError
+        With the rotors, the gears and the forces [N].
+    """
+    loose = [
+        f"rotor {rotor!r}: its gears {', '.join(map(repr, dict.fromkeys(here.gears)))} push it along its axis with "
+        f"{abs(here.net):.4g} N, and none of its bearings has axial stiffness"
+        for rotor, here in forces.items()
+        if here.net != 0.0 and not carriers.get(rotor, False)
+    ]
+    if loose:
+        raise CouplingError(
+            "; ".join(loose)
+            + "; expected a bearing that carries the thrust (a 5x5 stiffness matrix with the entry zz, "
+            "or a rolling bearing), or helical gears whose thrusts on the rotor cancel"
+        )

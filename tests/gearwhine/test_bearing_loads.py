@@ -1,0 +1,29 @@
+"""Bearing loads that a case gives, against those that a run finds."""
+
+import numpy as np
+
+from gearwhine.case import load_case
+from gearwhine.stages.bearing_loads import bearing_load_warnings
+
+BALLS = (
+    'bearing.0.stiffness={ rolling = { catalogue = { type = "deep-groove", bore = "35 mm", '
+    'outer_diameter = "72 mm", width = "17 mm" } } }',
+    'bearing.0.load={ x = "1000 N", y = "0 N", z = "300 N" }',
+)
+
+
+def test_a_load_more_than_a_tenth_off_is_told_with_both_numbers() -> None:
+    case = load_case("spur-pair", BALLS).case
+    name = case.bearing[0].name
+    for force in ([1050.0, 0.0, 300.0], [1000.0, 60.0, 320.0]):
+        assert bearing_load_warnings(case, {name: np.array(force)}) == []
+    for force in ([1300.0, 0.0, 300.0], [0.0, 1000.0, 300.0], [1000.0, 0.0, -300.0]):
+        (found,) = bearing_load_warnings(case, {name: np.array(force)})
+        assert found["assumed_force_n"] == [1000.0, 0.0, 300.0]
+        assert found["mean_force_n"] == force
+        assert "1000 N radial and 300 N axial" in found["message"]
+
+
+def test_a_stiffness_that_is_given_depends_on_no_load() -> None:
+    case = load_case("spur-pair").case
+    assert bearing_load_warnings(case, {one.name: np.full(3, 1e4) for one in case.bearing}) == []
