@@ -47,7 +47,19 @@ from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, cou
 from coupling.marching import Block, Checkpoint, march_blocks, march_key, sample_times
 from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_rows, with_modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
-from coupling.periodic import PeriodicResponse, ResponseCurve, periodic_response, response_curve
+from coupling.periodic import (
+    LONGEST_COMMON_PERIOD,
+    ExcitationGroup,
+    GroupMotion,
+    PeriodicResponse,
+    ResponseCurve,
+    SuperposedResponse,
+    common_cycles,
+    excitation_groups,
+    periodic_response,
+    response_curve,
+    superposed_response,
+)
 from coupling.receptance import receptance, resonance_grid
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.shares import ModeShares, Part
@@ -82,6 +94,7 @@ from coupling.transmissibility import (
 from coupling.turning import Turning
 
 __all__ = [
+    "LONGEST_COMMON_PERIOD",
     "SAMPLES_PER_BLOCK",
     "AnyTorque",
     "AxialForces",
@@ -101,10 +114,12 @@ __all__ = [
     "Decimation",
     "Drive",
     "EnergyBalance",
+    "ExcitationGroup",
     "ExcitationLine",
     "FrequencyResponse",
     "GapLaw",
     "GearMesh",
+    "GroupMotion",
     "GrowingMode",
     "HarmonicLoad",
     "Histories",
@@ -132,6 +147,7 @@ __all__ = [
     "Spectrum",
     "SpeedTable",
     "Stability",
+    "SuperposedResponse",
     "SystemCampbell",
     "SystemCrossing",
     "ThrustPair",
@@ -151,10 +167,12 @@ __all__ = [
     "amplitude_spectrum",
     "averaged_spectrum",
     "axial_forces",
+    "common_cycles",
     "contact_at",
     "couple",
     "coupled_modes",
     "decimation",
+    "excitation_groups",
     "excitation_lines",
     "free_speed",
     "histories",
@@ -182,6 +200,7 @@ __all__ = [
     "spectrum_peaks",
     "stability",
     "static_equilibrium",
+    "superposed_response",
     "system_campbell",
     "time_of_phase",
     "transient_figures",

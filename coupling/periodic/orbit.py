@@ -18,7 +18,8 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROOM_FOR_CUTS = 400  # at least; as many as there are elements, if these are more
+_ROOM_FOR_CUTS = 400  # at first at least; as many as there are elements, if these are more
+_MOST_CUTS = 41  # of one element, a few more than the kernel makes: a whole period never needs more room
 _PER_CYCLE = 4  # coarsest elements in a mesh period or in the shortest cycle of a load
 _SAME_TIME = 1e-9  # part of the period within which two events are one
 _SAME_SIZE = 1e-11  # parts of the largest element by which elements of one size may differ
@@ -179,16 +180,28 @@ def one_pass(
     Raises
     ------
     PeriodicError
-        Where the teeth's forces are not found, or their contact chatters without end.
+        Where the teeth's forces are not found, or the motion grows beyond all bounds.
     """
-    from coupling.periodic.kernels import march
+    room = max(_ROOM_FOR_CUTS, len(elements.starts))
+    while True:
+        found = _pass_within(part, contacts, elements, start, room, varied=varied)
+        if found is not None:
+            return found
+        # Long periods of many teeth and slices of their faces change branches often: that alone is no fault.
+        room *= 4
+
+
+def _pass_within(
+    part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, room: int, *, varied: bool
+) -> Pass | None:
+    """The march with room for some changes of contact; None where they are more."""
+    from coupling.periodic.kernels import NO_ROOM, march
 
     modes, count = len(part.eigenvalues), len(elements.nodes) - 1
     m, c = part.reference.eigenvalue.size, len(part.system.contacts)
     size = start.shape[-1]
     starts, ends = np.empty((count, size)), np.empty((count, size))
     pieces = np.empty((count if varied else 0, size, size))
-    room = max(_ROOM_FOR_CUTS, len(elements.starts))
     trace = empty_trace(len(elements.starts) + room, m, ORDER, c)
     # One disturbance of each amplitude; real eigenvalues have no imaginary part.
     there = np.concatenate([np.arange(modes), m + np.flatnonzero(part.eigenvalues.imag > 0.0)])
@@ -218,6 +231,8 @@ def one_pass(
             length,
             work,
         )
+        if wrong == NO_ROOM and room < _MOST_CUTS * len(elements.starts):
+            return None
         if wrong:
             _refuse(wrong, room)
         ends[k] = rows @ z[moving]

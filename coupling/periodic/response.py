@@ -161,6 +161,20 @@ class PeriodicResponse:
         )
         return q, v
 
+    def contacts_at(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Compression [m], its rate [m/s] and the force [N] of each contact, shape (t, c) each.
+
+        Parameters
+        ----------
+        times : ndarray, shape (t,)
+            Within the period, in any order [s].
+        """
+        order = np.argsort(times, kind="stable")
+        amplitudes = np.empty((len(times), 2 * len(self.part.reference.eigenvalue)))
+        amplitudes[order] = self._amplitudes(np.ascontiguousarray(times[order]))
+        compression, force = self._contacts(times, amplitudes)
+        return compression, amplitudes @ self.part.reference.rate.T, force
+
     def _mean(self, values: FloatArray) -> FloatArray:
         weights = weights_to(self.trace.part) * (self.trace.size / self.trace.part)[:, None]
         return np.asarray(np.einsum("es,esc->c", weights, values) / self.period)

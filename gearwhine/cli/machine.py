@@ -106,6 +106,15 @@ def steady(
     points: Annotated[
         int, Parameter(help="Points of the curve where it runs straight.", validator=Number(gte=2, lte=2000))
     ] = 100,
+    exact: Annotated[
+        bool,
+        Parameter(
+            name=["--exact"],
+            negative=(),
+            help="Solve the common period of all excitations however long it is; by default excitations without a "
+            "short one, as the meshes of several stages, have a motion each, and these are superposed.",
+        ),
+    ] = False,
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
 ) -> None:
@@ -116,7 +125,14 @@ def steady(
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         over_speed = curve or down
         return steady_case(
-            given, common.output, progress, over_speed=over_speed, downwards=down, points=points, fresh=fresh
+            given,
+            common.output,
+            progress,
+            over_speed=over_speed,
+            downwards=down,
+            points=points,
+            exact=exact,
+            fresh=fresh,
         )
 
     on_case(case, common, work, show_steady)

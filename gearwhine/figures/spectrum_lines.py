@@ -10,7 +10,7 @@ _MOST_LINES = 1 << 12
 _DECADES = 5.0  # of the amplitude axis, below its highest line
 
 
-def draw_lines(axes: Axes, spectrum: Spectrum, limit: float) -> None:
+def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) -> None:
     """Draw the lines of one signal above 0 Hz and up to a limit [Hz], and set the axes to them."""
     shown = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
     frequencies, amplitude = spectrum.frequencies[shown], spectrum.amplitude[shown]
@@ -28,5 +28,5 @@ def draw_lines(axes: Axes, spectrum: Spectrum, limit: float) -> None:
         heights = np.stack(
             [np.full_like(amplitude, floor), np.maximum(amplitude, floor), np.full_like(amplitude, np.nan)]
         )
-        axes.plot(np.repeat(frequencies, 3), heights.T.ravel(), color=BLUE, lw=0.9, solid_capstyle="butt")
+        axes.plot(np.repeat(frequencies, 3), heights.T.ravel(), color=color, lw=0.9, solid_capstyle="butt")
     axes.set_xlim(0.0, limit)

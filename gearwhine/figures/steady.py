@@ -146,23 +146,38 @@ def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
     rows = figure.subplots(len(drives), 2, squeeze=False)
     stable = [motion for motion in solved.motions if motion.response.stable]
     for (left, right), name in zip(rows, drives, strict=True):
-        for motion in solved.motions:
-            color = BLUE if motion.response.stable else GREY
-            left.plot(1e3 * motion.histories.times, motion.histories.mesh_force[name], color=color, lw=0.9)
-        left.set(xlabel="time [ms]", ylabel="mesh force [N]")
+        if solved.superposed is None:
+            for motion in solved.motions:
+                color = BLUE if motion.response.stable else GREY
+                left.plot(1e3 * motion.histories.times, motion.histories.mesh_force[name], color=color, lw=0.9)
+            left.set_xlabel("time [ms]")
+            _spectrum(right, (stable or list(solved.motions))[:1], name)
+        else:
+            for motion, color in zip(solved.motions, SERIES * len(solved.motions), strict=False):
+                force = motion.histories.mesh_force[name]
+                part = np.arange(len(force)) / len(force)
+                left.plot(part, force, color=color, lw=0.9, label=name_in_legend(motion.excitation, 40))
+            left.set_xlabel("part of each motion's period")
+            left.legend(loc="best", fontsize=6.5, frameon=False)
+            _spectrum(right, list(solved.motions), name)
+        left.set_ylabel("mesh force [N]")
         left.set_title(f"{name}: one period", fontsize=10, loc="left", parse_math=False)
-        _spectrum(right, (stable or list(solved.motions))[0], name)
         tidy(left)
         tidy(right)
     assert case.operation is not None
     speed = f"{case.operation.speed * RPM:.0f} rpm"
     grey = "" if len(stable) == len(solved.motions) else " (grey: unstable)"
-    figure.suptitle(f"{case.title}: periodic motion at {speed}{grey}", fontsize=11, parse_math=False)
+    what = "periodic motion" if solved.superposed is None else "superposed motions of each excitation"
+    figure.suptitle(f"{case.title}: {what} at {speed}{grey}", fontsize=11, parse_math=False)
     return figure
 
 
-def _spectrum(axes: Axes, motion: SteadyMotion, name: str) -> None:
-    spectrum = motion.spectrum(motion.histories.mesh_force[name])
-    draw_lines(axes, spectrum, min(1.02 * motion.trusted_limit, float(spectrum.frequencies[-1])))
+def _spectrum(axes: Axes, motions: list[SteadyMotion], name: str) -> None:
+    spectra = [motion.spectrum(motion.histories.mesh_force[name]) for motion in motions]
+    limit = min(1.02 * motions[0].trusted_limit, *(float(spectrum.frequencies[-1]) for spectrum in spectra))
+    # The highest last: it sets the axis.
+    tops = [float(spectrum.amplitude[1:].max(initial=0.0)) for spectrum in spectra]
+    for number in np.argsort(tops, kind="stable"):
+        draw_lines(axes, spectra[number], limit, SERIES[number % len(SERIES)] if len(motions) > 1 else BLUE)
     axes.set(xlabel="frequency [Hz]", ylabel="mesh force [N, peak]")
     axes.set_title("its lines", fontsize=10, loc="left")

@@ -159,7 +159,16 @@ def _steady(document: Document) -> Section:
     tables: tuple[Table, ...] = ()
     for motion in document["motions"]:
         stable = "stable" if motion["stable"] else "unstable"
-        sentences.append(f"Period {1e3 * motion['period_s']:.6g} ms, {stable}.")
+        if "excitations" in motion:
+            names = "; ".join(one["name"] for one in motion["excitations"])
+            worst = 100.0 * max((pair["neglected_part"] for pair in motion["gear_pairs"]), default=0.0)
+            sentences.append(
+                f"The excitations have no short common period: each has its own motion, the other meshes linear about "
+                f"their mean load, and these are superposed ({names}); {stable}. The sum leaves out at most "
+                f"{worst:.2g} % of a mesh's varying force."
+            )
+        else:
+            sentences.append(f"Period {1e3 * motion['period_s']:.6g} ms, {stable}.")
         tables += table_of(columns.MESHES, motion["gear_pairs"])
         tables += table_of(columns.LINES, _lines(motion, "lines"))
     tables += table_of(columns.EVENTS, document.get("curve", {}).get("bifurcations", ()), "Over speed")

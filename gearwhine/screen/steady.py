@@ -22,9 +22,10 @@ def show_steady(document: dict[str, Any]) -> None:
     console = open_console()
     console.print(document["title"], style="bold")
     motions = document["motions"]
+    superposed = document.get("method") == "superposed"
+    what = "steady motion" if superposed else "periodic motion"
     console.print(
-        f"{counted(len(motions), 'periodic motion')} at {document['speed_rpm']:.0f} rpm; "
-        f"{document['coordinates']} modal coordinates"
+        f"{counted(len(motions), what)} at {document['speed_rpm']:.0f} rpm; {document['coordinates']} modal coordinates"
     )
     for number, motion in enumerate(motions, start=1):
         _show_motion(console, motion, f"Motion {number}: " if len(motions) > 1 else "")
@@ -35,14 +36,20 @@ def show_steady(document: dict[str, Any]) -> None:
 
 
 def _show_motion(console: Console, motion: dict[str, Any], name: str) -> None:
-    if motion["stable"]:
-        stability = f"stable, disturbances fall by {motion['largest_multiplier']:.4g} each period"
+    if "excitations" in motion:
+        console.print(
+            "The excitations have no short common period: each has its own motion, other meshes linear about their "
+            "mean load, and these are superposed"
+        )
+        for one in motion["excitations"]:
+            _show_proof(console, one, f"  {one['name']}: ")
+        for pair in motion["gear_pairs"]:
+            console.print(
+                f"  left out in {pair['driver']} → {pair['driven']}: {pair['neglected_force_n']:.3g} N rms, "
+                f"{percent(pair['neglected_part'])} of its varying force"
+            )
     else:
-        stability = f"unstable: {_UNSTABLE.get(motion['instability'] or '', 'disturbances grow')}"
-    console.print(
-        f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes to {motion['residual']:.0e}, "
-        f"changes by {motion['error']:.0e} with elements half as long"
-    )
+        _show_proof(console, motion, name)
     for pair in motion["gear_pairs"]:
         console.print(
             f"Gear mesh {pair['driver']} → {pair['driven']}: mean force {pair['mean_force_n']:.0f} N, "
@@ -57,6 +64,18 @@ def _show_motion(console: Console, motion: dict[str, Any], name: str) -> None:
             )
             table.add_row(sensor["name"], f"{sensor['rms_m_per_s2']:.3g}", lines)
         console.print(table)
+
+
+def _show_proof(console: Console, motion: dict[str, Any], name: str) -> None:
+    if motion["stable"]:
+        stability = f"stable, disturbances fall by {motion['largest_multiplier']:.4g} each period"
+    else:
+        stability = f"unstable: {_UNSTABLE.get(motion['instability'] or '', 'disturbances grow')}"
+    console.print(
+        f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes to {motion['residual']:.0e}, "
+        f"changes by {motion['error']:.0e} with elements half as long",
+        markup=False,
+    )
 
 
 def show_curve(console: Console, curve: dict[str, Any]) -> None:

@@ -1,7 +1,7 @@
 """The steady state of a case directly: the motion that repeats with its excitation, and its branch over speed."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import coupling as room
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.analysed_speeds import BEYOND_OPERATION
 from gearwhine.case.problems import UNSAID
+from gearwhine.doubtful import add_warnings, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.housing import SolvedHousing
 
@@ -23,6 +24,7 @@ _OVERSAMPLING = 32.0  # of a period over the highest frequency of interest: litt
 _LEAST_SAMPLES = 512
 _HARMONICS = 4.0  # of the mesh that are of interest where no housing says how far the model goes
 _LINES = 20  # that are told of each signal
+_DOUBTFUL = 0.1  # part of a mesh's varying force that may be neglected without a warning
 
 CURVE_TOLERANCE = 1e-5
 """Of the points of a branch, relative: a tenth of what a transient is asked for by default."""
@@ -41,12 +43,15 @@ class SteadyMotion:
         Of one period.
     trusted_limit : float
         Highest frequency that the model carries [Hz].
+    excitation : str
+        What drives it where it is one of several that are superposed; empty for the motion under all excitations.
     """
 
     speed: float
     response: room.PeriodicResponse
     histories: room.Histories
     trusted_limit: float
+    excitation: str = ""
 
     def spectrum(self, signal: FloatArray) -> room.Spectrum:
         """Lines of a signal of the histories, exact."""
@@ -68,7 +73,10 @@ class SolvedSteady:
     machine : coupling.Machine
         At the speed of operation.
     motions : tuple of SteadyMotion
-        At the speed of operation: one, or all that a branch has there.
+        At the speed of operation: one, or all that a branch has there; where they are superposed, one of each group
+        of excitations.
+    superposed : coupling.SuperposedResponse or None
+        Their sum, where the excitations have no short common period.
     curve : coupling.ResponseCurve or None
         The branch over the speed of the first driver's rotor [rad/s].
     branch_rms : dict of str to ndarray, shape (p,)
@@ -79,6 +87,7 @@ class SolvedSteady:
     motions: tuple[SteadyMotion, ...]
     curve: room.ResponseCurve | None = None
     branch_rms: dict[str, FloatArray] = field(default_factory=dict)
+    superposed: room.SuperposedResponse | None = None
 
 
 def solve_steady(
@@ -90,8 +99,12 @@ def solve_steady(
     over_speed: bool = False,
     downwards: bool = False,
     points: int = 100,
+    exact: bool = False,
 ) -> SolvedSteady:
     """Find the motion that repeats at the speed of operation, and where asked follow it over speed.
+
+    Where the common period of all excitations is long, as that of hunting teeth is, each group of excitations has its
+    own motion and these are superposed, see :mod:`coupling.periodic.superposition`.
 
     Parameters
     ----------
@@ -105,11 +118,14 @@ def solve_steady(
         Whether it begins at the highest speed.
     points
         On a branch that runs straight.
+    exact
+        Whether the common period is solved however long it is.
 
     Raises
     ------
     CaseError
-        Where the speed is said to vary, or the range holds one speed only.
+        Where the speed is said to vary, the range holds one speed only, or a branch is asked for of motions that are
+        superposed.
     coupling.CouplingError
         Where the excitation does not repeat.
     coupling.PeriodicError
@@ -121,6 +137,12 @@ def solve_steady(
     if speed == 0.0:
         raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
     progress("compiling the search for periodic motions (the first time takes longer)")
+    groups = () if exact else room.excitation_groups(machine.system)
+    if len(groups) > 1 and over_speed:
+        cycles = room.common_cycles(machine.system)
+        raise CaseError([Problem("operation.speed", UNSAID, _NO_BRANCH.format(_period_in_words(cycles)))])
+    if len(groups) > 1:
+        return _superposed(case, machine, housing, speed, groups, progress)
     if not over_speed:
         response = room.periodic_response(machine.system)
         return SolvedSteady(machine, (_motion(case, machine, housing, speed, response),))
@@ -147,6 +169,34 @@ def solve_steady(
     here = curve.at(speed) if reached[0] <= speed <= reached[1] else [room.periodic_response(machine.system)]
     motions = tuple(_motion(case, machine, housing, speed, one) for one in here)
     return SolvedSteady(machine, motions, curve, {name: np.array(values) for name, values in rms.items()})
+
+
+_NO_BRANCH = (
+    "excitations with a short common period, for a branch over speed follows one periodic motion; theirs {}; leave "
+    "unbalance, runout or a stage out, or solve one speed without --curve"
+)
+
+
+def _period_in_words(cycles: float) -> str:
+    if not np.isfinite(cycles):
+        return "does not exist"
+    return f"holds {cycles:.0f} cycles of the fastest one, which --exact follows in its time"
+
+
+def _superposed(
+    case: Case,
+    machine: room.Machine,
+    housing: SolvedHousing | None,
+    speed: float,
+    groups: tuple[room.ExcitationGroup, ...],
+    progress: Progress,
+) -> SolvedSteady:
+    progress(f"the motions of {len(groups)} groups of excitations without a short common period")
+    found = room.superposed_response(machine.system, groups)
+    motions = tuple(
+        replace(_motion(case, machine, housing, speed, one.response), excitation=one.name) for one in found.motions
+    )
+    return SolvedSteady(machine, motions, superposed=found)
 
 
 def _speed_range(case: Case) -> tuple[float, float]:
@@ -184,36 +234,23 @@ def steady_document(case: Case, solved: SolvedSteady) -> dict[str, Any]:
         "speed_rpm": case.operation.speed * _RPM,
         "coordinates": solved.machine.system.size,
         "trusted_below_hz": solved.motions[0].trusted_limit,
-        "motions": [_motion_document(solved.machine, motion) for motion in solved.motions],
+        "method": "periodic" if solved.superposed is None else "superposed",
     }
+    if solved.superposed is None:
+        document["motions"] = [_motion_document(solved.machine, motion) for motion in solved.motions]
+    else:
+        document["motions"] = [_superposed_document(solved, solved.superposed)]
+        add_warnings(document, _superposition_warnings(solved.machine, solved.superposed))
     if solved.curve is not None:
         document["curve"] = _curve_document(solved, solved.curve)
     return document
 
 
 def _motion_document(machine: room.Machine, motion: SteadyMotion) -> dict[str, Any]:
-    response, floquet = motion.response, motion.response.floquet
-    return {
-        "period_s": response.period,
-        "stable": response.stable,
-        "largest_multiplier": floquet.largest,
-        "instability": floquet.leaving,
-        "residual": response.residual,
-        "error": response.error,
-        "elements": response.elements,
-        "switches": response.switches,
-        "newton_steps": response.newton_steps,
+    return _proof_document(motion.response) | {
         "gear_pairs": [
-            {
-                "driver": mesh.driver.name,
-                "driven": mesh.driven.name,
-                "mean_force_n": float(response.mean_force[number]),
-                "peak_force_n": float(response.peak_force[number]),
-                "contact_loss_fraction": float(response.contact_loss[number]),
-                "mean_compression_m": float(response.mean_compression[number]),
-                "rms_compression_m": float(response.rms_compression[number]),
-                "force_lines": _lines(motion, motion.histories.mesh_force[name], "amplitude_n"),
-            }
+            _pair_figures(mesh, motion.response, number)
+            | {"force_lines": _lines(motion, motion.histories.mesh_force[name], "amplitude_n")}
             for number, (name, mesh) in enumerate(_drives(machine))
         ],
         "sensors": [
@@ -225,6 +262,94 @@ def _motion_document(machine: room.Machine, motion: SteadyMotion) -> dict[str, A
             for name, signal in motion.histories.sensor_acceleration.items()
         ],
     }
+
+
+def _proof_document(response: room.PeriodicResponse) -> dict[str, Any]:
+    floquet = response.floquet
+    return {
+        "period_s": response.period,
+        "stable": response.stable,
+        "largest_multiplier": floquet.largest,
+        "instability": floquet.leaving,
+        "residual": response.residual,
+        "error": response.error,
+        "elements": response.elements,
+        "switches": response.switches,
+        "newton_steps": response.newton_steps,
+    }
+
+
+def _pair_figures(
+    mesh: room.GearMesh, response: room.PeriodicResponse | room.SuperposedResponse, number: int
+) -> dict[str, Any]:
+    return {
+        "driver": mesh.driver.name,
+        "driven": mesh.driven.name,
+        "mean_force_n": float(response.mean_force[number]),
+        "peak_force_n": float(response.peak_force[number]),
+        "contact_loss_fraction": float(response.contact_loss[number]),
+        "mean_compression_m": float(response.mean_compression[number]),
+        "rms_compression_m": float(response.rms_compression[number]),
+    }
+
+
+def _superposed_document(solved: SolvedSteady, sum_: room.SuperposedResponse) -> dict[str, Any]:
+    """One motion: its figures by the contact law at the sum, its lines those of all groups."""
+    motions = solved.motions
+    return {
+        "stable": sum_.stable,
+        "excitations": [{"name": motion.excitation} | _proof_document(motion.response) for motion in motions],
+        "gear_pairs": [
+            _pair_figures(mesh, sum_, number)
+            | {
+                "neglected_force_n": float(sum_.neglected_force[number]),
+                "neglected_part": float(sum_.neglected_part[number]),
+                "force_lines": _lines_of_all(
+                    motions, [one.histories.mesh_force[name] for one in motions], "amplitude_n"
+                ),
+            }
+            for number, (name, mesh) in enumerate(_drives(solved.machine))
+        ],
+        "sensors": [
+            {
+                "name": name,
+                # Of different frequencies: their powers add.
+                "rms_m_per_s2": math.hypot(*(motion.sensor_rms[name] for motion in motions)),
+                "lines": _lines_of_all(
+                    motions, [one.histories.sensor_acceleration[name] for one in motions], "amplitude_m_per_s2"
+                ),
+            }
+            for name in motions[0].histories.sensor_acceleration
+        ],
+    }
+
+
+def _lines_of_all(motions: tuple[SteadyMotion, ...], signals: list[FloatArray], key: str) -> list[dict[str, Any]]:
+    """The highest lines of all groups' motions, each with what excites it."""
+    lines: list[dict[str, Any]] = [
+        line | {"excitation": motion.excitation}
+        for motion, signal in zip(motions, signals, strict=True)
+        for line in _lines(motion, signal, key)
+    ]
+    return sorted(lines, key=lambda line: -float(line[key]))[:_LINES]
+
+
+def _superposition_warnings(machine: room.Machine, sum_: room.SuperposedResponse) -> list[dict[str, Any]]:
+    """Where the sum of the groups' motions is no longer near the motion under all of them."""
+    found = []
+    for number, contact in enumerate(machine.system.contacts):
+        loss, part = float(sum_.contact_loss[number]), float(sum_.neglected_part[number])
+        if contact.drives and loss > 0.0:
+            text = f"its flanks are apart {100.0 * loss:.2g} % of the time under all excitations together"
+        elif contact.drives and part > _DOUBTFUL:
+            text = f"the sum leaves out {100.0 * part:.2g} % of its varying force"
+        elif not contact.drives and loss < 1.0:
+            text = f"these flanks touch {100.0 * (1.0 - loss):.2g} % of the time under all excitations together"
+        else:
+            continue
+        message = f"superposed motions are doubtful at {contact.name}: {text}; hold them against run, or use --exact"
+        found.append(warning("superposition", message, contact=contact.name, neglected_part=part, contact_loss=loss))
+    return found
 
 
 def _lines(motion: SteadyMotion, signal: FloatArray, key: str) -> list[dict[str, float]]:

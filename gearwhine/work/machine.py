@@ -95,12 +95,13 @@ def steady_case(
     over_speed: bool = False,
     downwards: bool = False,
     points: int = 100,
+    exact: bool = False,
     fresh: bool = False,
 ) -> dict[str, Any]:
     """The motion that repeats at the speed of operation, and its branch over speed; with a folder, also as pictures."""
     housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
     solved = steady_stage.solve_steady(
-        case, machine, housing, progress, over_speed=over_speed, downwards=downwards, points=points
+        case, machine, housing, progress, over_speed=over_speed, downwards=downwards, points=points, exact=exact
     )
     document = steady_stage.steady_document(case, solved)
     add_warnings(document, machine_warnings(machine))

@@ -1,0 +1,326 @@
+r"""Steady motion of a machine whose excitations have no short common period: each excitation's own motion, superposed.
+
+Meshes of a train, and shafts with unbalance or runout, drive the machine at frequencies whose common period is that of
+hunting teeth: thousands of mesh periods, or none. The motion is then a function of several independent phases. To the
+first order of averaging it is the sum
+
+    q(t) = q0 + sum_g (q_g(t) - q0)
+
+of motions that repeat with one group of excitations g each. In the motion of a group its own meshes keep their whole
+law, contact loss included; every other mesh h is linear about its mean load,
+
+    F_h = F0_h + k_h (delta_h - delta0_h) + c_h delta_h',
+
+with the mean F0 and k of :mod:`coupling.mean_mesh`; q0 is the rest position of the machine with all meshes so. A. H.
+Nayfeh and D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapters 2 and 5.
+
+The sum satisfies every linear part of the equations of motion exactly. What it leaves is a force in each mesh,
+
+    r_h = F_h(phase_h, delta_h, delta_h') - [F_h of its own group + sum of the others' parts],
+
+the law at the superposed motion less the forces that were assumed. It is evaluated over all phases, and is the measure
+of what is neglected: combination lines at sums and differences of the groups' frequencies.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.connector import ContactConnector
+from coupling.errors import CouplingError, PeriodicError
+from coupling.gears import ToothContact, piecewise
+from coupling.mean_mesh import MeanMesh, mean_meshes
+from coupling.periodic.base_period import common_period, driving_frequencies
+from coupling.periodic.response import PeriodicResponse
+from coupling.periodic.shooting import periodic_response
+from coupling.step import contact_arrays
+from coupling.system import CoupledSystem, HarmonicLoad
+
+FloatArray = npt.NDArray[np.float64]
+
+LONGEST_COMMON_PERIOD = 40
+"""Cycles of the fastest mesh in a common period beyond which excitations are superposed by default: the cost of a
+periodic motion is in proportion to them, and most pairs' hunting period is beyond."""
+
+_PHASES = 8192  # at which the neglected force is evaluated
+_SPACING = 0.6180339887498949  # of the slowest period: its multiples cover the phases of all evenly
+_SAME_FREQUENCY = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class ExcitationGroup:
+    """Excitations whose motion repeats after a short common period.
+
+    Attributes
+    ----------
+    meshes : tuple of int
+        Numbers of the drive flanks' contacts in the system, each with its back flanks.
+    frequencies : tuple of float
+        Circular frequencies of harmonic loads and runout errors [rad/s].
+    """
+
+    meshes: tuple[int, ...] = ()
+    frequencies: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class GroupMotion:
+    """The motion that one group of excitations makes, the other meshes linear about their mean load.
+
+    Attributes
+    ----------
+    name : str
+        Its excitations.
+    group : ExcitationGroup
+    response : PeriodicResponse
+        Of the machine with the other meshes linear. Their compression counts from the point where their force is zero.
+    """
+
+    name: str
+    group: ExcitationGroup
+    response: PeriodicResponse
+
+
+@dataclass(frozen=True, eq=False)
+class SuperposedResponse:
+    """A steady motion as the sum of the motions of its groups of excitations; c contacts.
+
+    Attributes
+    ----------
+    system : CoupledSystem
+    motions : tuple of GroupMotion
+        The fastest first.
+    means : tuple of MeanMesh
+        Of each contact; of back flanks, all zero.
+    rest : ndarray, shape (n,)
+        q0.
+    """
+
+    system: CoupledSystem
+    motions: tuple[GroupMotion, ...]
+    means: tuple[MeanMesh, ...]
+    rest: FloatArray = field(repr=False)
+
+    @property
+    def stable(self) -> bool:
+        """Whether no small disturbance grows in any of the motions."""
+        return all(motion.response.stable for motion in self.motions)
+
+    @cached_property
+    def _sampled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Compression, force by the law and force as it was assumed over the phases of all, shape (s, c) each."""
+        from coupling.periodic.dense import forces_at
+        from coupling.periodic.element_work import element_work
+
+        slowest = max(motion.response.period for motion in self.motions)
+        times = slowest * _SPACING * np.arange(_PHASES, dtype=np.float64)
+        at_rest = self.system.contact_directions.T @ self.rest
+        contacts = self.system.contacts
+        compression = np.tile(at_rest - [contact.clearance for contact in contacts], (_PHASES, 1))
+        rate = np.zeros((_PHASES, len(contacts)))
+        assumed = np.tile([mean.force for mean in self.means], (_PHASES, 1))
+        mean_force = np.array([mean.force for mean in self.means])
+        for motion in self.motions:
+            response = motion.response
+            delta, speed, force = response.contacts_at(np.mod(times, response.period))
+            clearance = np.array([contact.clearance for contact in response.system.contacts])
+            compression = compression + delta - (at_rest - clearance)
+            rate = rate + speed
+            assumed += force - mean_force
+        work = element_work(1, 1, len(contacts))
+        law_force = np.zeros((_PHASES, len(contacts)))
+        forces_at(contact_arrays(self.system), times, compression, rate, work, law_force)
+        return compression, law_force, assumed
+
+    @property
+    def mean_force(self) -> FloatArray:
+        """Of each contact over all phases [N], shape (c,)."""
+        return np.asarray(self._sampled[2].mean(axis=0))
+
+    @property
+    def peak_force(self) -> FloatArray:
+        """Largest force of each contact by its law at the superposed motion [N], shape (c,)."""
+        return np.asarray(self._sampled[1].max(axis=0))
+
+    @property
+    def contact_loss(self) -> FloatArray:
+        """Part of all phases at which the flanks are apart, shape (c,)."""
+        return np.asarray((self._sampled[1] == 0.0).mean(axis=0))
+
+    @property
+    def mean_compression(self) -> FloatArray:
+        """Of each contact [m], shape (c,)."""
+        return np.asarray(self._sampled[0].mean(axis=0))
+
+    @property
+    def rms_compression(self) -> FloatArray:
+        """Root mean square about the mean [m], shape (c,)."""
+        return np.asarray(self._sampled[0].std(axis=0))
+
+    @property
+    def neglected_force(self) -> FloatArray:
+        """Root mean square of the force r of each contact that the sum leaves out [N], shape (c,)."""
+        _, force, assumed = self._sampled
+        return np.asarray(np.sqrt(np.mean((force - assumed) ** 2, axis=0)))
+
+    @property
+    def neglected_part(self) -> FloatArray:
+        """The neglected force as a part of the rms of each drive flank's varying force, shape (c,); 0 for back flanks
+        that stay apart."""
+        varying = self._sampled[1].std(axis=0)
+        return np.asarray(np.divide(self.neglected_force, varying, out=np.zeros_like(varying), where=varying > 0.0))
+
+
+def common_cycles(system: CoupledSystem) -> float:
+    """Cycles of the fastest excitation in the common period of all; infinite where there is none."""
+    try:
+        return common_period(system) * max(driving_frequencies(system).values())
+    except CouplingError:
+        return np.inf
+
+
+def excitation_groups(system: CoupledSystem, longest: float = LONGEST_COMMON_PERIOD) -> tuple[ExcitationGroup, ...]:
+    """Excitations together as far as their common period holds at most a number of the fastest one's cycles.
+
+    Meshes are gathered first, the fastest first, then loads and runout errors; each joins the group with which its
+    common period is the shortest, or begins one. What does not vary is in none.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+    longest : float
+        Cycles of the fastest excitation in a group's common period.
+    """
+    groups: list[ExcitationGroup] = []
+    for atom in _atoms(system):
+        joined = [ExcitationGroup(group.meshes + atom.meshes, group.frequencies + atom.frequencies) for group in groups]
+        cycles = [common_cycles(_driven_by(system, group)) for group in joined]
+        best = int(np.argmin(cycles)) if cycles else -1
+        if best >= 0 and cycles[best] <= longest:
+            groups[best] = joined[best]
+        else:
+            groups.append(atom)
+    return tuple(groups)
+
+
+def superposed_response(
+    system: CoupledSystem,
+    groups: Sequence[ExcitationGroup] | None = None,
+    *,
+    tolerance: float = 1e-8,
+) -> SuperposedResponse:
+    """The steady motion as the sum of the motions of its groups of excitations.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+        At constant speed.
+    groups : sequence of ExcitationGroup, optional
+        Those of :func:`excitation_groups` by default.
+    tolerance : float
+        As for :func:`periodic_response`.
+
+    Raises
+    ------
+    CouplingError
+        Where nothing varies, or the loads do not balance.
+    PeriodicError
+        Where a mesh carries no mean force, so that it cannot be linear about one, or no motion is found.
+    """
+    chosen = excitation_groups(system) if groups is None else tuple(groups)
+    if not chosen:
+        common_period(system)  # says that nothing varies
+    means = []
+    for contact, mean in zip(system.contacts, mean_meshes(system), strict=True):
+        if contact.drives and (mean is None or mean.force <= 0.0):
+            raise PeriodicError(
+                f"mesh {contact.name!r} carries no mean force, so its flanks part and it is not linear about a mean; "
+                "expected a torque through every mesh, or march it through time until it settles"
+            )
+        means.append(MeanMesh(0.0, 0.0, 0.0, 0.0) if mean is None or not contact.drives else mean)
+    linear = tuple(_linear_mesh(contact, mean) for contact, mean in zip(system.contacts, means, strict=True))
+    rest = _rest_position(replace(system, contacts=linear))
+    motions = []
+    for group in chosen:
+        own = _driven_by(system, group, linear)
+        motions.append(GroupMotion(_name_of(system, group), group, periodic_response(own, tolerance=tolerance)))
+    motions.sort(key=lambda motion: motion.response.period)
+    return SuperposedResponse(system, tuple(motions), tuple(means), rest)
+
+
+def _atoms(system: CoupledSystem) -> list[ExcitationGroup]:
+    """Each mesh that varies, the fastest first, then each frequency of loads and runout errors, the highest first."""
+    drives = [i for i, contact in enumerate(system.contacts) if contact.drives]
+    meshes = [i for i in drives if driving_frequencies(_driven_by(system, ExcitationGroup((i,))))]
+    meshes.sort(key=lambda i: -abs(system.contacts[i].rate))
+    given = [abs(load.frequency) for load in system.harmonic_loads if np.any(load.amplitude != 0.0)]
+    given += [abs(row[1]) for contact in system.contacts for row in contact.errors if row[0] != 0.0]
+    frequencies: list[float] = []
+    for frequency in sorted(given, reverse=True):
+        if frequency != 0.0 and not any(abs(frequency - one) <= _SAME_FREQUENCY * one for one in frequencies):
+            frequencies.append(frequency)
+    return [*(ExcitationGroup((i,)) for i in meshes), *(ExcitationGroup((), (one,)) for one in frequencies)]
+
+
+def _driven_by(
+    system: CoupledSystem, group: ExcitationGroup, linear: Sequence[ContactConnector] | None = None
+) -> CoupledSystem:
+    """The system with the excitations of a group alone; other contacts as given, else unchanging."""
+    names = {system.contacts[i].name for i in group.meshes}
+    contacts = []
+    for number, contact in enumerate(system.contacts):
+        own = contact.name.removesuffix(", back") in names
+        if own:
+            stands = contact
+        elif linear is not None:
+            stands = linear[number]
+        else:
+            stands = _linear_mesh(contact, MeanMesh(1.0, 1.0, 0.0, 1.0))
+        kept = [row for row in contact.errors if row[1] == 0.0 or _among(row[1], group.frequencies)]
+        contacts.append(replace(stands, errors=np.array(kept, dtype=np.float64).reshape(-1, 3)))
+    loads: list[HarmonicLoad] = [
+        load for load in system.harmonic_loads if load.frequency == 0.0 or _among(load.frequency, group.frequencies)
+    ]
+    return replace(system, contacts=tuple(contacts), harmonic_loads=tuple(loads))
+
+
+def _among(frequency: float, frequencies: Sequence[float]) -> bool:
+    return any(abs(abs(frequency) - one) <= _SAME_FREQUENCY * one for one in frequencies)
+
+
+def _linear_mesh(contact: ContactConnector, mean: MeanMesh) -> ContactConnector:
+    """A contact as a spring and a dashpot through its mean force and deflection; back flanks stay apart."""
+    stiffness = mean.stiffness if contact.drives else contact.contact.mean_stiffness
+    law = ToothContact(
+        1.0, piecewise.constant(stiffness, 1.0), piecewise.constant(0.0, 1.0), damping=contact.contact.damping
+    )
+    clearance = contact.clearance
+    if contact.drives:
+        clearance += mean.deflection - mean.force / stiffness
+    return replace(contact, contact=law, phase=0.5, rate=0.0, clearance=clearance)
+
+
+def _rest_position(linear: CoupledSystem) -> FloatArray:
+    """q0, shape (n,): under the constant load, all meshes linear; zero in motions that nothing resists."""
+    from coupling.statics import static_equilibrium
+
+    still = tuple(replace(contact, errors=np.zeros((0, 3))) for contact in linear.contacts)
+    return static_equilibrium(replace(linear, contacts=still))
+
+
+def _name_of(system: CoupledSystem, group: ExcitationGroup) -> str:
+    """What a group's excitations are, for people."""
+    names = [f"mesh {system.contacts[i].name}" for i in group.meshes]
+    for frequency in group.frequencies:
+        turning = [
+            component.name
+            for component, speed in zip(system.components, system.speeds, strict=True)
+            if speed != 0.0 and abs(abs(speed) - frequency) <= 1e-6 * frequency
+        ]
+        names.append(
+            f"rotation of {' and '.join(turning)}" if turning else f"load at {frequency / (2.0 * np.pi):.6g} Hz"
+        )
+    return ", ".join(names)

@@ -1,0 +1,166 @@
+"""Steady motion of a two-stage train: each mesh's own motion, superposed, against the whole common period."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from reducer_case import reducer
+
+import coupling as room
+from coupling.gears import ToothContact, piecewise
+from coupling.periodic import orbit, periodic_response, shooting, superposed_response
+from gearwhine.case import CaseError, load_case
+from gearwhine.cli import run_command
+from gearwhine.report.sections import sections_of
+from gearwhine.stages.gears import solve_gears
+from gearwhine.stages.machine import build_machine
+from gearwhine.stages.steady import solve_steady
+
+SHORT = (21, 30, 19, 56)  # 30 cycles of the first mesh are 19 of the second
+
+
+def machine_of(folder: Path, text: str) -> room.Machine:
+    place = folder / "reducer.toml"
+    place.write_text(text, encoding="utf-8")
+    case = load_case(str(place), []).case
+    return build_machine(case, None, solve_gears(case))
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory: pytest.TempPathFactory) -> room.Machine:
+    return machine_of(tmp_path_factory.mktemp("reducer"), reducer(SHORT))
+
+
+@pytest.fixture(scope="module")
+def whole(machine: room.Machine) -> room.PeriodicResponse:
+    """The motion under both meshes over their common period."""
+    return periodic_response(machine.system, tolerance=1e-5)
+
+
+@pytest.fixture(scope="module")
+def superposed(machine: room.Machine) -> room.SuperposedResponse:
+    return superposed_response(machine.system, room.excitation_groups(machine.system, longest=1.0), tolerance=1e-5)
+
+
+def test_lines_at_both_mesh_frequencies(
+    machine: room.Machine, whole: room.PeriodicResponse, superposed: room.SuperposedResponse
+) -> None:
+    """Three harmonics within 3 % of the motion over the common period, in the own mesh and in the other one.
+
+    Higher ones meet a resonance, where a small force does much: they differ by less than the force that is left out.
+    """
+    outputs, samples = room.transient_outputs(machine), 2**14
+    record = whole.record(outputs, samples)
+    assert [len(motion.group.meshes) for motion in superposed.motions] == [1, 1]
+    for motion in superposed.motions:
+        own = motion.response.record(outputs, 2048)
+        for mesh in (0, 1):
+            lines = room.amplitude_spectrum(own.force[:, mesh], motion.response.period / 2048)
+            expected = room.amplitude_spectrum(record.force[:, mesh], whole.period / samples)
+            for harmonic in range(1, 9):
+                cycles = round(lines.frequencies[harmonic] * whole.period)
+                missed = abs(lines.amplitude[harmonic] - expected.amplitude[cycles])
+                assert missed < np.sqrt(2.0) * superposed.neglected_force[mesh]
+                if harmonic <= 3:
+                    assert missed < 0.03 * expected.amplitude[cycles]
+    np.testing.assert_allclose(superposed.mean_force[:2], whole.mean_force[:2], rtol=1e-3)
+    np.testing.assert_allclose(superposed.rms_compression[:2], whole.rms_compression[:2], rtol=5e-3)
+    # Phases are independent in the sum, and only some of them in a common period.
+    np.testing.assert_allclose(superposed.peak_force[:2], whole.peak_force[:2], rtol=0.05)
+
+
+def test_what_is_neglected_is_the_difference_of_the_forces(
+    machine: room.Machine, whole: room.PeriodicResponse, superposed: room.SuperposedResponse
+) -> None:
+    """Its size is that by which the mesh forces of both motions differ: the machine's answer to it comes on top."""
+    outputs, samples = room.transient_outputs(machine), 2**14
+    record = whole.record(outputs, samples)
+    total = np.zeros((samples, 2))
+    for motion in superposed.motions:
+        _, _, force = motion.response.contacts_at(np.mod(record.times, motion.response.period))
+        total += force[:, :2] - superposed.mean_force[:2]
+    total += superposed.mean_force[:2]
+    different = np.sqrt(np.mean((record.force[:, :2] - total) ** 2, axis=0))
+    assert np.all(different < 2.0 * superposed.neglected_force[:2].max())
+    assert different.max() > 0.3 * superposed.neglected_force[:2].max()
+
+
+def test_a_linear_machine_is_superposed_without_error(machine: room.Machine) -> None:
+    """Constant mesh stiffness, runout in both meshes: the sum leaves nothing out."""
+    law = ToothContact(1.0, piecewise.constant(2e8, 1.0), piecewise.constant(0.0, 1.0), damping=500.0)
+    contacts = tuple(
+        replace(contact, contact=law, errors=np.array([[2e-6, 2.0 * np.pi * rate, 0.3]]))
+        for contact, rate in zip(machine.system.contacts, (50.0, 13.7), strict=True)
+    )
+    system = replace(machine.system, contacts=contacts)
+    groups = room.excitation_groups(system)
+    assert [group.meshes for group in groups] == [(), ()]
+    found = superposed_response(system, groups)
+    assert found.neglected_force.max() < 1e-6 * found.mean_force.max()
+    assert len(found.motions) == 2
+
+
+def test_groups_of_hunting_teeth(tmp_path: Path) -> None:
+    """The unbalance of the input makes 21 cycles of its mesh a period; that of the output fits neither mesh."""
+    system = machine_of(tmp_path, reducer(unbalanced="input")).system
+    first, second = room.excitation_groups(system)
+    assert first.meshes == (0,)
+    assert first.frequencies == pytest.approx((100.0 * np.pi,))
+    assert second.meshes == (1,)
+    assert room.common_cycles(system) == pytest.approx(21 * 24)
+    system = machine_of(tmp_path, reducer(unbalanced="output")).system
+    assert [group.meshes for group in room.excitation_groups(system)] == [(0,), (1,), ()]
+    (together,) = room.excitation_groups(machine_of(tmp_path, reducer(SHORT)).system)
+    assert together.meshes == (0, 1)
+
+
+def test_a_mesh_without_torque_is_refused(machine: room.Machine) -> None:
+    idle = replace(machine.system, load=np.zeros(machine.system.size))
+    with pytest.raises(room.PeriodicError, match="carries no mean force"):
+        superposed_response(idle)
+
+
+def test_the_command_says_which_was_done(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    place = tmp_path / "reducer.toml"
+    place.write_text(reducer(unbalanced="output"), encoding="utf-8")
+    assert run_command(["steady", str(place), "-q", "--json", "-o", str(tmp_path / "out")]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["method"] == "superposed"
+    (motion,) = document["motions"]
+    names = ["mesh a -> b", "mesh c -> d", "rotation of output"]
+    assert [one["name"] for one in motion["excitations"]] == names
+    assert motion["stable"]
+    for pair in motion["gear_pairs"]:
+        assert {line["excitation"] for line in pair["force_lines"]} <= set(names)
+        assert 0.0 < pair["neglected_part"] < 0.2
+    with xr.open_dataset(tmp_path / "out" / "results.nc") as data:
+        assert data["excitation_mesh_force"].dims == ("excitation", "contact", "period_part")
+        assert data["excitation_period"].values == pytest.approx([1 / 1050, 72 / 1050 / 19, 72 * 56 / 1050 / 19])
+    text = " ".join(sentence for section in sections_of(document) for sentence in section.sentences)
+    assert "these are superposed" in text
+    assert run_command(["steady", str(place), "-q"]) == 0
+    assert "these are superposed" in capsys.readouterr().out.replace("\n", " ")
+
+
+def test_a_branch_of_superposed_motions_is_refused_at_once(tmp_path: Path) -> None:
+    place = tmp_path / "reducer.toml"
+    place.write_text(reducer(unbalanced="input"), encoding="utf-8")
+    case = load_case(str(place), []).case
+    machine = build_machine(case, None, solve_gears(case))
+    with pytest.raises(CaseError, match="holds 504 cycles of the fastest one"):
+        solve_steady(case, machine, None, over_speed=True)
+
+
+def test_many_changes_of_contact_are_no_fault(machine: room.Machine) -> None:
+    """The march is made again with more room, whatever it began with."""
+    ready = shooting.problem(machine.system)
+    elements = ready.elements(0)
+    start = np.zeros((ready.segments, ready.part.states))
+    count = len(elements.starts)
+    within = orbit._pass_within
+    assert within(ready.part, ready.contacts, elements, start, -count // 2, varied=False) is None
+    found = orbit.one_pass(ready.part, ready.contacts, elements, start, varied=False)
+    assert len(found.trace.start) >= count
