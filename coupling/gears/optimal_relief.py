@@ -16,7 +16,7 @@ from coupling.gears.modifications import ReliefShape, TipRelief
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
 from coupling.gears.static import static_transmission_error
-from coupling.gears.stiffness_models import StiffnessModel
+from coupling.gears.stiffness_models import StiffnessModel, shared_compliance
 from coupling.gears.tooth_contact import ToothContact
 
 FloatArray = npt.NDArray[np.float64]
@@ -63,6 +63,10 @@ class _Known:
     """A stiffness that relief does not change, computed once."""
 
     stiffness: PiecewiseCubic
+    shared: float
+
+    def shared_compliance(self, geometry: GearPairGeometry) -> float:
+        return self.shared
 
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         return self.stiffness
@@ -101,7 +105,7 @@ def optimal_tip_relief(
         raise GearError("optimal relief: at least one load is needed")
     for force in forces:
         require_finite("optimal relief: the load", force, minimum=0.0, strict=True)
-    stiffness = _Known(model.pair_stiffness(geometry))
+    stiffness = _Known(model.pair_stiffness(geometry), shared_compliance(model, geometry))
     phases = np.arange(_POINTS) / _POINTS
 
     def contact_of(relief: TipRelief | None) -> tuple[GearPairGeometry, ToothContact]:

@@ -201,7 +201,7 @@ def _stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, 
     uniform = np.zeros((3, 2))
     uniform[:2, 1], uniform[2, 0] = sideways[:, odd.size :] @ whole, upright[0, : even.size] @ whole
     return _Stamp(
-        waves=np.moveaxis(waves, 1, 2),
+        waves=np.ascontiguousarray(waves.swapaxes(1, 2), dtype=np.complex128),
         uniform=uniform,
         flexibility=flexibility,
         even=np.array([breathing, twist]),
