@@ -83,7 +83,8 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, turn
         A spur gear.
     state : {"plane-stress", "plane-strain"}
     turning : bool
-        Whether the twist of the whole body is counted; never that of a gear in one piece with its shaft.
+        Whether the twist of the whole body is counted; never that of a gear in one piece with its shaft. Without it the
+        bore and the rim are left out too, as by a tooth on a half plane: what is left is the dent of a solid gear.
 
     Returns
     -------
@@ -91,7 +92,7 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, turn
         From radii [m] of the loads on a tooth and on the next one in the sense of the loads (shapes that broadcast) to
         the compliance.
     """
-    rings = _rings(gear)
+    rings = _rings(gear) if turning else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
     nu, kappa = gear.poisson_ratio, _kolosov(gear, state)
     cross = neighbour_flexibility(rings, root_half_angle(gear), nu, kappa, 2.0 * math.pi / gear.teeth)
     if not (turning and held_radius(gear) is not None):
