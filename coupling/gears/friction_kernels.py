@@ -57,10 +57,10 @@ def friction_shares(
         approach, here = nearness(law, at, hunting, int(number) - first - pair, u, pressed, start)
         if approach <= 0.0:
             continue
-        force, k = pair_rise(law, at, here, u, approach)
+        force, k, _ = pair_rise(law, at, here, u, approach)
         if by_slices:
-            turned, turned_slope = pair_rise(law, at, here + next_kind, u, approach)
-            placed, placed_slope = pair_rise(law, at, here + 2 * next_kind, u, approach)
+            turned, turned_slope, _ = pair_rise(law, at, here + next_kind, u, approach)
+            placed, placed_slope, _ = pair_rise(law, at, here + 2 * next_kind, u, approach)
         else:
             # Beyond the path it is a corner that slides, there where the path ends.
             position = min(max(phase - number + (first + pair), 0.0), path_end)

@@ -47,8 +47,10 @@ FloatArray = npt.NDArray[np.float64]
 TangentForce = tuple[float, float, float, float, float, int]
 
 _NEWTON_STEPS = 60
-PRECISE, _NEAR_ENOUGH = 1e-6, 1e-2
-"""Steps after which the pairs' compression is exact to rounding: as it is, or with one more step of Newton's method."""
+_DOUBT = 1e-12
+"""Part of the compression that may be rounding of where a pair begins to touch."""
+PRECISE, _NEAR_ENOUGH = 1e-9, 1e-4
+"""Corrections after which the pairs' compression is exact to rounding: as it is, or with one more Newton step."""
 
 
 @inner(inline="always")
@@ -137,8 +139,10 @@ def face_force(
 
 
 @inner(fastmath={"contract"}, inline="always")
-def face_rise(law: FloatArray, cell: int, per_unit: float, p: float, begin: float, rho: float) -> tuple[float, float]:
-    """Force and tangent alone, as of `face_force`."""
+def face_rise(
+    law: FloatArray, cell: int, per_unit: float, p: float, begin: float, rho: float
+) -> tuple[float, float, float]:
+    """Force and tangent, as of `face_force`, and the tangent's slope by the compression."""
     v0 = number_at(law, cell) + p * (
         number_at(law, cell + 4) + p * (number_at(law, cell + 8) + p * number_at(law, cell + 12))
     )
@@ -152,12 +156,17 @@ def face_rise(law: FloatArray, cell: int, per_unit: float, p: float, begin: floa
         number_at(law, cell + 7) + p * (number_at(law, cell + 11) + p * number_at(law, cell + 15))
     )
     force = v0 + rho * (v1 + rho * (v2 + rho * v3))
-    return force, (v1 + rho * (2.0 * v2 + 3.0 * rho * v3)) * (0.5 * per_unit / (begin + rho))
+    by_r, per_r = v1 + rho * (2.0 * v2 + 3.0 * rho * v3), 0.5 * per_unit / (begin + rho)
+    curvature = ((2.0 * v2 + 6.0 * rho * v3) - by_r / (begin + rho)) * per_r * per_r
+    return force, by_r * per_r, curvature
 
 
 @inner(fastmath={"contract"}, inline="always")
-def pair_rise(law: FloatArray, at: int, here: int, u: float, approach: float) -> tuple[float, float]:
-    """Force and tangent of a pair whose flanks are pressed together by ``approach`` > 0, its numbers from ``here``."""
+def pair_rise(law: FloatArray, at: int, here: int, u: float, approach: float) -> tuple[float, float, float]:
+    """Force, tangent and its slope of a pair whose flanks are pressed together by ``approach`` > 0.
+
+    ``here``: where its numbers begin.
+    """
     unit = number_at(law, at + DEPTH_UNIT)
     if unit > 0.0:
         per_unit = 1.0 / unit
@@ -169,7 +178,7 @@ def pair_rise(law: FloatArray, at: int, here: int, u: float, approach: float) ->
         return face_rise(law, cell, per_unit, p, float(depth), r - depth)
     c1, c2, c3 = number_at(law, here + 5), number_at(law, here + 6), number_at(law, here + 7)
     k = number_at(law, here + 4) + u * (c1 + u * (c2 + u * c3))
-    return k * approach, k
+    return k * approach, k, 0.0
 
 
 @inner(fastmath={"contract"}, inline="always")
@@ -179,8 +188,8 @@ def pairs_compression(
     """Compression of the pairs behind what their gears' bodies yield, and its rise by that of the mesh.
 
     The first is the root of ``x + C F(x) = compression``, which rises all along, by Newton's method between bounds. It
-    stops after a step of no more than ``precision`` parts of the whole way: what is left is about the twentieth of the
-    square of that, as F is nearly straight.
+    stops where the curvature of F would change a step by no more than ``precision`` parts of the whole way, and takes
+    that in: what is left is of the next order.
 
     ``number``, ``interval``, ``u``: as `place` gives them.
     """
@@ -202,13 +211,15 @@ def pairs_compression(
         left += min(r - depth, 1.0) * (number_at(law, guess + 1) - left)
         x = low + left * (compression - low)
     for _ in range(_NEWTON_STEPS):
-        force, tangent = 0.0, 0.0
+        force, tangent, curvature, nearest = 0.0, 0.0, 0.0, math.inf
         for pair in range(pairs):
             approach, here = nearness(law, at, hunting, first - pair, u, x, start + PAIR * pair)
+            nearest = min(nearest, abs(approach))
             if approach > 0.0:
-                pair_force, pair_tangent = pair_rise(law, at, here, u, approach)
+                pair_force, pair_tangent, pair_curvature = pair_rise(law, at, here, u, approach)
                 force += pair_force
                 tangent += pair_tangent
+                curvature += pair_curvature
         excess = x + shared * force - compression
         if excess > 0.0:
             high = x
@@ -216,12 +227,42 @@ def pairs_compression(
             low = x
         gain = 1.0 / (1.0 + shared * tangent)
         step = excess * gain
-        x -= step
-        if abs(step) <= small:
+        bend = 0.5 * shared * curvature * gain * step * step
+        # Where a pair is about to touch or to part its force bends the more the nearer it is.
+        if abs(bend) <= small and abs(step) <= max(0.25 * nearest, 0.01 * small):
+            x -= step + bend
             break
+        x -= step
         if not low <= x <= high:
             x = 0.5 * (low + high)
     return x, gain
+
+
+@uncounted(fastmath={"contract"})
+def ranked_nearness(phase: float, compression: float, law: FloatArray, at: int, rank: int) -> float:
+    """Compression of the mesh beyond that at which as many as ``rank`` pairs begin to touch [m]; -inf with fewer pairs.
+
+    So ``rank`` pairs or more touch where it is positive, as `tooth_force` counts them, whose other arguments these are.
+    Unlike their number it tells how far the next change is. Before the pair touches, those nearer than it carry and
+    their gears' bodies yield by ``c F``.
+    """
+    number, interval, u, _ = place(law, at, phase)
+    pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
+    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
+    first = int(number) - int(number_at(law, at + FIRST_PAIR))
+    shared = number_at(law, at + SHARED)
+    for pair in range(pairs):
+        own, _ = nearness(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
+        before, force = 0, 0.0
+        for rival in range(pairs):
+            other, here = nearness(law, at, hunting, first - rival, u, compression, start + PAIR * rival)
+            if other > own or (other == own and rival < pair):
+                before += 1
+                if shared > 0.0 and -math.inf < own < other:
+                    force += pair_rise(law, at, here, u, other - own)[0]
+        if before == rank - 1:
+            return own - shared * force
+    return -math.inf
 
 
 @uncounted(fastmath={"contract"})
@@ -272,6 +313,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     if uneven:
         x, _ = pairs_compression(law, at, number, interval, u, compression, _NEAR_ENOUGH)
     first = int(number) - int(number_at(law, at + FIRST_PAIR))
+    doubt = _DOUBT * abs(compression) if shared > 0.0 else 0.0
     # Pairs leave the set that touches at the mesh's own compression as the bodies take their share, one round each.
     for _ in range(pairs + 1):
         force, tangent, energy, slope, slope_by_x, curve = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -312,13 +354,17 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
                 curve += 0.5 * k_slope
         # By how much the pairs are pressed together less than x, with these touching.
         excess = (x - compression + shared * force) / (1.0 + shared * tangent)
-        if uneven or excess < nearest:
+        touches = uneven or excess < nearest
+        if abs(excess - nearest) <= doubt and not uneven:
+            # Within rounding of its touch a pair counts where the search for that moment says so.
+            touches = ranked_nearness(phase, compression, law, at, touching) > 0.0
+        if touches:
             energy += excess * (0.5 * excess * tangent - force)
             slope += excess * (excess * curve - slope_by_x)
             force -= excess * tangent
             deepest -= excess
             break
-        x -= excess
+        x -= excess + 2.0 * doubt
     if touching == 0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
     energy += 0.5 * shared * force * force
@@ -333,33 +379,6 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
         # Teeth do not pull: the damping takes no more than the springs give, and all of that.
         return 0.0, 0.0, -force / rate, energy, slope, touching
     return force + damping * rate, tangent, damping, energy, slope, touching
-
-
-@uncounted(fastmath={"contract"})
-def ranked_nearness(phase: float, compression: float, law: FloatArray, at: int, rank: int) -> float:
-    """Compression of the mesh beyond that at which as many as ``rank`` pairs begin to touch [m]; -inf with fewer pairs.
-
-    So ``rank`` pairs or more touch where it is positive, as `tooth_force` counts them, whose other arguments these are.
-    Unlike their number it tells how far the next change is. Before the pair touches, those nearer than it carry and
-    their gears' bodies yield by ``c F``.
-    """
-    number, interval, u, _ = place(law, at, phase)
-    pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
-    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
-    first = int(number) - int(number_at(law, at + FIRST_PAIR))
-    shared = number_at(law, at + SHARED)
-    for pair in range(pairs):
-        own, _ = nearness(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
-        before, force = 0, 0.0
-        for rival in range(pairs):
-            other, here = nearness(law, at, hunting, first - rival, u, compression, start + PAIR * rival)
-            if other > own or (other == own and rival < pair):
-                before += 1
-                if shared > 0.0 and -math.inf < own < other:
-                    force += pair_rise(law, at, here, u, other - own)[0]
-        if before == rank - 1:
-            return own - shared * force
-    return -math.inf
 
 
 @counted()
