@@ -163,7 +163,7 @@ def test_two_arcs_work_on_each_other_alike(rings: tuple[Annulus, ...], angle: fl
 
 
 def test_teeth_all_around_only_twist_the_ring() -> None:
-    """Loads on arcs all around leave the uniform part: of a torque the twist in closed form, of a force across nothing."""
+    """Loads on arcs all around leave the uniform part: of a torque the twist, of a force across nothing."""
     rings, nu, count = (Annulus(0.4, 1.0, 1.0),), 0.3, 512  # more arcs than waves
     angles = 2.0 * math.pi * np.arange(count) / count
     mean = np.mean([neighbour_flexibility(rings, 0.2, nu, 2.0, float(angle)) for angle in angles], axis=0)
