@@ -79,7 +79,8 @@ def run(case: Case) -> Run:
             record_from=0.0,
             sample_interval=period / PER_REVOLUTION,
             largest_step=period / case.transient.points_per_revolution,
-            tolerance=case.transient.tolerance,
+            # Flanks part here and there: at the case's own tolerance the energy error is above the bar below.
+            tolerance=0.5 * case.transient.tolerance,
         ),
         room.TransientOutputs(
             np.concatenate([outputs.displacement, stages[1].torsion[:3], *lateral]),
