@@ -11,7 +11,7 @@ within 2.5 Hz, two lines of the record.
 
 import importlib.util
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -66,7 +66,10 @@ def case() -> Case:
 def run(case: Case) -> Run:
     assert case.transient is not None
     assert case.operation is not None
-    machine = build_machine(case, None, solve_gears(case))
+    # The source's mesh adds the stiffness of its pairs, each with bodies of its own, and its text is of that mesh. With
+    # bodies shared the force in the mesh 1-3 varies 1.1 times as much as in 1-2, and with its own 1.5 times or more.
+    pairs = [replace(pair, contact=replace(pair.contact, shared_compliance=0.0)) for pair in solve_gears(case)]
+    machine = build_machine(case, None, tuple(pairs))
     period = 2.0 * np.pi / case.operation.speed
     stages = {stage: room.modal_rows(machine, f"stage-{stage}") for stage in (1, 2, 3)}
     outputs = room.transient_outputs(machine)
@@ -79,8 +82,7 @@ def run(case: Case) -> Run:
             record_from=0.0,
             sample_interval=period / PER_REVOLUTION,
             largest_step=period / case.transient.points_per_revolution,
-            # Flanks part here and there: at the case's own tolerance the energy error is above the bar below.
-            tolerance=0.5 * case.transient.tolerance,
+            tolerance=case.transient.tolerance,
         ),
         room.TransientOutputs(
             np.concatenate([outputs.displacement, stages[1].torsion[:3], *lateral]),
