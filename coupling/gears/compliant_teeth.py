@@ -5,6 +5,14 @@ its inverse.  Where the contact is Weber's, ``h`` depends on the load F of the p
 is a function of position alone; it is then frozen at the load that the model is given, as the secant through it, so
 that the deflection under that load is exact and that under others is not.  `PairCompliance.pair_compliance` with a
 force is exact at any.  A load that is not given is `REFERENCE_LINE_LOAD` times the face width.
+
+Neighbouring pairs stand on the same two bodies.  A load on one moves the other's flanks, along the line of action, by
+
+    C(s) = c_k(s + 1, s) + c_i(s, s + 1),
+
+c_k and c_i the cross compliances of two neighbouring teeth of each gear (:mod:`coupling.gears.rim`): the twist of the
+body about its bore, which both feel in full, and the dent around the root.  As one load moves up its tooth the other
+moves down, so that C hardly changes while both touch, by less than 1 %; the law takes its mean for all pairs.
 """
 
 from __future__ import annotations
@@ -21,15 +29,16 @@ import numpy.typing as npt
 from coupling.gears import piecewise
 from coupling.gears.beam_compliance import PlaneState
 from coupling.gears.chebyshev import by_few_values
-from coupling.gears.cornell import solved_cornell
+from coupling.gears.cornell import cornell_state, solved_cornell
 from coupling.gears.elastic_ring import solved_elastic_ring
 from coupling.gears.errors import StiffnessModelError
 from coupling.gears.foundation import RootSection
 from coupling.gears.geometry import Gear
 from coupling.gears.hertz import hertz_compliance, line_contact
-from coupling.gears.normal_section import Compliance, by_normal_section
+from coupling.gears.normal_section import Compliance, by_normal_section, cross_by_normal_section
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
+from coupling.gears.rim import CrossCompliance, neighbour_compliance
 from coupling.gears.tooth_compliance import SolvedTooth, ToothCompliance, ToothModel, solved_potential_energy
 from coupling.gears.weber_banaschek import solved_weber_banaschek
 
@@ -40,6 +49,25 @@ ContactModel = Literal["yang-sun", "weber"]
 REFERENCE_LINE_LOAD = 300e3
 """Load per face width at which Weber's contact is taken where none is given [N/m]: within the 100 to 1600 N/mm that the
 constants of ISO 6336-1 are for."""
+
+
+_CROSS_NODES = 4
+
+
+@dataclass(frozen=True)
+class SharedBody:
+    """The body that neighbouring teeth of a gear share.
+
+    Attributes
+    ----------
+    state : {"plane-stress", "plane-strain"}
+    turning : bool
+        Whether the tooth's own compliance holds the twist of the whole body about its bore: one on a half plane has no
+        bore.
+    """
+
+    state: PlaneState
+    turning: bool
 
 
 class CompliantTeeth(ABC):
@@ -55,6 +83,41 @@ class CompliantTeeth(ABC):
 
     contact: ContactModel
     force: float | None
+
+    @abstractmethod
+    def shared_body(self, gear: Gear) -> SharedBody | None:
+        """What neighbouring teeth share of their gear's body; None where it is not known."""
+
+    def shared_compliance(self, geometry: GearPairGeometry) -> float:
+        """What pairs of teeth in contact at once yield in common, of both gears [m/N].
+
+        The mean over the positions at which two neighbouring pairs touch. Zero where the model has no body, or where
+        the path of contact never holds two pairs.
+        """
+        both = geometry.contact_ratio - 1.0
+        driver, driven = self._neighbours(geometry.driver), self._neighbours(geometry.driven)
+        if driver is None or driven is None or both <= 0.0:
+            return 0.0
+        nodes, weights = np.polynomial.legendre.leggauss(_CROSS_NODES)
+        behind = 0.5 * both * (1.0 + nodes)
+        ahead = behind + 1.0
+        # The driver pushes against its own rotation, so that its next tooth in the sense of the load entered later.
+        moved = driver(geometry.driver_radius(ahead), geometry.driver_radius(behind))
+        moved = moved + driven(geometry.driven_radius(behind), geometry.driven_radius(ahead))
+        return float(0.5 * weights @ moved)
+
+    def _neighbours(self, gear: Gear) -> CrossCompliance | None:
+        body = self.shared_body(gear)
+        if body is None:
+            return None
+
+        def solve(spur: Gear) -> CrossCompliance:
+            return neighbour_compliance(spur, body.state, turning=body.turning)
+
+        if gear.helix_angle == 0.0:
+            return solve(gear)
+        moves = cross_by_normal_section(gear, solve)
+        return lambda behind, ahead: moves(behind, ahead) / math.cos(gear.base_helix_angle)
 
     @abstractmethod
     def solved_tooth(self, gear: Gear) -> SolvedTooth:
@@ -142,7 +205,8 @@ class PotentialEnergyStiffness(CompliantTeeth):
     root_section : {"ma2014", "trochoid"}
         See `coupling.gears.foundation.root_section_angle`; ignored when `tooth_model` is given.
     tooth_model : callable or None
-        Another tooth model (gear, radii) -> `ToothCompliance` in place of `potential_energy`.
+        Another tooth model (gear, radii) -> `ToothCompliance` in place of `potential_energy`; its body is not known,
+        so each of its teeth stands on one of its own.
     contact, force
         See `CompliantTeeth`.
     """
@@ -154,6 +218,10 @@ class PotentialEnergyStiffness(CompliantTeeth):
 
     def __post_init__(self) -> None:
         self._check("potential-energy")
+
+    def shared_body(self, gear: Gear) -> SharedBody | None:
+        """See `CompliantTeeth`."""
+        return None if self.tooth_model is not None else SharedBody("plane-stress", turning=True)
 
     def solved_tooth(self, gear: Gear) -> SolvedTooth:
         """One tooth, with all that does not depend on the load's radius solved."""
@@ -173,6 +241,10 @@ class ElasticRingStiffness(CompliantTeeth):
     def __post_init__(self) -> None:
         self._check("elastic-ring")
 
+    def shared_body(self, gear: Gear) -> SharedBody | None:
+        """See `CompliantTeeth`."""
+        return SharedBody(self.state, turning=True)
+
     def solved_tooth(self, gear: Gear) -> SolvedTooth:
         """One tooth, with all that does not depend on the load's radius solved."""
         return solved_elastic_ring(gear, self.state)
@@ -189,6 +261,10 @@ class CornellStiffness(CompliantTeeth):
     def __post_init__(self) -> None:
         self._check("cornell")
 
+    def shared_body(self, gear: Gear) -> SharedBody | None:
+        """See `CompliantTeeth`."""
+        return SharedBody(self.state or cornell_state(gear), turning=False)
+
     def solved_tooth(self, gear: Gear) -> SolvedTooth:
         """One tooth, with all that does not depend on the load's radius solved."""
         return solved_cornell(gear, self.state)
@@ -203,6 +279,10 @@ class WeberBanaschekStiffness(CompliantTeeth):
 
     def __post_init__(self) -> None:
         self._check("weber-banaschek")
+
+    def shared_body(self, gear: Gear) -> SharedBody | None:
+        """See `CompliantTeeth`."""
+        return SharedBody("plane-stress", turning=False)
 
     def solved_tooth(self, gear: Gear) -> SolvedTooth:
         """One tooth, with all that does not depend on the load's radius solved."""

@@ -8,48 +8,21 @@ are taken to share as they share the elastic one, friction pushes with
 along the directions in which a pair at s slides, ``a + s b``. Where a line of contact lies across the path, its slices
 turn one after another, each under its own load: sums over slices stand for the E_j (:mod:`coupling.gears.sliding`).
 With A and B go their slopes by the compression, so that Newton's tangent, no longer symmetric, is exact: k_j being that
-of each pair, ``A' = (sum_j k_j sgn(...) - A k) / E``.
+of each pair by the pairs' own compression x, ``A' = (sum_j k_j sgn(...) - A k) / E dx/d delta``.
 
 Importing this module imports numba.
 """
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.face_table import CELL
-from coupling.gears.kernels import face_force, nearness, number_at, place
-from coupling.gears.law_table import (
-    CELLS_AT,
-    DEPTH_STEP,
-    DEPTH_UNIT,
-    DEPTHS,
-    FIRST_PAIR,
-    HUNTING,
-    KIND_STEP,
-    PAIR,
-    PAIRS,
-    PAIRS_AT,
-)
-from rotors.compiled import counted, inner, uncounted
+from coupling.gears.kernels import PRECISE, nearness, number_at, pair_rise, pairs_compression, place
+from coupling.gears.law_table import FIRST_PAIR, HUNTING, KIND_STEP, PAIR, PAIRS, PAIRS_AT
+from rotors.compiled import counted, uncounted
 
 FloatArray = npt.NDArray[np.float64]
-
-
-@inner()
-def from_cells(law: FloatArray, at: int, here: int, u: float, approach: float) -> tuple[float, float]:
-    """What the cells of a pair hold at a place, and its slope by the compression."""
-    unit = number_at(law, at + DEPTH_UNIT)
-    r = math.sqrt(approach / unit)
-    depth = min(int(r), int(number_at(law, at + DEPTHS)) - 1)
-    cell = at + int(number_at(law, at + CELLS_AT)) + depth * int(number_at(law, at + DEPTH_STEP))
-    cell += CELL * int(number_at(law, here + 4))
-    p = number_at(law, here + 5) + u * number_at(law, here + 6)
-    value, slope, _, _ = face_force(law, cell, unit, 1.0 / unit, p, float(depth), r - depth)
-    return value, slope
 
 
 @uncounted()
@@ -71,7 +44,9 @@ def friction_shares(
         As in `coupling.gears.sliding.SlidingFriction`.
     """
     number, interval, u, _ = place(law, at, phase)
-    pairs, unit = int(number_at(law, at + PAIRS)), number_at(law, at + DEPTH_UNIT)
+    # The pairs' own compression, behind what the bodies of their gears yield.
+    pressed, gain = pairs_compression(law, at, number, interval, u, compression, PRECISE)
+    pairs = int(number_at(law, at + PAIRS))
     hunting, first = int(number_at(law, at + HUNTING)), int(number_at(law, at + FIRST_PAIR))
     pairs_at = at + int(number_at(law, at + PAIRS_AT))
     # Shares hold three kinds for one: the force, the force turned, the force turned and placed.
@@ -79,20 +54,14 @@ def friction_shares(
     elastic, stiff, across, across_slope, by_place, by_place_slope = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for pair in range(pairs):
         start = pairs_at + PAIR * (pairs * interval + pair)
-        approach, here = nearness(law, at, hunting, int(number) - first - pair, u, compression, start)
+        approach, here = nearness(law, at, hunting, int(number) - first - pair, u, pressed, start)
         if approach <= 0.0:
             continue
+        force, k, _ = pair_rise(law, at, here, u, approach)
         if by_slices:
-            force, k = from_cells(law, at, here, u, approach)
-            turned, turned_slope = from_cells(law, at, here + next_kind, u, approach)
-            placed, placed_slope = from_cells(law, at, here + 2 * next_kind, u, approach)
+            turned, turned_slope, _ = pair_rise(law, at, here + next_kind, u, approach)
+            placed, placed_slope, _ = pair_rise(law, at, here + 2 * next_kind, u, approach)
         else:
-            if unit > 0.0:
-                force, k = from_cells(law, at, here, u, approach)
-            else:
-                c2, c3 = number_at(law, here + 6), number_at(law, here + 7)
-                k = number_at(law, here + 4) + u * (number_at(law, here + 5) + u * (c2 + u * c3))
-                force = k * approach
             # Beyond the path it is a corner that slides, there where the path ends.
             position = min(max(phase - number + (first + pair), 0.0), path_end)
             sign = 1.0 if position > pitch_point else (-1.0 if position < pitch_point else 0.0)
@@ -107,7 +76,8 @@ def friction_shares(
     if elastic <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     a, b = across / elastic, by_place / elastic
-    return a, b, (across_slope - a * stiff) / elastic, (by_place_slope - b * stiff) / elastic
+    rise = gain / elastic
+    return a, b, (across_slope - a * stiff) * rise, (by_place_slope - b * stiff) * rise
 
 
 @counted()

@@ -9,7 +9,7 @@ from coupling.gears.pair_curves import pair_kinds
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.pair_variants import pair_variants
 from coupling.gears.pitch_gaps import back_flank_pitch_gaps, pitch_gaps
-from coupling.gears.stiffness_models import StiffnessModel
+from coupling.gears.stiffness_models import StiffnessModel, shared_compliance
 from coupling.gears.tooth_contact import ToothContact
 
 
@@ -64,4 +64,5 @@ def tooth_contact(
         back_pair_variants=variants.of_back_pair if len(kinds) > 1 else none.astype(np.int64),
         faces=faces,
         module=geometry.driver.module,
+        shared_compliance=shared_compliance(model, geometry),
     )

@@ -29,6 +29,7 @@ from coupling.gears.law_table import (
     ENTERING_AT,
     FIRST_PAIR,
     FIRST_TOUCH,
+    GUESS_AT,
     HEADER,
     HUNTING,
     INTERVAL,
@@ -38,11 +39,18 @@ from coupling.gears.law_table import (
     PAIRS,
     PAIRS_AT,
     PARTS,
+    SHARED,
 )
 from rotors.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 TangentForce = tuple[float, float, float, float, float, int]
+
+_NEWTON_STEPS = 60
+_DOUBT = 1e-12
+"""Part of the compression that may be rounding of where a pair begins to touch."""
+PRECISE, _NEAR_ENOUGH = 1e-9, 1e-4
+"""Corrections after which the pairs' compression is exact to rounding: as it is, or with one more Newton step."""
 
 
 @inner(inline="always")
@@ -130,6 +138,133 @@ def face_force(
     return force, tangent, energy, slope
 
 
+@inner(fastmath={"contract"}, inline="always")
+def face_rise(
+    law: FloatArray, cell: int, per_unit: float, p: float, begin: float, rho: float
+) -> tuple[float, float, float]:
+    """Force and tangent, as of `face_force`, and the tangent's slope by the compression."""
+    v0 = number_at(law, cell) + p * (
+        number_at(law, cell + 4) + p * (number_at(law, cell + 8) + p * number_at(law, cell + 12))
+    )
+    v1 = number_at(law, cell + 1) + p * (
+        number_at(law, cell + 5) + p * (number_at(law, cell + 9) + p * number_at(law, cell + 13))
+    )
+    v2 = number_at(law, cell + 2) + p * (
+        number_at(law, cell + 6) + p * (number_at(law, cell + 10) + p * number_at(law, cell + 14))
+    )
+    v3 = number_at(law, cell + 3) + p * (
+        number_at(law, cell + 7) + p * (number_at(law, cell + 11) + p * number_at(law, cell + 15))
+    )
+    force = v0 + rho * (v1 + rho * (v2 + rho * v3))
+    by_r, per_r = v1 + rho * (2.0 * v2 + 3.0 * rho * v3), 0.5 * per_unit / (begin + rho)
+    curvature = ((2.0 * v2 + 6.0 * rho * v3) - by_r / (begin + rho)) * per_r * per_r
+    return force, by_r * per_r, curvature
+
+
+@inner(fastmath={"contract"}, inline="always")
+def pair_rise(law: FloatArray, at: int, here: int, u: float, approach: float) -> tuple[float, float, float]:
+    """Force, tangent and its slope of a pair whose flanks are pressed together by ``approach`` > 0.
+
+    ``here``: where its numbers begin.
+    """
+    unit = number_at(law, at + DEPTH_UNIT)
+    if unit > 0.0:
+        per_unit = 1.0 / unit
+        r = math.sqrt(approach * per_unit)
+        depth = min(int(r), int(number_at(law, at + DEPTHS)) - 1)
+        cell = at + int(number_at(law, at + CELLS_AT)) + depth * int(number_at(law, at + DEPTH_STEP))
+        cell += CELL * int(number_at(law, here + 4))
+        p = number_at(law, here + 5) + u * number_at(law, here + 6)
+        return face_rise(law, cell, per_unit, p, float(depth), r - depth)
+    c1, c2, c3 = number_at(law, here + 5), number_at(law, here + 6), number_at(law, here + 7)
+    k = number_at(law, here + 4) + u * (c1 + u * (c2 + u * c3))
+    return k * approach, k, 0.0
+
+
+@inner(fastmath={"contract"}, inline="always")
+def pairs_compression(
+    law: FloatArray, at: int, number: float, interval: int, u: float, compression: float, precision: float
+) -> tuple[float, float]:
+    """Compression of the pairs behind what their gears' bodies yield, and its rise by that of the mesh.
+
+    The first is the root of ``x + C F(x) = compression``, which rises all along, by Newton's method between bounds. It
+    stops where the curvature of F would change a step by no more than ``precision`` parts of the whole way, and takes
+    that in: what is left is of the next order.
+
+    ``number``, ``interval``, ``u``: as `place` gives them.
+    """
+    shared = number_at(law, at + SHARED)
+    if shared == 0.0:
+        return compression, 1.0
+    pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
+    first = int(number) - int(number_at(law, at + FIRST_PAIR))
+    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
+    low = min(number_at(law, at + FIRST_TOUCH), compression)
+    high, x, gain = compression, compression, 1.0
+    small = precision * (compression - low)
+    unit = number_at(law, at + DEPTH_UNIT)
+    if unit > 0.0:
+        r = math.sqrt((compression - low) / unit)
+        depth = min(int(r), int(number_at(law, at + DEPTHS)) - 1)
+        guess = at + int(number_at(law, at + GUESS_AT)) + depth
+        left = number_at(law, guess)
+        left += min(r - depth, 1.0) * (number_at(law, guess + 1) - left)
+        x = low + left * (compression - low)
+    for _ in range(_NEWTON_STEPS):
+        force, tangent, curvature, nearest = 0.0, 0.0, 0.0, math.inf
+        for pair in range(pairs):
+            approach, here = nearness(law, at, hunting, first - pair, u, x, start + PAIR * pair)
+            nearest = min(nearest, abs(approach))
+            if approach > 0.0:
+                pair_force, pair_tangent, pair_curvature = pair_rise(law, at, here, u, approach)
+                force += pair_force
+                tangent += pair_tangent
+                curvature += pair_curvature
+        excess = x + shared * force - compression
+        if excess > 0.0:
+            high = x
+        else:
+            low = x
+        gain = 1.0 / (1.0 + shared * tangent)
+        step = excess * gain
+        bend = 0.5 * shared * curvature * gain * step * step
+        # Where a pair is about to touch or to part its force bends the more the nearer it is.
+        if abs(bend) <= small and abs(step) <= max(0.25 * nearest, 0.01 * small):
+            x -= step + bend
+            break
+        x -= step
+        if not low <= x <= high:
+            x = 0.5 * (low + high)
+    return x, gain
+
+
+@uncounted(fastmath={"contract"})
+def ranked_nearness(phase: float, compression: float, law: FloatArray, at: int, rank: int) -> float:
+    """Compression of the mesh beyond that at which as many as ``rank`` pairs begin to touch [m]; -inf with fewer pairs.
+
+    So ``rank`` pairs or more touch where it is positive, as `tooth_force` counts them, whose other arguments these are.
+    Unlike their number it tells how far the next change is. Before the pair touches, those nearer than it carry and
+    their gears' bodies yield by ``c F``.
+    """
+    number, interval, u, _ = place(law, at, phase)
+    pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
+    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
+    first = int(number) - int(number_at(law, at + FIRST_PAIR))
+    shared = number_at(law, at + SHARED)
+    for pair in range(pairs):
+        own, _ = nearness(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
+        before, force = 0, 0.0
+        for rival in range(pairs):
+            other, here = nearness(law, at, hunting, first - rival, u, compression, start + PAIR * rival)
+            if other > own or (other == own and rival < pair):
+                before += 1
+                if shared > 0.0 and -math.inf < own < other:
+                    force += pair_rise(law, at, here, u, other - own)[0]
+        if before == rank - 1:
+            return own - shared * force
+    return -math.inf
+
+
 @uncounted(fastmath={"contract"})
 def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, at: int) -> TangentForce:
     """Force of the tooth contact, its tangent, and its stored energy.
@@ -172,16 +307,26 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
         cells = at + int(number_at(law, at + CELLS_AT))
         deepest_cell, depth_step = int(number_at(law, at + DEPTHS)) - 1, int(number_at(law, at + DEPTH_STEP))
     start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
+    shared = number_at(law, at + SHARED)
     force, tangent, energy, slope = 0.0, 0.0, 0.0, 0.0
-    touching, deepest = 0, 0.0
+    touching, deepest, x = 0, 0.0, compression
+    if uneven:
+        x, _ = pairs_compression(law, at, number, interval, u, compression, _NEAR_ENOUGH)
     first = int(number) - int(number_at(law, at + FIRST_PAIR))
-    for pair in range(pairs):
-        approach, here = nearness(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
-        if approach > 0.0:
+    doubt = _DOUBT * abs(compression) if shared > 0.0 else 0.0
+    # Pairs leave the set that touches at the mesh's own compression as the bodies take their share, one round each.
+    for _ in range(pairs + 1):
+        force, tangent, energy, slope, slope_by_x, curve = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        touching, deepest, nearest = 0, 0.0, math.inf
+        for pair in range(pairs):
+            approach, here = nearness(law, at, hunting, first - pair, u, x, start + PAIR * pair)
+            if approach <= 0.0:
+                continue
             g2, g3 = number_at(law, here + 2), number_at(law, here + 3)
             gap_slope = number_at(law, here + 1) + u * (2.0 * g2 + 3.0 * u * g3)
             touching += 1
             deepest = max(deepest, approach)
+            nearest = min(nearest, approach)
             if uneven:
                 r = math.sqrt(approach * per_unit)
                 depth = min(int(r), deepest_cell)
@@ -203,41 +348,37 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
                 force += k * approach
                 tangent += k
                 energy += 0.5 * k * approach * approach
-                slope += (0.5 * k_slope * approach - k * gap_slope) * approach
+                pull = k_slope * approach - k * gap_slope
+                slope += (pull - 0.5 * k_slope * approach) * approach
+                slope_by_x += pull
+                curve += 0.5 * k_slope
+        # By how much the pairs are pressed together less than x, with these touching.
+        excess = (x - compression + shared * force) / (1.0 + shared * tangent)
+        touches = uneven or excess < nearest
+        if abs(excess - nearest) <= doubt and not uneven:
+            # Within rounding of its touch a pair counts where the search for that moment says so.
+            touches = ranked_nearness(phase, compression, law, at, touching) > 0.0
+        if touches:
+            energy += excess * (0.5 * excess * tangent - force)
+            slope += excess * (excess * curve - slope_by_x)
+            force -= excess * tangent
+            deepest -= excess
+            break
+        x -= excess + 2.0 * doubt
     if touching == 0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    energy += 0.5 * shared * force * force
+    gain = 1.0 / (1.0 + shared * tangent)
+    tangent *= gain
     slope *= per_width
     damping, damping_depth = number_at(law, at + DAMPING), number_at(law, at + DAMPING_DEPTH)
     if deepest < damping_depth:
-        tangent += damping * rate / damping_depth
+        tangent += damping * rate / damping_depth * gain
         damping *= deepest / damping_depth
     if force + damping * rate < 0.0:
         # Teeth do not pull: the damping takes no more than the springs give, and all of that.
         return 0.0, 0.0, -force / rate, energy, slope, touching
     return force + damping * rate, tangent, damping, energy, slope, touching
-
-
-@uncounted(fastmath={"contract"})
-def ranked_nearness(phase: float, compression: float, law: FloatArray, at: int, rank: int) -> float:
-    """By how much the flanks of the pair that is ``rank``-th by that are pressed together [m]; -inf with fewer pairs.
-
-    So ``rank`` pairs or more touch where it is positive, as `tooth_force` counts them, whose other arguments these are.
-    Unlike their number it tells how far the next change is.
-    """
-    number, interval, u, _ = place(law, at, phase)
-    pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
-    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
-    first = int(number) - int(number_at(law, at + FIRST_PAIR))
-    for pair in range(pairs):
-        own, _ = nearness(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
-        before = 0
-        for rival in range(pairs):
-            other, _ = nearness(law, at, hunting, first - rival, u, compression, start + PAIR * rival)
-            if other > own or (other == own and rival < pair):
-                before += 1
-        if before == rank - 1:
-            return own
-    return -math.inf
 
 
 @counted()

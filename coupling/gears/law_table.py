@@ -15,7 +15,9 @@ The row begins with `HEADER` numbers, at the places named below; then come
   gap;
 * the pairs of the hunting period, `ENTERING` numbers each: what pitch deviations add to the gap of the pair that enters
   at phase n, at n mod h [m], and its kind; none where all pairs are alike;
-* the cells of `coupling.gears.face_table`, `CELL` numbers each, by depth, kind and position.
+* the cells of `coupling.gears.face_table`, `CELL` numbers each, by depth, kind and position;
+* with cells, the guesses: the pairs' part of the mesh's compression in the mean over the mesh period, both counted from
+  `FIRST_TOUCH`, at ``DEPTH_UNIT r^2`` of the mesh's for r = 0, 1, ... to one beyond the cells.
 """
 
 from __future__ import annotations
@@ -40,7 +42,10 @@ DAMPING, DAMPING_DEPTH, HUNTING, DEPTH_UNIT, DEPTHS, DEPTH_STEP = 6, 7, 8, 9, 10
 0 where there are none, their number in depth, and the distance from one depth to the next."""
 INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT = 12, 13, 14, 15
 """Where these begin; the parts begin at `HEADER`."""
-HEADER = 16
+SHARED, GUESS_AT = 16, 17
+"""What all pairs together yield in common, by the bodies of their gears [m/N]; where the guesses begin of the part
+of the mesh's compression that leaves the pairs, by the depth of cells."""
+HEADER = 18
 INTERVAL, PAIR, ENTERING = 2, 8, 2
 
 _PARTS_PER_INTERVAL = 4
@@ -51,18 +56,24 @@ _SAME_KNOT = 1e-9
 
 
 def law_table(
-    curves: Sequence[PairCurves] | FaceTable, entering: FloatArray, damping: float, damping_depth: float
+    curves: Sequence[PairCurves] | FaceTable,
+    entering: FloatArray,
+    damping: float,
+    damping_depth: float,
+    shared_compliance: float = 0.0,
 ) -> FloatArray:
     """The law's numbers in a row.
 
     Parameters
     ----------
     curves : sequence of PairCurves, or FaceTable
-        Of every kind of pair.
+        Of every kind of pair, behind the shared compliance.
     entering : ndarray, shape (h, 2)
         Gap [m] and kind of each pair of the hunting period.
     damping, damping_depth : float
         [N s/m], [m]
+    shared_compliance : float
+        [m/N]
     """
     if isinstance(curves, FaceTable):
         gaps = [PiecewiseCubic(curves.knots, touch) for touch in curves.first_touch]
@@ -76,20 +87,42 @@ def law_table(
     pairs = np.concatenate([first, second], axis=-1)
     parts = _PARTS_PER_INTERVAL * (knots.size - 1)
     begins = np.minimum(np.searchsorted(knots, np.arange(parts) / parts + _HAIR, side="right") - 1, knots.size - 2)
+    # But where contact ends within rounding of a period, the sliver between both is looked up as well.
+    begins -= (begins > 0) & (np.diff(knots)[begins - 1] < 2.0 * _HAIR)
     intervals = np.column_stack([knots, np.append(1.0 / np.diff(knots), 0.0)])
-    sections = [array.ravel() for array in (begins, intervals, pairs, entering, cells)]
-    at = HEADER + np.cumsum([0, *(section.size for section in sections)])
-    header = np.zeros(HEADER)
     # No cubic c0 + c1 u + ... falls below c0 and its negative coefficients together on 0 <= u <= 1.
     lowest = first[..., 0] + np.minimum(first[..., 1:], 0.0).sum(axis=-1)
-    header[FIRST_TOUCH] = lowest.min() + entering[:, 0].min(initial=0.0)
+    first_touch = lowest.min() + entering[:, 0].min(initial=0.0)
+    guesses = _guesses(curves, first_touch, shared_compliance) if isinstance(curves, FaceTable) else np.zeros(0)
+    sections = [array.ravel() for array in (begins, intervals, pairs, entering, cells, guesses)]
+    at = HEADER + np.cumsum([0, *(section.size for section in sections)])
+    header = np.zeros(HEADER)
+    header[FIRST_TOUCH] = first_touch
     header[[PARTS, INTERVALS, PAIRS]] = parts, knots.size - 1, pairs.shape[2]
     header[[FIRST_PAIR, KIND_STEP]] = math.floor(gaps[0].knots[0]), pairs[0].size
     header[[DAMPING, DAMPING_DEPTH, HUNTING]] = damping, damping_depth, len(entering)
-    header[[INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT]] = at[1:5]
+    header[SHARED] = shared_compliance
+    header[[INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT, GUESS_AT]] = at[1:6]
     if isinstance(curves, FaceTable):
         header[[DEPTH_UNIT, DEPTHS, DEPTH_STEP]] = curves.depth_unit, cells.shape[0], cells[0].size
     return np.concatenate([header, *sections])
+
+
+def _guesses(table: FaceTable, first_touch: float, shared: float) -> FloatArray:
+    """Part of the mesh's compression that is left to the pairs, in the mean over the period, by depth."""
+    depths = np.arange(table.cells.shape[0], dtype=np.float64)
+    compression = table.depth_unit * depths**2
+    beyond = np.maximum(0.0, first_touch + compression[:, None] - table.first_touch[0, :, 0])
+    # Straight between depths, and beyond the last.
+    depth = np.sqrt(beyond / table.depth_unit)
+    below = np.minimum(depth.astype(np.int64), depths.size - 2)
+    force, column = table.cells[:, 0, :, 0], np.arange(below.shape[1])
+    pressed = force[below, column] + (depth - below) * (force[below + 1, column] - force[below, column])
+    mesh = compression + shared * (pressed @ np.diff(table.knots))
+    left = np.interp(compression, mesh, compression)
+    left[1:] /= compression[1:]
+    left[0] = left[1]
+    return np.append(left, left[-1])
 
 
 def _period_knots(knots: Sequence[FloatArray]) -> FloatArray:

@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.geometry import Gear
+from coupling.gears.rim import CrossCompliance
 
 FloatArray = npt.NDArray[np.float64]
 Compliance = Callable[[FloatArray], FloatArray]
@@ -37,20 +38,40 @@ def normal_section_gears(gear: Gear) -> tuple[tuple[Gear, float], ...]:
 
 def by_normal_section(gear: Gear, solve: Callable[[Gear], Compliance]) -> Compliance:
     """Compliance c_n of one helical tooth [m/N] by transverse radii [m], where `solve` gives that of a spur gear's."""
-    low, high = _reach(gear, np.array([gear.form_radius, gear.tip_radius]))
-    sections = [
-        (spur, weight, solve(spur), _reach(spur, np.array([spur.form_radius, spur.tip_radius])))
-        for spur, weight in normal_section_gears(gear)
-    ]
+    sections = [(weight, solve(spur), _mapped(gear, spur)) for spur, weight in normal_section_gears(gear)]
 
     def compliance(radius: FloatArray) -> FloatArray:
-        share = (_reach(gear, radius) - low) / (high - low)
-        total = np.zeros_like(share)
-        for spur, weight, tooth, (foot, tip) in sections:
-            total = total + weight * tooth(np.hypot(spur.base_radius, foot + share * (tip - foot)))
+        total = np.zeros_like(radius)
+        for weight, tooth, mapped in sections:
+            total = total + weight * tooth(mapped(radius))
         return np.asarray(total, dtype=np.float64)
 
     return compliance
+
+
+def cross_by_normal_section(gear: Gear, solve: Callable[[Gear], CrossCompliance]) -> CrossCompliance:
+    """The same of two neighbouring teeth: what a load on one moves the other [m/N], by the radii of both loads [m]."""
+    sections = [(weight, solve(spur), _mapped(gear, spur)) for spur, weight in normal_section_gears(gear)]
+
+    def compliance(behind: FloatArray, ahead: FloatArray) -> FloatArray:
+        total = np.zeros(np.broadcast_shapes(behind.shape, ahead.shape))
+        for weight, teeth, mapped in sections:
+            total = total + weight * teeth(mapped(behind), mapped(ahead))
+        return np.asarray(total, dtype=np.float64)
+
+    return compliance
+
+
+def _mapped(gear: Gear, spur: Gear) -> Compliance:
+    """From transverse radii to those at the same part of the spur gear's flank [m]."""
+    low, high = _reach(gear, np.array([gear.form_radius, gear.tip_radius]))
+    foot, tip = _reach(spur, np.array([spur.form_radius, spur.tip_radius]))
+
+    def mapped(radius: FloatArray) -> FloatArray:
+        share = (_reach(gear, radius) - low) / (high - low)
+        return np.asarray(np.hypot(spur.base_radius, foot + share * (tip - foot)), dtype=np.float64)
+
+    return mapped
 
 
 def _reach(gear: Gear, radius: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ from coupling.gears.modifications import ReliefShape, TipRelief
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
 from coupling.gears.static import StaticMesh, mesh_period_phases, static_transmission_error
-from coupling.gears.stiffness_models import StiffnessModel
+from coupling.gears.stiffness_models import StiffnessModel, shared_compliance
 from coupling.gears.tooth_contact import ToothContact
 
 FloatArray = npt.NDArray[np.float64]
@@ -124,6 +124,10 @@ class _Known:
     """A stiffness that relief does not change, computed once."""
 
     stiffness: PiecewiseCubic
+    shared: float
+
+    def shared_compliance(self, geometry: GearPairGeometry) -> float:
+        return self.shared
 
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         return self.stiffness
@@ -169,7 +173,7 @@ def optimal_tip_relief(
         raise GearError("optimal relief: at least one load is needed")
     for force in forces:
         require_finite("optimal relief: the load", force, minimum=0.0, strict=True)
-    stiffness = _Known(model.pair_stiffness(geometry))
+    stiffness = _Known(model.pair_stiffness(geometry), shared_compliance(model, geometry))
 
     target: ReliefAim = PeakToPeak() if aim is None else aim
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -95,6 +95,20 @@ def pair_kinds(
         )
         for own in faults
     )
+
+
+def behind_shared(curves: PairCurves, shared: float) -> PairCurves:
+    """The same pair behind a compliance that it shares with others, `shared` [m/N]: ``1/k' = 1/k - C``."""
+    if shared == 0.0:
+        return curves
+    alone = curves.stiffness
+
+    def behind(position: FloatArray) -> FloatArray:
+        stiffness = alone(position)
+        return np.asarray(stiffness / (1.0 - shared * stiffness), dtype=np.float64)
+
+    largest = float(behind(alone.knots).max())
+    return replace(curves, stiffness=piecewise.fitted(behind, alone.knots, _STIFFNESS_TOLERANCE * largest))
 
 
 def corners_of(curve: PiecewiseCubic) -> FloatArray:

@@ -28,7 +28,7 @@ from coupling.gears.errors import StiffnessModelError
 from coupling.gears.foundation import held_radius
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import load_angle, root_half_angle
-from coupling.gears.ring_body import Annulus, root_flexibility
+from coupling.gears.ring_body import Annulus, neighbour_flexibility, root_flexibility
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,6 +38,8 @@ SOLID_HOLD = 1.0 / 3.0
 
 BodyCompliance = Callable[[FloatArray], FloatArray]
 """From radii of loaded points [m] to what the body yields there along the line of action [m/N], of the same shape."""
+CrossCompliance = Callable[[FloatArray, FloatArray], FloatArray]
+"""From radii of the loaded points of two teeth [m] to the motion of one by a unit load on the other [m/N]."""
 
 
 def solved_ring(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
@@ -63,27 +65,58 @@ def solved_rim(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance
     """
     if gear.rim_inner_radius is None or gear.web_thickness is None:
         return lambda radius: np.zeros(np.shape(radius))
-    held, inside = _hold(gear), gear.rim_inner_radius / gear.root_circle_radius
-    if inside <= held:
-        raise StiffnessModelError(
-            f"gear {gear.name!r}: the inside of the rim ({gear.rim_inner_radius * 1e3:.4g} mm radius) must be outside "
-            f"the circle where the body is held ({held * gear.root_circle_radius * 1e3:.4g} mm); leave out the rim"
-        )
-    rings = (Annulus(held, inside, gear.web_thickness), Annulus(inside, 1.0, gear.face_width))
-    plain = (Annulus(held, 1.0, gear.face_width),)
+    rings = _rings(gear)
+    plain = (Annulus(_hold(gear), 1.0, gear.face_width),)
     with_rim, without = (_solved(gear, body, state, turning=True) for body in (rings, plain))
     return lambda radius: with_rim(radius) - without(radius)
 
 
+def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, turning: bool = True) -> CrossCompliance:
+    """What a load on one tooth moves the flank of the next one, along the line of action [m/N].
+
+    Both teeth are rigid on their root arcs, each loaded on the same side; their own flexure is not felt next door. The
+    twist of the ring between the held circle and the root circle is felt by both teeth in full.
+
+    Parameters
+    ----------
+    gear : Gear
+        A spur gear.
+    state : {"plane-stress", "plane-strain"}
+    turning : bool
+        Whether the twist of the whole body is counted; never that of a gear in one piece with its shaft. Without it the
+        bore and the rim are left out too, as by a tooth on a half plane: what is left is the dent of a solid gear.
+
+    Returns
+    -------
+    callable
+        From radii [m] of the loads on a tooth and on the next one in the sense of the loads (shapes that broadcast) to
+        the compliance.
+    """
+    rings = _rings(gear) if turning else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
+    nu, kappa = gear.poisson_ratio, _kolosov(gear, state)
+    cross = neighbour_flexibility(rings, root_half_angle(gear), nu, kappa, 2.0 * math.pi / gear.teeth)
+    if not (turning and held_radius(gear) is not None):
+        cross = cross.copy()
+        cross[1, 1] -= _whole_twist(rings, nu)
+    torque = gear.base_radius / gear.root_circle_radius
+
+    def loads(radius: FloatArray) -> FloatArray:
+        beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
+        return np.array([np.cos(beta), np.full(beta.shape, torque), -np.sin(beta)])
+
+    def compliance(behind: FloatArray, ahead: FloatArray) -> FloatArray:
+        work = np.einsum("i...,ij,j...->...", loads(behind), cross, loads(ahead))
+        return np.asarray(work / (gear.youngs_modulus * gear.face_width), dtype=np.float64)
+
+    return compliance
+
+
 def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, turning: bool) -> BodyCompliance:
     """Work of a unit load on the root arc; `turning` keeps the twist of the whole body."""
-    plane_modulus(gear, state)  # refuses an unknown state
     nu = gear.poisson_ratio
-    kappa = (3.0 - nu) / (1.0 + nu) if state == "plane-stress" else 3.0 - 4.0 * nu
-    arc = root_flexibility(rings, root_half_angle(gear), nu, kappa)
+    arc = root_flexibility(rings, root_half_angle(gear), nu, _kolosov(gear, state))
     torque = gear.base_radius / gear.root_circle_radius
-    # Under a torque alone the whole ring twists by (1/r_i^2 - 1) / (4 pi G) per width, whatever the tractions.
-    twist = 0.0 if turning else (1.0 + nu) / (2.0 * math.pi) * (rings[0].inner ** -2 - 1.0)
+    twist = 0.0 if turning else _whole_twist(rings, nu)
 
     def compliance(radius: FloatArray) -> FloatArray:
         beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
@@ -93,6 +126,39 @@ def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, turning: 
         return np.asarray(work / (gear.youngs_modulus * gear.face_width), dtype=np.float64)
 
     return compliance
+
+
+def _whole_twist(rings: tuple[Annulus, ...], nu: float) -> float:
+    """Twist of the whole body under a torque alone, times E and width: the same whatever the tractions."""
+    width = rings[-1].width
+    turned = sum(width / ring.width * (ring.inner**-2 - ring.outer**-2) for ring in rings)
+    return (1.0 + nu) / (2.0 * math.pi) * turned
+
+
+def _kolosov(gear: Gear, state: PlaneState) -> float:
+    plane_modulus(gear, state)  # refuses an unknown state
+    nu = gear.poisson_ratio
+    return (3.0 - nu) / (1.0 + nu) if state == "plane-stress" else 3.0 - 4.0 * nu
+
+
+def _rings(gear: Gear) -> tuple[Annulus, ...]:
+    """The body from where it is held to the root circle.
+
+    Raises
+    ------
+    StiffnessModelError
+        For a web that begins inside the bore's circle.
+    """
+    held = _hold(gear)
+    if gear.rim_inner_radius is None or gear.web_thickness is None:
+        return (Annulus(held, 1.0, gear.face_width),)
+    inside = gear.rim_inner_radius / gear.root_circle_radius
+    if inside <= held:
+        raise StiffnessModelError(
+            f"gear {gear.name!r}: the inside of the rim ({gear.rim_inner_radius * 1e3:.4g} mm radius) must be outside "
+            f"the circle where the body is held ({held * gear.root_circle_radius * 1e3:.4g} mm); leave out the rim"
+        )
+    return Annulus(held, inside, gear.web_thickness), Annulus(inside, 1.0, gear.face_width)
 
 
 def _hold(gear: Gear) -> float:

@@ -15,12 +15,18 @@ The tooth stands on the arc ``|t| < theta``.  A beam's sections stay plane, so t
 tractions under it are those that make the energy least among all that carry the load (Castigliano): those of a rigid
 stamp.  They are sought as ``T_k(t/theta) / sqrt(1 - (t/theta)^2)``, whose waves are Bessel functions,
 ``pi theta J_k(n theta)``; a few terms give all digits that matter.
+
+The arc of another tooth, an angle away on the same ring, moves with the ring.  Tractions ``s`` of waves ``s_n`` shifted
+by the angle D do the work ``1/pi sum_n Re(conj(s_n) H_n s'_n e^{-i n D})`` on the displacement of the tractions ``s'``,
+H_n the wave's flexibility, Hermitian in this form.  With the tractions of each arc alone this is the cross flexibility
+of two teeth; with the flexibility of each it is the energy of real tractions, so positive definite.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -71,6 +77,30 @@ class RootFlexibility:
     radial: float
 
 
+@dataclass(frozen=True, eq=False)
+class _Stamp:
+    """The tractions under a rigid root arc, for unit resultants (across, torque, along).
+
+    Attributes
+    ----------
+    waves : ndarray of complex, shape (3, n, 2)
+        ``int s e^{-i n t} dt`` of the radial and the tangential traction, n = 1, 2, ...
+    uniform : ndarray, shape (3, 2)
+        The same for n = 0.
+    flexibility : ndarray, shape (n, 2, 2)
+        As of `_wave_flexibility`.
+    even : ndarray, shape (2,)
+        Breathing and twist: displacement under uniform tractions.
+    own : RootFlexibility
+    """
+
+    waves: npt.NDArray[np.complex128]
+    uniform: FloatArray
+    flexibility: FloatArray
+    even: FloatArray
+    own: RootFlexibility
+
+
 def root_flexibility(
     rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float
 ) -> RootFlexibility:
@@ -89,6 +119,41 @@ def root_flexibility(
     -------
     RootFlexibility
     """
+    return _stamp(rings, half_angle, poisson_ratio, kappa).own
+
+
+def neighbour_flexibility(
+    rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float, angle: float
+) -> FloatArray:
+    """Motion of one root arc under loads on another one of the same ring, times E and width.
+
+    Parameters
+    ----------
+    rings, half_angle, poisson_ratio, kappa
+        As for `root_flexibility`.
+    angle : float
+        From the middle of the first arc to that of the second [rad], counted in the sense of the force across.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Row: motion of the first arc in the sense of (force across the tooth's axis, torque about the gear's centre over
+        root radius, force outward along the axis); column: these loads on the second arc.
+    """
+    stamp = _stamp(rings, half_angle, poisson_ratio, kappa)
+    numbers = np.arange(1, stamp.waves.shape[1] + 1)
+    hermitian = stamp.flexibility.astype(np.complex128)
+    hermitian[:, 0, 1] *= 1j
+    hermitian[:, 1, 0] *= -1j
+    moved = np.einsum("nab,jnb,n->jna", hermitian, stamp.waves, np.exp(-1j * numbers * angle))
+    work = np.einsum("ina,jna->ij", stamp.waves.conj(), moved).real / math.pi
+    work += (stamp.uniform * stamp.even) @ stamp.uniform.T / (2.0 * math.pi)
+    return np.asarray((1.0 + poisson_ratio) * work, dtype=np.float64)
+
+
+@lru_cache(maxsize=16)
+def _stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float) -> _Stamp:
+    """Solve the rigid stamp on a ring."""
     last = math.ceil(_WAVES_ACROSS / half_angle)
     waves = np.arange(1, last + 1)
     # Waves shorter than the outermost ring is thick never reach its inside.
@@ -122,9 +187,26 @@ def root_flexibility(
     across = np.array([np.concatenate([first_odd, first_even]), np.concatenate([np.zeros(odd.size), whole])])
     along = np.concatenate([first_even, -first_odd])[None, :]
     scale = 1.0 + poisson_ratio  # E / (2 mu)
-    held = np.asarray(scale * _least_work(lateral, across), dtype=np.float64)
+    least, sideways = _least_work(lateral, across)
+    outward, upright = _least_work(radial, along)
+    held = np.asarray(scale * least, dtype=np.float64)
     held.setflags(write=False)
-    return RootFlexibility(lateral=held, radial=float(scale * _least_work(radial, along)[0, 0]))
+    # Of even shapes e^{-i n t} leaves the cosine, of odd ones -i times the sine; across the axis the radial are odd.
+    waves = np.array(
+        [
+            *([-1j * tractions[: odd.size] @ content[1], tractions[odd.size :] @ content[0]] for tractions in sideways),
+            [upright[0, : even.size] @ content[0], -1j * upright[0, even.size :] @ content[1]],
+        ]
+    )
+    uniform = np.zeros((3, 2))
+    uniform[:2, 1], uniform[2, 0] = sideways[:, odd.size :] @ whole, upright[0, : even.size] @ whole
+    return _Stamp(
+        waves=np.ascontiguousarray(waves.swapaxes(1, 2), dtype=np.complex128),
+        uniform=uniform,
+        flexibility=flexibility,
+        even=np.array([breathing, twist]),
+        own=RootFlexibility(lateral=held, radial=float(scale * outward[0, 0])),
+    )
 
 
 def _multiples(last: int, angle: FloatArray) -> npt.NDArray[np.complex128]:
@@ -146,9 +228,11 @@ def _energy(
     return np.block([[blocks[0][0] + tail[0], sign * blocks[0][1]], [sign * blocks[1][0], blocks[1][1] + tail[1]]])
 
 
-def _least_work(energy: FloatArray, resultants: FloatArray) -> FloatArray:
-    """Flexibility under the resultants when the tractions are free to find the least energy."""
-    return np.asarray(np.linalg.inv(resultants @ np.linalg.solve(energy, resultants.T)), dtype=np.float64)
+def _least_work(energy: FloatArray, resultants: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Flexibility (r, r) under r resultants with the tractions of least energy, and those of unit resultants (r, k)."""
+    free = np.linalg.solve(energy, resultants.T)
+    flexibility = np.asarray(np.linalg.inv(resultants @ free), dtype=np.float64)
+    return flexibility, np.asarray((free @ flexibility).T, dtype=np.float64)
 
 
 def _wave_flexibility(rings: tuple[Annulus, ...], waves: npt.NDArray[np.int64], kappa: float) -> FloatArray:

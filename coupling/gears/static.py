@@ -1,9 +1,10 @@
 """The mesh under a steady load: static transmission error, mesh stiffness, load sharing.
 
-At each phase the compression ``delta`` carries the load: ``sum_j k_j max(0, delta - d_j) = F``.  The left
+At each phase the pairs' compression ``x`` carries the load: ``sum_j k'_j max(0, x - d_j) = F``.  The left
 side is piecewise linear and increasing, so with the pairs sorted by deviation the answer is exact: with the n
-least relieved pairs touching ``delta = (F + sum k_j d_j) / sum k_j``, and n is the number for which this lies
-above the n-th and not above the next deviation.
+least relieved pairs touching ``x = (F + sum k'_j d_j) / sum k'_j``, and n is the number for which this lies
+above the n-th and not above the next deviation.  What the pairs share comes on top, ``delta = x + C F``
+(:mod:`coupling.gears.tooth_contact`): under a constant load it is constant, and only shifts the transmission error.
 """
 
 from __future__ import annotations
@@ -137,7 +138,7 @@ def static_transmission_error(
     states = contact.pairs(at) if states is None else states
     _require_teeth(states, at)
     if contact.faces is not None:
-        return _balanced_faces(contact.faces, force, at, states)
+        return _balanced_faces(contact.faces, contact.shared_compliance, force, at, states)
     order = np.argsort(states.deviation, axis=1)
     stiffness = np.take_along_axis(states.stiffness, order, axis=1)
     gap = np.take_along_axis(states.deviation, order, axis=1)
@@ -163,6 +164,8 @@ def static_transmission_error(
             f"static mesh: the teeth carry {imbalance.max():.3e} N more or less than the load of {force:.6g} N; "
             "check the contact's stiffness and deviation for extreme values"
         )
+    compression = compression + contact.shared_compliance * force
+    tangent = tangent / (1.0 + contact.shared_compliance * tangent)
     beyond = compression - first[:, 0]
     secant = np.where(beyond > 0.0, force / np.where(beyond > 0.0, beyond, 1.0), tangent)
     return StaticMesh(force, at, compression, states.position, forces, tangent, secant)
@@ -178,7 +181,7 @@ def _require_teeth(states: PairStates, at: FloatArray) -> None:
         )
 
 
-def _balanced_faces(faces: FaceSlices, force: float, at: FloatArray, states: PairStates) -> StaticMesh:
+def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArray, states: PairStates) -> StaticMesh:
     """The loaded mesh where the load spreads unevenly over the face."""
     assert states.faces is not None
     rows, columns = np.nonzero(states.present)
@@ -195,29 +198,17 @@ def _balanced_faces(faces: FaceSlices, force: float, at: FloatArray, states: Pai
     line_loads = np.zeros((*states.position.shape, faces.z.size))
     forces[rows, columns], tangents[rows, columns] = loads.force, loads.tangent
     line_loads[rows, columns] = loads.line_load
+    compression = compression + shared * force
     beyond = compression - states.deviation.min(axis=1)
     tangent = tangents.sum(axis=1)
+    tangent = tangent / (1.0 + shared * tangent)
     secant = np.where(beyond > 0.0, force / np.where(beyond > 0.0, beyond, 1.0), tangent)
     return StaticMesh(force, at, compression, states.position, forces, tangent, secant, line_loads)
 
 
 def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
     """Stiffness of all pairs on the path of contact, as if none were relieved [N/m], at `phases` (n,)."""
-    places = contact.places(phases)
-    shift, half = (np.zeros(1), 0.0) if contact.faces is None else (contact.faces.shift, contact.faces.half_span)
-    at = places.position[..., None] + shift
-    end = contact.contact_ratio
-    if half > 0.0:
-        # What of a slice lies on the path.
-        part = (np.clip(at + half, 0.0, end) - np.clip(at - half, 0.0, end)) / (2.0 * half)
-    else:
-        part = ((at >= 0.0) & (at < end)).astype(np.float64)
-    part *= places.present[..., None]
-    total = np.zeros(at.shape[0])
-    for number, curves in enumerate(contact.kinds):
-        these = (part > 0.0) & (places.kind == number)[..., None]
-        total += np.bincount(np.nonzero(these)[0], part[these] * curves.stiffness(at[these]), total.size)
-    return np.asarray(total / shift.size, dtype=np.float64)
+    return contact.mesh_stiffness(phases, sound=False)
 
 
 def period_mean(phases: FloatArray, values: FloatArray) -> float:

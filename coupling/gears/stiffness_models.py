@@ -17,6 +17,9 @@ name                          model
 ``"constant"``                the whole mesh one constant spring
 ``"table"``                   given values, of a pair or of the whole mesh
 ============================  =====================================================================
+
+The first four know the bodies of the gears, which pairs in contact at once share (`shared_compliance`).  The others
+state the stiffness of a pair or of the mesh as it is given, and pairs stand side by side.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -50,6 +53,20 @@ class StiffnessModel(Protocol):
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         """Stiffness [N/m] by position in base pitches, from 0 to the contact ratio (or 1)."""
         ...
+
+
+@runtime_checkable
+class SharingModel(StiffnessModel, Protocol):
+    """A model that knows the bodies under the teeth, and what pairs in contact at once share of them."""
+
+    def shared_compliance(self, geometry: GearPairGeometry) -> float:
+        """What pairs of teeth in contact at once yield in common [m/N]."""
+        ...
+
+
+def shared_compliance(model: StiffnessModel, geometry: GearPairGeometry) -> float:
+    """What pairs of teeth in contact at once yield in common [m/N]; 0 of a model that states stiffnesses alone."""
+    return model.shared_compliance(geometry) if isinstance(model, SharingModel) else 0.0
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,14 @@ At phase ``p`` (mesh periods of the driver) pairs are at ``s_j = frac(p) + j``, 
 between the ends of where they can touch.  Each has a stiffness ``k(s)`` and a profile deviation ``d(s)``, the gap that
 it has in nominal motion.  With the compression ``delta`` of the mesh along the line of action and its rate ``v``:
 
-    F = sum_j k(s_j) max(0, delta - d(s_j)) + c r v,    r = min(1, max_j(delta - d(s_j)) / depth)
-    U = sum_j 1/2 k(s_j) max(0, delta - d(s_j))^2
+    F = E + c r v,        E = sum_j k'(s_j) max(0, x - d(s_j)),        delta = x + C E,        1/k' = 1/k - C
+    U = sum_j 1/2 k'(s_j) max(0, x - d(s_j))^2 + 1/2 C E^2,            r = min(1, max_j(x - d(s_j)) / depth)
+
+C is the compliance that the pairs share: the twist of both gears' bodies, which all teeth of a gear feel alike, and the
+dent in them that a tooth's neighbour is in (:mod:`coupling.gears.rim`). The load is on it as a whole, so it stands in
+series with the pairs, which are side by side, and x is the compression that it leaves them. One pair alone has its own
+k again; the compliance of two pairs is the matrix with 1/k(s_j) on its diagonal and C beside it. With C = 0, of models
+that state a pair's stiffness without its bodies, k' = k and x = delta.
 
 The damping fades in over the first ``depth`` of compression: full at first touch, the force would jump at every
 impact, and would pull just before the teeth part.  ``dU/d delta = F - c r v``; the teeth's turning does the work
@@ -16,7 +22,8 @@ mesh may separate, and returns through the same law.
 
 Pitch deviations add a gap ``f_n`` to the pair that enters at phase n, so to the pair j at phase p the gap of
 ``n = floor(p) - j``: ``d(s_j) + f_n`` then stands for ``d(s_j)`` above (:mod:`coupling.gears.pitch_gaps`).  It is
-constant while the pair is in contact, so ``dU/dp`` keeps its form, and repeats with the hunting period.
+constant while the pair is in contact, so ``dU/dp``, at a fixed delta ``sum_j 1/2 dk'/dp (x - d_j)^2 - k' (x - d_j)
+dd/dp``, keeps its form, and repeats with the hunting period.
 
 The idle flanks are the same law in a mirror: phase ``back_flank_offset - p``, their own compression (the
 motion projected on the mirrored line of action, less the backlash), and ``dU/dp`` of opposite sign; their own
@@ -43,13 +50,16 @@ from coupling.gears.errors import GearError
 from coupling.gears.face_slices import FaceSlices
 from coupling.gears.face_table import FaceState, face_state, face_table
 from coupling.gears.law_table import law_table
-from coupling.gears.pair_curves import PairCurves, corners_of
+from coupling.gears.pair_curves import PairCurves, behind_shared, corners_of
 from coupling.gears.pair_geometry import IntArray
 from coupling.gears.piecewise import PiecewiseCubic
 
 FloatArray = npt.NDArray[np.float64]
 
 KernelArguments = tuple[FloatArray, int]
+
+_MEAN_PHASES = 256
+"""Of a mesh whose lines of contact lie across the path, so that its stiffness is smooth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +91,7 @@ class PairStates(PairPlaces):
     Attributes
     ----------
     stiffness : ndarray, shape (n, m)
-        [N/m], 0 where absent, and of an uneven face, whose slices have theirs.
+        Behind the shared compliance [N/m], 0 where absent, and of an uneven face, whose slices have theirs.
     deviation : ndarray, shape (n, m)
         Gap by profile and pitch [m], infinite where absent; that of first touch where the face is not even.
     pitch_gap : ndarray, shape (n, m)
@@ -105,7 +115,8 @@ class ToothContact:
     contact_ratio : float
         Length of a pair's contact in base pitches.
     stiffness : PiecewiseCubic
-        Stiffness of one pair [N/m] over the positions where it can touch: [0, contact_ratio], or more with corners.
+        Stiffness of one pair that carries alone, its gears' bodies included [N/m], over the positions where it can
+        touch: [0, contact_ratio], or more with corners.
     deviation : PiecewiseCubic
         Gap of one pair [m] over the same range.
     damping : float
@@ -125,6 +136,8 @@ class ToothContact:
         Slices of the face where it is not loaded evenly; positions are then those of the middle of the face.
     module : float
         Of the gears [m]; how deep the table for the kernels goes is counted in it. Needed with `faces` alone.
+    shared_compliance : float
+        What pairs in contact at once yield in common, C [m/N]; below that of any pair alone.
     """
 
     contact_ratio: float
@@ -140,6 +153,7 @@ class ToothContact:
     back_pair_variants: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     faces: FaceSlices | None = None
     module: float = 0.0
+    shared_compliance: float = 0.0
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
@@ -148,7 +162,9 @@ class ToothContact:
             raise GearError(f"tooth contact: damping must be at least 0 N s/m, got {self.damping!r}")
         if not (math.isfinite(self.damping_depth) and self.damping_depth >= 0.0):
             raise GearError(f"tooth contact: damping_depth must be at least 0 m, got {self.damping_depth!r}")
-        for curves in self.kinds:
+        if not (math.isfinite(self.shared_compliance) and self.shared_compliance >= 0.0):
+            raise GearError(f"tooth contact: shared_compliance must be at least 0 m/N, got {self.shared_compliance!r}")
+        for curves in self._alone:
             self._check_curves(curves)
         for name, gaps in (("pitch_gaps", self.pitch_gaps), ("back_pitch_gaps", self.back_pitch_gaps)):
             if gaps.ndim != 1 or not np.all(np.isfinite(gaps)):
@@ -173,8 +189,14 @@ class ToothContact:
                 )
         knots = curves.stiffness.knots
         between = np.concatenate([knots[:-1] + part * np.diff(knots) for part in (0.0, 0.25, 0.5, 0.75)])
-        if np.any(curves.stiffness(np.append(between, knots[-1])) <= 0.0):
+        stiffness = curves.stiffness(np.append(between, knots[-1]))
+        if np.any(stiffness <= 0.0):
             raise GearError("tooth contact: the stiffness of a pair must be positive everywhere")
+        if np.any(stiffness * self.shared_compliance >= 1.0):
+            raise GearError(
+                f"tooth contact: pairs of teeth cannot share {self.shared_compliance:.4g} m/N where one of them alone "
+                f"yields {1.0 / stiffness.max():.4g} m/N; expected less"
+            )
 
     @property
     def kernel_arguments(self) -> KernelArguments:
@@ -187,7 +209,7 @@ class ToothContact:
     @cached_property
     def _law(self) -> FloatArray:
         curves = self.kinds if self.faces is None else face_table(self.faces, self.kinds, self.module)
-        return law_table(curves, self.entering, self.damping, self.damping_depth)
+        return law_table(curves, self.entering, self.damping, self.damping_depth, self.shared_compliance)
 
     @property
     def entering(self) -> FloatArray:
@@ -199,9 +221,14 @@ class ToothContact:
             entering[:, 1] = self.pair_variants
         return entering
 
-    @property
+    @cached_property
     def kinds(self) -> tuple[PairCurves, ...]:
-        """Every kind of pair, that of sound teeth first."""
+        """Every kind of pair behind the shared compliance, that of sound teeth first."""
+        return tuple(behind_shared(curves, self.shared_compliance) for curves in self._alone)
+
+    @property
+    def _alone(self) -> tuple[PairCurves, ...]:
+        """Every kind of pair as if it carried alone."""
         return (PairCurves(self.stiffness, self.deviation), *self.variants)
 
     @property
@@ -234,8 +261,48 @@ class ToothContact:
     def mean_stiffness(self) -> float:
         """Mean over a mesh period of the stiffness with all pairs on the path touching [N/m]."""
         inner = self.stiffness.knots[(self.stiffness.knots > 0.0) & (self.stiffness.knots < self.contact_ratio)]
-        on_path = self.stiffness.on_knots(np.concatenate([[0.0], inner, [self.contact_ratio]]))
-        return on_path.mean * self.contact_ratio
+        if self.shared_compliance == 0.0:
+            on_path = self.stiffness.on_knots(np.concatenate([[0.0], inner, [self.contact_ratio]]))
+            return on_path.mean * self.contact_ratio
+        if self.faces is not None:
+            phases = (np.arange(_MEAN_PHASES) + 0.5) / _MEAN_PHASES
+            return float(self.mesh_stiffness(phases).mean())
+        # Between knots of any pair the mesh is smooth: Gauss's quadrature.
+        knots = np.unique(np.concatenate([[0.0, 1.0, self.contact_ratio % 1.0], inner % 1.0]))
+        nodes, weights = np.polynomial.legendre.leggauss(3)
+        width = np.diff(knots)
+        phases = knots[:-1, None] + width[:, None] * 0.5 * (1.0 + nodes)
+        values = self.mesh_stiffness(phases.ravel()).reshape(phases.shape)
+        return float(np.sum(0.5 * width[:, None] * weights * values))
+
+    def mesh_stiffness(self, phases: npt.ArrayLike, *, sound: bool = True) -> FloatArray:
+        """Stiffness of all pairs on the path of contact, as if none were relieved [N/m].
+
+        Parameters
+        ----------
+        phases : array_like, shape (n,)
+            Mesh periods.
+        sound : bool
+            Whether to take all pairs for those of sound teeth.
+        """
+        places = self.places(phases)
+        shift, half = (np.zeros(1), 0.0) if self.faces is None else (self.faces.shift, self.faces.half_span)
+        at = places.position[..., None] + shift
+        end = self.contact_ratio
+        if half > 0.0:
+            # What of a slice lies on the path.
+            part = (np.clip(at + half, 0.0, end) - np.clip(at - half, 0.0, end)) / (2.0 * half)
+        else:
+            part = ((at >= 0.0) & (at < end)).astype(np.float64)
+        part *= places.present[..., None]
+        total = np.zeros(at.shape[0])
+        for number, curves in enumerate(self.kinds[:1] if sound else self.kinds):
+            these = part > 0.0
+            if not sound:
+                these &= (places.kind == number)[..., None]
+            total += np.bincount(np.nonzero(these)[0], part[these] * curves.stiffness(at[these]), total.size)
+        total /= shift.size
+        return np.asarray(total / (1.0 + self.shared_compliance * total), dtype=np.float64)
 
     @property
     def event_phases(self) -> tuple[float, ...]:
@@ -329,5 +396,12 @@ class ToothContact:
     def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
         """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
         states = self.pairs(phases)
-        approach = np.atleast_1d(np.asarray(compression, dtype=np.float64))[:, None] - states.deviation
-        return np.asarray(states.stiffness * np.maximum(0.0, approach), dtype=np.float64)
+        total = np.atleast_1d(np.asarray(compression, dtype=np.float64))
+        own = total
+        # The pairs' force is convex in their own compression: from above Newton's method only lets pairs go.
+        for _ in range(states.stiffness.shape[1] + 1):
+            touching = states.stiffness * (states.deviation < own[:, None])
+            pressed = np.where(touching > 0.0, own[:, None] - states.deviation, 0.0)
+            excess = own - total + self.shared_compliance * (touching * pressed).sum(axis=1)
+            own = own - excess / (1.0 + self.shared_compliance * touching.sum(axis=1))
+        return np.asarray(states.stiffness * np.maximum(0.0, own[:, None] - states.deviation), dtype=np.float64)

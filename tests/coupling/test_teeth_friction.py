@@ -1,5 +1,6 @@
 """Friction between the teeth in motion: forces and moments, where they turn, order of the steps, heat, refusals."""
 
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
@@ -281,15 +282,16 @@ def settled(parts: Machine, periods: int = 12) -> TransientResult:
     return simulate(parts.system, chosen, transient_outputs(parts))
 
 
-def test_what_the_rotation_loses_is_the_loss_of_the_static_mesh() -> None:
-    """Per radian by `mesh_friction` over a mesh period: the mean forces are those of the static mesh."""
+def test_what_the_rotation_loses_is_the_loss_of_the_static_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Per radian by `mesh_friction` over a mesh period: at a low speed the forces are those of the static mesh."""
+    monkeypatch.setattr(sys.modules[__name__], "SPEED", 0.5 * SPEED)
     parts = machine(COEFFICIENT)
     result = settled(parts)
     mesh = static_transmission_error(CONTACT, TORQUE / PINION.base_radius, mesh_period_phases(CONTACT))
     friction = mesh_friction(PAIR, CONTACT, mesh, COEFFICIENT)
     turned = 12 * 2.0 * np.pi / PINION.teeth
     expected = (1.0 - friction.efficiency) * TORQUE * turned
-    assert result.energy.friction == pytest.approx(expected, rel=0.005)
+    assert result.energy.friction == pytest.approx(expected, rel=0.002)
     assert result.energy.error < 2e-3
 
 

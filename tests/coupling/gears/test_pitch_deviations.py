@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from coupling.gears import (
     ConstantStiffness,
@@ -121,21 +122,29 @@ def test_law_is_the_sum_over_the_pairs(whole: int, part: float, delta: float, ra
     if abs(part - PAIR.contact_ratio % 1.0) < 1e-9:
         return  # a pair is just leaving
     law = tooth_force(phase, delta, rate, *CONTACT.kernel_arguments)
-    force = tangent = energy = scale = 0.0
-    touching = 0
+    stiffness, gaps = [], []
     for behind in range(3):
         position = phase - whole + behind
         if position < PAIR.contact_ratio:
             k = float(CONTACT.stiffness(position))
-            approach = delta - float(CONTACT.deviation(position)) - gap_of(whole - behind)
-            scale += k * abs(delta)
-            if approach > 0.0:
-                force, tangent, energy = force + k * approach, tangent + k, energy + 0.5 * k * approach**2
-                touching += 1
+            stiffness.append(k / (1.0 - CONTACT.shared_compliance * k))
+            gaps.append(float(CONTACT.deviation(position)) + gap_of(whole - behind))
+    shared, k_own, gap = CONTACT.shared_compliance, np.array(stiffness), np.array(gaps)
+
+    def too_much(x: float) -> float:
+        return float(x + shared * np.sum(k_own * np.maximum(0.0, x - gap)) - delta)
+
+    own = brentq(too_much, delta - 1e-3, delta, xtol=1e-19, rtol=1e-15) if too_much(delta) > 0.0 else delta
+    approach = np.maximum(0.0, own - gap)
+    touching = int(np.sum(approach > 0.0))
+    force, scale = float(k_own @ approach), float(np.sum(k_own) * abs(delta))
+    tangent, energy = float(np.sum(k_own[approach > 0.0])), float(0.5 * k_own @ approach**2 + 0.5 * shared * force**2)
+    tangent /= 1.0 + shared * tangent
     if touching:
         force += 150.0 * rate
-    np.testing.assert_allclose(law[0], force, rtol=1e-9, atol=1e-9 * (1.0 + scale))
-    np.testing.assert_allclose([law[1], law[3]], [tangent, energy], rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(law[0], force, rtol=1e-8, atol=1e-9 * (1.0 + scale))
+    # The stiffness behind the shared compliance is a table that is right to 1e-9.
+    np.testing.assert_allclose([law[1], law[3]], [tangent, energy], rtol=1e-8, atol=1e-15)
     assert law[5] == touching
 
 

@@ -9,7 +9,7 @@ import pytest
 from coupling.gears import Gear, StiffnessModelError, ring_body
 from coupling.gears import foundation as sainsot
 from coupling.gears.rim import solved_rim, solved_ring
-from coupling.gears.ring_body import Annulus, root_flexibility
+from coupling.gears.ring_body import Annulus, neighbour_flexibility, root_flexibility
 
 NU = 0.3
 STRESS, STRAIN = (3.0 - NU) / (1.0 + NU), 3.0 - 4.0 * NU
@@ -128,3 +128,44 @@ def test_a_web_inside_the_bore_is_refused() -> None:
     solid = replace(GEAR, bore=0.0, web_thickness=10e-3, rim_thickness=0.8 * GEAR.root_circle_radius)
     with pytest.raises(StiffnessModelError, match="leave out the rim"):
         solved_rim(solid)(np.array([GEAR.pitch_radius]))
+
+
+# --------------------------------------------------------------------------------------------- two arcs on one ring
+
+TWO_RINGS = {
+    "a ring": (Annulus(0.4, 1.0, 1.0),),
+    "a rim on a web": (Annulus(0.4, 0.85, 0.25), Annulus(0.85, 1.0, 1.0)),
+}
+
+
+@pytest.mark.parametrize("rings", TWO_RINGS.values(), ids=TWO_RINGS)
+def test_an_arc_on_itself_is_its_own_neighbour(rings: tuple[Annulus, ...]) -> None:
+    own = root_flexibility(rings, 0.05, 0.3, 2.0)
+    itself = neighbour_flexibility(rings, 0.05, 0.3, 2.0, 0.0)
+    # Waves beyond the last, which do not reach another arc, are summed for the arc itself alone: some 1 %.
+    np.testing.assert_allclose(itself[:2, :2], own.lateral, rtol=0.015)
+    assert itself[2, 2] == pytest.approx(own.radial, rel=0.015)
+    np.testing.assert_allclose(itself[2, :2], 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("rings", TWO_RINGS.values(), ids=TWO_RINGS)
+@pytest.mark.parametrize("angle", [0.2, 0.5, 2.0, math.pi])
+def test_two_arcs_work_on_each_other_alike(rings: tuple[Annulus, ...], angle: float) -> None:
+    """Betti's theorem, the mirror's sign of a force along the axis, and energy that is positive for all loads."""
+    there, back = (neighbour_flexibility(rings, 0.05, 0.3, 2.0, side * angle) for side in (1.0, -1.0))
+    np.testing.assert_allclose(there, back.T, rtol=1e-10, atol=1e-12)
+    mirror = np.diag([1.0, 1.0, -1.0])
+    np.testing.assert_allclose(mirror @ there @ mirror, back, rtol=1e-10, atol=1e-12)
+    own = root_flexibility(rings, 0.05, 0.3, 2.0)
+    alone = np.zeros((3, 3))
+    alone[:2, :2], alone[2, 2] = own.lateral, own.radial
+    assert np.linalg.eigvalsh(np.block([[alone, there], [there.T, alone]])).min() > 0.0
+
+
+def test_teeth_all_around_only_twist_the_ring() -> None:
+    """Loads on arcs all around leave the uniform part: of a torque the twist, of a force across nothing."""
+    rings, nu, count = (Annulus(0.4, 1.0, 1.0),), 0.3, 512  # more arcs than waves
+    angles = 2.0 * math.pi * np.arange(count) / count
+    mean = np.mean([neighbour_flexibility(rings, 0.2, nu, 2.0, float(angle)) for angle in angles], axis=0)
+    assert mean[1, 1] == pytest.approx((1.0 + nu) / (2.0 * math.pi) * (0.4**-2 - 1.0), rel=1e-9)
+    np.testing.assert_allclose([mean[0, 0], mean[0, 1], mean[1, 0], mean[1, 2]], 0.0, atol=1e-9)

@@ -4,6 +4,7 @@ import math
 import subprocess
 import sys
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -23,9 +24,10 @@ from coupling.gears import (
     pair_deviation,
     piecewise,
     runout_error,
+    static_transmission_error,
     tooth_contact,
 )
-from coupling.gears.kernels import tooth_force, tooth_force_history
+from coupling.gears.kernels import ranked_nearness, tooth_force, tooth_force_history
 
 ALPHA = math.radians(20.0)
 DEGREE = math.radians(1.0)
@@ -35,25 +37,75 @@ PAIR = GearPairGeometry(DRIVER, DRIVEN)
 CONTACT = tooth_contact(PAIR, PotentialEnergyStiffness(), damping=120.0)
 
 
+def loaded_pairs(alone: np.ndarray, gaps: np.ndarray, delta: float, shared: float) -> tuple[np.ndarray, float, float]:
+    """Forces, tangent and energy by the compliance matrix of the pairs: the one set that pushes and is not pushed."""
+    compliance = np.full((gaps.size, gaps.size), shared)
+    np.fill_diagonal(compliance, 1.0 / alone)
+    for size in range(gaps.size, 0, -1):
+        for chosen in map(list, combinations(range(gaps.size), size)):
+            within = np.ix_(chosen, chosen)
+            pushed = np.linalg.solve(compliance[within], delta - gaps[chosen])
+            forces = np.zeros(gaps.size)
+            forces[chosen] = pushed
+            apart = delta - gaps - compliance @ forces <= 1e-18
+            if np.all(pushed > 0.0) and np.all(apart | (forces > 0.0)):
+                tangent = float(np.linalg.inv(compliance[within]).sum())
+                return forces, tangent, float(0.5 * forces @ compliance @ forces)
+    return np.zeros(gaps.size), 0.0, 0.0
+
+
 def test_kernel_is_the_law() -> None:
     rng = np.random.default_rng(11)
     phases, compressions = rng.uniform(-3.0, 5.0, 300), rng.uniform(-1e-5, 6e-5, 300)
     rates = rng.normal(0.0, 0.05, 300)
     history = tooth_force_history(phases, compressions, rates, *CONTACT.kernel_arguments)
     for phase, delta, rate, row in zip(phases, compressions, rates, history, strict=True):
-        force = tangent = energy = 0.0
-        touching = 0
-        for pair in range(3):
-            position = phase % 1.0 + pair
-            if position < PAIR.contact_ratio:
-                k = float(CONTACT.stiffness(position))
-                approach = max(0.0, delta - float(CONTACT.deviation(position)))
-                force, energy = force + k * approach, energy + 0.5 * k * approach**2
-                tangent, touching = tangent + k * (approach > 0.0), touching + (approach > 0.0)
-        force += 120.0 * rate * (touching > 0)
+        places = [phase % 1.0 + pair for pair in range(3) if phase % 1.0 + pair < PAIR.contact_ratio]
+        gaps = np.array([float(CONTACT.deviation(position)) for position in places])
+        alone = np.array([float(CONTACT.stiffness(position)) for position in places])
+        forces, tangent, energy = loaded_pairs(alone, gaps, delta, CONTACT.shared_compliance)
+        touching = int(np.sum(forces > 0.0))
+        force = forces.sum() + 120.0 * rate * (touching > 0)
         expected = [force, tangent, 120.0 * (touching > 0), energy]
-        np.testing.assert_allclose(row[:4], expected, rtol=1e-11, atol=1e-12)
+        # The stiffness behind the shared compliance is a table that is right to 1e-9.
+        np.testing.assert_allclose(row[:4], expected, rtol=1e-8, atol=1e-12)
         assert row[5] == touching
+
+
+@pytest.mark.parametrize("shared", [0.0, 1e-9, 4e-9])
+def test_pairs_share_a_compliance_as_one_matrix(shared: float) -> None:
+    """Three pairs of a contact ratio of 2.6, their forces by trying every set that may touch."""
+    eps = 2.6
+    contact = ToothContact(
+        eps,
+        piecewise.quadratic(1.2e8, 2e8, 1.5e8, eps),
+        piecewise.polyline(np.array([0.0, 0.9, eps]), np.array([7e-6, 0.0, 4e-6])),
+        shared_compliance=shared,
+    )
+    phases = np.linspace(0.01, 0.98, 14)
+    for delta in (1e-6, 3e-6, 8e-6, 30e-6):
+        found = contact.pair_forces(phases, np.full(phases.size, delta))
+        for phase, row in zip(phases, found, strict=True):
+            places = phase + np.arange(3)
+            places = places[places < eps]
+            forces, tangent, energy = loaded_pairs(contact.stiffness(places), contact.deviation(places), delta, shared)
+            np.testing.assert_allclose(row[: places.size], forces, rtol=1e-7, atol=1e-9)
+            law = tooth_force(phase, delta, 0.0, *contact.kernel_arguments)
+            np.testing.assert_allclose(law[:2] + law[3:4], [forces.sum(), tangent, energy], rtol=1e-7, atol=1e-14)
+            for rank in range(1, 4):
+                assert (ranked_nearness(phase, delta, *contact.kernel_arguments, rank) > 0.0) == (law[5] >= rank)
+            # Under that load the mesh is back where it was, as soft as the law says.
+            if forces.sum() > 0.0:
+                mesh = static_transmission_error(contact, float(forces.sum()), [phase])
+                assert mesh.transmission_error[0] == pytest.approx(delta, rel=1e-8)
+                assert mesh.tangent_stiffness[0] == pytest.approx(tangent, rel=1e-7)
+
+
+def test_a_pair_must_yield_more_than_it_shares() -> None:
+    with pytest.raises(GearError, match="cannot share"):
+        replace(CONTACT, shared_compliance=1.0 / CONTACT.stiffness.mean)
+    with pytest.raises(GearError, match="shared_compliance must be at least 0"):
+        replace(CONTACT, shared_compliance=-1e-9)
 
 
 def test_no_touch_no_force() -> None:
@@ -207,12 +259,14 @@ def test_damping_fades_in_over_its_depth() -> None:
     fading = CONTACT.with_damping(CONTACT.damping, depth).kernel_arguments
     elastic = CONTACT.with_damping(0.0).kernel_arguments
     gap = float(CONTACT.pairs(phase).deviation.min())
+    # The depth is of the flanks that are pressed together, behind what the bodies of the gears take.
+    depth_of_mesh = depth / (1.0 - CONTACT.shared_compliance * float(CONTACT.stiffness(phase)))
     for part, share in ((0.0, 0.0), (1e-9, 1e-9), (0.25, 0.25), (1.0, 1.0), (3.0, 1.0)):
-        delta = gap + part * depth
+        delta = gap + part * depth_of_mesh
         viscous = tooth_force(phase, delta, rate, *fading)[0] - tooth_force(phase, delta, rate, *elastic)[0]
         assert viscous == pytest.approx(share * CONTACT.damping * rate, rel=1e-6, abs=1e-9)
     # Its tangent while it fades.
-    delta, step = gap + 0.4 * depth, 1e-11
+    delta, step = gap + 0.4 * depth_of_mesh, 1e-11
     _, tangent, damping, *_ = tooth_force(phase, delta, rate, *fading)
     ahead, behind = (tooth_force(phase, delta + side * step, rate, *fading)[0] for side in (1.0, -1.0))
     assert tangent == pytest.approx((ahead - behind) / (2 * step), rel=1e-4)
