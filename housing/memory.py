@@ -7,9 +7,9 @@ from pathlib import Path
 def available_memory(*, system: Path = Path("/")) -> float:
     """Bytes that this process can still have: the least of what the machine, its group and its own limit leave.
 
-    The machine's is MemAvailable of ``/proc/meminfo``; the group's, of a container or a batch job, is the limit of
-    the control group less its use without files that can be dropped; its own is RLIMIT_AS less the address space
-    that is taken. What a system does not tell is infinite.
+    The machine's is MemAvailable and SwapFree of ``/proc/meminfo``; the group's, of a container or a batch job, is the
+    limit of the control group less its use without files that can be dropped; its own is RLIMIT_AS less the address
+    space that is taken. What a system does not tell is infinite.
 
     Parameters
     ----------
@@ -48,7 +48,8 @@ def check_memory(needed: float, what: str) -> None:
 
 
 def _machine(system: Path) -> float:
-    return 1024.0 * _entries(system / "proc" / "meminfo").get("MemAvailable:", float("inf"))
+    entries = _entries(system / "proc" / "meminfo")
+    return 1024.0 * (entries.get("MemAvailable:", float("inf")) + entries.get("SwapFree:", 0.0))
 
 
 def _group(system: Path) -> float:

@@ -23,6 +23,8 @@ def test_the_least_of_machine_and_groups_counts(tmp_path: Path) -> None:
     """The limit may be that of a group around the process's own; files in its cache can be dropped."""
     assert told(tmp_path, {}) == float("inf")
     assert told(tmp_path, {"proc/meminfo": "MemTotal: 16000000 kB\nMemAvailable: 8000000 kB\n"}) == 8000000 * 1024
+    swap = "MemAvailable: 8000000 kB\nSwapFree: 1000 kB\n"
+    assert told(tmp_path, {"proc/meminfo": swap}) == 8001000 * 1024
     job = "sys/fs/cgroup/jobs"
     files = {"proc/self/cgroup": "0::/jobs/mine\n", f"{job}/mine/memory.max": "max\n", f"{job}/memory.max": "6000\n"}
     files |= {f"{job}/mine/memory.current": "100\n", f"{job}/memory.current": "5000\n"}
