@@ -21,7 +21,8 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
-_RANK = 1e-11  # singular values below this, rows brought to one size, are rounding
+_RANK = 1e-11  # of a damping's rank: its singular values below this, relative to its largest terms, are rounding
+_ROUNDING = 32.0  # roundings in an entry of a stiffness, one for each connector that adds to it
 _PRECISION = float(np.finfo(np.float64).eps)
 
 
@@ -96,13 +97,18 @@ def null_space(matrix: FloatArray) -> FloatArray:
 
     Coordinates of a stiffness differ by ten orders of magnitude; a rank judged against the stiffest of them would take
     soft supports for none.
+
+    With d its diagonal, an entry of a positive semidefinite K has terms of at most √(dᵢ dⱼ) each (Cauchy and Schwarz),
+    so its m roundings amount to m ε √(dᵢ dⱼ). Scaled by 1/√dᵢ and 1/√dⱼ the error E has entries of at most m ε, and
+    ‖E‖₂ ≤ n m ε. No singular value moves further (Weyl): one above that bound is a stiffness, however soft beside the
+    others, and the bound is the same in all units and coordinates that scaling brings about.
     """
     size = np.abs(np.diag(matrix))
     largest = np.maximum(np.abs(matrix).max(axis=0, initial=0.0), np.abs(matrix).max(axis=1, initial=0.0))
     size = np.where(size > 1e-3 * largest, size, largest)
     scale = 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0))
     _, singular, vectors = np.linalg.svd(scale[:, None] * matrix * scale)
-    bound = _RANK * max(float(singular.max(initial=0.0)), 1e-300)
+    bound = _ROUNDING * len(matrix) * _PRECISION * max(float(singular.max(initial=0.0)), 1e-300)
     vectors = scale[:, None] * vectors[singular <= bound].T
     return np.asarray(np.linalg.qr(vectors)[0])
 

@@ -59,7 +59,11 @@ def explain(error: Exception) -> tuple[int, str | None]:
     if isinstance(error, proofs):
         return 1, str(error)
     if isinstance(error, MemoryError):
-        return 1, "out of memory; a larger mesh_size or a lower frequency_limit needs less"
+        advice = "a larger mesh_size or a lower frequency_limit needs less"
+        cause = str(error)  # of an array, numpy says how much; of a factor, check_memory says what to do as well
+        if "mesh_size" in cause:
+            return 1, f"out of memory: {cause}"
+        return 1, f"out of memory{': ' if cause else ''}{cause}; {advice}"
     if isinstance(error, OSError):
         return 1, f"{error.strerror or error}: {error.filename}" if error.filename else str(error)
     return 1, None

@@ -3,13 +3,15 @@
 A run keeps its blocks in a hidden folder of the output folder, which bears the key of everything the march depends on
 and goes when the results are written. A block and its checkpoint are one file that appears whole: it is written beside,
 forced to the disk, and renamed. Who is killed, interrupted or fails leaves the blocks it has; the next run with the
-same key goes on behind the last whole one. A run of anything else clears them away.
+same key goes on behind the last one before any damage. A run of anything else clears them away.
 """
 
 import os
 import shutil
+import struct
 import tempfile
 import zipfile
+import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -40,11 +42,9 @@ class BlockFiles:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._count = 0
-        while self._file(self._count).exists():
+        # All are read: a disk, a copy or another program damages any of them, not only the last one written.
+        while self._is_whole(self._count):
             self._count += 1
-        # What the disk lost after it said that it had it, in a power cut, is at the end.
-        while self._count and not self._is_whole(self._count - 1):
-            self._count -= 1
 
     def __len__(self) -> int:
         return self._count
@@ -77,9 +77,12 @@ class BlockFiles:
             return {name: arrays[name] for name in arrays.files}
 
     def _is_whole(self, number: int) -> bool:
+        """Whether a block is there and every array in it has the checksum that was written with it."""
         try:
-            return bool(self._read(number))
-        except (OSError, ValueError, EOFError, zipfile.BadZipFile):
+            with zipfile.ZipFile(self._file(number)) as file:
+                return bool(file.namelist()) and file.testzip() is None
+        # A damaged header claims a compression, an encryption or a length that no block has.
+        except (OSError, ValueError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error, struct.error):
             return False
 
 

@@ -103,6 +103,8 @@ class Factorizer:
         ------
         FactorizationError
             Where the matrix is singular to working precision, or a solution leaves a relative residual above 1e-8.
+        MemoryError
+            Where the factor needs more memory than is available: rslab's is foreseen, before any of it is taken.
         """
         if not isinstance(matrix, SymmetricMatrix):
             matrix = SymmetricMatrix.of(matrix)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse.linalg import splu
 
+from housing.memory import check_memory
 from housing.symmetric import SymmetricMatrix
 
 FloatArray = npt.NDArray[np.float64]
@@ -69,6 +70,9 @@ class RslabSolver:
         """Factor in the ordering found, or in the first matrix's."""
         if self._symbolic is None:
             self.order(matrix)
+        # Where an allocation fails the library ends the process; so the need is foreseen, from the ordering.
+        estimate = self._symbolic.estimate_memory()
+        check_memory(estimate["transient_peak_bytes"], f"the factor of a matrix of order {matrix.shape[0]}")
         return _RslabFactor(self._symbolic.factor(matrix.values))
 
 

@@ -185,6 +185,26 @@ class ElementBlock:
         return len(self.nodes)
 
 
+def outside_nodes(block: ElementBlock, n_points: int) -> str:
+    """Which element of a block names a node that is not there, in words; empty where none does.
+
+    Parameters
+    ----------
+    block : ElementBlock
+    n_points : int
+        Nodes are counted from 0 to one less.
+    """
+    wrong = (block.nodes < 0) | (block.nodes >= n_points)
+    if not wrong.any():
+        return ""
+    element = int(np.argmax(wrong.any(axis=1)))
+    node = int(block.nodes[element][wrong[element]][0])
+    return (
+        f"names nodes outside 0..{n_points - 1}: {block.kind} element {element} (counted from 0) has node {node}, "
+        f"and there are {n_points} nodes"
+    )
+
+
 Facets = tuple[ElementBlock, ...]
 """Facets of the surface: triangles and quadrilaterals, a block for each kind."""
 

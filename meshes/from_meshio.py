@@ -8,7 +8,7 @@ from urllib.parse import unquote
 import numpy as np
 
 from meshes.content import MeshContent, corner_rows
-from meshes.elements import FACETS, SOLIDS, ElementBlock, IntArray, count
+from meshes.elements import FACETS, SOLIDS, ElementBlock, IntArray, count, outside_nodes
 from meshes.errors import GeometryError
 from meshes.topology import NO_NODE
 
@@ -60,6 +60,8 @@ def content_from_meshio(content: Any, path: Path) -> MeshContent:
         if cells.type not in SOLIDS and cells.type not in FACETS:
             continue
         block = ElementBlock(cells.type, np.asarray(cells.data, dtype=np.int64))
+        if fault := outside_nodes(block, len(content.points)):
+            raise GeometryError(f"mesh file {path} {fault}")
         for name, members in _groups(content, number):
             if cells.type in SOLIDS:
                 volumes.setdefault(name, []).append(count(solids) + members)

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from meshes.ailments import place_text
-from meshes.elements import ElementBlock, Facets, FloatArray, IntArray, count, facets_of
+from meshes.elements import ElementBlock, Facets, FloatArray, IntArray, count, facets_of, outside_nodes
 from meshes.errors import GeometryError
 from meshes.mapping import volumes
 from meshes.topology import FaceTable, face_table, faces_as_facets
@@ -186,5 +186,5 @@ class Mesh:
         if block.of.dimension != dimension:
             wanted = "solid elements" if dimension == 3 else "facets"
             raise GeometryError(f"{owner} holds {block.kind} elements; expected {wanted}")
-        if len(block) and (block.nodes.min() < 0 or block.nodes.max() >= len(self.points)):
-            raise GeometryError(f"{owner} names nodes outside 0..{len(self.points) - 1}")
+        if outside_nodes(block, len(self.points)):
+            raise GeometryError(f"{owner} {outside_nodes(block, len(self.points))}")

@@ -52,7 +52,7 @@ def mesh_cad(
     order: int = 2,
     refine: Sequence[tuple[tuple[float, float, float], float]] = (),
     refined_size: float | None = None,
-    time_limit: float = 3600.0,
+    time_limit: float | None = None,
 ) -> CadMesh:
     """Mesh the solids of a CAD file with tetrahedra.
 
@@ -73,8 +73,9 @@ def mesh_cad(
         Bores around which the elements are to be smaller [m].
     refined_size : float, optional
         Edge length aimed at there [m].
-    time_limit : float
-        Seconds after which the attempt is given up.
+    time_limit : float, optional
+        Seconds after which the attempt is given up; five minutes and one more for each megabyte of the file, and an
+        hour at most.
 
     Raises
     ------
@@ -102,7 +103,7 @@ def mesh_cad(
     with tempfile.TemporaryDirectory(prefix="gearwhine-cad-") as name:
         folder = Path(name)
         (folder / "request.json").write_text(json.dumps(asdict(request)), encoding="utf-8")
-        _work(folder, path, time_limit)
+        _work(folder, path, _time_limit(path) if time_limit is None else time_limit)
         answer = json.loads((folder / "answer.json").read_text(encoding="utf-8"))
         if "unavailable" in answer:
             raise MesherUnavailableError(answer["unavailable"])
@@ -114,13 +115,18 @@ def mesh_cad(
     return CadMesh(mesh, tuple(answer["solids"]), answer["unit"], tuple(answer["remarks"]))
 
 
+def _time_limit(path: Path) -> float:
+    """Seconds that a file of this size is given."""
+    return min(300.0 + 60.0 * path.stat().st_size / 1e6, 3600.0)
+
+
 def _work(folder: Path, path: Path, time_limit: float) -> None:
     """Run the worker on the request in a folder, and make sure that it answered."""
     room = Path(__file__).resolve().parents[2]
     search = os.pathsep.join(part for part in (str(room), os.environ.get("PYTHONPATH", "")) if part)
     try:
         done = subprocess.run(
-            [sys.executable, "-m", "meshes.cad.worker", str(folder)],
+            [sys.executable, "-m", "meshes.cad.worker", str(folder), str(os.getpid())],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,

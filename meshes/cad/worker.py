@@ -2,11 +2,15 @@
 
 OpenCASCADE writes to standard output and, given a damaged file, may end its process with a segmentation fault: so
 it gets a process of its own. What it found goes through a folder: ``request.json`` in; ``stage`` (what it is at),
-``answer.json`` and the mesh's arrays out.
+``answer.json`` and the mesh's arrays out. It ends with the caller, whatever ends that one, and takes the folder along.
 """
 
 import json
+import os
+import shutil
 import sys
+import threading
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +23,7 @@ from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.gmsh_session import gmsh_session
 from meshes.tetrahedra import Tetrahedra, check_mesh_size, collect, mesh_solids
 
+_WATCH = 0.5  # seconds between looks at the parent
 _BLEND = 3.0  # elements grow to their full size over this many of the small ones
 
 
@@ -52,6 +57,22 @@ class Request:
     glue: bool
     places: list[tuple[float, float, float, float]]
     place_size: float | None
+
+
+def end_with(parent: int, folder: Path) -> None:
+    """Watch a process from a thread; end this one, and remove its folder, once that one is gone.
+
+    A process whose parent has died gets another one. The parent's number is handed over, because the parent may be
+    gone before this begins. A thread is enough: gmsh's calls leave Python's lock to it while they last.
+    """
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(_WATCH)
+        shutil.rmtree(folder, ignore_errors=True)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def main(folder: Path) -> None:
@@ -145,4 +166,5 @@ def _save(folder: Path, mesh: Tetrahedra) -> list[str]:
 
 
 if __name__ == "__main__":
+    end_with(int(sys.argv[2]), Path(sys.argv[1]))
     main(Path(sys.argv[1]))

@@ -3,11 +3,13 @@
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy import linalg
 
 from coupling import Component, CoupledSystem, CouplingError, ModesError, coupled_modes, receptance
 from coupling.eigenpairs import pair_residuals, quadratic_eigenpairs, refine_pair
 
 FloatArray = npt.NDArray[np.float64]
+HALVES = (slice(0, 2), slice(2, 4))
 
 
 def one(stiffness: npt.ArrayLike, damping: npt.ArrayLike, kind: str = "torsion") -> CoupledSystem:
@@ -30,7 +32,7 @@ def test_free_chain_has_one_double_zero() -> None:
     assert (modes.certificate.expected, modes.certificate.found, modes.certificate.zeros) == (4, 4, 2)
 
 
-@pytest.mark.parametrize("soft", [1e-4, 1e-7, 1e-9])
+@pytest.mark.parametrize("soft", [1e-4, 1e-7, 1e-9, 1e-12])
 def test_soft_supports_are_not_taken_for_none(soft: float) -> None:
     """Two masses, one held by a spring that is softer by orders of magnitude than the one between them."""
     stiffness = 1e10 * np.array([[1.0 + soft, -1.0], [-1.0, 1.0]])
@@ -41,6 +43,29 @@ def test_soft_supports_are_not_taken_for_none(soft: float) -> None:
     large = 0.5 * (trace + np.sqrt(trace**2 - 4.0 * determinant))
     expected = np.sqrt([determinant / large, large])
     np.testing.assert_allclose(np.abs(modes.eigenvalues), expected, rtol=4e-16 / soft + 1e-13)
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_gears_tied_hard_between_soft_shafts_leave_one_rigid_motion(unit: float) -> None:
+    """Inertia, shaft of 0.1 N m/rad, gears tied at 1e13 N/m, shaft, inertia: one rigid motion in any units.
+
+    The softest elastic motion has both gears as one inertia, turning between the shafts.
+    """
+    inertias, (r, s), k, tie = np.array([2.0, 1e-3, 3e-3, 4.0]), (0.04, 0.06), 0.1, 1e13
+    rows = np.array([[1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -1.0], [0.0, r, s, 0.0]]) / np.sqrt(inertias)
+    # In the free shafts' own modes, as a machine has them: the tie is in every coordinate, and no scaling parts it.
+    shafts = [np.linalg.eigh(k * np.outer(row[part], row[part])) for row, part in zip(rows, HALVES, strict=False)]
+    own = linalg.block_diag(*(shape for _, shape in shafts))
+    stiffness = np.diag(np.concatenate([[0.0, values[1]] for values, _ in shafts])) + tie * np.outer(
+        *[rows[2] @ own] * 2
+    )
+    modes = coupled_modes(one(unit * stiffness, np.zeros((4, 4))))
+    assert modes.kinds.count("rigid") == 1
+    # Gears as one: the second turns by -r/s of the first.
+    tied = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -r / s, 0.0], [0.0, 0.0, 1.0]])
+    springs = np.array([[1.0, -1.0, 0.0], [0.0, -r / s, -1.0]])
+    squares = linalg.eigvalsh(k * springs.T @ springs, tied.T @ np.diag(inertias) @ tied)[1:]
+    np.testing.assert_allclose(np.abs(modes.eigenvalues[1:3]), np.sqrt(unit * squares), rtol=1e-2)
 
 
 def test_drag_leaves_a_zero_and_a_decay() -> None:

@@ -37,6 +37,9 @@ HOUSED = (
 def start(folder: Path, arguments: tuple[str, ...]) -> "subprocess.Popen[str]":
     command = [sys.executable, "-m", "gearwhine", *arguments]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    # A shell has what it starts in the background ignore Ctrl-C, and children inherit that.
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     return subprocess.Popen(command, text=True, cwd=folder, env=environment, start_new_session=True, **pipes)
 

@@ -175,3 +175,28 @@ def test_an_interruption_while_a_block_is_put_in_its_place_keeps_it(
     assert "goes on from there" in stop.value.__notes__[0]
     with kept_march(tmp_path, "key") as blocks:
         assert len(blocks) == 1
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_damage_to_any_block_is_found_and_its_span_marched_again(tmp_path: Path, number: int) -> None:
+    """Blocks before the damage count; those behind it are written anew."""
+    stop(tmp_path, "a", 4)
+    (block,) = tmp_path.glob(f".resume-*/block-{number:08d}.npz")
+    whole = block.read_bytes()
+    data = np.full((3, 2), float(number)).tobytes()
+    for place in range(0, len(whole), 7):
+        damaged = bytearray(whole)
+        damaged[place] ^= 0x10
+        block.write_bytes(damaged)
+        # Dates and attributes in the file's frame may change; the arrays may not.
+        count = len(BlockFiles(block.parent))
+        assert count == number or (
+            count == 4 and data in damaged and BlockFiles(block.parent)[number].keys() == {"columns", "time"}
+        )
+    place = whole.index(data) + 1 if number else whole.index(b"(3, 2)")
+    damaged = bytearray(whole)
+    damaged[place] ^= 0x10
+    block.write_bytes(damaged)
+    stop(tmp_path, "a", 4 - number)
+    with kept_march(tmp_path, "a") as blocks:
+        assert [float(blocks[n]["columns"][0, 0]) for n in range(len(blocks))] == [0.0, 1.0, 2.0, 3.0]

@@ -3,14 +3,19 @@
 The files are written here by gmsh's own kernel, from shapes whose volumes are known.
 """
 
+import subprocess
+import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import psutil
 import pytest
 
 from meshes import GeometryError, MeshSizeError, cylinder_facets, facet_centers, find_bores, mesh_cad, plane_facets
+from meshes.cad.reading import _time_limit
 from meshes.gmsh_session import gmsh_session
 
 SIZE, WALL, BORE = np.array([200.0, 150.0, 120.0]), 10.0, 40.0  # mm
@@ -155,3 +160,42 @@ def test_files_of_other_kinds_and_missing_ones_are_refused(tmp_path: Path) -> No
         mesh_cad(tmp_path / "part.dwg", 0.03)
     with pytest.raises(GeometryError, match="cannot be read: No such file"):
         mesh_cad(tmp_path / "part.step", 0.03)
+
+
+_PARENT = """
+import subprocess, sys
+worker = "import sys, time; from pathlib import Path; from meshes.cad.worker import end_with; " \\
+    "end_with(int(sys.argv[2]), Path(sys.argv[1])); print(flush=True); time.sleep(60)"
+import os
+child = subprocess.Popen([sys.executable, "-c", worker, sys.argv[1], str(os.getpid())], stdout=subprocess.PIPE)
+child.stdout.readline()
+print(child.pid, flush=True)
+child.wait()
+"""
+
+
+def test_the_reader_ends_with_a_parent_that_is_killed_and_takes_its_folder_along(tmp_path: Path) -> None:
+    folder = tmp_path / "gearwhine-cad"
+    folder.mkdir()
+    (folder / "request.json").write_text("{}")
+    with subprocess.Popen([sys.executable, "-c", _PARENT, str(folder)], stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        worker = psutil.Process(int(parent.stdout.readline()))
+        parent.kill()
+    # Where nobody collects orphans, the ended one stays as a zombie.
+    limit = time.monotonic() + 10.0
+    while worker.is_running() and worker.status() != psutil.STATUS_ZOMBIE:
+        assert time.monotonic() < limit, "the reader lives on"
+        time.sleep(0.02)
+    assert not folder.exists()
+
+
+def test_a_reader_is_given_time_by_the_size_of_its_file(tmp_path: Path) -> None:
+    """Five minutes, and one for each megabyte."""
+    path = tmp_path / "large.step"
+    with path.open("wb") as file:
+        file.truncate(10_000_000)
+    assert _time_limit(path) == pytest.approx(900.0)
+    with path.open("wb") as file:
+        file.truncate(10**9)
+    assert _time_limit(path) == 3600.0

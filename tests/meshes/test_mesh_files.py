@@ -384,3 +384,15 @@ def test_nastran_bulk_data_alone_with_blank_continuations_are_read(tmp_path: Pat
     assert mesh.kinds == {"tetra10": 1}
     assert mesh.element_volumes == pytest.approx([1 / 6])
     np.testing.assert_allclose(mesh.points[mesh.blocks[0].nodes[0]], places)
+
+
+@pytest.mark.parametrize("node", [-1, 4, 10**12])
+def test_nodes_that_are_not_there_are_refused_by_element_and_number(tmp_path: Path, node: int) -> None:
+    """The second of three elements has a node that the file lacks, or one of a negative number."""
+    cells = np.array([[0, 1, 2, 3], [0, 1, 2, node], [0, 1, 2, 3]])
+    path = tmp_path / "wrong.vtu"
+    meshio.write(path, meshio.Mesh(POINTS, [("tetra", cells)]))
+    with pytest.raises(GeometryError, match=rf"wrong.vtu .*tetra element 1 .* has node {node}, and there are 4 nodes"):
+        read_mesh(path)
+    with pytest.raises(GeometryError, match=rf"the mesh .*tetra element 1 .* has node {node}, and there are 4 nodes"):
+        Mesh.of_tetrahedra(POINTS, cells)
