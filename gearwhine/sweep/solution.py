@@ -14,8 +14,9 @@ from gearwhine.case import Case, mesh_frequencies
 from gearwhine.failures import explain
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import HousingInMachine, build_machine, housing_in_machine
+from gearwhine.stages.machine import HousingInMachine, basis_error, build_machine, housing_in_machine
 from gearwhine.stages.transient import SolvedTransient, solve_transient, transient_document
+from gearwhine.stages.uncertainty import add_uncertainty
 from gearwhine.sweep.points import code_digest
 
 FloatArray = npt.NDArray[np.float64]
@@ -89,10 +90,12 @@ def solve_point(case: Case, housing: HousingInMachine | PointFailure | None, cod
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        machine = build_machine(case, housing, solve_gears(case) if case.gear_pair else ())
+        pairs = solve_gears(case) if case.gear_pair else ()
+        machine = build_machine(case, housing, pairs)
         frequencies = mesh_frequencies(case) if case.gear_pair else ()
         solved = solve_transient(case, machine, frequencies, housing=housing)
         result = _reduced(case, solved, housing, time.perf_counter() - begin)
+        add_uncertainty(result.document, basis_error(case, machine, housing, pairs), solved.trusted_limit)
         for pair, frequency in zip(result.document["gear_pairs"], frequencies, strict=True):
             pair["mesh_frequency_hz"] = frequency
         return result

@@ -26,6 +26,7 @@ from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
 from gearwhine.stages.system_documents import system_document
+from gearwhine.stages.uncertainty import add_uncertainty
 from gearwhine.work.results_folder import files_in
 
 if TYPE_CHECKING:
@@ -96,9 +97,12 @@ def _run_case(
     transient, system, signature, run = None, None, None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
-        machine = machine_stage.build_machine(case, housing, pairs, progress)
+        part = None if housing is None else machine_stage.housing_in_machine(case, housing, progress)
+        machine = machine_stage.build_machine(case, part, pairs, progress)
+        error = machine_stage.basis_error(case, machine, part, pairs, progress)
         system = system_stage.solve_system(case, machine, housing, progress)
         document["system"] = system_document(case, system, housing)
+        add_uncertainty(document["system"], error, document["system"]["trusted_below_hz"])
         timed("system", begin)
         if case.transient is not None:
             if housing is not None and not housing.source_holds:
@@ -116,6 +120,7 @@ def _run_case(
                 keep=lambda key: until_written.enter_context(kept_march(folder, key, fresh=fresh)),
             )
             document |= transient_stage.transient_document(case, transient)
+            add_uncertainty(document, error, transient.trusted_limit)
             if transient_stage.is_traced(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
