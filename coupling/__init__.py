@@ -23,6 +23,7 @@ numba is imported only when one of :func:`simulate`, :func:`static_equilibrium` 
 """
 
 from coupling.base_motion import BaseHarmonic, BaseHistory, BaseMotion
+from coupling.basis_error import BasisError
 from coupling.bearing_law import BearingLaw, GapLaw, RollingLaw
 from coupling.boundaries import SAMPLES_PER_BLOCK
 from coupling.campbell import SystemCampbell, SystemCrossing, system_campbell
@@ -101,6 +102,7 @@ __all__ = [
     "BaseHarmonic",
     "BaseHistory",
     "BaseMotion",
+    "BasisError",
     "BearingLaw",
     "Block",
     "BowReactions",

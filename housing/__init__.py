@@ -66,6 +66,7 @@ from housing.port_attachments import attach_ports
 from housing.ports import Seat, Sensor, SensorPort, seat_matrix, sensor_port
 from housing.receptance import Selection, receptance, residues, select_modes
 from housing.reduction import Attachments, StaticProof
+from housing.response_span import leading_attachments
 from housing.rigid import RigidBody, rigid_body, rigid_motions
 from housing.supports import Support, fixed_freedoms
 from housing.survey import SURVEY_COUNTS, Survey, survey_grid
@@ -133,6 +134,7 @@ __all__ = [
     "enclosed",
     "fixed_freedoms",
     "health_report",
+    "leading_attachments",
     "mass_properties",
     "mesh_digest",
     "modal_damping",

@@ -78,6 +78,7 @@ def solve_modes(
     count: int | None = None,
     draft: bool = False,
     ports: sparse.csr_array | None = None,
+    port_orders: int = 1,
     backend: Backend | None = None,
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
@@ -99,6 +100,9 @@ def solve_modes(
         is missing, and the last ones are rough (their λ to some 1e-8). The certificate is then not complete.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes), optional
         Motions whose static compliance the mode set is to hold exactly: it then has attachments.
+    port_orders : int
+        Responses for each of these motions: 1, the static one; 2, that at the limit too; see
+        :func:`housing.reduction.residual_attachments`.
     backend, threads
         See :class:`housing.factorization.Factorizer`.
     progress : callable
@@ -151,6 +155,7 @@ def solve_modes(
             floor=search.floor,
             free=system.free,
             n_nodes=system.n_nodes,
+            orders=port_orders,
         )
         search.seconds["reduction"] = time.perf_counter() - start
     return ModeSet(

@@ -25,6 +25,16 @@ MacNeal 1971 and Rubin 1975). By Galerkin's argument its compliance at the ports
 of X. Modes and attachments side by side are a component with the unit mass, a diagonal stiffness and the exact static
 compliance at its ports.
 
+*Near the limit* the discarded modes no longer answer statically: their part in a receptance is Σ φ φᵀ / (λ - ω²), from
+which the static response differs by ω² / λ of each mode's part, by all of it at a mode just above the limit. The factor
+of A with σ at the limit gives the response there and its derivatives by ω²,
+
+    X_1 = A⁻¹ F,    X_j = A⁻¹ M X_{j-1},        A = K - σM on the complement.                             (5)
+
+With X and X_1 to X_j in the basis, Galerkin's receptance from a port to any point is exact at rest and at the limit
+(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). The attachments of the lowest frequencies then
+come close to the modes just above the limit, as far as the ports drive them.
+
 Computed modes are not quite the housing's, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness
 leaves out: an error of first order, 2 |ψᵀ r| / √(λ ω²) of a port's compliance at most, the greater the softer the mode
 beside the limit. Galerkin's quotients in the space of both take it out. To first order they turn each pair by
@@ -67,6 +77,7 @@ STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
 _SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
+_ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which what it adds to others is rounding
 _ALIKE = 1e-12  # part of the largest energy of a sweep's directions below which one is rounding
 _MOST_SWEEPS = 200
 
@@ -105,7 +116,7 @@ class StaticProof:
 
 @dataclass(frozen=True)
 class Attachments:
-    """Residual attachment modes: k of them, at most one for each port motion.
+    """Residual attachment modes: k of them, at most one for each port motion and order of response.
 
     Attributes
     ----------
@@ -138,6 +149,7 @@ def residual_attachments(
     floor: float,
     free: IntArray,
     n_nodes: int,
+    orders: int = 1,
 ) -> tuple[Attachments, FloatArray]:
     """Residual attachment modes of a set of modes, proved to make the static compliance at the ports exact.
 
@@ -161,6 +173,9 @@ def residual_attachments(
         Where these degrees of freedom stand among the mesh's 3 n_nodes.
     n_nodes : int
         Nodes of the mesh.
+    orders : int
+        Responses for each port motion: 1, the static one; 2, that at ω² = shift beside it; more, its derivatives by ω²
+        there too, see Eq. (5).
 
     Returns
     -------
@@ -190,7 +205,13 @@ def residual_attachments(
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
 
     residual, sweeps = _static_response(stiffness, solve, loads, vectors, inertia, _SETTLED, modal.diagonal())
-    squared, shapes = _orthonormal(stiffness, mass, residual, modal.diagonal(), vectors, inertia)
+    span = _independent(stiffness, residual, modal.diagonal())
+    response = loads
+    for _ in range(orders - 1):
+        response = _complement_solve(solve, response, vectors, inertia)
+        span = _extended(stiffness, span, response)
+        response = np.asarray(mass @ response)
+    squared, shapes = _orthonormal(stiffness, mass, span, vectors, inertia)
     turn = _turn(stiffness, squared, shapes, values, vectors)
     inertia += np.asarray(mass @ shapes) @ turn
     vectors, shapes = vectors + shapes @ turn, shapes - vectors @ turn.T
@@ -269,15 +290,14 @@ def _static_response(
     )
 
 
-def _orthonormal(
-    stiffness: Operator,
-    mass: Operator,
-    residual: FloatArray,
-    known: FloatArray,
-    vectors: FloatArray,
-    inertia: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """ω² and M-orthonormal shapes that span the residual vectors and diagonalise K in them, ascending.
+def _complement_solve(solve: Solve, right: FloatArray, vectors: FloatArray, inertia: FloatArray) -> FloatArray:
+    """A⁻¹ of loads in the M-orthogonal complement of the modes: what the modes left out answer at ω² = σ."""
+    found = solve(right - inertia @ (vectors.T @ right))
+    return np.asarray(found - vectors @ (inertia.T @ found))
+
+
+def _independent(stiffness: Operator, residual: FloatArray, known: FloatArray) -> FloatArray:
+    """Residual vectors orthonormal in K that span the given ones.
 
     Loads are measured by the response that they find, so that a port of rotations counts like one of translations;
     combinations of them whose response adds less than a part of 1e-12 to the ports' compliance are dropped.
@@ -287,7 +307,32 @@ def _orthonormal(
     scale = 1.0 / np.sqrt(np.where(whole > 0.0, whole, 1.0))
     shares, mixture = linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
     new = shares > _NOTHING_NEW
-    shapes = (residual * scale) @ (mixture[:, new] / np.sqrt(shares[new]))
+    return np.asarray((residual * scale) @ (mixture[:, new] / np.sqrt(shares[new])))
+
+
+def _extended(stiffness: Operator, span: FloatArray, further: FloatArray) -> FloatArray:
+    """Vectors orthonormal in K, and behind them what further ones add to their span.
+
+    A combination that adds less than a part of 1e-10 of its own strain energy is dropped.
+    """
+    held = np.asarray(stiffness @ further)
+    own = np.einsum("ij,ij->j", further, held)
+    scale = _ratio(np.ones(len(own)), np.sqrt(np.maximum(own, 0.0)))
+    further, held = further * scale, held * scale
+    for _ in range(2):
+        # Twice, for the rounding that the first time leaves.
+        further = further - span @ (span.T @ held)
+        held = np.asarray(stiffness @ further)
+    energy = further.T @ held
+    shares, mixture = linalg.eigh(0.5 * (energy + energy.T))
+    new = shares > _ADDS_NOTHING
+    return np.hstack([span, further @ (mixture[:, new] / np.sqrt(shares[new]))])
+
+
+def _orthonormal(
+    stiffness: Operator, mass: Operator, shapes: FloatArray, vectors: FloatArray, inertia: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """ω² and M-orthonormal shapes with the span of the given ones, less the modes', that diagonalise K, ascending."""
     # Twice: the first pass mixes vectors of very different mass, whose rounding the second takes off.
     squared = np.zeros(shapes.shape[1])
     for _ in range(2):

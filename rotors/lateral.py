@@ -178,7 +178,8 @@ def lateral_modes(
     """Assemble the result from fields in the chain's units and the mixture that makes modes of them."""
     chain = fields.chain
     at_stations = fields.at(chain.stations)[:, :, :2]
-    nodal = (mixture @ at_stations.reshape(mixture.shape[1], -1)).reshape(-1, at_stations.shape[1], 2)
+    # By sums over fields, of which there are none below a limit under the first mode.
+    nodal = np.tensordot(mixture, at_stations, axes=1)
     # The largest displacement is positive, so that a shape does not depend on the solver's start.
     shapes = nodal[:, :, 0]
     largest = np.abs(shapes).argmax(axis=1)

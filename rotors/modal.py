@@ -10,9 +10,10 @@ with the gyroscopic matrix G = ∫ Φ' dI_p Φ'ᵀ and, summed over the bearings
     K_s = Σ diag(k_xx - k̄, k_yy - k̄) ⊗ Φ_b Φ_bᵀ
 
 and the cross-coupling K_c = Σ [[0, k_xy], [k_yx, 0]] ⊗ Φ_b Φ_bᵀ (TM-104434 Eqs. 11 to 15). The rows of a bearing's tilt
-stiffness do the same with the slopes. Behind the modes stand residual attachment vectors for a force at every bearing
-and gear, for a moment where a bearing resists tilting, and for a torque at every gear: the static response that the
-modes left out carry (Craig 2000), without which a gear's or a bearing's place is too stiff.
+stiffness do the same with the slopes. Behind the modes stand residual attachment vectors for every load that a bearing
+or a gear puts on the shaft: a force across at each of them, a moment and a force along the axis where a bearing resists
+these motions or a gear's teeth push along it, and a torque at every gear. They are the static response that the modes
+left out carry (Craig 2000), without which a gear's or a bearing's place is too stiff.
 """
 
 from collections.abc import Sequence
@@ -27,6 +28,7 @@ from .bearing import Bearing
 from .errors import require
 from .lateral import LateralModes, solve_lateral_modes
 from .participation import Participation, participation
+from .rotor_lines import bending_line, rod_line
 from .shaft import Rotor
 from .torsion import TorsionalModes, solve_torsional_modes
 
@@ -121,6 +123,8 @@ def modal_rotor(
     count: int | None = None,
     gears_at: Sequence[float] = (),
     forces_at: Sequence[float] = (),
+    moments_at: Sequence[float] = (),
+    thrusts_at: Sequence[float] = (),
 ) -> ModalRotor:
     """Reduce a rotor to the modes that a coupled model keeps, and the vectors that make its ports' compliance exact.
 
@@ -136,6 +140,11 @@ def modal_rotor(
         Where forces and torques of gears act, m from the left end.
     forces_at : sequence of float
         Where other lateral forces act, such as those of a bow.
+    moments_at : sequence of float
+        Where moments that bend the shaft act, beside those of bearings that resist tilting: at helical gears, and at
+        bearings whose resistance is not in their matrices.
+    thrusts_at : sequence of float
+        Where forces along the axis act, beside those of bearings that resist them; without effect where none does.
 
     Raises
     ------
@@ -151,24 +160,30 @@ def modal_rotor(
     torsional = solve_torsional_modes(rotor, frequency_limit=frequency_limit, count=count)
     ports = (*(bearing.at for bearing in bearings), *gears_at, *forces_at)
     if frequency_limit is not None and lateral.count < _FEWEST:
-        lateral = solve_lateral_modes(rotor, supports)
+        least = min(_FEWEST, bending_line(rotor, supports).available_modes)
+        lateral = solve_lateral_modes(rotor, supports, count=int(least))
     if frequency_limit is not None and torsional.count < _FEWEST:
-        torsional = solve_torsional_modes(rotor)
+        least = min(_FEWEST, rod_line(rotor, (), "torsion").available_modes)
+        torsional = solve_torsional_modes(rotor, count=int(least))
     # A lumped rotor has no more motions than its modes.
     if rotor.mass_model == "distributed":
-        tilted = [support.at for support in supports if support.tilt_stiffness > 0.0]
-        lateral = attach_loads(lateral, forces_at=ports, moments_at=tilted)
+        tilted = [one.at for one in bearings if one.spatial_stiffness[3:].any() or one.spatial_damping[3:].any()]
+        lateral = attach_loads(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
         torsional = attach_motions(torsional, gears_at)
-    axial = _axial(rotor, bearings, frequency_limit, count)
+    axial = _axial(rotor, bearings, frequency_limit, count, thrusts_at)
     return ModalRotor(lateral, torsional, axial, tuple(bearings), ports, participation(rotor, lateral, axial))
 
 
 def _axial(
-    rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    frequency_limit: float | None,
+    count: int | None,
+    thrusts_at: Sequence[float],
 ) -> AxialModes | None:
     """Free axial modes with vectors for forces at the bearings that hold the shaft along its axis, if any do."""
     thrust = [b.at for b in bearings if b.spatial_stiffness[2].any() or b.spatial_damping[2].any()]
     if not thrust:
         return None
     modes = solve_axial_modes(rotor, frequency_limit=frequency_limit, count=count)
-    return modes if rotor.mass_model == "lumped" else attach_motions(modes, thrust)
+    return modes if rotor.mass_model == "lumped" else attach_motions(modes, (*thrust, *thrusts_at))

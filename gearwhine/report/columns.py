@@ -48,6 +48,7 @@ LINES = (
     Column("frequency_hz", "line [Hz]", ".1f"),
     Column("amplitude_m_per_s2", "amplitude [m/s², peak]", ".3g"),
     Column("level_db", "level [dB re 1e-6 m/s²]", ".1f"),
+    Column("uncertainty", "± by the modal basis [%]", ".1f", 100.0),
     Column("name", "what it is"),
     Column("by", "mostly by"),
 )

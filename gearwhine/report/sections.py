@@ -127,6 +127,7 @@ def _transient(document: Document) -> Section:
     ]
     if document.get("trusted_below_hz"):
         sentences.append(f"The model's modes are complete up to {document['trusted_below_hz']:.0f} Hz.")
+    sentences += _basis_error(document)
     tables = table_of(columns.MESHES, document.get("gear_pairs", ()), "Gear meshes")
     tables += table_of(columns.LINES, [*_lines(document, "peaks")], "Highest lines of each sensor")
     tables += table_of(columns.BEARINGS, document.get("bearings", ()), "Bearings")
@@ -143,6 +144,15 @@ def _transient(document: Document) -> Section:
         "sweep",
     )
     return Section("Motion", tuple(sentences), tables, pictures)
+
+
+def _basis_error(document: Document) -> list[str]:
+    """The error that the modal basis may leave in responses, at worst in each band."""
+    parts = []
+    for band in document.get("basis_error", ()):
+        worst = max((sensor["largest"] for sensor in band["sensors"]), default=0.0)
+        parts.append(f"{100.0 * worst:.2g} % up to {band['to_hz']:.0f} Hz")
+    return [f"Error left by the modal basis, at the worst sensor and frequency: {', '.join(parts)}."] if parts else []
 
 
 def _lines(document: Document, key: str) -> list[dict[str, Any]]:

@@ -6,7 +6,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from gearwhine.screen.console import counted, open_console, percent, show_written
+from gearwhine.screen.console import counted, line_text, open_console, percent, show_written
 from gearwhine.screen.housing import comparison_table, modes_line
 
 _STEPS = {"newmark": "steps", "exact": "exact elements"}
@@ -46,9 +46,7 @@ def _sensors(console: Console, document: dict[str, Any]) -> None:
     table = Table("sensor", "rms [m/s²]", "highest lines: Hz (m/s², peak)", box=SIMPLE_HEAD)
     table.columns[1].justify = "right"
     for sensor in document["sensors"]:
-        lines = "  ".join(
-            f"{peak['frequency_hz']:.0f} ({peak['amplitude_m_per_s2']:.2g})" for peak in sensor["peaks"][:5]
-        )
+        lines = "  ".join(line_text(peak) for peak in sensor["peaks"][:5])
         table.add_row(sensor["name"], f"{sensor['rms_m_per_s2']:.3g}", lines)
     console.print(table)
     _signature(console, document)

@@ -6,7 +6,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from gearwhine.screen.console import counted, open_console, percent, show_origin, show_written
+from gearwhine.screen.console import counted, line_text, open_console, percent, show_origin, show_written
 
 _EVENTS = {
     "fold": "the motion jumps to another one",
@@ -59,9 +59,7 @@ def _show_motion(console: Console, motion: dict[str, Any], name: str) -> None:
         table = Table("sensor", "rms [m/s²]", "highest lines: Hz (m/s², peak)", box=SIMPLE_HEAD)
         table.columns[1].justify = "right"
         for sensor in motion["sensors"]:
-            lines = "  ".join(
-                f"{line['frequency_hz']:.0f} ({line['amplitude_m_per_s2']:.2g})" for line in sensor["lines"][:5]
-            )
+            lines = "  ".join(line_text(line) for line in sensor["lines"][:5])
             table.add_row(sensor["name"], f"{sensor['rms_m_per_s2']:.3g}", lines)
         console.print(table)
 

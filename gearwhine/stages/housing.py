@@ -15,7 +15,7 @@ from gearwhine.case.problems import UNSAID
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_supports, check_places
 from gearwhine.stages.geometry import build_mesh
-from gearwhine.stages.housing_checks import bearing_places, bearing_port, housing_checks
+from gearwhine.stages.housing_checks import ATTACHMENT_ORDERS, bearing_places, bearing_port, housing_checks
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
 from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, told_on_failure, warnings_document
 from gearwhine.stages.regions import materials_of
@@ -50,8 +50,9 @@ class SolvedHousing:
         Modes' motions at each bearing seat.
     seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
         The seats' motions from the nodes'.
-    loaded : dict of str to sparse array, shape (2, 3 n_nodes)
-        x and y of each place where the machine bears on the housing: the modes' attachments are for these.
+    loaded : dict of str to sparse array, shape (5, 3 n_nodes)
+        Motions of each place where the machine bears on the housing, see :func:`bearing_port`: the modes' attachments
+        are for these.
     sensors : dict of str to housing.SensorPort
     survey : housing.Survey
     strengths : housing.Dominance or None
@@ -231,6 +232,7 @@ def _solve_modes(
             frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
             count=given.modes,
             ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
+            port_orders=ATTACHMENT_ORDERS,
             progress=progress,
         )
     except room.HousingError as error:

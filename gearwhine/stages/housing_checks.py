@@ -14,6 +14,8 @@ from meshes import Mesh
 FloatArray = npt.NDArray[np.float64]
 
 DIRECTIONS = ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")
+# Responses of the discarded modes at each motion that a bearing loads: at rest, at the limit, and its derivative there.
+ATTACHMENT_ORDERS = 3
 SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
 
 _HERTZ = 2.0 * np.pi
@@ -35,10 +37,13 @@ def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
 
 
 def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
-    """x and y of a seat's rigid motion at a distance from its centre along z [m], shape (2, 3 n_nodes)."""
+    """A seat's motions x, y, z and rotations about x and y at a distance from its centre [m], shape (5, 3 n_nodes).
+
+    Any bearing can load these; none loads the rotation about z, in which the shaft turns.
+    """
     # A rotation about y moves a point above the centre towards +x, one about x towards -y.
     turned = sparse.diags_array([arm, -arm], dtype=np.float64) @ seat[[4, 3]]
-    return sparse.csr_array(seat[[0, 1]] + turned)
+    return sparse.csr_array(sparse.vstack([seat[[0, 1]] + turned, seat[[2, 3, 4]]]))
 
 
 def housing_checks(
@@ -99,12 +104,14 @@ def static_error_document(modes: room.ModeSet, loaded: dict[str, sparse.csr_arra
     attached = modes.attachments
     if attached is None:
         return None
-    missing = attached.proof.missing_parts.reshape(-1, 2).max(axis=1)
+    missing = attached.proof.missing_parts.reshape(len(loaded), -1)
     return {
         "without_attachments": float(missing.max()),
         "with_attachments": attached.proof.error,
         "attachments": len(attached.frequencies),
-        "without_attachments_at": dict(zip(loaded, missing.tolist(), strict=True)),
+        "without_attachments_at": dict(zip(loaded, missing.max(axis=1).tolist(), strict=True)),
+        "directions": list(DIRECTIONS[:5]),
+        "without_attachments_along": dict(zip(loaded, missing.tolist(), strict=True)),
     }
 
 
@@ -117,7 +124,8 @@ def selection_document(
     """Which modes carry the motion from the bearings to the sensors; None where there are not both."""
     if not loaded or not sensors or not (damping_ratios > 0.0).all():
         return None
-    forces = sparse.csr_array(sparse.vstack(list(loaded.values()), format="csr"))
+    # Forces across the shafts alone: receptances by moments have another unit, and no common scale with these.
+    forces = sparse.csr_array(sparse.vstack([motions[:2] for motions in loaded.values()], format="csr"))
     motions = sparse.csr_array(sparse.vstack([sensor.matrix for sensor in sensors.values()], format="csr"))
     # From just above rest, where a free housing has no receptance.
     limit = modes.certificate.limit

@@ -1,12 +1,13 @@
 """The whole machine of a case: rotors, housing, bearings, gears and loads in one system."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy import linalg, sparse
 
 import coupling as room
 import rotors as rotor_room
@@ -17,8 +18,10 @@ from gearwhine.stages.build import build_rotor
 from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import SolvedPair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, base_participation, solve_housing
+from gearwhine.stages.housing_checks import ATTACHMENT_ORDERS
 from gearwhine.stages.rotor_loads import given_bow
 from gearwhine.stages.thrust import require_carried_thrust
+from housing import ModeSet, leading_attachments
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -28,6 +31,7 @@ _HERTZ = 2.0 * np.pi
 # what lies above answers statically, through attachment vectors at bearings and gears.
 _LATERAL_LIMIT_HZ = 8000.0
 _LIMIT_FACTOR = 2.5
+_REACH = 2.0  # of the shafts' modes in the basis that tells the error of the first
 
 
 @dataclass(frozen=True)
@@ -52,6 +56,8 @@ class HousingInMachine:
     warnings : tuple of dict
         What the user should know of it, as the documents have it.
     sensors : mapping of str to SensorPlace
+    coarser : coupling.HousingComponent or None
+        The component with less of the modes above the limit: what their difference moves, the limit may be wrong by.
     """
 
     component: room.HousingComponent
@@ -59,16 +65,19 @@ class HousingInMachine:
     trusted_limit_hz: float
     warnings: tuple[dict[str, Any], ...] = ()
     sensors: Mapping[str, SensorPlace] = field(default_factory=dict)
+    coarser: room.HousingComponent | None = None
 
 
 def housing_in_machine(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingInMachine:
     """What a machine takes of a solved housing."""
+    component, coarser = _housing_components(case, solved, progress)
     return HousingInMachine(
-        _housing_component(case, solved, progress),
+        component,
         solved.modes.frequencies_hz,
         solved.trusted_limit_hz,
         tuple(solved.warnings),
         {name: SensorPlace(port.position, port.direction) for name, port in solved.sensors.items()},
+        coarser,
     )
 
 
@@ -77,8 +86,12 @@ def build_machine(
     housing: SolvedHousing | HousingInMachine | None,
     pairs: tuple[SolvedPair, ...],
     progress: Progress = silent,
+    *,
+    reach: float = 1.0,
 ) -> room.Machine:
     """Couple the parts of a case at its speed of operation.
+
+    ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are kept.
 
     Raises
     ------
@@ -96,8 +109,15 @@ def build_machine(
         progress(f"modes of rotor {given.name}")
         rotor, held = build_rotor(case, given), build_bearings(case, given.name)
         limit, count = _kept(case, given.name)
+        if given.mass == "distributed":
+            # A lumped rotor has no more modes than its masses allow.
+            limit, count = None if limit is None else reach * limit, None if count is None else round(reach * count)
         bow = given_bow(given)
-        gears_at = [gear.at for gear in case.gear if gear.rotor == given.name and gear.at is not None]
+        laws = {entry.name: bearing_law(case, n) for n, entry in enumerate(case.bearing) if entry.rotor == given.name}
+        # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
+        rolling_at = [bearing.at for bearing in held if isinstance(laws.get(bearing.name), room.RollingLaw)]
+        gears = [gear for gear in case.gear if gear.rotor == given.name and gear.at is not None]
+        helical_at = [gear.at for gear in gears if gear.at is not None and gear.helix_angle != 0.0]
         components.append(
             room.rotor_component(
                 given.name,
@@ -106,8 +126,10 @@ def build_machine(
                     [bearing.at_speed(speeds[given.name]) for bearing in held],
                     frequency_limit=limit,
                     count=count,
-                    gears_at=gears_at,
+                    gears_at=[gear.at for gear in gears if gear.at is not None],
                     forces_at=() if bow is None else bow.at.tolist(),
+                    moments_at=helical_at + rolling_at,
+                    thrusts_at=helical_at + rolling_at,
                 ),
                 start=given.start,
                 damping_ratio=given.damping_ratio,
@@ -118,7 +140,6 @@ def build_machine(
             bows.append(room.BowReactions(given.name, bow.at, rotor_room.bow_shape(rotor, bow).reactions))
         # Those of the rotor's own file stand on the ground.
         seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
-        laws = {entry.name: bearing_law(case, n) for n, entry in enumerate(case.bearing) if entry.rotor == given.name}
         bearings += [
             room.MountedBearing(bearing, given.name, seats.get(bearing.name), laws.get(bearing.name))
             for bearing in held
@@ -185,20 +206,62 @@ def base_motion(case: Case) -> room.BaseMotion | None:
     return room.BaseMotion(tuple(parts), given.point)
 
 
-def _housing_component(case: Case, solved: SolvedHousing, progress: Progress) -> room.HousingComponent:
-    assert case.housing is not None
+def basis_error(
+    case: Case,
+    machine: room.Machine,
+    housing: SolvedHousing | HousingInMachine | None,
+    pairs: tuple[SolvedPair, ...],
+    progress: Progress = silent,
+) -> room.BasisError | None:
+    """The machine beside one with less of what the housing's limit leaves out and with more modes of its shafts.
+
+    None where there is no housing, and so no sensor.
+    """
+    if isinstance(housing, SolvedHousing):
+        housing = housing_in_machine(case, housing, progress)
+    if housing is None or housing.coarser is None or not housing.component.sensors:
+        return None
+    progress("comparing with another modal basis")
+    other = replace(housing, component=housing.coarser)
+    return room.BasisError(machine, build_machine(case, other, pairs, reach=_REACH))
+
+
+def _housing_components(
+    case: Case, solved: SolvedHousing, progress: Progress
+) -> tuple[room.HousingComponent, room.HousingComponent | None]:
+    """The housing with all its attachments, and with those of one order of response less."""
     assert case.operation is not None
     participation = None
     if case.operation.base is not None or case.operation.gravity is not None:
         progress("taking the housing's mass for the motion of its base and its weight")
         participation = base_participation(case, solved.mesh, solved.modes)
+    component = _housing_component(case, solved, solved.modes, solved.damping_matrix, participation)
+    attached = solved.modes.attachments
+    if attached is None or not solved.loaded:
+        return component, None
+    ports = sparse.csr_array(sparse.vstack(list(solved.loaded.values()), format="csr"))
+    fewer, mixture = leading_attachments(attached, ports, solved.modes.certificate.limit**2, ATTACHMENT_ORDERS - 1)
+    taken = linalg.block_diag(np.eye(len(solved.modes.frequencies)), mixture)
+    return component, _housing_component(
+        case,
+        solved,
+        replace(solved.modes, attachments=fewer),
+        None if solved.damping_matrix is None else taken.T @ solved.damping_matrix @ taken,
+        None if participation is None else taken.T @ participation,
+    )
+
+
+def _housing_component(
+    case: Case, solved: SolvedHousing, modes: ModeSet, damping: FloatArray | None, participation: FloatArray | None
+) -> room.HousingComponent:
+    assert case.housing is not None
     return room.housing_component(
-        solved.modes,
+        modes,
         solved.damping_ratios,
-        seats={name: solved.modes.project_all(port) for name, port in solved.seat_ports.items()},
+        seats={name: modes.project_all(port) for name, port in solved.seat_ports.items()},
         seat_z={seat.name: seat.center[2] for seat in case.housing.seat},
-        damping_matrix=solved.damping_matrix,
-        sensors={name: solved.modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
+        damping_matrix=damping,
+        sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
         participation=participation,
     )
 

@@ -17,8 +17,9 @@ from gearwhine.stages.bearing_loads import bearing_load_warnings
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.instability import machine_warnings
-from gearwhine.stages.machine import HousingInMachine, build_machine, housing_in_machine
+from gearwhine.stages.machine import HousingInMachine, basis_error, build_machine, housing_in_machine
 from gearwhine.stages.transient import SolvedTransient, mean_bearing_forces, solve_transient, transient_document
+from gearwhine.stages.uncertainty import add_uncertainty
 from gearwhine.sweep.points import code_digest
 
 FloatArray = npt.NDArray[np.float64]
@@ -92,10 +93,12 @@ def solve_point(case: Case, housing: HousingInMachine | PointFailure | None, cod
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        machine = build_machine(case, housing, solve_gears(case) if case.gear_pair else ())
+        pairs = solve_gears(case) if case.gear_pair else ()
+        machine = build_machine(case, housing, pairs)
         frequencies = mesh_frequencies(case) if case.gear_pair else ()
         solved = solve_transient(case, machine, frequencies, housing=housing)
         result = _reduced(case, solved, housing, time.perf_counter() - begin)
+        add_uncertainty(result.document, basis_error(case, machine, housing, pairs), solved.trusted_limit)
         for pair, frequency in zip(result.document["gear_pairs"], frequencies, strict=True):
             pair["mesh_frequency_hz"] = frequency
         return result

@@ -23,6 +23,7 @@ from gearwhine.stages import steady as steady_stage
 from gearwhine.stages import system as system_stage
 from gearwhine.stages.instability import machine_warnings, unstable_modes_warnings
 from gearwhine.stages.system_documents import system_document
+from gearwhine.stages.uncertainty import add_uncertainty
 from gearwhine.work.results_folder import kept_in
 
 
@@ -69,13 +70,15 @@ def system_case(
     fresh: bool = False,
 ) -> dict[str, Any]:
     """The coupled modes, over speed too where the case sweeps or it is asked for; with a folder, also as pictures."""
-    housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
+    housing, pairs, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
     solved = system_stage.solve_system(
         case, machine, housing, progress, mesh_phase=mesh_phase, over_speed=over_speed or swept, sidebands=sidebands
     )
     document = system_document(case, solved, housing)
     add_warnings(document, unstable_modes_warnings(solved.stability))
+    error = machine_stage.basis_error(case, machine, housing, pairs, progress)
+    add_uncertainty(document, error, document["trusted_below_hz"])
 
     def write(place: Path) -> None:
         from gearwhine import figures, results
@@ -99,12 +102,14 @@ def steady_case(
     fresh: bool = False,
 ) -> dict[str, Any]:
     """The motion that repeats at the speed of operation, and its branch over speed; with a folder, also as pictures."""
-    housing, _, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
+    housing, pairs, machine = machine_stage.solve_machine(case, progress, folder=folder, fresh=fresh)
     solved = steady_stage.solve_steady(
         case, machine, housing, progress, over_speed=over_speed, downwards=downwards, points=points, exact=exact
     )
     document = steady_stage.steady_document(case, solved)
     add_warnings(document, machine_warnings(machine))
+    error = machine_stage.basis_error(case, machine, housing, pairs, progress)
+    add_uncertainty(document, error, document["trusted_below_hz"])
 
     def write(place: Path) -> None:
         from gearwhine import figures, results

@@ -30,6 +30,7 @@ from gearwhine.stages.instability import unstable_modes_warnings
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
 from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.thrust import require_carried_thrust
+from gearwhine.stages.uncertainty import add_uncertainty
 from gearwhine.work.results_folder import files_in
 
 if TYPE_CHECKING:
@@ -101,10 +102,13 @@ def _run_case(
     transient, system, signature, run = None, None, None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
-        machine = machine_stage.build_machine(case, housing, pairs, progress)
+        part = None if housing is None else machine_stage.housing_in_machine(case, housing, progress)
+        machine = machine_stage.build_machine(case, part, pairs, progress)
+        error = machine_stage.basis_error(case, machine, part, pairs, progress)
         system = system_stage.solve_system(case, machine, housing, progress)
         document["system"] = system_document(case, system, housing)
         add_warnings(document, unstable_modes_warnings(system.stability))
+        add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
         timed("system", begin)
         if case.transient is not None:
             if housing is not None and not housing.source_holds:
@@ -123,6 +127,7 @@ def _run_case(
             )
             document = joined(document, transient_stage.transient_document(case, transient))
             add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
+            add_uncertainty(document, basis, transient.trusted_limit)
             if transient_stage.is_traced(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)

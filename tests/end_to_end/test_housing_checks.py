@@ -46,7 +46,12 @@ def test_static_error_is_told_with_and_without(gearbox_modes: dict) -> None:
     assert error["with_attachments"] <= 1e-10
     assert 0.01 < error["without_attachments"] < 1.0
     assert set(error["without_attachments_at"]) == {"input-back", "input-front", "output-back", "output-front"}
-    assert error["attachments"] == 8  # x and y under each of four bearings
+    # Five motions under each of four bearings, with three responses each.
+    assert error["attachments"] == 60
+    assert error["directions"] == ["x", "y", "z", "rotation_x", "rotation_y"]
+    for name, parts in error["without_attachments_along"].items():
+        assert len(parts) == 5
+        assert max(parts) == error["without_attachments_at"][name]
 
 
 def test_the_modes_that_matter(gearbox_modes: dict) -> None:
@@ -105,9 +110,12 @@ def test_a_bearing_off_its_seat_loads_the_seats_rotation(gearwhine, gearbox_mode
     moved = gearwhine("modes", "small-gearbox", "--json", "-q", "--set", "bearing.0.at=16 mm").document["static_error"]
     assert moved["with_attachments"] <= 1e-10
     where, others = "input-back", ("input-front", "output-back", "output-front")
-    assert moved["without_attachments_at"][where] != pytest.approx(centred["without_attachments_at"][where], rel=1e-6)
+    before, after = centred["without_attachments_along"], moved["without_attachments_along"]
+    # Forces along x and y now turn the seat too; motions along z and rotations are the same at any arm.
+    assert after[where][:2] != pytest.approx(before[where][:2], rel=1e-6)
+    assert after[where][2:] == pytest.approx(before[where][2:], rel=1e-6)
     for name in others:
-        assert moved["without_attachments_at"][name] == pytest.approx(centred["without_attachments_at"][name], rel=1e-6)
+        assert after[name] == pytest.approx(before[name], rel=1e-6)
 
 
 def test_detail_on_the_screen(gearwhine) -> None:

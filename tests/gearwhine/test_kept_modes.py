@@ -143,7 +143,7 @@ def test_another_file_counts_by_its_bytes(tmp_path: Path) -> None:
 
 def test_the_inputs_say_what_the_key_is_made_of() -> None:
     inputs = solution_inputs(load_case("steel-box").case)
-    assert set(inputs) == {"housing", "bearings", "material", "versions", "source"}
+    assert set(inputs) == {"housing", "bearings", "attachment_orders", "material", "versions", "source"}
     assert inputs["housing"]["box"]["wall"] == "0.01 m"
     assert inputs["material"]["steel"]["density"] == "7850 kg/m^3"
     assert {"gearwhine", "gmsh", "scikit-fem", "scipy"} <= set(inputs["versions"])

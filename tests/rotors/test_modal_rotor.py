@@ -8,12 +8,14 @@ import pytest
 from rotors import (
     Bearing,
     Disc,
+    ModalRotor,
     Rotor,
     RotorError,
     Segment,
     ShaftMaterial,
     attach_motions,
     modal_rotor,
+    solve_lateral_modes,
     solve_torsional_modes,
     solve_whirl,
 )
@@ -103,6 +105,51 @@ def test_limit_keeps_every_mode_below_it() -> None:
     assert reduced.lateral.certificate.complete
     assert reduced.torsional.certificate.complete
     assert reduced.lateral.certificate.limit == pytest.approx(2.0 * math.pi * 3000.0)
+
+
+def test_moments_and_thrusts_have_vectors_where_they_are_asked_for() -> None:
+    """A bar clamped in all but name: slope under a moment at its end, stretch between opposite forces along it."""
+    held = [Bearing("end", 0.0, np.diag([1e14, 1e14, 1e14, 1e12, 1e12]), np.zeros((5, 5)))]
+    rotor = Rotor("bar", [BAR] * 4)
+    few = modal_rotor(rotor, held, count=3)
+    asked = modal_rotor(rotor, held, count=3, moments_at=[1.0], thrusts_at=[0.5, 1.0])
+    section = BAR.section(0.5)
+
+    def slope(reduced: ModalRotor) -> float:
+        return float(((reduced.lateral.evaluate([1.0])[1][:, 0] / reduced.lateral.frequencies) ** 2).sum())
+
+    exact = 1.0 / section.bending_stiffness  # M L / EI over one metre
+    assert slope(asked) == pytest.approx(exact, rel=1e-6)
+    assert slope(few) < 0.995 * exact
+
+    def stretch(reduced: ModalRotor) -> float:
+        assert reduced.axial is not None
+        motions = reduced.axial.evaluate([0.5, 1.0])[1:]
+        return float((((motions[:, 1] - motions[:, 0]) / reduced.axial.frequencies[1:]) ** 2).sum())
+
+    # Opposite forces at the ends of one half of a free bar stretch that half by F L / EA.
+    exact = 0.5 / section.axial_stiffness
+    assert stretch(asked) == pytest.approx(exact, rel=1e-6)
+    assert stretch(few) < 0.99 * exact
+
+
+def test_a_higher_limit_never_keeps_less() -> None:
+    """Below the first mode and up: at least four modes, and never fewer at a higher limit."""
+    sizes = []
+    for hertz in (1.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 9000.0):
+        reduced = modal_rotor(SHAFT, BEARINGS, frequency_limit=2.0 * math.pi * hertz)
+        sizes.append((reduced.lateral.certificate.found, reduced.torsional.certificate.found))
+    assert sizes[0] == (4, 4)
+    assert sizes == sorted(sizes)
+    assert sizes[-1] > (4, 4)
+
+
+def test_no_mode_below_a_limit_is_an_empty_set() -> None:
+    modes = solve_lateral_modes(SHAFT, [bearing.mean_support for bearing in BEARINGS], frequency_limit=1.0)
+    assert modes.count == 0
+    assert modes.certificate.complete
+    assert modes.displacement.shape == (0, len(modes.stations))
+    assert modes.support_matrix.shape == (0, 0)
 
 
 def test_a_limit_or_a_count() -> None:
