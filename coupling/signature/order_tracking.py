@@ -6,14 +6,15 @@ across all frequencies that it passes. A tachometer would have to be interpolate
 whose error falls with the sixth power of the sampling interval.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import make_interp_spline
 
 from coupling.errors import CouplingError
-from coupling.spectrum import Spectrum, Window, amplitude_spectrum
+from coupling.spectrum import Spectrum, Window, amplitude_spectrum, lines_at
 from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
@@ -130,6 +131,8 @@ class OrderMap:
     amplitude : ndarray, shape (w, m)
         Peak amplitudes in the signal's unit; the mean at order 0.
     window : {"uniform", "hann"}
+    followed : dict of float to ndarray, shape (w,)
+        Amplitudes of orders that were asked for, lines of the windows or not.
     """
 
     times: FloatArray
@@ -137,6 +140,7 @@ class OrderMap:
     orders: FloatArray
     amplitude: FloatArray
     window: Window
+    followed: dict[float, FloatArray] = field(default_factory=dict)
 
     def order_slice(self, order: float) -> FloatArray:
         """Amplitude of an order over speed, shape (w,).
@@ -144,18 +148,23 @@ class OrderMap:
         Raises
         ------
         CouplingError
-            Where the windows do not hold whole cycles of it, or it is beyond half the samples of a turn.
+            Where it was not asked for and the windows do not hold whole cycles of it, or it is beyond half the samples
+            of a turn.
         """
+        if order in self.followed:
+            return self.followed[order]
         nearest = int(np.argmin(np.abs(self.orders - order)))
         if abs(float(self.orders[nearest]) - order) > 1e-6 * max(order, 1.0):
             raise CouplingError(
                 f"no line at order {order:g}; there are multiples of {self.orders[1]:g} to {self.orders[-1]:g}: take "
-                "windows of as many turns as hold whole cycles of it"
+                "windows of as many turns as hold whole cycles of it, or ask for it when the map is made"
             )
         return np.asarray(self.amplitude[:, nearest])
 
 
-def order_map(turned: TurnedSignal, *, turns: int, step: int = 1, window: Window = "hann") -> OrderMap:
+def order_map(
+    turned: TurnedSignal, *, turns: int, step: int = 1, window: Window = "hann", follow: Sequence[float] = ()
+) -> OrderMap:
     """Order spectra of windows along a signal of shape (s,).
 
     Parameters
@@ -164,12 +173,18 @@ def order_map(turned: TurnedSignal, *, turns: int, step: int = 1, window: Window
     turns, step : int
         Of a window, and from one to the next.
     window : {"uniform", "hann"}
+    follow : sequence of float
+        Orders whose amplitude is found in every window, whole cycles or not: a shaft that turns 27/29 times for each
+        turn of the leading one has no line where windows hold whole turns of that one. Under Hann's window each must
+        be more than 2 / turns from any other that the signal has, and from 0.
 
     Raises
     ------
     CouplingError
-        Where the windows are longer than the record.
+        Where the windows are longer than the record, or an order is beyond half the samples of a turn.
     """
+    if any(not 0.0 < order < 0.5 * turned.per_turn for order in follow):
+        raise CouplingError(f"orders {list(follow)}; expected them above 0 and below {0.5 * turned.per_turn:g}")
     total = turned.turns.size // turned.per_turn
     if not (1 <= turns <= total and step >= 1):
         raise CouplingError(
@@ -177,7 +192,10 @@ def order_map(turned: TurnedSignal, *, turns: int, step: int = 1, window: Window
         )
     starts = np.arange(0, total - turns + 1, step) * turned.per_turn
     length = turns * turned.per_turn
-    spectra = [amplitude_spectrum(turned.values[s : s + length], 1.0 / turned.per_turn, window) for s in starts]
+    interval = 1.0 / turned.per_turn
+    stretches = [turned.values[s : s + length] for s in starts]
+    spectra = [amplitude_spectrum(stretch, interval, window) for stretch in stretches]
+    followed = np.abs([lines_at(stretch, interval, np.array(follow), window) for stretch in stretches])
     # A window's last sample closes it but for one interval.
     spans = [turned.times[s + length - 1] - turned.times[s] for s in starts]
     return OrderMap(
@@ -186,4 +204,5 @@ def order_map(turned: TurnedSignal, *, turns: int, step: int = 1, window: Window
         orders=spectra[0].frequencies,
         amplitude=np.array([spectrum.amplitude for spectrum in spectra]),
         window=window,
+        followed={order: followed[:, number] for number, order in enumerate(follow)},
     )

@@ -39,21 +39,24 @@ def draw_transient(
     if signature is not None:
         lines = signature.lines
     meshes = mesh_frequencies(case) if case.gear_pair else ()
+    speed = _speed(case, solved)
+    # Along a run no line stands still.
+    marks = meshes if solved.turning is None else ()
     if solved.sensor_spectra:
         marked = _marked_modes(housing, comparison)
         found = "dominant" if comparison is None or comparison.shapes is None else "measured"
         legend = "housing modes" if comparison is None else f"{found} housing modes"
-        heading = f"{case.title}, {_speed(case)}"
-        spectra = draw_sensor_spectra(heading, solved, lines, mesh_frequencies=meshes, marked=marked, marked_as=legend)
+        heading = f"{case.title}, {speed}"
+        spectra = draw_sensor_spectra(heading, solved, lines, mesh_frequencies=marks, marked=marked, marked_as=legend)
         files.append(save(spectra, folder / "spectrum.png"))
     if any(lines.values()):
-        parts = draw_contributions(f"{case.title}, {_speed(case)}", lines)
+        parts = draw_contributions(f"{case.title}, {speed}", lines)
         files.append(save(parts, folder / "contributions.png"))
     if solved.force_spectra:
         files.append(save(_mesh_force(case, solved, meshes), folder / "mesh-force.png"))
     carrying = [contact for contact in solved.machine.system.contacts if contact.name in solved.histories.mesh_friction]
     if rates := {contact.name: abs(contact.rate) for contact in carrying if contact.drives and contact.rate}:
-        heading = f"{case.title}\nfriction between the teeth at {_speed(case)}"
+        heading = f"{case.title}\nfriction between the teeth at {speed}"
         files.append(save(draw_friction(heading, solved.histories, rates), folder / "friction.png"))
     if solved.histories.gear_motion:
         motions = solved.histories.gear_motion
@@ -74,20 +77,23 @@ def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) 
     drives = [contact.name for contact in solved.machine.system.contacts[: len(solved.machine.meshes)]]
     figure = Figure(figsize=(9.0, 0.7 + 2.8 * len(drives)), layout="constrained")
     rows = figure.subplots(len(drives), 2, squeeze=False)
-    times = solved.histories.times
+    times, speed = solved.histories.times, _speed(case, solved)
     for (left, right), name, frequency in zip(rows, drives, meshes, strict=True):
-        shown = times <= times[0] + 6.0 / frequency
+        shown, what = times <= times[0] + 6.0 / frequency, "six mesh periods"
+        if solved.turning is not None:
+            what = f"its first {6e3 / frequency:.3g} ms"
         left.plot(1e3 * (times[shown] - times[0]), solved.histories.mesh_force[name][shown], color=BLUE, lw=1.0)
         left.set(xlabel="time [ms]", ylabel="mesh force [N]")
-        left.set_title(f"{name}: six mesh periods", fontsize=10, loc="left")
+        left.set_title(f"{name}: {what}", fontsize=10, loc="left")
         limit = min(4.2 * frequency, float(solved.force_spectra[name].frequencies[-1]))
         draw_lines(right, solved.force_spectra[name], limit)
         tidy(right)
-        _mark(right, meshes, limit)
+        if solved.turning is None:
+            _mark(right, meshes, limit)
         right.set(xlabel="frequency [Hz]", ylabel="mesh force [N, peak]")
         right.set_title("spectrum without its mean", fontsize=10, loc="left")
         tidy(left)
-    figure.suptitle(f"{case.title}: gear-mesh force at {_speed(case)}", fontsize=11)
+    figure.suptitle(f"{case.title}: gear-mesh force at {speed}", fontsize=11)
     return figure
 
 
@@ -103,6 +109,11 @@ def _marked_modes(housing: SolvedHousing | None, comparison: Comparison | None) 
     return np.empty(0) if housing is None else housing.modes.frequencies_hz
 
 
-def _speed(case: Case) -> str:
+def _speed(case: Case, solved: SolvedTransient) -> str:
+    """Speed and torque for a caption; of a run, the speeds that its record goes through."""
     assert case.operation is not None
+    if solved.turning is not None:
+        rates = solved.turning.at(solved.histories.times[[0, -1]])[1]
+        first, last = case.operation.speed * rates * 60.0 / (2.0 * np.pi)
+        return f"{first:.0f} to {last:.0f} rpm, averaged over the run"
     return f"{case.operation.speed * 60.0 / (2.0 * np.pi):.0f} rpm, {case.operation.torque:.4g} N·m"

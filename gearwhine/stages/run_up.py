@@ -1,7 +1,7 @@
 """The signature of a run-up or a run-down: spectra along the run, and orders over the speed."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy.typing as npt
 import coupling as room
 from coupling import signature
 from gearwhine.case import Case, speed_ratios
+from gearwhine.doubtful import warning
 from gearwhine.stages.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
@@ -20,6 +21,9 @@ _ROWS = 28  # of the waterfall; its stretches overlap by half
 _WINDOWS = 60  # of the order map, about, each overlapping the next by half
 _HARMONICS = 3  # of each mesh that are followed
 _ABOVE = 1.25  # orders up to this over the highest of interest are kept
+_APART, _PARTED = 3.0, 2.0  # lines of a window between orders: as wished, and where Hann's window just parts them
+_FEWEST = 20  # windows that make a course over speed, where the run has turns for them
+_FEWEST_TURNS = 4
 _BEYOND_LIMIT = 2.5  # samples for each cycle of the highest frequency at the lowest speed
 
 
@@ -47,29 +51,42 @@ class RunSignature:
     named: dict[str, float]
 
 
+@dataclass(frozen=True)
+class _Windows:
+    """How a run is cut: the samples in which the machine turns, and the turns of an order map's windows.
+
+    Attributes
+    ----------
+    span : slice
+    turns : int
+        Of the leading shaft in each window.
+    named : dict of str to float
+        Orders that windows of that length tell apart.
+    merged : tuple of str
+        Names of the others.
+    """
+
+    span: slice
+    turns: int
+    named: dict[str, float]
+    merged: tuple[str, ...]
+
+
 def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | None:
     """Spectra and orders of sensors and mesh forces along a run, as far as it is held in memory.
 
-    None at steady speed, and where the run has too few turns to tell orders apart.
+    None at steady speed, and where the run has too few turns to tell orders apart: :func:`run_signature_warnings` says
+    why.
     """
-    turning, times = solved.turning, solved.histories.times
-    if turning is None or case.operation is None or not case.gear_pair:
+    cut = _windows(case, solved)
+    turning = solved.turning
+    if not isinstance(cut, _Windows) or turning is None or case.operation is None:
         return None
-    span = _turning_span(turning.at(times)[1])
-    times = times[span]
-    if len(times) < 2 * _ROWS:
-        return None
+    span, named = cut.span, cut.named
+    times = solved.histories.times[span]
     interval = float(times[1] - times[0])
     turns_per_second = abs(case.operation.speed) / _HERTZ
-    rates = turning.at(times)[1]
-    named = _named_orders(case, solved)
-    # Windows hold whole turns of every shaft, so that every order is a line of theirs.
-    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
-    total = math.floor(turns_per_second * float(np.diff(turning.at(times[[0, -1]])[0])[0]) - 1.0)
-    turns = whole * max(1, 2 * total // (_WINDOWS * whole), math.ceil(2 / whole))
-    if total < 2 * turns:
-        return None
-    slowest = turns_per_second * float(rates.min())
+    slowest = turns_per_second * float(turning.at(times)[1].min())
     per_turn = math.ceil(min(_BEYOND_LIMIT * solved.trusted_limit / slowest, 1.0 / (slowest * interval)))
     per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * max(named.values())))
     length = 2 * len(times) // (_ROWS + 1)
@@ -81,10 +98,63 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
         found = signature.spectrogram(signal[span], interval, length, length // 2, start=float(times[0]))
         turned = signature.order_resampled(signal[span], times, turning, turns_per_second, per_turn=per_turn)
         units[name], spectra[name] = unit, _up_to(found, solved.trusted_limit)
-        mapped = signature.order_map(turned, turns=turns, step=max(turns // 2, 1))
+        mapped = signature.order_map(
+            turned, turns=cut.turns, step=max(cut.turns // 2, 1), follow=sorted(set(named.values()))
+        )
         orders[name] = _orders_up_to(mapped, _ABOVE * max(named.values()))
     middles = next(iter(spectra.values())).times
     return RunSignature(units, spectra, 60.0 * turns_per_second * turning.at(middles)[1], orders, named)
+
+
+def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str, Any]]:
+    """What of a run's signature is missing, and why; nothing at steady speed."""
+    cut = _windows(case, solved)
+    if cut is None:
+        return []
+    if isinstance(cut, str):
+        return [warning("run signature", f"no spectra and orders along the run: {cut}")]
+    if not cut.merged:
+        return []
+    text = (
+        f"orders along the run without {', '.join(cut.merged)}: windows of {cut.turns} turns do not tell them from "
+        "their neighbours; a longer run does"
+    )
+    return [warning("run signature", text, turns=cut.turns)]
+
+
+def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
+    """How a run is cut; in words why it cannot be, and None at steady speed or without gears."""
+    turning, times = solved.turning, solved.histories.times
+    if turning is None or case.operation is None or not case.gear_pair:
+        return None
+    span = _turning_span(turning.at(times)[1])
+    times = times[span]
+    if len(times) < 2 * _ROWS:
+        return f"{len(times)} samples in which the machine turns; expected {2 * _ROWS} or more"
+    turns_per_second = abs(case.operation.speed) / _HERTZ
+    total = math.floor(turns_per_second * float(np.diff(turning.at(times[[0, -1]])[0])[0]) - 1.0)
+    if total < _FEWEST_TURNS:
+        return f"{max(total, 0)} whole turns of the leading shaft in the record; expected {_FEWEST_TURNS} or more"
+    named = _named_orders(case, solved)
+    # As many turns as part the closest orders, and the lowest from none, as far as the run leaves some windows.
+    ascending = np.unique([0.0, *named.values()])
+    needed = math.ceil(_APART / float(np.diff(ascending).min()) - 1e-9)
+    turns = max(2 * total // _WINDOWS, 2, needed)
+    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    if whole <= turns:
+        # Windows of whole turns of every shaft have every order as a line.
+        turns = math.ceil(turns / whole) * whole
+    turns = min(turns, max(2 * total // _FEWEST, 2))
+    # Of orders too close to each other the lower harmonic or the shaft that comes first is kept.
+    kept: dict[str, float] = {}
+    for name, order in named.items():
+        others = [0.0, *(one for one in kept.values() if one != order)]
+        if min(abs(order - one) for one in others) * turns >= _PARTED - 1e-9:
+            kept[name] = order
+    merged = tuple(name for name in named if name not in kept)
+    if not kept:
+        return f"windows of {turns} turns tell no order apart"
+    return _Windows(span, turns, kept, merged)
 
 
 def run_signature_document(found: RunSignature) -> dict[str, Any]:
@@ -137,4 +207,4 @@ def _up_to(found: signature.Spectrogram, limit: float) -> signature.Spectrogram:
 
 def _orders_up_to(found: signature.OrderMap, limit: float) -> signature.OrderMap:
     kept = found.orders <= limit
-    return signature.OrderMap(found.times, found.speeds, found.orders[kept], found.amplitude[:, kept], found.window)
+    return replace(found, orders=found.orders[kept], amplitude=found.amplitude[:, kept])

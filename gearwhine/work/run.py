@@ -133,6 +133,7 @@ def _run_case(
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
                 signature_stage.add_signature(document, transient, signature)
             run = run_up_stage.solve_run_signature(case, transient)
+            add_warnings(document, run_up_stage.run_signature_warnings(case, transient))
             if run is not None:
                 document["run_signature"] = run_up_stage.run_signature_document(run)
             timed("transient", begin)
