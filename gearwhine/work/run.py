@@ -104,7 +104,7 @@ def _run_case(
         begin = time.perf_counter()
         part = None if housing is None else machine_stage.housing_in_machine(case, housing, progress)
         machine = machine_stage.build_machine(case, part, pairs, progress)
-        error = machine_stage.basis_error(case, machine, part, pairs, progress)
+        basis = machine_stage.basis_error(case, machine, part, pairs, progress)
         system = system_stage.solve_system(case, machine, housing, progress)
         document["system"] = system_document(case, system, housing)
         add_warnings(document, unstable_modes_warnings(system.stability))
