@@ -201,9 +201,13 @@ class InertiaTensor(Table):
     @model_validator(mode="after")
     def _of_a_body(self) -> InertiaTensor:
         # ∫ r rᵀ dm = ½ tr(I) - I has no negative principal minor, else there is no such body.
-        scale = self.xx + self.yy + self.zz
-        a, b, c = (0.5 * scale - moment for moment in (self.xx, self.yy, self.zz))
-        d, e, f = -self.xy, -self.xz, -self.yz
+        # In parts of the largest entry, so that no product overflows.
+        entries = (self.xx, self.yy, self.zz, self.xy, self.xz, self.yz)
+        largest = max(abs(entry) for entry in entries) or 1.0
+        xx, yy, zz, xy, xz, yz = (entry / largest for entry in entries)
+        scale = xx + yy + zz
+        a, b, c = (0.5 * scale - moment for moment in (xx, yy, zz))
+        d, e, f = -xy, -xz, -yz
         pairs = (a * b - d * d, a * c - e * e, b * c - f * f)
         determinant = a * (b * c - f * f) - d * (d * c - e * f) + e * (d * f - b * e)
         least = (min(a, b, c) / scale, min(pairs) / scale**2, determinant / scale**3) if scale else (0.0,)

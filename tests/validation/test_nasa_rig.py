@@ -49,7 +49,9 @@ TOP, END = "top (node 21)", "end (node 40)"
 TEETH = 28
 MESH_HZ = {1500: 700.0, 3750: 1750.0, 5500: 2567.0}  # as printed, speed in rpm
 LIMIT_HZ = 3200.0
-SETTLING, RECORDED = 0.22, 2  # [s], and revolutions: pitch errors and runout repeat with each
+# [s], until what is left of the start is below the smallest line looked at, a part of 1e-5 of the highest; and
+# revolutions: pitch errors and runout repeat with each.
+SETTLING, RECORDED = 0.6, 2
 
 pytestmark = pytest.mark.slow
 
@@ -201,10 +203,7 @@ def test_the_mesh_line_leads_on_the_top(
     remark(TEXT, f"Top at {speed} rpm: the mesh line has {run.mesh(TOP):.2f} m/s², {told}.")
 
 
-AT_3750 = "the mode at 1771 Hz hardly moves the end; shaft orders near 3000 Hz, from nominal pitch errors, are higher"
-
-
-@pytest.mark.parametrize("speed", [1500, pytest.param(3750, marks=fails(AT_3750)), 5500])
+@pytest.mark.parametrize("speed", [1500, 3750, 5500])
 def test_the_mesh_line_leads_on_the_end(runs: Runs, speed: int) -> None:
     assert runs(speed).highest(END) == pytest.approx(MESH_HZ[speed], abs=1.0)
 
