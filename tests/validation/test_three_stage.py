@@ -11,7 +11,7 @@ within 2.5 Hz, two lines of the record.
 
 import importlib.util
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -66,11 +66,7 @@ def case() -> Case:
 def run(case: Case) -> Run:
     assert case.transient is not None
     assert case.operation is not None
-    # Pairs with bodies of their own, not as the case has them: the source does not say how pairs add up. With shared
-    # bodies two of its findings are not met: the force in the mesh 1-3 varies 1.1 times as much as in 1-2 (here 1.5 or
-    # more), and an orbit that should be elliptical is 0.76 as wide as long (here below 0.6).
-    pairs = [replace(pair, contact=replace(pair.contact, shared_compliance=0.0)) for pair in solve_gears(case)]
-    machine = build_machine(case, None, tuple(pairs))
+    machine = build_machine(case, None, solve_gears(case))
     period = 2.0 * np.pi / case.operation.speed
     stages = {stage: room.modal_rows(machine, f"stage-{stage}") for stage in (1, 2, 3)}
     outputs = room.transient_outputs(machine)
@@ -102,6 +98,10 @@ def run(case: Case) -> Run:
         torsion=modal[:3],
         lateral={stage: modal[1 + 2 * stage : 3 + 2 * stage] for stage in (1, 2, 3)},
     )
+
+
+def fails(reason: str) -> pytest.MarkDecorator:
+    return pytest.mark.xfail(strict=True, raises=AssertionError, reason=reason)
 
 
 def line_at(spectrum: room.Spectrum, frequency: float, reach: float = 2.5) -> float:
@@ -220,9 +220,9 @@ def test_shaft_frequency_and_echoes_of_the_other_stages_in_the_mesh_force(
 def test_force_is_larger_in_the_mesh_1_3(run: Run, remark: Callable[[str, str], None]) -> None:
     two, three = (run.force[mesh] for mesh in MESHES)
     assert np.mean(two) == pytest.approx(np.mean(three), rel=1e-3)  # the torque is split equally
-    assert np.std(three) > 1.5 * np.std(two)
+    assert np.std(three) > np.std(two)
+    assert np.std(run.settled(three)) > np.std(run.settled(two))
     assert three.max() > two.max()
-    assert np.std(run.settled(three)) > 1.5 * np.std(run.settled(two))
     at_mesh = [line_at(run.lines(force), 900.0) for force in (two, three)]
     assert at_mesh[1] < at_mesh[0]
     remark(
@@ -234,6 +234,18 @@ def test_force_is_larger_in_the_mesh_1_3(run: Run, remark: Callable[[str, str], 
     )
 
 
+STEPS_LESS = (
+    "two pairs in contact share the bodies of their gears, so that stiffness and transmission error step half as far, "
+    "and their higher harmonics, which stage 3 answers, are lower"
+)
+
+
+@fails(STEPS_LESS)
+def test_force_is_substantially_larger_in_the_mesh_1_3(run: Run) -> None:
+    two, three = (run.force[mesh] for mesh in MESHES)
+    assert np.std(three) > 1.5 * np.std(two)
+
+
 def test_the_load_comes_on_at_once_where_the_case_says_so(case: Case, run: Run) -> None:
     """The force rises from nothing past its mean; by default a case starts from equilibrium instead."""
     for mesh in MESHES:
@@ -243,15 +255,28 @@ def test_the_load_comes_on_at_once_where_the_case_says_so(case: Case, run: Run) 
     assert starting_state(resting, build_machine(resting, None, solve_gears(resting))) is None
 
 
-def test_stage_1_has_an_elliptical_orbit_and_the_others_nearly_circular_ones(run: Run) -> None:
-    ratios = {}
-    for stage, orbit in run.orbit.items():
-        moving = orbit[-ORBIT * PER_REVOLUTION :]
-        moving = moving - moving.mean(axis=0)
-        minor, major = np.sqrt(np.linalg.eigvalsh(moving.T @ moving))
-        ratios[stage] = minor / major
-    assert ratios[1] < 0.6
+def test_stage_1_has_the_most_elliptical_orbit(run: Run, remark: Callable[[str, str], None]) -> None:
+    ratios = {stage: narrowness(orbit) for stage, orbit in run.orbit.items()}
+    assert ratios[1] < 0.85 * min(ratios[2], ratios[3])
     assert min(ratios[2], ratios[3]) > 0.8
+    remark(
+        TEXT,
+        "Settled orbits of stages 1, 2 and 3, smaller axis over larger: "
+        f"{', '.join(f'{ratio:.2f}' for ratio in ratios.values())}.",
+    )
+
+
+@fails(STEPS_LESS)
+def test_the_orbit_of_stage_1_is_plainly_elliptical(run: Run) -> None:
+    assert narrowness(run.orbit[1]) < 0.6
+
+
+def narrowness(orbit: FloatArray) -> float:
+    """Smaller over larger principal axis of the last revolutions of an orbit of shape (s, 2)."""
+    moving = orbit[-ORBIT * PER_REVOLUTION :]
+    moving = moving - moving.mean(axis=0)
+    minor, major = np.sqrt(np.linalg.eigvalsh(moving.T @ moving))
+    return float(minor / major)
 
 
 def test_modal_responses_of_stage_1_fall_with_the_number_of_the_mode(
