@@ -1,7 +1,7 @@
 """From rotors, a housing, bearings and gear pairs to the coupled system."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -15,7 +15,9 @@ from coupling.errors import CouplingError
 from coupling.gear_phases import mesh_phases
 from coupling.gears import GearPairGeometry, ToothContact, sliding_friction
 from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance, constant_torques
+from coupling.mean_mesh import mean_meshes
 from coupling.pressed_flanks import with_pressed_flanks
+from coupling.shuttling import shuttling_loads
 from coupling.sliding import held_at_speed, sliding_flanks
 from coupling.system import CoupledSystem, embed
 from coupling.thrust import ThrustPair, axial_forces, require_thrust_carried
@@ -339,6 +341,9 @@ def couple(
     after = len(drive) + np.cumsum([mesh.backlash is not None for mesh in meshes]) - 1
     backs = [None if mesh.backlash is None else int(at) for mesh, at in zip(meshes, after, strict=True)]
     system = with_pressed_flanks(system, backs)
+    sides = [(mesh, sense) for mesh, sense in zip(meshes, senses, strict=True)]
+    sides += [(mesh, -sense) for mesh, sense in sides if mesh.backlash is not None]
+    system = _with_shuttling(system, parts, sides)
     return Machine(
         tuple(rotors),
         housing,
@@ -352,6 +357,34 @@ def couple(
         base,
         None if gravity is None else tuple(gravity),
     )
+
+
+def _with_shuttling(system: CoupledSystem, parts: LoadedParts, sides: Sequence[tuple[GearMesh, int]]) -> CoupledSystem:
+    """The system with the moments of loads that wander along the face; ``sides`` are its contacts' flanks."""
+    if all(contact.contact.faces is None for contact in system.contacts):
+        return system
+    constant, harmonics = system.load.copy(), list(system.harmonic_loads)
+    for contact, mean, (mesh, sense) in zip(system.contacts, mean_meshes(system), sides, strict=True):
+        if mean is None or mean.force <= 0.0:
+            continue
+        push, axial = _push(mesh, sense)
+        tilting = np.zeros(system.size)
+        for mounted, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
+            which, rotor = parts.rotor(mounted.rotor)
+            rows = rotor.motions(mounted.at)
+            tilting += side * embed(system.components, which, push[0] * rows[4] - push[1] * rows[3])
+        shifted, moving = shuttling_loads(
+            contact.contact, mesh.geometry, mean.force, axial, tilting, contact.phase, contact.rate
+        )
+        constant += shifted
+        harmonics += moving
+    return replace(system, load=constant, harmonic_loads=tuple(harmonics))
+
+
+def _push(mesh: GearMesh, sense: int) -> tuple[tuple[float, float], float]:
+    """Unit vector e in the x-y plane along which the driver pushes on one side of the teeth, and the axial part."""
+    angle = mesh.geometry.line_of_action_angle(_centre_line_angle(mesh), sense)
+    return (float(np.cos(angle)), float(np.sin(angle))), -sense * float(np.tan(mesh.geometry.driver.base_helix_angle))
 
 
 def _require_thrust_carried(
@@ -438,10 +471,8 @@ def _flank(
     """
     driver, driven = mesh.driver, mesh.driven
     line = np.subtract(driven.axis, driver.axis)
-    angle = mesh.geometry.line_of_action_angle(_centre_line_angle(mesh), sense)
-    push = (np.cos(angle), np.sin(angle))
-    helix = mesh.geometry.driver.base_helix_angle
-    thrust = -sense * np.tan(helix)
+    push, thrust = _push(mesh, sense)
+    angle = np.arctan2(push[1], push[0])
     towards = line / np.hypot(*line) if np.any(line) else line
     direction = np.zeros(sum(component.size for component in components))
     errors = []
@@ -451,7 +482,7 @@ def _flank(
         motion = sense * gear.base_radius * rotor.rotation(mounted.at)
         for axis in (0, 1):
             motion = motion + side * push[axis] * rotor.direction(mounted.at, axis)
-        if helix != 0.0:
+        if thrust != 0.0:
             rows = rotor.motions(mounted.at)
             x, y = side * radius * towards
             motion = motion + side * thrust * (rows[2] + y * rows[3] - x * rows[4])

@@ -85,7 +85,8 @@ def test_bearings_carry_thrust_and_its_moment(hand: float, sense: int) -> None:
         # The teeth's own force on the shaft has the axial part +side s tan(beta_b) F, at r.
         on_shaft = side * sense * thrust
         expected = 0.5 * push + on_shaft * radius * towards / 0.4
-        np.testing.assert_allclose(right, expected, rtol=1e-6, atol=1e-6 * tangential)
+        # Corner contact shifts the load's mean place along the face by some hundredths of a millimetre.
+        np.testing.assert_allclose(right, expected, rtol=0.0, atol=5e-4 * tangential)
         np.testing.assert_allclose(left[:2] + right, push, rtol=1e-6, atol=1e-6 * tangential)
 
 

@@ -142,7 +142,8 @@ def test_mesh_stiffness_is_of_the_norms_order(pair: GearPairGeometry) -> None:
     driver = replace(pair.driver, face_width=0.02)
     same_width = GearPairGeometry(driver, replace(pair.driven, face_width=0.02))
     mean = tooth_contact(same_width, PotentialEnergyStiffness()).mean_stiffness / 0.02
-    assert 0.7 < mean / iso6336_stiffness(same_width).mesh_mean < 1.4
+    # The norm's mean counts the body again for every pair in contact; counted once, two pairs are softer.
+    assert 0.6 < mean / iso6336_stiffness(same_width).mesh_mean < 1.4
 
 
 @patient
