@@ -12,10 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from meshes.cad.units import stated_unit
-from meshes.cad.worker import Request
+from meshes.cad.worker import BEFORE_MESHING, STARTING, Request
 from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.mesh import Mesh
 from meshes.tetrahedra import Tetrahedra, check_mesh_request
+
+_LONGEST = 3600.0  # seconds that a file is given in all
 
 KINDS = {".step": "step", ".stp": "step", ".iges": "iges", ".igs": "iges", ".brep": "brep"}
 """What a file is, by its ending."""
@@ -74,8 +76,8 @@ def mesh_cad(
     refined_size : float, optional
         Edge length aimed at there [m].
     time_limit : float, optional
-        Seconds after which the attempt is given up; five minutes and one more for each megabyte of the file, and an
-        hour at most.
+        Seconds after which the attempt is given up, meshing included; by default reading and joining the solids is
+        given five minutes and one more for each megabyte of the file, and the whole an hour.
 
     Raises
     ------
@@ -103,7 +105,8 @@ def mesh_cad(
     with tempfile.TemporaryDirectory(prefix="gearwhine-cad-") as name:
         folder = Path(name)
         (folder / "request.json").write_text(json.dumps(asdict(request)), encoding="utf-8")
-        _work(folder, path, _time_limit(path) if time_limit is None else time_limit)
+        longest = _LONGEST if time_limit is None else time_limit
+        _work(folder, path, min(_reading_limit(path), longest), longest)
         answer = json.loads((folder / "answer.json").read_text(encoding="utf-8"))
         if "unavailable" in answer:
             raise MesherUnavailableError(answer["unavailable"])
@@ -115,44 +118,58 @@ def mesh_cad(
     return CadMesh(mesh, tuple(answer["solids"]), answer["unit"], tuple(answer["remarks"]))
 
 
-def _time_limit(path: Path) -> float:
-    """Seconds that a file of this size is given."""
-    return min(300.0 + 60.0 * path.stat().st_size / 1e6, 3600.0)
+def _reading_limit(path: Path) -> float:
+    """Seconds in which the solids of a file of this size are to be read and joined."""
+    return min(300.0 + 60.0 * path.stat().st_size / 1e6, _LONGEST)
 
 
-def _work(folder: Path, path: Path, time_limit: float) -> None:
+def _work(folder: Path, path: Path, reading_limit: float, time_limit: float) -> None:
     """Run the worker on the request in a folder, and make sure that it answered."""
     room = Path(__file__).resolve().parents[2]
     search = os.pathsep.join(part for part in (str(room), os.environ.get("PYTHONPATH", "")) if part)
-    try:
-        done = subprocess.run(
-            [sys.executable, "-m", "meshes.cad.worker", str(folder), str(os.getpid())],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            env=os.environ | {"PYTHONPATH": search},
-            timeout=time_limit,
-            check=False,
-        )
-    except subprocess.TimeoutExpired as error:
-        raise GeometryError(
-            f"CAD file {path}: given up after {time_limit:g} s while {_stage(folder)}; "
-            "a larger mesh_size, or a simpler or healed solid, may help"
-        ) from error
+    with subprocess.Popen(
+        [sys.executable, "-m", "meshes.cad.worker", str(folder), str(os.getpid())],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        env=os.environ | {"PYTHONPATH": search},
+    ) as worker:
+        try:
+            errors = _errors_of(worker, folder, reading_limit, time_limit)
+        except subprocess.TimeoutExpired as error:
+            raise GeometryError(
+                f"CAD file {path}: given up after {error.timeout:g} s while {_stage(folder)}; "
+                "a larger mesh_size, or a simpler or healed solid, may help"
+            ) from error
+        finally:
+            worker.kill()
     if (folder / "answer.json").is_file():
         return
-    if done.returncode < 0:
+    if worker.returncode < 0:
         raise GeometryError(
-            f"CAD file {path}: the CAD kernel broke down (signal {-done.returncode}) while {_stage(folder)}; "
+            f"CAD file {path}: the CAD kernel broke down (signal {-worker.returncode}) while {_stage(folder)}; "
             "the file is damaged: export it anew"
         )
-    last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+    last = errors.decode(errors="replace").strip().rpartition("\n")[2]
     raise GeometryError(f"CAD file {path}: the CAD kernel failed while {_stage(folder)}: {last}")
+
+
+def _errors_of(worker: subprocess.Popen[bytes], folder: Path, reading_limit: float, time_limit: float) -> bytes:
+    """What a worker that ends in time wrote as errors."""
+    try:
+        return worker.communicate(timeout=reading_limit)[1]
+    except subprocess.TimeoutExpired:
+        if _stage(folder) in BEFORE_MESHING or time_limit <= reading_limit:
+            raise
+    try:
+        return worker.communicate(timeout=time_limit - reading_limit)[1]
+    except subprocess.TimeoutExpired as error:
+        raise subprocess.TimeoutExpired(error.cmd, time_limit) from error
 
 
 def _stage(folder: Path) -> str:
     stage = folder / "stage"
-    return stage.read_text(encoding="utf-8") if stage.is_file() else "starting"
+    return stage.read_text(encoding="utf-8") if stage.is_file() else STARTING
 
 
 def _load(folder: Path, names: list[str]) -> Tetrahedra:

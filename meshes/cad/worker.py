@@ -23,6 +23,9 @@ from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.gmsh_session import gmsh_session
 from meshes.tetrahedra import Tetrahedra, check_mesh_size, collect, mesh_solids
 
+STARTING, READING, JOINING = "starting", "reading it", "joining its solids"
+BEFORE_MESHING = (STARTING, READING, JOINING)
+
 _WATCH = 0.5  # seconds between looks at the parent
 _BLEND = 3.0  # elements grow to their full size over this many of the small ones
 
@@ -94,14 +97,14 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
         (folder / "stage").write_text(stage, encoding="utf-8")
 
     with gmsh_session("it") as gmsh:
-        at("reading it")
+        at(READING)
         solids = read_solids(gmsh, request.path, request.kind)
         # The kernel turns what STEP and IGES state into millimetres; BREP it takes as it is.
         stated = request.stated if request.stated is not None else (None if request.kind == "brep" else 1e-3)
         numbers = extent(gmsh) / (1.0 if stated is None else stated / 1e-3)
         chosen = choose_unit(numbers, stated, request.given)
         unit = chosen.length if stated is None else chosen.length * 1e-3 / stated
-        at("joining its solids")
+        at(JOINING)
         shape = conforming(gmsh, solids, glue=request.glue)
         filled = sum(abs(gmsh.model.occ.getMass(3, tag)) for tags in shape.solids.values() for tag in tags)
         check_mesh_size(filled * unit**3, extent(gmsh) * unit, request.mesh_size)

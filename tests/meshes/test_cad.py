@@ -15,7 +15,7 @@ import psutil
 import pytest
 
 from meshes import GeometryError, MeshSizeError, cylinder_facets, facet_centers, find_bores, mesh_cad, plane_facets
-from meshes.cad.reading import _time_limit
+from meshes.cad.reading import _errors_of, _reading_limit
 from meshes.gmsh_session import gmsh_session
 
 SIZE, WALL, BORE = np.array([200.0, 150.0, 120.0]), 10.0, 40.0  # mm
@@ -195,7 +195,20 @@ def test_a_reader_is_given_time_by_the_size_of_its_file(tmp_path: Path) -> None:
     path = tmp_path / "large.step"
     with path.open("wb") as file:
         file.truncate(10_000_000)
-    assert _time_limit(path) == pytest.approx(900.0)
+    assert _reading_limit(path) == pytest.approx(900.0)
     with path.open("wb") as file:
         file.truncate(10**9)
-    assert _time_limit(path) == 3600.0
+    assert _reading_limit(path) == 3600.0
+
+
+@pytest.mark.parametrize("stage", ["reading it", "meshing it"])
+def test_the_file_size_limits_reading_and_not_meshing(stage: str, tmp_path: Path) -> None:
+    (tmp_path / "stage").write_text(stage, encoding="utf-8")
+    slow = [sys.executable, "-c", "import sys, time; time.sleep(0.6); sys.stderr.write('done')"]
+    with subprocess.Popen(slow, stderr=subprocess.PIPE) as worker:
+        if stage == "meshing it":
+            assert _errors_of(worker, tmp_path, 0.1, 60.0) == b"done"
+        else:
+            with pytest.raises(subprocess.TimeoutExpired):
+                _errors_of(worker, tmp_path, 0.1, 60.0)
+            worker.kill()
