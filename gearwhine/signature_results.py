@@ -43,7 +43,7 @@ def write_run_signature(found: RunSignature, variables: Variables, coordinates: 
     coordinates["order_speed"] = (
         "order_speed",
         60.0 * orders[0].speeds,
-        _unit("rpm", "speed of the leading shaft over each window of whole turns"),
+        _unit("rpm", "speed of the leading shaft over each window"),
     )
     coordinates["order"] = ("order", orders[0].orders, _unit("1", "cycles each turn of the leading shaft"))
     variables["run_unit"] = ("run_signal", list(found.units.values()), {"long_name": "unit of the signal's amplitudes"})
@@ -53,6 +53,18 @@ def write_run_signature(found: RunSignature, variables: Variables, coordinates: 
     ):
         amplitude = np.array([table.amplitude for table in tables], dtype=np.float32)
         variables[name] = (dimensions, amplitude, {"long_name": f"peak amplitude {what}", "window": "hann"})
+    coordinates["named_order"] = ("named_order", list(found.named), {})
+    variables["run_order_number"] = (
+        "named_order",
+        list(found.named.values()),
+        _unit("1", "cycles each turn of the leading shaft"),
+    )
+    followed = np.array([[table.order_slice(order) for order in found.named.values()] for table in orders])
+    variables["run_order_amplitude"] = (
+        ("run_signal", "named_order", "order_speed"),
+        followed.astype(np.float32),
+        {"long_name": "peak amplitude of a shaft's or a mesh's order along the run", "window": "hann"},
+    )
 
 
 def _coordinates(transient: SolvedTransient, variables: Variables, coordinates: Variables) -> None:

@@ -180,6 +180,21 @@ def test_order_slices_over_speed() -> None:
         order_map(turned, turns=1000)
 
 
+def test_orders_that_windows_hold_no_whole_cycles_of_are_followed() -> None:
+    """A shaft that turns 27/29 times for each turn of the leading one, beside that one's own order."""
+    times = 2e-5 * np.arange(100_000)
+    turns = SHAFT_HZ * (0.5 * times + 0.25 * times**2)
+    signal = np.cos(2 * np.pi * turns) + 0.3 * np.cos(2 * np.pi * 27.0 / 29.0 * turns + 0.4) + 0.5
+    turned = order_resampled(signal, times, RUN_UP, SHAFT_HZ)
+    found = order_map(turned, turns=43, step=5, follow=[27.0 / 29.0])
+    assert found.order_slice(27.0 / 29.0) == pytest.approx(np.full(found.times.size, 0.3), rel=2e-2)
+    assert found.order_slice(1.0) == pytest.approx(np.full(found.times.size, 1.0), rel=2e-2)
+    with pytest.raises(CouplingError, match="no line at order"):
+        order_map(turned, turns=43).order_slice(27.0 / 29.0)
+    with pytest.raises(CouplingError, match="expected them above 0"):
+        order_map(turned, turns=4, follow=[1e6])
+
+
 def test_at_steady_speed_orders_are_the_lines_of_the_record() -> None:
     """With a whole number of samples each turn nothing is resampled: the same numbers, on another axis."""
     times = np.arange(4000) / 8000.0

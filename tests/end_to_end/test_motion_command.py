@@ -104,7 +104,11 @@ def test_a_run_up_shows_its_orders(gearwhine: Any, tmp_path: Path) -> None:
         signal = list(data["run_signal"].values).index(mesh["signal"])
         speeds, orders = data["order_speed"].values, data["order"].values
         map_of = data["run_orders"].values[signal]
+        named = list(data["named_order"].values).index(mesh["name"])
+        assert data["run_order_number"].values[named] == 28.0
+        followed = data["run_order_amplitude"].values[signal, named]
     along = map_of[:, np.argmin(np.abs(orders - 28.0))]
+    np.testing.assert_allclose(followed, along, rtol=1e-5)
     # Speed rises evenly: n turns are done at the time that solves n = (a t + b t²/2) / 2π.
     begin, rise = 25.0, 50.0 / 0.6
     angle = begin * times + 0.5 * rise * times**2
