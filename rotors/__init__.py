@@ -54,11 +54,12 @@ from .statics import StaticDeflection, StaticForce, static_deflection
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
 from .torsional_response import Torque, TorsionalDashpot, TorsionalResponse, torsional_response
 from .unbalance import BowShape, SynchronousResponse, bow_shape, unbalance_response
-from .whirl import WhirlModes, solve_whirl
+from .whirl import MOSTLY_AXIAL, WhirlModes, solve_whirl
 from .whirl_certificate import WhirlCertificate
 from .whirl_energy import StrainShares
 
 __all__ = [
+    "MOSTLY_AXIAL",
     "AxialModes",
     "AxisSpring",
     "Bearing",

@@ -26,12 +26,13 @@ class Branch:
 
     Attributes
     ----------
-    eigenvalues, direction
+    eigenvalues, direction, axial_share
         (s,): rad/s, and as in `rotors.WhirlModes`.
     """
 
     eigenvalues: ComplexArray
     direction: FloatArray
+    axial_share: FloatArray
 
     @property
     def first_frequency(self) -> float:
@@ -46,7 +47,7 @@ def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArra
     the distance of the root from the branch's linear continuation, as a part of it, and a little of 1 − MAC.
     """
     inside = chain.layout.displacements
-    ways = _directions_of_all(chain, roots, speeds)
+    ways = _characters_of_all(chain, roots, speeds)
     branches: list[tuple[ComplexArray, FloatArray]] = []
     active: list[tuple[int, ComplexArray]] = []
     for k, one in enumerate(roots):
@@ -64,22 +65,22 @@ def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArra
         for root, branch in enumerate(owner.tolist()):
             if branch < 0:
                 branch = len(branches)
-                branches.append((np.full(speeds.size, complex(np.nan, np.nan)), np.full(speeds.size, np.nan)))
+                branches.append((np.full(speeds.size, complex(np.nan, np.nan)), np.full((speeds.size, 2), np.nan)))
             branches[branch][0][k] = one.eigenvalues[root]
             branches[branch][1][k] = ways[k][root]
             active.append((branch, shapes[root]))
-    return [Branch(values, way) for values, way in branches]
+    return [Branch(values, ways[:, 0], ways[:, 1]) for values, ways in branches]
 
 
-def directions(chain: SpatialChain, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
-    """Whirl direction of roots at speeds, (w,) both: 1 circular forward, −1 circular backward."""
+def characters(chain: SpatialChain, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
+    """Whirl direction and axial share of roots at speeds, as in `rotors.WhirlModes`, (w, 2)."""
     if len(chain.blocks) == 1:
-        return np.full(roots.eigenvalues.size, float(chain.blocks[0]))
+        return np.tile([float(chain.blocks[0]), 0.0 if chain.blocks[0] else 1.0], (roots.eigenvalues.size, 1))
     motion = SpatialMotion.of(chain, roots.eigenvalues, speeds.astype(np.complex128), roots.solutions, roots.scales)
-    return motion.direction
+    return np.stack([motion.direction, motion.axial_share], axis=-1)
 
 
-def _directions_of_all(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[FloatArray]:
+def _characters_of_all(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[FloatArray]:
     sizes = [one.eigenvalues.size for one in roots]
     together = ExactRoots(
         np.concatenate([one.eigenvalues for one in roots]),
@@ -87,7 +88,7 @@ def _directions_of_all(chain: SpatialChain, roots: Sequence[ExactRoots], speeds:
         np.concatenate([one.residuals for one in roots]),
         np.concatenate([one.scales for one in roots]),
     )
-    every = directions(chain, together, np.repeat(speeds, sizes))
+    every = characters(chain, together, np.repeat(speeds, sizes))
     return np.split(every, np.cumsum(sizes)[:-1])
 
 

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .bearing import Bearing
-from .branches import Branch, directions, followed
+from .branches import Branch, characters, followed
 from .campbell_roots import limits_behind, proved_at, roots_at_speeds
 from .errors import IncompleteModesError, require, require_finite
 from .exact_roots import ACCEPTED, refine_each
@@ -56,6 +56,8 @@ class Crossing:
         Of the whirl, as in `rotors.WhirlModes`.
     branch
         Index in the diagram.
+    axial_share
+        Of the motion, as in `rotors.WhirlModes`.
     """
 
     speed: float
@@ -63,6 +65,7 @@ class Crossing:
     order: float
     direction: float
     branch: int
+    axial_share: float = 0.0
 
     @property
     def log_decrement(self) -> float:
@@ -82,6 +85,8 @@ class Campbell:
         (s, m) complex, rad/s.
     direction
         (s, m), as in `rotors.WhirlModes`.
+    axial_share
+        (s, m), as in `rotors.WhirlModes`.
     proved
         (s,): speeds at which the number of roots was proved.
     """
@@ -89,6 +94,7 @@ class Campbell:
     speeds: FloatArray
     eigenvalues: ComplexArray
     direction: FloatArray
+    axial_share: FloatArray
     proved: BoolArray
     rotor: Rotor = field(repr=False)
     bearings: tuple[Bearing, ...] = field(repr=False)
@@ -134,7 +140,7 @@ class Campbell:
         below, above = complex(ends[0]), complex(ends[1])
         weight = [float(gaps[0]), float(gaps[1])]
         chain = self._chain(branch, float(np.abs(ends).max()), max(abs(low), abs(high)))
-        direction = float(self.direction[left, branch])
+        direction, along = float(self.direction[left, branch]), float(self.axial_share[left, branch])
         for _ in range(CROSSING_STEPS):
             part = weight[0] / (weight[0] - weight[1])
             speed = low + part * (high - low)
@@ -144,10 +150,10 @@ class Campbell:
             value = complex(root.eigenvalues[0])
             if root.residuals[0] > ACCEPTED or abs(value - start[0]) > LONGEST_JUMP * abs(value):
                 break
-            direction = float(directions(tied, root, np.array([speed]))[0])
+            direction, along = characters(tied, root, np.array([speed]))[0].tolist()
             gap = value.imag - order * abs(speed)
             if abs(gap) <= CROSSING_TOLERANCE * abs(value):
-                return Crossing(speed, value, order, direction, branch)
+                return Crossing(speed, value, order, direction, branch, along)
             if (gap > 0.0) == (weight[0] > 0.0):
                 low, below, weight = speed, value, [gap, 0.5 * weight[1]]
             else:
@@ -236,6 +242,7 @@ def campbell(
         speeds=turning,
         eigenvalues=np.stack([branches[k].eigenvalues for k in order], axis=1) if order else empty.astype(complex),
         direction=np.stack([branches[k].direction for k in order], axis=1) if order else empty,
+        axial_share=np.stack([branches[k].axial_share for k in order], axis=1) if order else empty,
         proved=proved,
         rotor=rotor,
         bearings=tuple(bearings),

@@ -26,7 +26,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 # Products of two fields, on pieces this short, are integrated to rounding.
 GAUSS_FRACTIONS, GAUSS_WEIGHTS = gauss_rule(10)
 # Of the inertias that whirl has in both senses.
-SQUARE_FRACTIONS, _SQUARE_WEIGHTS = gauss_rule(6)
+SQUARE_FRACTIONS, SQUARE_WEIGHTS = gauss_rule(6)
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class Chain:
     def inertia_weights(self) -> FloatArray:
         """What weighs the squares of displacement and rotation at the `SQUARE_FRACTIONS` (g,) of pieces, (e, g, 2)."""
         along = self.table.coefficients_along(SQUARE_FRACTIONS)[:, :, 2:4]
-        return np.asarray(along * (self.table.lengths[:, None] * _SQUARE_WEIGHTS)[:, :, None])
+        return np.asarray(along * (self.table.lengths[:, None] * SQUARE_WEIGHTS)[:, :, None])
 
     def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:
         """Coefficients of `rotors.timoshenko.PieceTable` at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""

@@ -1,7 +1,7 @@
 """Critical speeds of a rotor: where its whirl meets its rotation."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,7 @@ from .planar_basis import DEFAULT_COUNT
 from .projection import Projection, basis_for
 from .shaft import Rotor
 from .spatial_ties import block_sets
-from .whirl import WhirlRoots, certified_whirl
+from .whirl import MOSTLY_AXIAL, WhirlRoots, certified_whirl
 from .whirl_certificate import NO_OSCILLATION, WhirlCertificate
 
 # Speeds at which tables are looked at for critical ones, and how far beyond them branches are followed.
@@ -35,18 +35,29 @@ class CriticalSpeeds:
         (c,): ascending, rad/s.
     direction
         (c,): 1 circular forward, −1 circular backward, 0 planar, as in `rotors.WhirlModes`.
+    axial_share
+        (c,): part of the kinetic energy along the axis, as in `rotors.WhirlModes`.
     certificate
         Proof that none is missing.
     """
 
     speeds: FloatArray
     direction: FloatArray
+    axial_share: FloatArray
     certificate: WhirlCertificate
 
     @property
+    def lateral(self) -> "CriticalSpeeds":
+        """Those of whirl: without motions that are for the most part along the axis, which no unbalance drives."""
+        kept = self.axial_share <= MOSTLY_AXIAL
+        return replace(
+            self, speeds=self.speeds[kept], direction=self.direction[kept], axial_share=self.axial_share[kept]
+        )
+
+    @property
     def forward(self) -> FloatArray:
-        """The speeds that unbalance excites: those whose whirl is not purely backward."""
-        return np.asarray(self.speeds[self.direction > -1.0 + 1e-6])
+        """The speeds that unbalance excites: those whose whirl is not purely backward, nor mostly along the axis."""
+        return np.asarray(self.speeds[(self.direction > -1.0 + 1e-6) & (self.axial_share <= MOSTLY_AXIAL)])
 
 
 def critical_speeds(
@@ -93,7 +104,8 @@ def critical_speeds(
     roots, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
     speeds = roots.eigenvalues.imag
     order = np.argsort(speeds)
-    return CriticalSpeeds(speeds[order], roots.motion.direction[order], certificate)
+    motion = roots.motion
+    return CriticalSpeeds(speeds[order], motion.direction[order], motion.axial_share[order], certificate)
 
 
 def _tabled_critical_speeds(
@@ -110,7 +122,8 @@ def _tabled_critical_speeds(
     found = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
     speeds = np.array([crossing.speed for crossing in found])
     proof = WhirlCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
-    return CriticalSpeeds(speeds, np.array([crossing.direction for crossing in found]), proof)
+    direction = np.array([crossing.direction for crossing in found])
+    return CriticalSpeeds(speeds, direction, np.array([crossing.axial_share for crossing in found]), proof)
 
 
 def certified_criticals(

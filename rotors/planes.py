@@ -35,11 +35,15 @@ class RestFrequencies:
     ----------
     frequencies
         (m,): ascending, rad/s; an isotropic root stands twice.
+    axial_share
+        (m,): part of the kinetic energy along the axis, as in `rotors.WhirlModes`; 0 where the bearings do not tie it
+        to the others.
     certificate
-        Proof of completeness over both planes.
+        Proof of completeness over both planes, and the axis where it is tied to them.
     """
 
     frequencies: FloatArray
+    axial_share: FloatArray
     certificate: ModeCertificate | WhirlCertificate
 
 
@@ -72,7 +76,7 @@ def rest_frequencies(
     held = [undamped(bearing.at_speed(slowest(bearing))) for bearing in bearings]
     if not all(_is_planar(bearing) for bearing in held):
         modes = solve_whirl(rotor, held, 0.0, frequency_limit=frequency_limit, count=count)
-        return RestFrequencies(modes.damped_frequencies, modes.certificate)
+        return RestFrequencies(modes.damped_frequencies, modes.axial_share, modes.certificate)
 
     wanted = count
     if frequency_limit is None and count is None:
@@ -116,7 +120,7 @@ def rest_frequencies(
         max_residual=max((modes.certificate.max_residual for modes in solved), default=0.0),
         orthonormality=max((modes.certificate.orthonormality for modes in solved), default=0.0),
     )
-    return RestFrequencies(frequencies, certificate)
+    return RestFrequencies(frequencies, np.zeros(frequencies.size), certificate)
 
 
 def _is_planar(bearing: Bearing) -> bool:

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from .chain import SQUARE_FRACTIONS, Chain
+from .chain import SQUARE_FRACTIONS, SQUARE_WEIGHTS, Chain
 from .search import require_positions
 from .spatial_chain import SpatialChain, squared_frequencies
 from .spatial_ties import MEMBERS
@@ -103,7 +103,10 @@ class SpatialMotion:
 
     @cached_property
     def shares(self) -> FloatArray:
-        """∫ ρA |r±|² + ρI |β±|² dz with the nodes' own, of the forward and the backward part, (w, 2), kg·m²."""
+        """∫ ρA |r±|² + ρI |β±|² dz of the forward and the backward part, ∫ ρA |z|² dz of the axial one, (w, 3), kg·m².
+
+        With the nodes' own inertias.
+        """
         from .share_kernels import inertia_shares
 
         chain = self.chain
@@ -113,12 +116,33 @@ class SpatialMotion:
         for block, states in ((1, self.forward), (-1, self.backward)):
             squared = self._squared(block)
             shares.append(inertia_shares(pieces, *squared, states, SQUARE_FRACTIONS, along, chain.node_inertia))
-        return np.stack(shares, axis=-1)
+        return np.stack([*shares, self._axial_inertia()], axis=-1)
+
+    def _axial_inertia(self) -> FloatArray:
+        """∫ ρA |z|² dz with the nodes' masses, (w,)."""
+        rod = self.rod
+        if rod is None:
+            return np.zeros(self.count)
+        pieces = np.repeat(np.arange(rod.element.size), SQUARE_FRACTIONS.size)
+        fractions = np.tile(SQUARE_FRACTIONS, rod.element.size)
+        transfers = rod.transfers_to(pieces, fractions, -(self.eigenvalues**2))
+        along = np.einsum("zwj,wzj->wz", transfers[:, :, 0], self.axial[:, pieces])
+        mass = rod.coefficients_at(pieces, fractions)[:, 1]
+        weight = np.tile(SQUARE_WEIGHTS, rod.element.size) * np.repeat(rod.lengths, SQUARE_FRACTIONS.size) * mass
+        nodal = np.abs(self.axial[:, :, 0]) ** 2 @ rod.node_inertia[:, 0]
+        return np.asarray(np.abs(along) ** 2 @ weight + nodal)
 
     @property
     def direction(self) -> FloatArray:
-        """Between −1 and 1: of all `shares` the forward part less the backward one, (w,)."""
-        return np.asarray((self.shares[:, 0] - self.shares[:, 1]) / self.shares.sum(axis=1))
+        """Between −1 and 1: of the lateral `shares` the forward part less the backward one, (w,); 0 without any."""
+        forward, backward = self.shares[:, 0], self.shares[:, 1]
+        lateral = forward + backward
+        return np.divide(forward - backward, lateral, out=np.zeros_like(lateral), where=lateral > 0.0)
+
+    @property
+    def axial_share(self) -> FloatArray:
+        """The axial part of all `shares`, (w,)."""
+        return np.asarray(self.shares[:, 2] / self.shares.sum(axis=1))
 
     def at(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Forward and backward states (w, len(z), 4) at positions z (m), in scaled units, by the exact transfer.

@@ -37,6 +37,8 @@ START_REACH = 1.2
 # Behind the modes asked for, starting values are followed to the first that lies this far from the one before it: the
 # proof's limit finds its gap there.
 WIDE_GAP = 0.01
+# Part of a motion's kinetic energy above which it is called axial.
+MOSTLY_AXIAL = 0.5
 # A limit in a gap narrower than this would be too near a root to count by.
 LEAST_GAP = 1e-6
 
@@ -78,6 +80,11 @@ class WhirlModes:
         1 is circular and counter-clockwise (forward for positive speed), −1 circular and clockwise, 0 planar.
         """
         return self.roots.motion.direction
+
+    @property
+    def axial_share(self) -> FloatArray:
+        """Part of the kinetic energy that is along the axis, (w,): 0 where no bearing ties it to the others."""
+        return self.roots.motion.axial_share
 
     @property
     def frequencies(self) -> FloatArray:

@@ -28,6 +28,7 @@ def draw_campbell(
     directions: npt.ArrayLike,
     damping_ratios: npt.ArrayLike,
     *,
+    axial_shares: npt.ArrayLike = 0.0,
     critical_speeds: npt.ArrayLike = (),
     critical_directions: npt.ArrayLike = (),
     critical_orders: npt.ArrayLike = 1.0,
@@ -49,6 +50,8 @@ def draw_campbell(
         (s, w): about +z, 1 circular counter-clockwise to −1 circular clockwise.
     damping_ratios
         (s, w): ζ; negative is unstable.
+    axial_shares
+        (s, w), or one of all: part of the kinetic energy along the axis.
     critical_speeds, critical_directions
         (c,): rad/s, and 1 forward to −1 backward in the sense of rotation.
     critical_orders
@@ -75,6 +78,7 @@ def draw_campbell(
             f"{ratios.shape} are not two or more speeds (s,) and three arrays (s, w)"
         )
     order = np.argsort(turning)
+    axial = np.broadcast_to(np.asarray(axial_shares, dtype=np.float64), values.shape)[order]
     turning, values, ratios, senses = turning[order], values[order], ratios[order], senses[order]
     if turning[0] == 0.0:
         # At rest a whirl has no sense of its own; the shapes of double roots are then any.
@@ -83,7 +87,7 @@ def draw_campbell(
     low, high = float(turning[0]), float(turning[-1])
     # A branch that never comes below the top of the axis has no place in the damping either.
     shown = np.flatnonzero((np.nan_to_num(values, nan=np.inf) < top).any(axis=0))
-    values, ratios, senses = values[:, shown], ratios[:, shown], senses[:, shown]
+    values, ratios, senses, axial = values[:, shown], ratios[:, shown], senses[:, shown], axial[:, shown]
 
     multiples = np.broadcast_to(critical_orders, np.shape(np.atleast_1d(critical_speeds)))
     criticals = _criticals(critical_speeds, critical_directions, multiples, low, high, top)
@@ -105,7 +109,7 @@ def draw_campbell(
     figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + lower + FOOT, title, note)
     axes = panel(figure, FOOT + lower, _HEIGHT)
     axes.set(xlim=(RPM * low, RPM * high), ylim=(0.0, top / _HERTZ), ylabel="whirl frequency [Hz]")
-    met = _draw_branches(axes, turning, values / _HERTZ, senses)
+    met = _draw_branches(axes, turning, values / _HERTZ, senses, axial)
     for multiple in orders:
         _draw_order(axes, multiple, low, high, top)
     for speed, sense, multiple in criticals:
@@ -116,7 +120,7 @@ def draw_campbell(
     lowest = axes
     if is_damped:
         lowest = panel(figure, FOOT, _DAMPING_HEIGHT)
-        _draw_decrement(lowest, turning, ratios, senses)
+        _draw_decrement(lowest, turning, ratios, senses, axial)
         lowest.set_xlim(axes.get_xlim())
         axes.tick_params(labelbottom=False)
     lowest.set_xlabel("speed of rotation [rpm]")
@@ -184,12 +188,14 @@ def _runs(senses: list[Sense]) -> Iterator[tuple[slice, Sense]]:
             start = index
 
 
-def _draw_branches(axes: Axes, speeds: FloatArray, values: FloatArray, directions: FloatArray) -> list[Sense]:
+def _draw_branches(
+    axes: Axes, speeds: FloatArray, values: FloatArray, directions: FloatArray, axial: FloatArray
+) -> list[Sense]:
     """Draw each branch, (s, w), in the colours and lines of its senses; returns the senses."""
     met = []
-    middles = 0.5 * (directions[1:] + directions[:-1])
-    for values_of, directions_of in zip(values.T, middles.T, strict=True):
-        for run, sense in _runs([sense_of(float(direction)) for direction in directions_of]):
+    middles = [0.5 * (each[1:] + each[:-1]).T for each in (directions, axial)]
+    for values_of, *ways in zip(values.T, *middles, strict=True):
+        for run, sense in _runs([sense_of(*way) for way in zip(*(way.tolist() for way in ways), strict=True)]):
             axes.plot(
                 RPM * speeds[run], values_of[run], color=sense.color, ls=sense.line, lw=1.2, zorder=3, label="branch"
             )
@@ -215,10 +221,12 @@ def _draw_order(axes: Axes, multiple: float, low: float, high: float, top: float
     )
 
 
-def _draw_decrement(axes: Axes, speeds: FloatArray, ratios: FloatArray, directions: FloatArray) -> None:
+def _draw_decrement(
+    axes: Axes, speeds: FloatArray, ratios: FloatArray, directions: FloatArray, axial: FloatArray
+) -> None:
     """The logarithmic decrement 2πζ / √(1 − ζ²) of each branch."""
     decrement = 2.0 * np.pi * ratios / np.sqrt(np.maximum(1.0 - ratios**2, 1e-12))
-    _draw_branches(axes, speeds, decrement, directions)
+    _draw_branches(axes, speeds, decrement, directions, axial)
     axes.axhline(0.0, color=INK, lw=0.7, zorder=1)
     # A heavily damped branch would press all others, and the question of stability, onto the line.
     finite = decrement[np.isfinite(decrement)]

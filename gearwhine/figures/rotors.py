@@ -119,6 +119,7 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
             one.campbell.frequencies,
             one.campbell.direction,
             -eigenvalues.real / np.abs(eigenvalues),
+            axial_shares=one.campbell.axial_share,
             critical_speeds=crossed,
             critical_directions=senses,
             critical_orders=orders,

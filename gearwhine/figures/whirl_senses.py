@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
-from gearwhine.figures.style import BLUE, RED
+from gearwhine.figures.style import BLUE, RED, SERIES
+from rotors import MOSTLY_AXIAL
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -28,10 +29,13 @@ class Sense:
 FORWARD = Sense("forward", BLUE, "-")
 BACKWARD = Sense("backward", RED, (0, (5, 2)))
 MIXED = Sense("planar or mixed", "#6b747c", (0, (6, 2, 1.2, 2)))
+AXIAL = Sense("along the axis", SERIES[3], (0, (1.2, 1.8)))
 
 
-def sense_of(direction: float) -> Sense:
-    """The sense for a whirl direction from −1 (circular backward) to 1 (circular forward)."""
+def sense_of(direction: float, axial_share: float = 0.0) -> Sense:
+    """The sense for a whirl direction from −1 (circular backward) to 1 (circular forward), unless mostly axial."""
+    if axial_share > MOSTLY_AXIAL:
+        return AXIAL
     if abs(direction) < PLANAR:
         return MIXED
     return FORWARD if direction > 0.0 else BACKWARD
@@ -48,9 +52,9 @@ def with_rotation(directions: npt.ArrayLike, speeds: npt.ArrayLike) -> FloatArra
 
 
 def legend_lines(senses: Sequence[Sense], *, solid: bool = False) -> list[Line2D]:
-    """A line for each of the senses that occur, in the order forward, backward, mixed; ``solid`` for colour alone."""
+    """A line for each sense that occurs, in the order forward, backward, mixed, axial; ``solid`` for colour alone."""
     return [
         Line2D([], [], color=sense.color, ls="-" if solid else sense.line, lw=1.3, label=sense.name)
-        for sense in (FORWARD, BACKWARD, MIXED)
+        for sense in (FORWARD, BACKWARD, MIXED, AXIAL)
         if sense in senses
     ]

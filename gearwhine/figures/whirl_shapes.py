@@ -11,7 +11,7 @@ from gearwhine.figures.shaft import lay_out
 from gearwhine.figures.shaft_view import MM, ShaftView
 from gearwhine.figures.style import FOOT, GREY, HEAD, INK, NOTE, RPM, legend, panel, sheet, shortened
 from gearwhine.figures.whirl_senses import Sense, legend_lines, sense_of
-from rotors import WhirlModes
+from rotors import MOSTLY_AXIAL, WhirlModes
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -37,15 +37,16 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     assembly
         The rotor, drawn above on the same axis.
     whirl
-        Its modes.
+        Its modes; those that are for the most part along the axis are left out.
     most
         How many to draw at most; all where not given.
     """
     outline = lay_out(assembly, labelled=False)
     view = outline.view
-    count = min(whirl.frequencies.size, most if most is not None else whirl.frequencies.size)
+    lateral = np.flatnonzero(whirl.axial_share <= MOSTLY_AXIAL)
+    count = min(lateral.size, most if most is not None else lateral.size)
     height = _HEIGHT * max(count, 1)
-    some = [f"the lowest {count} of {whirl.frequencies.size}"] if count < whirl.frequencies.size else []
+    some = [f"the lowest {count} of {lateral.size}"] if count < lateral.size else []
     note = "; ".join([*some, "orbits begin at the dot; each mode over its largest displacement", *outline.remarks])
     title = f"Rotor {shortened(assembly.rotor.name, 20)}: whirl at {abs(whirl.speed) * RPM:.5g} rpm"
     figure = sheet(HEAD + outline.height + height + FOOT, title, note)
@@ -60,11 +61,11 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     x, y = whirl.evaluate(places)
     senses: list[Sense] = []
     levels = height - _HEIGHT * (np.arange(count) + 0.5)
-    for number, level in enumerate(levels.tolist()):
+    for number, level in zip(lateral[:count].tolist(), levels.tolist(), strict=True):
         motion = _scaled(x[number], y[number])
         senses += _draw_mode(axes, view, places, motion, level, -1.0 if whirl.speed < 0.0 else 1.0)
     _draw_directions(axes, view)
-    axes.set_yticks(levels, [_name(whirl, number) for number in range(count)])
+    axes.set_yticks(levels, [_name(whirl, number) for number in lateral[:count].tolist()])
     axes.tick_params(axis="y", length=0.0, colors=INK)
     axes.spines["left"].set_visible(False)
     legend(figure, legend_lines(senses, solid=True))

@@ -63,6 +63,7 @@ ROTORS = (
     Column("mass_kg", "mass [kg]", ".3f"),
     Column("lateral_hz", "bending at rest [Hz]", ".1f"),
     Column("torsional_hz", "torsion [Hz]", ".1f"),
+    Column("axial_hz", "along the axis [Hz]", ".1f"),
     Column("critical_speeds_rpm", "critical speeds [rpm]", ".0f"),
 )
 BEARINGS = (

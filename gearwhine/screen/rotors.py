@@ -15,6 +15,7 @@ from gearwhine.screen.console import counted, open_console, show_written
 _MOST = 12  # rows of a table
 _MAP_ROWS = 5  # of the critical-speed map
 _REACH = 2.0  # critical speeds beyond so many times the speed of operation are only counted
+_MOSTLY_AXIAL = 0.5  # part of the kinetic energy above which a motion is called axial
 _PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 _NEUTRAL = 1e-9  # a damping ratio this near to zero neither grows nor decays
 _ROUNDING = 1e-9  # a torque that is no more than this part of the largest is none
@@ -46,10 +47,11 @@ def show_rotors(document: dict[str, Any]) -> None:
 
 
 def _at_rest(console: Console, rotor: dict[str, Any]) -> None:
-    """Frequencies at rest with their kind, ascending as far as both kinds are listed."""
+    """Frequencies at rest with their kind, ascending as far as bending and torsion are both listed."""
     bending, torsion = list(_bending(rotor["lateral_hz"])), list(_torsion(rotor["torsional_hz"]))
+    axial = [(frequency, "axial") for frequency in rotor["axial_hz"]]
     known = min(rows[-1][0] for rows in (bending, torsion) if rows) if bending or torsion else 0.0
-    rows = [row for row in sorted([*bending, *torsion], key=lambda row: row[0]) if row[0] <= known]
+    rows = [row for row in sorted([*bending, *torsion, *axial], key=lambda row: row[0]) if row[0] <= known]
     title = f"At rest{_with_bearings_at(rotor['rest_bearings_at_rpm'])}"
     _show(console, title, ("frequency [Hz]", "kind"), [(f"{f:.5g}", kind) for f, kind in rows[:_MOST]])
 
@@ -80,15 +82,15 @@ def _whirl(console: Console, rotor: dict[str, Any]) -> None:
         return
     whirl = rotor["whirl"][0 if rotor["operation_rpm"] is not None else -1]
     rows = []
-    keys = ("frequency_hz", "direction", "log_decrement", "damping_ratio")
+    keys = ("frequency_hz", "direction", "axial_share", "log_decrement", "damping_ratio")
     columns = zip(*(whirl[key] for key in keys), _strained_most(rotor["bearings"], whirl["strain_energy"]), strict=True)
-    for frequency, direction, decrement, damping, strained in columns:
+    for frequency, direction, along, decrement, damping, strained in columns:
         turning = math.copysign(1.0, whirl["speed_rpm"]) * direction
         state = "GROWS" if damping < -_NEUTRAL else "undamped" if damping <= _NEUTRAL else "decays"
         rows.append(
             (
                 f"{frequency:.5g}",
-                _whirl_name(turning),
+                _whirl_name(turning) if along <= _MOSTLY_AXIAL else "along the axis",
                 "0" if state == "undamped" else f"{decrement:.3g}",
                 state,
                 strained,

@@ -29,7 +29,8 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "mass_kg": one.rotor.mass,
                 "length_m": one.rotor.length,
                 "bearings": [bearing.name for bearing in one.bearings],
-                "lateral_hz": (one.rest.frequencies / _HERTZ).tolist(),
+                "lateral_hz": (one.rest.frequencies[one.rest.axial_share <= room.MOSTLY_AXIAL] / _HERTZ).tolist(),
+                "axial_hz": (one.axial / _HERTZ).tolist(),
                 "strain_energy": _strain_energy(one),
                 "torsional_hz": (one.torsional.frequencies / _HERTZ).tolist(),
                 "rest_bearings_at_rpm": _in_rpm(one.rest_speed),
@@ -102,6 +103,7 @@ def _modes(whirl: room.WhirlModes) -> dict[str, Any]:
         "damping_ratio": whirl.damping_ratios.tolist(),
         "log_decrement": log_decrement(whirl.damping_ratios).tolist(),
         "direction": whirl.direction.tolist(),
+        "axial_share": whirl.axial_share.tolist(),
         "stable": is_stable(whirl),
     }
 
@@ -121,6 +123,7 @@ def _campbell(one: SolvedRotor) -> dict[str, Any] | None:
         "frequency_hz": (diagram.frequencies / _HERTZ).tolist(),
         "log_decrement": diagram.log_decrements.tolist(),
         "direction": diagram.direction.tolist(),
+        "axial_share": diagram.axial_share.tolist(),
         "unstable_from_rpm": float(np.abs(diagram.speeds[grows]).min()) * _RPM if grows.any() else None,
         "proved_at_rpm": (diagram.speeds[diagram.proved] * _RPM).tolist(),
         "critical_speeds": None if isinstance(crossings, str) else [_crossing(one, each) for each in crossings],

@@ -4,6 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+import numpy.typing as npt
+
 import rotors as room
 from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
 from gearwhine.output import file_stems
@@ -14,6 +17,7 @@ from gearwhine.stages.rotor_loads import SolvedResponse, SolvedWeight, solve_res
 from gearwhine.stages.torsion import SolvedTorsion, solve_torsion
 from rotors.rolling import RollingState
 
+FloatArray = npt.NDArray[np.float64]
 Bearings = tuple[room.Bearing, ...]
 Crossings = tuple[room.Crossing, ...] | str
 
@@ -31,6 +35,8 @@ class SolvedRotor:
     rest_speed : float or None
         The speed of their tables that stands for rest, the lowest that all of them hold [rad/s]; None without tables.
     rest : rotors.RestFrequencies
+    axial : ndarray, shape (a,)
+        Natural frequencies at rest of motions along the axis, ascending [rad/s]; none where no bearing holds it.
     lateral : rotors.LateralModes
         In one plane at averaged support stiffness.
     torsional : rotors.TorsionalModes
@@ -39,11 +45,11 @@ class SolvedRotor:
     campbell : rotors.Campbell or None
         None without speeds.
     crossings : tuple of rotors.Crossing or str
-        Damped critical speeds within the Campbell diagram, of once a revolution; or why they are not known.
+        Damped critical speeds of whirl within the Campbell diagram, of once a revolution; or why they are not known.
     orders : mapping of float to (tuple of rotors.Crossing or str)
         The same of each other multiple of the speed that the case asks for.
     critical : rotors.CriticalSpeeds
-        Undamped; with tables, within the speeds that they hold.
+        Undamped, of whirl alone; with tables, within the speeds that they hold.
     operation : float or None
         Speed of operation [rad/s].
     weight : SolvedWeight or str
@@ -63,6 +69,7 @@ class SolvedRotor:
     resting: Bearings
     rest_speed: float | None
     rest: room.RestFrequencies
+    axial: FloatArray
     lateral: room.LateralModes
     torsional: room.TorsionalModes
     whirl: tuple[room.WhirlModes, ...]
@@ -102,6 +109,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         diagram = campbell_speeds(case, given.name)
         campbell = room.campbell(rotor, bearings, diagram, count=analysis.modes) if diagram else None
         held = not isinstance(weight, str)
+        rest = room.rest_frequencies(rotor, resting, count=analysis.modes)
         torsional = room.solve_torsional_modes(rotor)
         solved.append(
             SolvedRotor(
@@ -109,7 +117,8 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 bearings=bearings,
                 resting=resting,
                 rest_speed=lowest if any(bearing.speeds is not None for bearing in bearings) else None,
-                rest=room.rest_frequencies(rotor, resting, count=analysis.modes),
+                rest=rest,
+                axial=_axial_frequencies(rotor, resting, rest),
                 lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
                 torsional=torsional,
                 whirl=tuple(room.solve_whirl(rotor, bearings, speed, count=analysis.modes) for speed in speeds),
@@ -118,7 +127,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 orders={}
                 if campbell is None
                 else {order: _crossings(campbell, order) for order in sorted(set(analysis.orders) - {1.0})},
-                critical=room.critical_speeds(rotor, bearings, count=analysis.modes),
+                critical=room.critical_speeds(rotor, bearings, count=analysis.modes).lateral,
                 operation=operation,
                 weight=weight,
                 response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
@@ -128,6 +137,20 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
             )
         )
     return tuple(solved)
+
+
+def _axial_frequencies(rotor: room.Rotor, resting: Bearings, rest: room.RestFrequencies) -> FloatArray:
+    """Natural frequencies along the axis: of those at rest where bearings tie it to the planes, else the rod's own."""
+    along = rest.axial_share > room.MOSTLY_AXIAL
+    if along.any():
+        return rest.frequencies[along]
+    springs = [room.AxisSpring(bearing.at, float(bearing.spatial_stiffness[2, 2])) for bearing in resting]
+    springs = [spring for spring in springs if spring.stiffness > 0.0]
+    # As high as the bending that is listed beside it.
+    limit = float(rest.frequencies.max(initial=0.0))
+    if not springs or not limit:
+        return np.zeros(0)
+    return room.solve_axial_modes(rotor, springs, frequency_limit=limit).frequencies
 
 
 def _stiffness_map(analysis: RotorAnalysis, rotor: room.Rotor, bearings: Bearings) -> room.CriticalSpeedMap | None:
@@ -140,9 +163,12 @@ def _stiffness_map(analysis: RotorAnalysis, rotor: room.Rotor, bearings: Bearing
 
 
 def _crossings(campbell: room.Campbell, order: float = 1.0) -> Crossings:
-    """Damped critical speeds; a diagram of few speeds may not separate them, which is no reason to show nothing."""
+    """Damped critical speeds; a diagram of few speeds may not separate them, which is no reason to show nothing.
+
+    Motions that are for the most part along the axis are left out: no unbalance drives them.
+    """
     try:
-        return campbell.crossings(order)
+        return tuple(one for one in campbell.crossings(order) if one.axial_share <= room.MOSTLY_AXIAL)
     except room.IncompleteModesError as error:
         return str(error)
 

@@ -237,3 +237,21 @@ def test_check_says_what_a_rotor_and_its_bearings_are_made_of(gearwhine: Any) ->
     assert "by a pedestal of 150 kg, tables over 200 to 2500 rpm" in out
     assert "Campbell diagram at 47 speeds, 200 to 2500 rpm" in out
     assert "response to unbalance and bow at 231 speeds" in out
+
+
+@pytest.mark.parametrize("tie", [0.0, 2e3])
+def test_motion_along_the_axis_is_neither_bending_nor_critical(solved_rotor: Any, jeffcott: str, tie: float) -> None:
+    """k/m of a thrust bearing, tied to its tilt or not: told as axial, and no part of critical speeds and margins."""
+    matrix = f"[[1e6,0,0,0,0],[0,1e6,0,0,0],[0,0,2.5e5,0,{tie}],[0,0,0,1e3,0],[0,0,{tie},0,1e3]]"
+    springs = [f"bearing.left.stiffness={{ matrix = {matrix} }}", "bearing.right.stiffness={ xx = 1e6, yy = 1e6 }"]
+    untabled = [f"bearing.{name}.speeds=" for name in ("left", "right")]
+    rotor = solved_rotor(jeffcott, "bearing.left.damping=", *untabled, *springs, "rotor_analysis.modes=5")
+    bounce = math.sqrt(2.5e5 / MASS) / (2.0 * math.pi)
+    assert rotor["axial_hz"][0] == pytest.approx(bounce, rel=1e-2)
+    assert min(abs(frequency / bounce - 1.0) for frequency in rotor["lateral_hz"]) > 0.1
+    assert min(abs(speed / 60.0 / bounce - 1.0) for speed in rotor["critical_speeds_rpm"]) > 0.1
+    assert len(rotor["critical_margins"]) == len(rotor["critical_speeds_rpm"])
+    crossed = [abs(each["speed_rpm"]) / 60.0 for each in rotor["campbell"]["critical_speeds"]]
+    assert all(abs(speed / bounce - 1.0) > 0.1 for speed in crossed)
+    shares = rotor["whirl"][0]["axial_share"]
+    assert (max(shares) > 0.9) == (tie > 0.0)

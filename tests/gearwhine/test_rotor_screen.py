@@ -48,6 +48,7 @@ def rotor(**more: Any) -> Document:
         "speed_rpm": 1000.0,
         "frequency_hz": [9.0, 11.0, 40.0],
         "direction": [-0.9, 1.0, 0.0],
+        "axial_share": [0.0, 0.0, 0.2],
         "log_decrement": [0.25, -0.01, 1e-13],
         "damping_ratio": [0.04, -0.002, 1e-14],
         "strain_energy": {
@@ -63,6 +64,7 @@ def rotor(**more: Any) -> Document:
         "bearings": ["left"],
         "lateral_hz": [10.0, 10.0, 40.0, 45.0],
         "torsional_hz": [0.0, 30.0, 700.0],
+        "axial_hz": [],
         "rest_bearings_at_rpm": None,
         "operation_rpm": 1000.0,
         "whirl": [whirl],
@@ -116,6 +118,7 @@ def test_frequencies_at_rest_stand_in_order_with_their_kind_as_far_as_both_kinds
         ["40", "bending, one plane"],
         ["45", "bending, one plane"],
     ]
+    assert ["20", "axial"] in rows(said(axial_hz=[20.0, 900.0]), "At rest")
     free = said(lateral_hz=[0.0, 0.0, 0.0, 0.0, 50.0, 50.0])
     assert rows(free, "At rest")[1] == ["0", "moves freely, both planes"]
 
