@@ -1,5 +1,6 @@
 """Files that appear whole or not at all."""
 
+import errno
 import json
 import os
 import re
@@ -45,6 +46,11 @@ def staging(folder: Path, *, replacing: bool = False) -> Iterator[Path]:
             yield place
             with alone_in(folder):
                 _move_out(place, folder, replacing=replacing)
+        except OSError as error:
+            # Libraries that write files do not say where there was no room.
+            if error.filename is None and (error.errno == errno.ENOSPC or os.strerror(errno.ENOSPC) in str(error)):
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder)) from error
+            raise
         finally:
             shutil.rmtree(place, ignore_errors=True)
             if made:

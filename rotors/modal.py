@@ -24,16 +24,19 @@ import numpy.typing as npt
 
 from .attachment import attach_loads, attach_motions
 from .axial import AxialModes, solve_axial_modes
-from .bearing import Bearing
-from .errors import require
+from .bearing import Bearing, RadialSupport
+from .errors import require, require_finite
 from .lateral import LateralModes, solve_lateral_modes
 from .participation import Participation, participation
+from .root_count import counts_below
 from .rotor_lines import bending_line, rod_line
 from .shaft import Rotor
 from .torsion import TorsionalModes, solve_torsional_modes
 
 FloatArray = npt.NDArray[np.float64]
 
+# More modes of a kind than this are a mistake in a unit: every one is a coordinate of a dense system.
+MOST_MODES = 300
 _FEWEST = 4  # modes, below which a frequency limit is too low to be meant
 
 
@@ -156,6 +159,7 @@ def modal_rotor(
     one = (frequency_limit is None) != (count is None)
     require(one, "frequency_limit and count", (frequency_limit, count), "one of the two")
     supports = tuple(bearing.mean_support for bearing in bearings)
+    _require_few(rotor, supports, frequency_limit, count)
     lateral = solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)
     torsional = solve_torsional_modes(rotor, frequency_limit=frequency_limit, count=count)
     ports = (*(bearing.at for bearing in bearings), *gears_at, *forces_at)
@@ -172,6 +176,22 @@ def modal_rotor(
         torsional = attach_motions(torsional, gears_at)
     axial = _axial(rotor, bearings, frequency_limit, count, thrusts_at)
     return ModalRotor(lateral, torsional, axial, tuple(bearings), ports, participation(rotor, lateral, axial))
+
+
+def _require_few(
+    rotor: Rotor, supports: Sequence[RadialSupport], frequency_limit: float | None, count: int | None
+) -> None:
+    """Raise `RotorError` where more modes are asked for than a coupled model can use."""
+    most = f"{MOST_MODES} or fewer: a lower frequency_limit, or a shaft less soft"
+    if count is not None:
+        require(count <= MOST_MODES, f"rotor {rotor.name!r}: number of modes", count, most)
+    if frequency_limit is None:
+        return
+    require_finite("frequency_limit", frequency_limit, positive=True)
+    for kind, line in (("bending", bending_line(rotor, supports)), ("torsional", rod_line(rotor, (), "torsion"))):
+        (number,) = counts_below([line.cut(frequency_limit)], frequency_limit)
+        below = f"below {frequency_limit / (2.0 * np.pi):.5g} Hz"
+        require(number <= MOST_MODES, f"rotor {rotor.name!r}: number of {kind} modes {below}", number, most)
 
 
 def _axial(

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import pi
 
 from gearwhine.case.draft import Draft
-from gearwhine.case.problems import Finding
+from gearwhine.case.problems import NOTHING, Finding
 from gearwhine.case.running import listed
 from gearwhine.case.shafts import Bearing, RadialDamping, RadialStiffness
 from gearwhine.case.train import gear_train
@@ -24,6 +24,8 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
         if bearing.pedestal is not None and not bearing.grounded:
             expected = f'no pedestal under a bearing in seat "{bearing.seat}", which moves with the housing'
             yield Finding(("bearing", index, "pedestal"), expected)
+        if draft.transient is not None and bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
+            yield Finding(("bearing", index, "pedestal", "mass"), "a mass above 0, to be followed in time", NOTHING)
         if bearing.speeds is not None and bearing.rotor in ratios:
             yield from _check_reach(draft, index, bearing, bearing.speeds, abs(float(ratios[bearing.rotor])))
 

@@ -54,7 +54,8 @@ def check_box(draft: Draft) -> Iterator[Finding]:
     for location, patch in _patches(draft):
         yield from _check_patch(box, location, patch, boss)
     for index, sensor in draft.sensors:
-        yield from _check_on_surface(box, ("housing", "sensor", index, "position"), sensor.position, boss)
+        found = list(_check_on_surface(box, ("housing", "sensor", index, "position"), sensor.position, boss))
+        yield from found or _check_in_bore(draft, box, ("housing", "sensor", index, "position"), sensor.position)
     for index, mass in draft.masses:
         if mass.position is not None:
             yield from _check_on_surface(box, ("housing", "mass", index, "position"), mass.position, boss)
@@ -177,6 +178,24 @@ def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterat
         a > b and c < d for a, b, c, d in zip(low, inside_low, high, inside_high, strict=True)
     ):
         yield Finding(location, "a box that meets the housing's walls; this one is all in its cavity")
+
+
+def _check_in_bore(
+    draft: Draft, box: Box, location: Location, position: tuple[float, float, float]
+) -> Iterator[Finding]:
+    """Yield a point in the air of a bore, further from its rim than the wall is thick."""
+    half = 0.5 * box.size[2]
+    for _, seat in draft.seats:
+        wall = _wall_of(box, seat)
+        if wall is None:
+            continue
+        low, high = (-half, -half + box.walls.back) if wall == "back" else (half - box.walls.front, half)
+        apart = math.hypot(position[0] - seat.center[0], position[1] - seat.center[1])
+        deep = 0.5 * seat.diameter - apart
+        if deep > high - low and low - _SLACK <= position[2] <= high + _SLACK:
+            expected = f'a point on the surface of the box; this one is in the bore of seat "{seat.name}", '
+            yield Finding(location, expected + f"{millimetres(deep)} from its rim")
+            return
 
 
 def _check_on_surface(

@@ -68,8 +68,8 @@ def _check_materials(draft: Draft) -> Iterator[Finding]:
         yield from _check_reference(housing, ("housing", "material"), "material", materials)
     for index, region in draft.raw_entries("housing", "region"):
         yield from _check_reference(region, ("housing", "region", index, "material"), "material", materials)
-        bolts = ("box", "cover", "bolts")
-        yield from _check_reference(look_up(housing, bolts), ("housing", *bolts, "material"), "material", materials)
+    bolts = ("box", "cover", "bolts")
+    yield from _check_reference(look_up(housing, bolts), ("housing", *bolts, "material"), "material", materials)
     for kind in ("rotor", "gear"):
         for index, entry in draft.raw_entries(kind):
             yield from _check_reference(entry, (kind, index, "material"), "material", materials)

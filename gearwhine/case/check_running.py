@@ -41,6 +41,7 @@ def check_running(draft: Draft) -> Iterator[Finding]:
     if "transient" in document and operation.speed == 0.0:
         yield Finding(("operation", "speed"), "a speed other than zero for the [transient]")
     yield from _check_run(draft, operation)
+    yield from _check_method(draft, operation)
     if draft.broken & {"rotor", "gear", "gear_pair"} or not turning:
         return  # what turns what cannot be told from half a train
     yield from _check_stations(draft, operation)
@@ -62,6 +63,20 @@ def _check_run(draft: Draft, operation: Operation) -> Iterator[Finding]:
         for key in ("motor", "load"):
             if getattr(operation, key) is not None:
                 yield Finding(("operation", key), "a [transient.run] without 'to', whose speed is free to follow it")
+
+
+def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield what the exact march, where it is asked for, knows nothing of."""
+    given = draft.transient
+    if given is None or given.method != "exact":
+        return
+    unknown = [f"friction between the teeth (gear_pair[{i}])" for i, pair in draft.gear_pairs if pair.friction > 0.0]
+    unknown += [f"a bearing's own law (bearing[{i}])" for i, bearing in draft.bearings if bearing.follows_own_law]
+    unknown += ["a speed that varies (transient.run)"] * (given.run is not None)
+    torques = [operation.over_time, *(output.over_time for output in operation.output)]
+    unknown += ["a torque given over time"] * any(torque is not None for torque in torques)
+    if unknown:
+        yield Finding(("transient", "method"), f"'newmark' or 'auto'; the exact march knows nothing of {unknown[0]}")
 
 
 def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:

@@ -42,6 +42,9 @@ def warnings_of(case: Case) -> tuple[str, ...]:
         found.append("[housing] stands on dashpots alone: it is not held and creeps away under load")
     if case.operation is not None and case.operation.torque > 0.0 and not case.gear_pair and not case.operation.output:
         found.append("operation.torque has nothing to work against: there are no gear pairs and no outputs")
+    for bearing in case.bearing:
+        if bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
+            found.append(f'bearing "{bearing.name}": its pedestal has no mass: `rotors` alone takes it')
     for rotor in case.rotor:
         if rotor.saved is not None:
             found += [f'rotor "{rotor.name}": {remark}' for remark in rotor.saved.warnings]

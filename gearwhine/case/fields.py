@@ -16,9 +16,6 @@ from gearwhine.case.units import Dimension, QuantityError, format_quantity, pars
 MOST_ENTRIES = 10_000
 """Most entries a list may hold; beyond it a case is a mistake, not a gearbox."""
 
-LARGEST_LENGTH = 100.0
-"""No length in a gearbox is longer [m]: what is, was meant in millimetres."""
-
 
 def wrong(expected: str, *at: str | int, note: str = "") -> PydanticCustomError:
     """Make the error for a value that is not what was expected.
@@ -78,8 +75,13 @@ class Quantity:
         )
         if not within:
             raise wrong(self.expected + self._hint(value, number))
-        if self.dimension is units.LENGTH and abs(number) > LARGEST_LENGTH:
-            raise wrong(f"a length of at most {LARGEST_LENGTH:g} m{hint_of_millimetres(value)}")
+        dimension = self.dimension
+        if abs(number) > dimension.largest:
+            hint = hint_of_millimetres(value) if dimension is units.LENGTH else ""
+            raise wrong(f"{dimension.name} of at most {self._plainly(dimension.largest)}{hint}")
+        # Elsewhere a little is as good as none, and rounding leaves little.
+        if self.above == 0.0 and number < dimension.smallest:
+            raise wrong(f"{dimension.name} of at least {self._plainly(dimension.smallest)}")
         return number
 
     def validate_at(self, value: object, *at: str | int) -> float:
@@ -114,6 +116,10 @@ class Quantity:
         """Return the advice for a length that is too long because its unit is missing."""
         too_long = self.dimension is units.LENGTH and self.at_most is not None and number > self.at_most
         return hint_of_millimetres(value) if too_long else ""
+
+    def _plainly(self, limit: float) -> str:
+        """Write a limit of the dimension with its SI unit."""
+        return f"{limit:g} {self.dimension.unit}".rstrip()
 
     def _show(self, limit: float) -> str:
         """Write a limit with its unit."""

@@ -60,6 +60,9 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
+_LONGEST_SHOWN = 200  # characters of a key path or of a change
+
+
 @dataclass(frozen=True)
 class Problem:
     """One thing wrong in a case.
@@ -96,8 +99,17 @@ class Problem:
         return f"expected {self.expected}, got {show_value(self.value)}{note}"
 
     def __str__(self) -> str:
-        place = f"{self.key} ({self.label})" if self.label else self.key
-        return f"{self.source}: {place}: {self.message}" if self.source else f"{place}: {self.message}"
+        key, source = _shortened(self.key), _shortened(self.source)
+        place = f"{key} ({self.label})" if self.label else key
+        return f"{source}: {place}: {self.message}" if source else f"{place}: {self.message}"
+
+
+def _shortened(text: str) -> str:
+    """A text, or where it is long its beginning and its end."""
+    if len(text) <= _LONGEST_SHOWN:
+        return text
+    half = _LONGEST_SHOWN // 2
+    return f"{text[:half]} … {text[-half:]}"
 
 
 class CaseError(ValueError):

@@ -65,6 +65,9 @@ ShearCoefficient = Annotated[ShearFormula | float, _ShearRule()]
 PositiveTiltStiffness = Annotated[float, Quantity(units.TILT_STIFFNESS, above=0.0)]
 
 
+_SLENDEREST = 1000.0  # length over diameter of a piece of shaft
+
+
 class Segment(Table):
     """A piece of shaft [m], a cone where `right_diameter` or `right_bore` differ from those at its left end.
 
@@ -82,6 +85,9 @@ class Segment(Table):
 
     @model_validator(mode="after")
     def _hollow(self) -> Segment:
+        thinnest = min(self.diameter, self.right_diameter or self.diameter)
+        if self.length > _SLENDEREST * thinnest:
+            raise wrong(f"at most {_SLENDEREST:g} times its diameter of {thinnest:g} m: a shaft, not a wire", "length")
         if self.bore >= self.diameter:
             raise wrong(f"a bore smaller than the diameter of {self.diameter:g} m", "bore")
         diameter = self.diameter if self.right_diameter is None else self.right_diameter
@@ -196,7 +202,7 @@ class Rotor(Table):
     damping_ratio: DampingRatio = 0.005
     shear_coefficient: ShearCoefficient = "cowper"
     axial_force: Force = 0.0
-    modes: Annotated[int, Whole(1, 1000)] | None = None
+    modes: Annotated[int, Whole(1, 300)] | None = None
     frequency_limit: PositiveFrequency | None = None
     segments: tuple[AnySegment, ...] = Field(default=(), min_length=1, max_length=MOST_ENTRIES)
     discs: tuple[AnyDisc, ...] = Field(default=(), max_length=MOST_ENTRIES)

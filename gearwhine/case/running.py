@@ -63,6 +63,9 @@ class Operation(Table):
     output: tuple[Output, ...] = Field(default=(), max_length=1000)
 
 
+_SHORTEST_RECORD = 0.01  # revolutions
+
+
 def _half_the_run(data: dict[str, Any]) -> float:
     return float(data.get("revolutions") or 0.0) / 2.0
 
@@ -96,6 +99,9 @@ class Transient(Table):
             return self
         if self.discard >= self.revolutions:
             raise wrong(f"fewer revolutions than the {self.revolutions:g} of the run", "discard")
+        if self.revolutions - self.discard < _SHORTEST_RECORD:
+            told = f"{_SHORTEST_RECORD:g} or more revolutions than 'discard', which are recorded"
+            raise wrong(told, "revolutions")
         return self
 
 

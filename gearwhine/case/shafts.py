@@ -165,6 +165,13 @@ class Bearing(Table):
     ] = RadialDamping()
     load: BearingLoad | None = None
 
+    @property
+    def follows_own_law(self) -> bool:
+        """Whether its force in motion is no matrix times its deflection."""
+        if isinstance(self.stiffness, RollingStiffness):
+            return self.stiffness.rolling.law == "nonlinear"
+        return isinstance(self.stiffness, StopStiffness)
+
     @model_validator(mode="after")
     def _loaded(self) -> Bearing:
         depends = isinstance(self.stiffness, RollingStiffness | StopStiffness)

@@ -49,6 +49,9 @@ class Dimension:
         SI unit of the stored float.
     example
         A quantity as a user might write it.
+    largest, smallest
+        What no machine has more of, without its sign, and the least that divides anything, in SI: far beyond
+        gearboxes, but such that products of several quantities neither overflow nor vanish.
     display
         A customary unit, used in output where it gives back the very same float.
     """
@@ -56,31 +59,33 @@ class Dimension:
     name: str
     unit: str
     example: str
+    largest: float
+    smallest: float
     display: str = ""
 
 
-LENGTH = Dimension("a length", "m", "6.35 mm")
-MASS = Dimension("a mass", "kg", "4 kg")
-DENSITY = Dimension("a density", "kg/m^3", "7850 kg/m^3")
-STRESS = Dimension("an elastic modulus", "Pa", "207 GPa")
-INERTIA = Dimension("a moment of inertia", "kg*m^2", "0.02 kg*m^2")
-IMBALANCE = Dimension("an unbalance", "kg*m", "2e-5 kg*m")
-STIFFNESS = Dimension("a stiffness", "N/m", "1.2e8 N/m")
-COUPLED_STIFFNESS = Dimension("a force per angle", "N/rad", "1e5 N/rad")
-TILT_STIFFNESS = Dimension("a tilting stiffness", "N*m/rad", "1e4 N*m/rad")
-DAMPING = Dimension("a damping", "N*s/m", "500 N*s/m")
-COUPLED_DAMPING = Dimension("a damping force per angular rate", "N*s/rad", "1 N*s/rad")
-TILT_DAMPING = Dimension("a tilting damping", "N*m*s/rad", "0.1 N*m*s/rad")
-FORCE = Dimension("a force", "N", "1 kN")
-TORQUE = Dimension("a torque", "N*m", "71.77 N*m")
-ACCELERATION = Dimension("an acceleration", "m/s^2", "9.81 m/s^2")
-ANGULAR_ACCELERATION = Dimension("an angular acceleration", "rad/s^2", "10 rad/s^2")
-TIME = Dimension("a time", "s", "10 s")
-ANGLE = Dimension("an angle", "rad", "24 deg", display="deg")
-FREQUENCY = Dimension("a frequency", "Hz", "3.2 kHz")
-SPEED = Dimension("an angular speed", "rad/s", "5500 rpm", display="rpm")
-DIAMETRAL_PITCH = Dimension("a diametral pitch", "1/m", "8 1/in")
-RATIO = Dimension("a plain number", "", "0.01")
+LENGTH = Dimension("a length", "m", "6.35 mm", 100.0, 1e-12)
+MASS = Dimension("a mass", "kg", "4 kg", 1e7, 1e-9)
+DENSITY = Dimension("a density", "kg/m^3", "7850 kg/m^3", 1e6, 1e-3)
+STRESS = Dimension("an elastic modulus", "Pa", "207 GPa", 1e15, 1.0)
+INERTIA = Dimension("a moment of inertia", "kg*m^2", "0.02 kg*m^2", 1e9, 1e-15)
+IMBALANCE = Dimension("an unbalance", "kg*m", "2e-5 kg*m", 1e5, 1e-15)
+STIFFNESS = Dimension("a stiffness", "N/m", "1.2e8 N/m", 1e15, 1e-6)
+COUPLED_STIFFNESS = Dimension("a force per angle", "N/rad", "1e5 N/rad", 1e15, 1e-6)
+TILT_STIFFNESS = Dimension("a tilting stiffness", "N*m/rad", "1e4 N*m/rad", 1e15, 1e-6)
+DAMPING = Dimension("a damping", "N*s/m", "500 N*s/m", 1e12, 1e-9)
+COUPLED_DAMPING = Dimension("a damping force per angular rate", "N*s/rad", "1 N*s/rad", 1e12, 1e-9)
+TILT_DAMPING = Dimension("a tilting damping", "N*m*s/rad", "0.1 N*m*s/rad", 1e12, 1e-9)
+FORCE = Dimension("a force", "N", "1 kN", 1e10, 1e-9)
+TORQUE = Dimension("a torque", "N*m", "71.77 N*m", 1e10, 1e-9)
+ACCELERATION = Dimension("an acceleration", "m/s^2", "9.81 m/s^2", 1e6, 1e-9)
+ANGULAR_ACCELERATION = Dimension("an angular acceleration", "rad/s^2", "10 rad/s^2", 1e9, 1e-9)
+TIME = Dimension("a time", "s", "10 s", 1e7, 1e-9)
+ANGLE = Dimension("an angle", "rad", "24 deg", 1e6, 1e-12, display="deg")
+FREQUENCY = Dimension("a frequency", "Hz", "3.2 kHz", 1e7, 1e-6)
+SPEED = Dimension("an angular speed", "rad/s", "5500 rpm", 1e6, 1e-6, display="rpm")
+DIAMETRAL_PITCH = Dimension("a diametral pitch", "1/m", "8 1/in", 1e6, 1e-3)
+RATIO = Dimension("a plain number", "", "0.01", 1e12, 1e-12)
 
 _DIMENSIONS = (
     *(LENGTH, MASS, DENSITY, STRESS, INERTIA, IMBALANCE, STIFFNESS, COUPLED_STIFFNESS, DAMPING, TILT_DAMPING),

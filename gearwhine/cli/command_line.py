@@ -1,5 +1,6 @@
 """The application: every command by its name, and how it ends."""
 
+import io
 import sys
 
 from cyclopts import App, CycloptsError
@@ -48,6 +49,11 @@ def run_command(arguments: list[str]) -> int:
 
 def _run_command(arguments: list[str]) -> int:
     from gearwhine.failures import explain
+
+    for stream in (sys.stdout, sys.stderr):
+        # What a terminal's encoding lacks, such as µ in ASCII, is shown as ? there.
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
     try:
         app(arguments, exit_on_error=False, print_error=False, result_action="return_value")

@@ -13,6 +13,11 @@ if TYPE_CHECKING:
     from gearwhine.progress import Progress
 
 
+_LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take, results' own names beside the latter
+_LONGEST_SHOWN = 60
+_RESULTS = (".csv", ".glb", ".html", ".json", ".nc", ".png", ".toml", ".unv", ".vtu")
+
+
 def on_case(
     name: str,
     common: Common,
@@ -59,9 +64,19 @@ def _check_folder(folder: Path) -> None:
     """Refuse a place where no results can go before the work begins, and make nothing yet."""
     from gearwhine.case import CaseError, Problem
 
+    if any(len(os.fsencode(part)) > _LONGEST_NAME for part in folder.parts) or len(os.fsencode(folder)) > _LONGEST_PATH:
+        shown = f"{str(folder)[:_LONGEST_SHOWN]}…"
+        raise CaseError([Problem("--output", shown, f"a folder whose name has at most {_LONGEST_NAME} bytes")])
     place = folder
     while not place.exists() and place != place.parent:
+        if place.is_symlink():
+            raise CaseError([Problem("--output", str(folder), f"a folder; {place} is a link that leads nowhere")])
         place = place.parent
     if not place.is_dir() or not os.access(place, os.W_OK):
         what = "is a file" if place.is_file() else "cannot be written to"
         raise CaseError([Problem("--output", str(folder), f"a folder for the results; {place} {what}")])
+    if folder.is_dir():
+        taken = [one.name for one in sorted(folder.iterdir()) if one.suffix in _RESULTS and one.is_dir()]
+        if taken:
+            expected = f"a folder for the results; in this one {taken[0]!r}, where a file would go, is a folder"
+            raise CaseError([Problem("--output", str(folder), expected)])

@@ -1,10 +1,19 @@
 """What commands on a case take alike: the case's name, the common options, and starting afresh."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
+
+
+def _folder(type_: object, tokens: Sequence[Token]) -> Path:
+    """The folder that is named; nothing is no name, though as a path it stands for the present folder."""
+    (token,) = tokens
+    if not token.value.strip():
+        raise ValueError("--output is empty; expected the name of a folder, such as results")
+    return Path(token.value)
 
 
 @Parameter(name="*")
@@ -12,7 +21,9 @@ from cyclopts import Parameter
 class Common:
     """What every command on a case takes."""
 
-    output: Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")] = None
+    output: Annotated[
+        Path | None, Parameter(name=["--output", "-o"], converter=_folder, help="Folder for the results.")
+    ] = None
     json: Annotated[bool, Parameter(name="--json", negative=(), help="Print one JSON document and nothing else.")] = (
         False
     )

@@ -1,7 +1,7 @@
 """The gear pairs of a case: geometry, contact law, and the mesh at rest under its load."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -108,6 +108,31 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
         hunting = room.hunting_mesh(contact, force) if contact.hunting_period > 1 else None
         solved.append(SolvedPair(pair, geometry, model, contact, static, hunting, frequency))
     return tuple(solved)
+
+
+def require_sound_faults(pair: GivenPair, geometry: room.GearPairGeometry) -> None:
+    """Refuse damaged teeth with which nothing can be solved, without solving anything.
+
+    Raises
+    ------
+    coupling.gears.GearError
+        For a crack through the foot of a tooth, or so many missing teeth that at some phase none meet.
+    """
+    for gear in (geometry.driver, geometry.driven):
+        for fault in gear.faults:
+            if isinstance(fault, room.ToothCrack):
+                fault.extra_compliance(gear, np.array([math.tan(geometry.working_pressure_angle)]))
+    if any(
+        isinstance(fault, room.MissingTooth) for gear in (geometry.driver, geometry.driven) for fault in gear.faults
+    ):
+        whole = [replace(gear, faults=_missing(gear)) for gear in (geometry.driver, geometry.driven)]
+        sparse = replace(geometry, driver=whole[0], driven=whole[1])
+        contact = room.tooth_contact(sparse, room.SquareStiffness(1e8), corner_contact=meets_with_corners(pair))
+        room.hunting_mesh(contact, 1.0, points=4)
+
+
+def _missing(gear: room.Gear) -> tuple[room.MissingTooth, ...]:
+    return tuple(fault for fault in gear.faults if isinstance(fault, room.MissingTooth))
 
 
 def meets_with_corners(pair: GivenPair) -> bool:

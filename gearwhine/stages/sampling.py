@@ -17,6 +17,7 @@ from gearwhine.case import Case, CaseError, Problem, rotor_speeds, speed_ratios
 
 _HERTZ = 2.0 * math.pi
 _OVERSAMPLING = 100.0  # of the march over the highest frequency of interest
+_FEWEST_SAMPLES = 16  # of a march: fewer show nothing
 _KEPT_SAMPLING = 4.0  # of what is kept of long records: what folds onto that frequency is a wide transition away
 RECORD_BYTES = 128 << 20
 """The longest record that is kept as it was sampled, all signals together."""
@@ -107,6 +108,11 @@ def sampling(
         tolerance=given.tolerance,
         method=given.method,
     )
+    if settings.samples < _FEWEST_SAMPLES:
+        problem = Problem(
+            "transient", f"a record of {settings.samples} samples", f"{_FEWEST_SAMPLES} or more: a longer run"
+        )
+        raise CaseError([problem])
     if 8 * signals * settings.samples <= largest:
         decimation = room.decimation(1, 0.25)
         return Sampling(settings, block or room.SAMPLES_PER_BLOCK, decimation, settings.samples, _window(case))

@@ -57,12 +57,13 @@ def test_methods_agree(documents: dict[str, dict[str, Any]]) -> None:
 
 def test_the_exact_march_says_why_it_does_not_apply(gearwhine: Any) -> None:
     exact = ("--set", "transient.method='exact'")
-    outcome = gearwhine("run", "spur-pair", *SHORT, *exact, "--set", "gear_pair.0.friction=0.05", "-q")
-    assert outcome.code == 1
-    assert "friction between the teeth" in outcome.err
-    outcome = gearwhine("run", "spur-pair", *FEW, *exact, *RUN, "-q")
-    assert outcome.code == 1
-    assert "the speed varies" in outcome.err
+    for command in ("run", "check"):
+        outcome = gearwhine(command, "spur-pair", *SHORT, *exact, "--set", "gear_pair.0.friction=0.05", "-q")
+        assert outcome.code == 2
+        assert "friction between the teeth (gear_pair[0])" in outcome.err
+        outcome = gearwhine(command, "spur-pair", *FEW, *exact, *RUN, "-q")
+        assert outcome.code == 2
+        assert "a speed that varies" in outcome.err
 
 
 def test_friction_over_time(gearwhine: Any, tmp_path: Path) -> None:

@@ -91,7 +91,11 @@ def check_survives(document: dict[str, Any]) -> None:
 LENGTHS = st.floats(1e-4, 1.0)
 SEGMENTS = st.lists(
     st.builds(
-        lambda length, d, part: {"length": length, "diameter": d, "bore": d * part}, LENGTHS, LENGTHS, st.floats(0, 0.9)
+        # Shafts, not wires.
+        lambda length, d, part: {"length": min(length, 900.0 * d), "diameter": d, "bore": d * part},
+        LENGTHS,
+        LENGTHS,
+        st.floats(0, 0.9),
     ),
     min_size=1,
     max_size=4,
