@@ -130,7 +130,7 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
     shapes = np.concatenate([pairs.rigid.astype(np.complex128), pairs.right[upper]])
     left = np.concatenate([np.full((rigid, system.size), np.nan, dtype=np.complex128), pairs.left[upper]])
     shares = mode_shares(system, state, values, shapes)
-    energy = _energy_by_kind(system, shares, shapes)
+    energy = _energy_by_kind(system, shares)
     kinds = ["rigid" if value == 0.0 else _kind(share) for value, share in zip(values, energy, strict=True)]
     zeros = rigid + pairs.drifts
     return CoupledModes(
@@ -138,7 +138,7 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
         shapes=shapes,
         left=left,
         kinds=tuple(kinds),
-        where=tuple(_places(system, shares, kinds, shapes)),
+        where=tuple(_places(system, shares, kinds)),
         energy=tuple(energy),
         shares=shares,
         whirl=whirl_directions(system, shapes),
@@ -175,14 +175,12 @@ def whirl_directions(system: CoupledSystem, shapes: ComplexArray) -> FloatArray:
     return found
 
 
-def _energy_by_kind(system: CoupledSystem, shares: ModeShares, shapes: ComplexArray) -> list[dict[str, float]]:
+def _energy_by_kind(system: CoupledSystem, shares: ModeShares) -> list[dict[str, float]]:
     labels = np.array(system.kinds)
-    kinetic = np.abs(shapes) ** 2
-    kinetic = kinetic / kinetic.sum(axis=1, keepdims=True)
-    of_kind = {kind: kinetic[:, labels == kind].sum(axis=1) for kind in COORDINATE_KINDS}
+    of_kind = {kind: shares.moving[:, labels == kind].sum(axis=1) for kind in COORDINATE_KINDS}
     teeth = np.array([part.kind == "contact" for part in shares.parts])
     of_kind["mesh"] = shares.strain[:, teeth].sum(axis=1)
-    return [{kind: float(values[i]) for kind, values in of_kind.items()} for i in range(len(shapes))]
+    return [{kind: float(values[i]) for kind, values in of_kind.items()} for i in range(len(shares.moving))]
 
 
 def _kind(share: dict[str, float]) -> str:
@@ -191,7 +189,7 @@ def _kind(share: dict[str, float]) -> str:
     return max(COORDINATE_KINDS, key=lambda kind: share[kind])
 
 
-def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str], shapes: ComplexArray) -> list[str]:
+def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list[str]:
     """Where each mode is: see :attr:`CoupledModes.where`."""
     owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
     labels = np.array(system.kinds)
@@ -201,7 +199,7 @@ def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str], shapes:
             teeth = [(shares.strain[i, j], part.name) for j, part in enumerate(shares.parts) if part.kind == "contact"]
             places.append(max(teeth)[1])
             continue
-        moving = np.abs(shapes[i]) ** 2 * ((labels == kind) | (kind == "rigid"))
+        moving = shares.moving[i] * ((labels == kind) | (kind == "rigid"))
         owned = np.bincount(owners, moving, len(system.components))
         places.append(system.components[int(np.argmax(owned))].name)
     return places

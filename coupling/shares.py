@@ -7,9 +7,13 @@ cross-coupled bearings, gives i k_c. The real part of λ* qᴴ (λ² + λ C + K)
     σ = - Σ (|λ|² c + ω k_c) / (|λ|² m + k),
 
 a sum over all parts of the machine: each one's part in the damping ratio -σ/|λ|, exactly, however strongly damped.
+
+Shapes of eigenvalues that agree to rounding are any basis of the space that they span, and so would be their shares.
+Each mode of such a group has the group's means over an orthonormal basis: traces, which do not depend on the basis.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -21,6 +25,8 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+_SAME = 1e-6  # part of an eigenvalue by which its neighbours may differ and their shapes still mix in rounding
+_INDEPENDENT = 1e-6  # of the largest singular value of a group's shapes, above which a direction is one of theirs
 _NOTHING = 1e-12  # strain or total energy below this part of the kinetic one is none
 
 
@@ -40,8 +46,10 @@ class ModeShares:
     ----------
     parts : tuple of Part
         Components (shafts, housing, pedestals with their own supports), then linear connectors, then contacts.
+    moving : ndarray, shape (m, n)
+        Of the kinetic energy, by coordinate.
     kinetic : ndarray, shape (m, c)
-        Of the kinetic energy, by component.
+        The same by component.
     strain : ndarray, shape (m, p)
         Of the strain energy; zeros for a rigid motion, negative where a part's stiffness is.
     damping : ndarray, shape (m, p)
@@ -51,6 +59,7 @@ class ModeShares:
     """
 
     parts: tuple[Part, ...]
+    moving: FloatArray
     kinetic: FloatArray
     strain: FloatArray
     damping: FloatArray
@@ -60,8 +69,11 @@ class ModeShares:
 def mode_shares(
     system: CoupledSystem, contact: ContactState, eigenvalues: ComplexArray, shapes: ComplexArray
 ) -> ModeShares:
-    """Shares of modes, shapes (m, n) along the rows."""
-    motion = np.abs(shapes) ** 2
+    """Shares of modes, shapes (m, n) along the rows, in the order of their frequencies."""
+    groups = _groups(eigenvalues)
+    eigenvalues = _over_groups(eigenvalues, groups)
+    shapes, means = _of_groups(shapes, groups)
+    motion = means @ np.abs(shapes) ** 2
     mass = motion.sum(axis=1)
     parts: list[Part] = []
     kinetic, works = [], []
@@ -80,7 +92,7 @@ def mode_shares(
         parts.append(Part("contact", tooth.name))
         compression = np.abs(shapes @ tooth.direction) ** 2
         works.append((k * compression, 0.0 * compression, c * compression))
-    strained, fed, lost = (np.array(rows) for rows in zip(*works, strict=True))
+    strained, fed, lost = (np.array(rows) @ means.T for rows in zip(*works, strict=True))
     size = np.abs(eigenvalues)
     strain = strained.sum(axis=0)
     total = size**2 * mass + strain
@@ -90,11 +102,41 @@ def mode_shares(
     held = np.abs(strained).sum(axis=0)
     return ModeShares(
         parts=tuple(parts),
+        moving=motion / mass[:, None],
         kinetic=np.array(kinetic).T / mass[:, None],
         strain=(strained / np.where((size > 0.0) & (held > 0.0) & (strain != 0.0), strain, np.inf)).T,
         damping=np.where(size > 0.0, damping_shares, 0.0).T,
         stiffness=np.where(size > 0.0, strain / mass, 0.0),
     )
+
+
+def _groups(eigenvalues: ComplexArray) -> list[slice]:
+    """Runs of modes, ascending in frequency, whose eigenvalues agree to rounding; rigid motions stand alone."""
+    size = np.abs(eigenvalues)
+    apart = np.abs(np.diff(eigenvalues)) > _SAME * np.minimum(size[1:], size[:-1])
+    edges = [0, *(np.flatnonzero(apart | (size[1:] == 0.0) | (size[:-1] == 0.0)) + 1).tolist(), len(eigenvalues)]
+    return [slice(begin, end) for begin, end in pairwise(edges) if end > begin]
+
+
+def _over_groups(values: ComplexArray, groups: list[slice]) -> ComplexArray:
+    """Each group's mean in place of its values."""
+    return np.concatenate([np.full(len(values[one]), values[one].mean()) for one in groups] or [values])
+
+
+def _of_groups(shapes: ComplexArray, groups: list[slice]) -> tuple[ComplexArray, FloatArray]:
+    """Shapes with an orthonormal basis (b, n) for those of each group, and what makes means of it, (m, b)."""
+    bases: list[ComplexArray] = []
+    means = np.zeros((len(shapes), 0))
+    for one in groups:
+        basis = shapes[one]
+        if len(basis) > 1:
+            _, sizes, rows = np.linalg.svd(basis, full_matrices=False)
+            basis = rows[sizes > _INDEPENDENT * sizes[0]]
+        mean = np.zeros((len(shapes), len(basis)))
+        mean[one] = 1.0 / len(basis)
+        bases.append(basis)
+        means = np.hstack([means, mean])
+    return (np.concatenate(bases) if bases else shapes), means
 
 
 def _work(

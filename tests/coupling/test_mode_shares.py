@@ -21,6 +21,7 @@ from coupling import (
     unloaded_contact,
 )
 from coupling.gears import ToothContact, piecewise
+from coupling.shares import mode_shares
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -206,3 +207,27 @@ def test_two_meshes_share_a_torque_by_their_mean_curves() -> None:
     assert shared(6.0).stiffness == pytest.approx([100.0, 100.0], rel=1e-9)
     assert shared(1.0).force == pytest.approx([1.0, 0.0], rel=1e-6)
     assert shared(1.0).stiffness == pytest.approx([100.0, 0.0], rel=1e-9)
+
+
+def test_shares_of_equal_modes_do_not_depend_on_their_basis() -> None:
+    """Two alike masses on alike springs, loosely tied: any turn of the two shapes is as good, and tells the same."""
+    system = CoupledSystem(
+        (mass("one"), mass("two"), mass("three")),
+        (0.0, 0.0, 0.0),
+        (
+            spring("first", [1.0, 0.0, 0.0], 4.0, 0.01),
+            spring("second", [0.0, 1.0, 0.0], 4.0, 0.01),
+            spring("third", [0.0, 0.0, 1.0], 9.0, 0.02),
+            spring("tie", [1.0, -1.0, 0.0], 4e-12, 0.0),
+        ),
+    )
+    modes = coupled_modes(system)
+    expected = np.array([[0.5, 0.5, 0.0], [0.5, 0.5, 0.0], [0.0, 0.0, 1.0]])
+    np.testing.assert_allclose(modes.shares.kinetic, expected, atol=1e-12)
+    for angle in (0.3, 1.1, 2.5):
+        turn = np.eye(3)
+        turn[:2, :2] = [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
+        turned = mode_shares(system, mean_contact(system), modes.eigenvalues, turn @ modes.shapes)
+        np.testing.assert_allclose(turned.kinetic, modes.shares.kinetic, atol=1e-12)
+        np.testing.assert_allclose(turned.strain, modes.shares.strain, atol=1e-12)
+        np.testing.assert_allclose(turned.damping, modes.shares.damping, atol=1e-12)
