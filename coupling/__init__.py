@@ -63,6 +63,7 @@ from coupling.periodic import (
 )
 from coupling.receptance import receptance, resonance_grid
 from coupling.settings import TransientOutputs, TransientSettings
+from coupling.shaft_dashpots import ShaftDashpots
 from coupling.shares import ModeShares, Part
 from coupling.spectrum import (
     Peak,
@@ -144,6 +145,7 @@ __all__ = [
     "ResponseCurve",
     "RollingLaw",
     "RotorComponent",
+    "ShaftDashpots",
     "SignalParts",
     "Sliding",
     "Spectrum",

@@ -17,6 +17,7 @@ from coupling.gears import GearPairGeometry, ToothContact, sliding_friction
 from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance, constant_torques
 from coupling.mean_mesh import mean_meshes
 from coupling.pressed_flanks import with_pressed_flanks
+from coupling.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from coupling.shuttling import shuttling_loads
 from coupling.sliding import held_at_speed, sliding_flanks
 from coupling.system import CoupledSystem, embed
@@ -93,6 +94,8 @@ class Machine:
         torques; the drive flanks of ``meshes`` first among its contacts, then the back flanks.
     unbalances, bows, torques, drives, base, gravity
         The loads in the system.
+    dashpots : tuple of ShaftDashpots
+        In the rotors' couplings; their connectors stand behind those of the bearings.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -106,6 +109,7 @@ class Machine:
     drives: tuple[Drive, ...] = ()
     base: BaseMotion | None = None
     gravity: tuple[float, ...] | None = None
+    dashpots: tuple[ShaftDashpots, ...] = ()
 
     @property
     def speeds(self) -> dict[str, float]:
@@ -145,6 +149,7 @@ class Machine:
             drives=self.drives,
             base=self.base,
             gravity=self.gravity,
+            dashpots=self.dashpots,
         )
 
 
@@ -162,6 +167,7 @@ def couple(
     base: BaseMotion | None = None,
     gravity: Sequence[float] | None = None,
     rates: tuple[float, float] = (1.0, 1.0),
+    dashpots: Sequence[ShaftDashpots] = (),
 ) -> Machine:
     """Tie rotors and housing together and put the loads on.
 
@@ -179,6 +185,8 @@ def couple(
         How the ground moves: under bearings, pedestals and the housing's supports alike.
     gravity
         Acceleration of free fall along x, y, z [m/s²]; none by default.
+    dashpots
+        In the rotors' couplings, at the nominal speeds.
     rates
         The least and the highest speed that the machine will run at, as parts of ``speeds``: bearings' tables over
         speed are followed between them.
@@ -262,6 +270,12 @@ def couple(
             )
         )
 
+    within = []
+    for given in dashpots:
+        which, rotor = parts.rotor(given.rotor)
+        rows, law_of_coupling = shaft_dashpots(given, rotor, speeds[given.rotor])
+        within.append(replace(law_of_coupling, directions=np.array([embed(components, which, row) for row in rows]).T))
+
     senses = [1 if speeds[mesh.driver.rotor] >= 0.0 else -1 for mesh in meshes]
     phases = mesh_phases(
         [mesh.driver.name for mesh in meshes],
@@ -330,7 +344,7 @@ def couple(
     system = CoupledSystem(
         components=tuple(components),
         speeds=tuple(speeds.get(component.name, 0.0) for component in components),
-        linear=tuple(linear + loads.dashpots),
+        linear=tuple(linear + within + loads.dashpots),
         contacts=tuple(drive + back),
         load=loads.constant,
         harmonic_loads=tuple(loads.harmonic),
@@ -356,6 +370,7 @@ def couple(
         tuple(drives),
         base,
         None if gravity is None else tuple(gravity),
+        tuple(dashpots),
     )
 
 

@@ -19,6 +19,8 @@ BoolArray = npt.NDArray[np.bool_]
 
 _FACING = 0.5  # least cosine between a facet's normal and the direction to the axis
 _ARC_STEPS = 720
+_ROUND = 0.9  # part of the full circle above which a bore is whole
+_SMOOTH = 0.8  # cosine between a cylinder's normal and the next facet's above which the surface runs on
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,8 @@ def find_bores(
     Notes
     -----
     Each facet proposes the circle through its own corners and its neighbours'; the circles that most propose are tried
-    first, and those facets that lie on one all around are a bore.
+    first, and those facets that lie on one all around are a bore. The round end of a slot, or a fillet, is none: its
+    sides run on along its tangents, where those of a split bore end at the parting plane.
     """
     direction = unit_vector(axis)
     found: list[CylindricalBore] = []
@@ -71,10 +74,36 @@ def find_bores(
         if not on.any():
             continue
         for bore in joined_by_span(mesh, pick_facets(mesh.boundary, on), center, direction):
-            if bore.roundness >= least_round and not any(_same(bore, other, direction) for other in found):
+            if bore.roundness < least_round or any(_same(bore, other, direction) for other in found):
+                continue
+            if not _runs_on(mesh, bore, direction):
                 found.append(bore)
         taken |= on
     return tuple(sorted(found, key=lambda bore: (-round(bore.diameter, 7), [round(x, 7) for x in bore.center])))
+
+
+def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
+    """Whether the surface goes on along its tangents beyond the ends of the arc of a bore that is not round.
+
+    At an end the neighbouring facet then looks towards the axis, as the cylinder itself does there; where a bore is
+    split it looks along the arc.
+    """
+    if bore.roundness >= _ROUND:
+        return False
+    normals = facet_normals(mesh.points, mesh.boundary)
+    inside = np.zeros(len(mesh.points), dtype=bool)
+    inside[facet_corners(bore.facets)] = True
+    smooth, start = list[bool](), 0
+    for block in mesh.boundary:
+        on = inside[block.corners]
+        own = normals[start : start + len(block)]
+        start += len(block)
+        # Neighbours share an edge with the bore; what has all its corners there belongs to it.
+        for facet in np.flatnonzero((on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(own @ axis) < SIDEWAYS)):
+            edge = mesh.points[block.corners[facet][on[facet]]].mean(axis=0)
+            inward = -across(edge[None] - np.asarray(bore.center), axis)[0]
+            smooth.append(bool(own[facet] @ inward > _SMOOTH * np.linalg.norm(inward)))
+    return bool(smooth) and 2 * sum(smooth) > len(smooth)
 
 
 def fits_circle(

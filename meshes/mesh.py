@@ -13,6 +13,8 @@ from meshes.errors import GeometryError
 from meshes.mapping import volumes
 from meshes.topology import FaceTable, face_table, faces_as_facets
 
+_ROUNDED = 1e-9  # what a rotation may miss of an orthogonal one
+
 
 @dataclass(frozen=True)
 class Mesh:
@@ -97,6 +99,24 @@ class Mesh:
                 )
         named = {name: facets_of(facets) for name, facets in (surfaces or {}).items()}
         return cls(points, (ElementBlock(kind, cells),), named, volumes or {})
+
+    def rotated(self, rotation: FloatArray) -> "Mesh":
+        """The mesh turned about the origin.
+
+        Parameters
+        ----------
+        rotation : ndarray, shape (3, 3)
+            R of x' = R x, proper and orthogonal.
+
+        Raises
+        ------
+        GeometryError
+            Where it is no rotation.
+        """
+        turn = np.asarray(rotation, dtype=np.float64)
+        if turn.shape != (3, 3) or np.abs(turn @ turn.T - np.eye(3)).max() > _ROUNDED or np.linalg.det(turn) < 0.0:
+            raise GeometryError(f"{turn.tolist()} is no rotation; expected an orthogonal matrix of determinant 1")
+        return Mesh(self.points @ turn.T, self.blocks, self.surfaces, self.volumes)
 
     @property
     def n_elements(self) -> int:

@@ -60,7 +60,7 @@ def check_names(draft: Draft) -> Iterator[Finding]:
 
 
 def _check_materials(draft: Draft) -> Iterator[Finding]:
-    """Yield materials that are referred to and not there."""
+    """Yield materials that are referred to and not there, and those that a solid cannot be of."""
     table = draft.document.get("material")
     materials = [name for name in table if isinstance(name, str)] if isinstance(table, Mapping) else []
     housing = draft.document.get("housing")

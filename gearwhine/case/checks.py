@@ -46,6 +46,11 @@ def warnings_of(case: Case) -> tuple[str, ...]:
         if bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
             found.append(f'bearing "{bearing.name}": its pedestal has no mass: `rotors` alone takes it')
     for rotor in case.rotor:
+        given = [rotor.shear_coefficient, *(getattr(part, "shear_coefficient", None) for part in rotor.segments)]
+        above = [value for value in given if isinstance(value, float) and value > 1.0]
+        if above:
+            told = f"a shear coefficient of {above[0]:g}, above 1"
+            found.append(f'rotor "{rotor.name}": {told}: round sections have 0.5 to 0.93; is its reciprocal meant?')
         if rotor.saved is not None:
             found += [f'rotor "{rotor.name}": {remark}' for remark in rotor.saved.warnings]
         held = rotor.saved is not None and rotor.saved.bearings

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+import numpy as np
+import numpy.typing as npt
+from pydantic import ConfigDict, Discriminator, Field, Tag, field_validator, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.attachments import Joint, LumpedMass, Mount
@@ -15,6 +17,7 @@ from gearwhine.case.box import FACES, FOOT_SURFACES, Box
 from gearwhine.case.directions import Direction, UnitVector, unit_vector
 from gearwhine.case.fields import (
     MOST_ENTRIES,
+    Angle,
     CaseFile,
     DampingFromZero,
     DampingRatio,
@@ -42,20 +45,88 @@ def _shape(value: Any) -> str:
     return "~list" if isinstance(value, (list, tuple)) else "~scalar"
 
 
+_PRINTED = 0.02  # part by which a printed shear modulus may miss that of an isotropic material
+_STIFFEST_SHEAR = 5.0  # shear moduli over that of a Poisson ratio of 0, of composites wound at 45 degrees
+
+
 class Material(Table):
-    """`[material.NAME]`: Young's modulus [Pa], Poisson ratio, density [kg/m³]."""
+    """`[material.NAME]`: Young's modulus [Pa], Poisson ratio, density [kg/m³].
+
+    `shear_modulus` [Pa] where it is not E / (2 (1 + ν)), as of shafts that are drawn or wound; of shafts alone, since
+    the solids of a housing are isotropic.
+    """
+
+    model_config = ConfigDict(serialize_by_alias=True)
 
     youngs_modulus: ElasticModulus
     poisson_ratio: Annotated[float, Quantity(units.RATIO, at_least=0.0, below=0.5)]
     density: Density
+    own_shear_modulus: ElasticModulus | None = Field(default=None, alias="shear_modulus")
+
+    @model_validator(mode="after")
+    def _shears(self) -> Material:
+        # What the formulas of shear coefficients take for Poisson's ratio is E / 2G - 1.
+        low, high = self.youngs_modulus / 3.0, self.youngs_modulus / 2.0 * _STIFFEST_SHEAR
+        if self.own_shear_modulus is not None and not low <= self.own_shear_modulus <= high:
+            expected = f"a shear modulus from {low:.4g} to {high:.4g} Pa, of a material of this Young's modulus"
+            raise wrong(expected, "shear_modulus")
+        return self
+
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether its shear modulus is that of its Young's modulus and Poisson ratio, as printed numbers have it."""
+        return abs(self.shear_modulus / self._isotropic_shear_modulus - 1.0) <= _PRINTED
 
     @property
     def shear_modulus(self) -> float:
-        """E / (2 (1 + ν)) [Pa]."""
+        """As given, else E / (2 (1 + ν)) [Pa]."""
+        return self._isotropic_shear_modulus if self.own_shear_modulus is None else self.own_shear_modulus
+
+    @property
+    def _isotropic_shear_modulus(self) -> float:
         return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
 
 
-class CadFile(Table):
+class Turn(Table):
+    """A rotation about an axis through the origin, counter-clockwise seen from its tip."""
+
+    axis: Direction
+    angle: Angle
+
+    @property
+    def matrix(self) -> npt.NDArray[np.float64]:
+        """By Rodrigues' formula, shape (3, 3)."""
+        k = np.array(unit_vector(self.axis))
+        across = np.cross(np.eye(3), k)
+        return np.asarray(np.eye(3) + np.sin(self.angle) * across + (1.0 - np.cos(self.angle)) * across @ across)
+
+
+class Turned(Table):
+    """A geometry whose file has another frame than the machine, whose shafts lie along z.
+
+    `shafts_along` names the file's axis along which they lie there: y, z, x of the file become x, y, z for "x", and z,
+    x, y for "y". Or `turn` gives the rotation about the origin, { axis, angle }.
+    """
+
+    shafts_along: Literal["x", "y", "z"] | None = None
+    turn: Turn | None = None
+
+    @model_validator(mode="after")
+    def _turned_once(self) -> Turned:
+        if self.shafts_along is not None and self.turn is not None:
+            raise wrong("either 'shafts_along' or 'turn', not both", "turn")
+        return self
+
+    @property
+    def rotation(self) -> npt.NDArray[np.float64]:
+        """R of x' = R x from the file's frame to the machine's, shape (3, 3)."""
+        if self.turn is not None:
+            return self.turn.matrix
+        order = {"x": [1, 2, 0], "y": [2, 0, 1]}.get(self.shafts_along or "z", [0, 1, 2])
+        return np.eye(3)[order]
+
+
+class CadFile(Turned):
     """`[housing.cad]`: a STEP, IGES or BREP file and the element size [m], if wanted a smaller one around the seats.
 
     `unit` is that of the file's numbers where the file states none itself; then it is by default a millimetre. Solids
@@ -75,7 +146,7 @@ class CadFile(Table):
         return self
 
 
-class MeshFile(Table):
+class MeshFile(Turned):
     """`[housing.mesh]`: a finite-element mesh file and the unit of its coordinates."""
 
     file: CaseFile

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Any
 
-from gearwhine.case.problems import NOTHING, CaseError, Location, Problem, did_you_mean, key_of
+from gearwhine.case.problems import NOTHING, CaseError, Location, Problem, did_you_mean, key_of, look_up
 
 _STEP = re.compile(r"""\[(\d{1,9})\]|\.?(?:"([^"]*)"|'([^']*)'|([^.\[\]"']+))""")
 
@@ -43,7 +43,8 @@ def apply_overrides(document: dict[str, Any], overrides: Iterable[str]) -> tuple
     """Apply ``key.path=value`` texts to a copy of a document, in order.
 
     A value is written as in TOML; what is not TOML (``10 mm``, ``lumped``) stands for itself as text. An empty
-    value takes the key away. Keys that are not yet there are added; whether they may be is for the models to say.
+    value takes the key away. Keys that are not yet there are added; whether they may be is for the models to say. A
+    step ``*`` stands for every entry of a list or a table, and leaves out those that have not the key.
 
     Returns
     -------
@@ -63,7 +64,8 @@ def apply_overrides(document: dict[str, Any], overrides: Iterable[str]) -> tuple
             problems.append(Problem("--set", override, "key.path=value, such as housing.box.wall=10mm"))
             continue
         try:
-            places = _set(document, steps, _read_value(value_text.strip()))
+            value = _read_value(value_text.strip())
+            places = [place for path in _expanded(document, steps) for place in _set(document, path, value)]
         except _LeadsNowhereError as stop:
             problems.append(Problem(stop.key, stop.value, stop.expected, source=f"--set {override}"))
         else:
@@ -76,6 +78,32 @@ def apply_overrides(document: dict[str, Any], overrides: Iterable[str]) -> tuple
 class _LeadsNowhereError(Exception):
     def __init__(self, location: Location, step: str, expected: str) -> None:
         self.key, self.value, self.expected = key_of((*location, step)), step, expected
+
+
+def _expanded(document: Any, steps: tuple[str, ...]) -> list[tuple[str, ...]]:
+    """The paths that a path with wildcards stands for; itself without any."""
+    if "*" not in steps:
+        return [steps]
+    found = [tuple(str(step) for step in place) for place in matching_places(document, steps)]
+    if not found:
+        raise _LeadsNowhereError((), ".".join(steps), "a path with * that some entries of the case have")
+    return found
+
+
+def matching_places(document: object, steps: Sequence[str], place: Location = ()) -> Iterator[Location]:
+    """Every location of a document that a key path leads to, ``*`` standing for each entry of a table or a list."""
+    if not steps:
+        yield place
+        return
+    step, *rest = steps
+    here = look_up(document, place)
+    if isinstance(here, Mapping):
+        for key in here if step == "*" else [step] if step in here else []:
+            yield from matching_places(document, rest, (*place, key))
+    elif isinstance(here, list):
+        found = place_in_list(here, step)
+        for number in range(len(here)) if step == "*" else [] if found is None else [found]:
+            yield from matching_places(document, rest, (*place, number))
 
 
 def _read_value(text: str) -> Any:

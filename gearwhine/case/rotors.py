@@ -22,6 +22,7 @@ from gearwhine.case.fields import (
     MOST_ENTRIES,
     Angle,
     CaseFile,
+    DampingFromZero,
     DampingRatio,
     Density,
     Force,
@@ -44,6 +45,11 @@ if TYPE_CHECKING:
     from rotors import RossModel
 
 
+_MOST_SHEAR = 1.5
+"""Coefficients of sections that bend softer than they shear are above 1, hardly ever by more; its reciprocal is meant
+where one is."""
+
+
 @dataclass(frozen=True)
 class _ShearRule:
     """Validates a shear coefficient: a formula by its name, or the number itself."""
@@ -55,14 +61,15 @@ class _ShearRule:
         if value == "cowper" or value == "hutchinson":
             return value
         try:
-            return Quantity(units.RATIO, above=0.0, at_most=1.0).validate(value)
+            return Quantity(units.RATIO, above=0.0, at_most=_MOST_SHEAR).validate(value)
         except PydanticCustomError:
-            raise wrong("'cowper', 'hutchinson', or a number above 0 and of at most 1") from None
+            raise wrong(f"'cowper', 'hutchinson', or a number above 0 and of at most {_MOST_SHEAR:g}") from None
 
 
 ShearFormula = Literal["cowper", "hutchinson"]
 ShearCoefficient = Annotated[ShearFormula | float, _ShearRule()]
 PositiveTiltStiffness = Annotated[float, Quantity(units.TILT_STIFFNESS, above=0.0)]
+TiltDampingFromZero = Annotated[float, Quantity(units.TILT_DAMPING, at_least=0.0)]
 
 
 _SLENDEREST = 1000.0  # length over diameter of a piece of shaft
@@ -100,13 +107,17 @@ class Segment(Table):
 
 class Coupling(Table):
     """A flexible coupling: stiffness across the axis and along it [N/m], against an angle between the axes and about
-    them [N m/rad]; mass [kg] and inertias [kg m²] of the whole.
+    them [N m/rad]; dashpots beside these [N s/m, N m s/rad]; mass [kg] and inertias [kg m²] of the whole.
     """
 
     lateral_stiffness: PositiveStiffness
     tilt_stiffness: PositiveTiltStiffness
     torsional_stiffness: PositiveTiltStiffness
     axial_stiffness: PositiveStiffness
+    lateral_damping: DampingFromZero = 0.0
+    tilt_damping: TiltDampingFromZero = 0.0
+    torsional_damping: TiltDampingFromZero = 0.0
+    axial_damping: DampingFromZero = 0.0
     mass: Mass = 0.0
     polar_inertia: Inertia = 0.0
     diametral_inertia: Inertia = 0.0

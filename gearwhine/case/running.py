@@ -84,7 +84,7 @@ class Transient(Table):
     run: Run | None = None
     discard: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = Field(default_factory=_half_the_run)
     points_per_revolution: Annotated[int, Whole(200, 1_000_000)] = 200
-    tolerance: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=0.1)] = 1e-4
+    tolerance: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=0.1)] = 5e-4
     start: Literal["equilibrium", "unloaded"] = "equilibrium"
     method: Literal["newmark", "exact", "auto"] = "newmark"
     modal_coordinates: Annotated[int, Whole(0, 1000)] = 0

@@ -1,4 +1,8 @@
-"""The keys that a sweep goes through: the speeds of ``[sweep]``, and ``--over key.path=from:to:n`` or ``=a,b,c``."""
+"""The keys that a sweep goes through: the speeds of ``[sweep]``, and ``--over key.path=from:to:n`` or ``=a,b,c``.
+
+Keys with commas between move together, and ``*`` stands for every entry: ``--over bearing.*.stiffness.xx,
+bearing.*.stiffness.yy=1e7:1e9:5``.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +31,7 @@ class SweptKey:
     Attributes
     ----------
     key
-        Key path, as ``--set`` takes it.
+        Key path, as ``--set`` takes it; several with commas between.
     texts
         The values as ``--set`` takes them.
     values
@@ -47,9 +51,14 @@ class SweptKey:
         return not isinstance(self.values[0], str)
 
     @property
-    def overrides(self) -> tuple[str, ...]:
-        """``key.path=value`` for each value."""
-        return tuple(f"{self.key}={text}" for text in self.texts)
+    def keys(self) -> tuple[str, ...]:
+        """The key paths that move together."""
+        return tuple(_divided(self.key, ","))
+
+    @property
+    def overrides(self) -> tuple[tuple[str, ...], ...]:
+        """``key.path=value`` of every key, for each value."""
+        return tuple(tuple(f"{key}={text}" for key in self.keys) for text in self.texts)
 
 
 def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
@@ -68,12 +77,13 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
             keys.append(parse_over(text))
         except CaseError as error:
             problems += error.problems
-    paths = [parse_key_path(key.key) for key in keys]
-    problems += [
-        Problem("--over", key.key, "each key once")
-        for number, key in enumerate(keys)
-        if paths[number] in paths[:number]
-    ]
+    paths = list[tuple[str, ...] | None]()
+    for key in keys:
+        for one in key.keys:
+            path = parse_key_path(one)
+            if path in paths:
+                problems.append(Problem("--over", key.key, "each key once"))
+            paths.append(path)
     if case.sweep is not None and parse_key_path(SPEED_KEY) not in paths:
         keys.insert(0, _speeds(case.sweep.speeds))
     if not keys and not problems:
@@ -98,8 +108,8 @@ def parse_over(text: str) -> SweptKey:
     CaseError
     """
     key, equals, values = text.partition("=")
-    key = key.strip()
-    if not equals or parse_key_path(key) is None or not values.strip():
+    key = ",".join(part.strip() for part in _divided(key, ","))
+    if not equals or not all(map(parse_key_path, _divided(key, ","))) or not values.strip():
         raise _wrong(text, _EXPECTED)
     ends = _divided(values, ":")
     if len(ends) == 1:

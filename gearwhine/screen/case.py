@@ -136,7 +136,8 @@ def _bushing_line(kind: str, bushing: dict[str, Any]) -> str:
 
 def _bore_line(bore: dict[str, Any]) -> str:
     place = ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in bore["center_m"])
-    return f"bore of {1e3 * bore['diameter_m']:.5g} mm at ({place}) mm, {1e3 * bore['length_m']:.4g} mm long"
+    along = "" if bore["axis"] == "z" else f" along {bore['axis']}"
+    return f"bore of {1e3 * bore['diameter_m']:.5g} mm{along} at ({place}) mm, {1e3 * bore['length_m']:.4g} mm long"
 
 
 def _rotor_line(rotor: dict[str, Any]) -> str:

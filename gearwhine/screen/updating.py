@@ -1,5 +1,6 @@
 """What was fitted to the measured modes, and what that is worth."""
 
+import math
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
@@ -80,6 +81,8 @@ def _choice(document: dict[str, Any]) -> str:
         alone = f", {document['wrong_pairs']} without a partner" if document["wrong_pairs"] else ""
         return f"MAC from {min(values):.2f} to {max(values):.2f}{alone}"
     agree = "agree" if document["measures_agree"] else "do not all agree"
+    if not math.isfinite(document["gap"]):
+        return "no mode of the band is left out of the pairs"
     return f"gap {document['gap']:.2f}, the three measures of dominance {agree}"
 
 

@@ -4,6 +4,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.box_shape import box_geometry
@@ -40,8 +43,10 @@ def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int 
     if given.mesh is not None:
         with _at_fault("housing.mesh", "a mesh of solid elements", file=True):
             mesh = read_mesh(given.mesh.file, unit=UNITS[given.mesh.unit])
+            mesh = mesh.rotated(given.mesh.rotation)
         return _with_seats(case, mesh)
     assert given.cad is not None
+    turn = given.cad.rotation
     with _at_fault("housing.cad", "a solid that can be meshed", file=True):
         found = mesh_cad(
             given.cad.file,
@@ -49,12 +54,18 @@ def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int 
             glue=given.cad.glue,
             unit=None if given.cad.unit is None else UNITS[given.cad.unit],
             order=order,
-            refine=[(seat.center, seat.diameter) for seat in given.seat],
+            refine=[(_in_the_file(seat.center, turn), seat.diameter) for seat in given.seat],
             refined_size=given.cad.seat_mesh_size,
         )
     for remark in found.remarks:
         warn(f"{given.cad.file.name}: {remark}")
-    return _with_seats(case, found.mesh)
+    return _with_seats(case, found.mesh.rotated(turn))
+
+
+def _in_the_file(place: tuple[float, float, float], turn: npt.NDArray[np.float64]) -> tuple[float, float, float]:
+    """Where a place of the machine is in the frame of the file."""
+    x, y, z = (turn.T @ np.array(place)).tolist()
+    return x, y, z
 
 
 @contextmanager
@@ -103,8 +114,18 @@ def cover_joints(case: Case) -> list[room.Joint]:
 
 
 def material_of(case: Case, name: str) -> room.Material:
-    """A material of the case."""
+    """A material of the case, for a solid.
+
+    Raises
+    ------
+    CaseError
+        Where its shear modulus is not that of an isotropic one.
+    """
     steel = case.material[name]
+    if not steel.is_isotropic:
+        expected = f"E / (2 (1 + ν)) = {steel.youngs_modulus / (2.0 * (1.0 + steel.poisson_ratio)):.5g} Pa in a housing"
+        shown = f"{steel.shear_modulus:.5g} Pa"
+        raise CaseError([Problem(f"material.{name}.shear_modulus", shown, f"{expected}, whose solids are isotropic")])
     return room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
 
 
@@ -132,8 +153,9 @@ def bolts_document(case: Case) -> list[dict[str, Any]]:
 
 
 def bores_document(mesh: Mesh) -> list[dict[str, Any]]:
-    """The bores along z that a mesh has, the widest first."""
+    """The bores along each axis that a mesh has: those along z, where shafts are, then others, the widest first."""
     return [
-        {"center_m": list(bore.center), "diameter_m": bore.diameter, "length_m": bore.length}
-        for bore in find_bores(mesh)
+        {"center_m": list(bore.center), "diameter_m": bore.diameter, "length_m": bore.length, "axis": axis}
+        for axis, direction in zip("zxy", np.eye(3)[[2, 0, 1]], strict=True)
+        for bore in find_bores(mesh, axis=direction)
     ]

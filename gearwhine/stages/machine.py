@@ -103,7 +103,7 @@ def build_machine(
     require(case, "rotor", "operation", command="system")
     assert case.operation is not None
     speeds = rotor_speeds(case)
-    components, bows = [], []
+    components, bows, dashpots = [], [], list[room.ShaftDashpots]()
     bearings: list[room.MountedBearing] = []
     for given in case.rotor:
         progress(f"modes of rotor {given.name}")
@@ -136,6 +136,7 @@ def build_machine(
                 axis=given.axis,
             )
         )
+        dashpots += _coupling_dashpots(given.name, rotor)
         if bow is not None:
             bows.append(room.BowReactions(given.name, bow.at, rotor_room.bow_shape(rotor, bow).reactions))
         # Those of the rotor's own file stand on the ground.
@@ -164,7 +165,20 @@ def build_machine(
         rates=driven.rates,
         base=base_motion(case),
         gravity=case.operation.gravity,
+        dashpots=dashpots,
     )
+
+
+def _coupling_dashpots(name: str, rotor: rotor_room.Rotor) -> list[room.ShaftDashpots]:
+    """Dashpots of a rotor's couplings."""
+    found, left = list[room.ShaftDashpots](), 0.0
+    for part in rotor.segments:
+        if isinstance(part, rotor_room.Coupling) and part.is_damped:
+            label = f"coupling {sum(one.rotor == name for one in found) + 1} of {name}"
+            values = (part.lateral_damping, part.tilt_damping, part.torsional_damping, part.axial_damping)
+            found.append(room.ShaftDashpots(label, name, left, left + part.length, *values))
+        left += part.length
+    return found
 
 
 def solve_machine(

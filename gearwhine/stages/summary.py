@@ -24,6 +24,7 @@ from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gear_shapes import doubts, geometry_document, pairs_document
 from gearwhine.stages.gears import backlash_doubts, pair_geometries, require_sound_faults
+from gearwhine.stages.geometry import material_of
 from gearwhine.stages.measured import measured_document
 from gearwhine.stages.thrust import require_carried_thrust
 from gearwhine.stages.update_keys import fitted_case
@@ -41,6 +42,8 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
     if case.update is not None:
         fitted_case(case)
     if case.housing is not None:
+        for name in {case.housing.material, *(region.material for region in case.housing.region)}:
+            material_of(case, name)
         foreseen, warnings = mesh_health.foresee(case, progress)
         document["housing"] = _housing(case) | foreseen
         document["warnings"] = warnings

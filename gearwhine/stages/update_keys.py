@@ -6,7 +6,7 @@ from typing import Any
 
 from gearwhine.case import Case, CaseError, Problem, UpdateParameter, case_document, parse_case
 from gearwhine.case.box import FACES
-from gearwhine.case.overrides import parse_key_path, place_in_list
+from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.problems import Location, key_of, look_up
 from gearwhine.case.units import amount, si_amount
 from housing.updating import Parameter
@@ -106,7 +106,7 @@ def fitted_case(case: Case, mesh_size: float | None = None) -> FittedCase:
         for position, key in enumerate(given.keys):
             where = f"update.parameter[{index}].keys[{position}]"
             steps = parse_key_path(key)
-            found = list(_places(document, steps or ()))
+            found = list(matching_places(document, steps or ()))
             if not found:
                 problems.append(Problem(where, key, "the key path of a number in this case", label))
             for place in found:
@@ -149,22 +149,6 @@ def _number(
 def unit_in_si(given: UpdateParameter) -> float:
     """What the unit that a parameter is written in amounts to."""
     return amount(f"1 {given.unit}") if given.unit else 1.0
-
-
-def _places(document: object, steps: Sequence[str], place: Location = ()) -> Iterator[Location]:
-    """Every location that a key path, with wildcards, leads to."""
-    if not steps:
-        yield place
-        return
-    step, *rest = steps
-    here = look_up(document, place)
-    if isinstance(here, Mapping):
-        for key in here if step == "*" else [step] if step in here else []:
-            yield from _places(document, rest, (*place, key))
-    elif isinstance(here, list):
-        found = place_in_list(here, step)
-        for number in range(len(here)) if step == "*" else [] if found is None else [found]:
-            yield from _places(document, rest, (*place, number))
 
 
 def with_entry(document: Any, place: Location, value: Any) -> Any:

@@ -144,6 +144,18 @@ class Misfit:
         return min(self.gap, self.margin) > 0.0
 
     @property
+    def in_words(self) -> str:
+        """Errors, how clear the choice of modes is, and how many there are, as far as these mean something."""
+        parts = [f"max {self.max_percent:.2f} %"]
+        if self.mac is None:
+            clear = np.isfinite([self.gap, self.margin]).all()
+            rivals = f"gap {self.gap:.2f}, margin {self.margin:.2f}" if clear else "no other mode in the band"
+            parts.append(rivals)
+        if self.count:
+            parts.append(f"{self.count} modes below the limit")
+        return ", ".join(parts)
+
+    @property
     def rms_percent(self) -> float:
         """Root-mean-square error of the paired modes; infinite where none is."""
         errors = np.expm1(self.errors[self.pairs != UNPAIRED])

@@ -262,7 +262,7 @@ def _better(
     met = is_met(target, misfit)
     progress(
         f"search {runner.number + 1} on the fine mesh: misfit {misfit.value:.4g}, rms {misfit.rms_percent:.2f} %, "
-        f"max {misfit.max_percent:.2f} %, gap {misfit.gap:.2f}, margin {misfit.margin:.2f}, {misfit.count} modes"
+        f"{misfit.in_words}"
         f"{': all that is asked for' if met else ''}"
     )
     seen = (*(() if best is None else best.seen), runner.coordinates)

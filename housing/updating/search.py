@@ -151,7 +151,7 @@ def search(
         progress(
             f"solve {len(steps)}: misfit {found.value:.4g} ({'better' if accepted else 'no better'} than "
             f"{misfit.value:.4g}, {promised:.4g} promised), rms {found.rms_percent:.2f} %, "
-            f"max {found.max_percent:.2f} %, gap {found.gap:.2f}, margin {found.margin:.2f}, {found.count} modes, "
+            f"{found.in_words}, "
             f"trust {trust:.3f}"
         )
         enough = until(trial)

@@ -75,7 +75,7 @@ ONE_WRONG = {
         "rotor[0].shear_coefficient",
         "'cowper', 'hutchinson', or",
     ),
-    "shear coefficient upside down": (f"{CONE}.shear_coefficient", 1.11, "rotor[0].segments[1].shear_coefficient", "1"),
+    "shear coefficient upside down": (f"{CONE}.shear_coefficient", 1.8, "rotor[0].segments[1].shear_coefficient", "1"),
     "no shear": (f"{CONE}.shear_coefficient", 0, "rotor[0].segments[1].shear_coefficient", "above 0"),
     # couplings
     "no stiffness": (

@@ -73,7 +73,7 @@ def test_speeds_of_the_case_come_first_and_exact() -> None:
     assert (speed.key, torque.key) == ("operation.speed", "operation.torque")
     assert speed.values == tuple(range(1500, 6001, 250))
     assert case.sweep is not None
-    read_back = [load_case("small-gearbox", [override]).case.operation.speed for override in speed.overrides]  # type: ignore[union-attr]
+    read_back = [load_case("small-gearbox", override).case.operation.speed for override in speed.overrides]  # type: ignore[union-attr]
     assert tuple(read_back) == case.sweep.speeds
 
 

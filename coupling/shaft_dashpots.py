@@ -1,0 +1,68 @@
+"""Dashpots in flexible couplings, which turn with their shaft.
+
+A coupling of length L yields by the sway of its right end over its left one, δ = u_r - u_l - L (φ_l + φ_r)/2 across the
+axis, by the tilt φ_r - φ_l, and along and about the axis by the differences of its ends. Dashpots resist the rates of
+these in the turning shaft. Across the axis that is, in the frame at rest and at a speed Ω,
+
+    f = c (δ' + Ω (δ_y, -δ_x)),
+
+damping and a circulatory stiffness: internal damping, which feeds forward whirl above its natural frequency (Genta,
+Dynamics of Rotating Systems, 2005, section 4.4).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.component import RotorComponent
+from coupling.connector import LinearConnector
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ShaftDashpots:
+    """The dashpots of a coupling in a rotor.
+
+    Attributes
+    ----------
+    name, rotor : str
+    left, right : float
+        Its ends, from the rotor's left one [m].
+    lateral, axial : float
+        [N s/m].
+    tilt, torsional : float
+        [N m s/rad].
+    """
+
+    name: str
+    rotor: str
+    left: float
+    right: float
+    lateral: float = 0.0
+    tilt: float = 0.0
+    torsional: float = 0.0
+    axial: float = 0.0
+
+
+def shaft_dashpots(given: ShaftDashpots, rotor: RotorComponent, speed: float) -> tuple[FloatArray, LinearConnector]:
+    """Deflections of a coupling by its rotor's coordinates, shape (6, m), and the law over these as a connector.
+
+    Parameters
+    ----------
+    speed : float
+        Ω, signed [rad/s].
+    """
+    left, right = rotor.motions(given.left), rotor.motions(given.right)
+    middle = 0.5 * (given.right - given.left) * (left[3:] + right[3:])
+    # A tilt about y moves what is further along z to +x, one about x to -y.
+    sway = right[:2] - left[:2] - np.array([middle[1], -middle[0]])
+    tilt = right[3:] - left[3:]
+    turn = rotor.rotation(given.right) - rotor.rotation(given.left)
+    rows = np.vstack([sway, tilt, turn[None], right[2:3] - left[2:3]])
+    damping = np.diag([given.lateral, given.lateral, given.tilt, given.tilt, given.torsional, given.axial])
+    circulating = np.zeros((6, 6))
+    for first, value in ((0, given.lateral), (2, given.tilt)):
+        circulating[first, first + 1], circulating[first + 1, first] = speed * value, -speed * value
+    return rows, LinearConnector(given.name, rows.T, circulating, damping)

@@ -1,0 +1,69 @@
+"""Dashpots in couplings: damping ratios by hand, and internal damping that feeds forward whirl above its frequency."""
+
+import math
+
+import numpy as np
+import pytest
+
+from coupling import Machine, MountedBearing, ShaftDashpots, couple, coupled_modes, rotor_component
+from rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
+
+STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
+TORSIONAL, AXIAL, LATERAL = 2e4, 1e7, 4e6
+INERTIA = (0.05, 0.03)
+
+
+def machine(speed: float = 0.0, polar: tuple[float, float] = INERTIA, **damping: float) -> Machine:
+    """Two short thick shafts with a disc each and a soft coupling between them, on a bearing at either end."""
+    shaft = Segment(0.1, 0.08, 0.0, STEEL)
+    soft = Coupling(0.02, LATERAL, 1e5, TORSIONAL, AXIAL)
+    discs = [Disc(0.05, 5.0, polar[0], 0.02), Disc(0.17, 5.0, polar[1], 0.02)]
+    rotor = Rotor("train", [shaft, soft, shaft], discs)
+    # The left bearing holds the axis as well, so that there are axial modes.
+    held = [
+        Bearing("left", 0.0, np.diag([1e9, 1e9, 1e12, 0.0, 0.0]), np.zeros((5, 5))),
+        Bearing("right", 0.22, np.diag([1e9, 1e9]), np.zeros((2, 2))),
+    ]
+    component = rotor_component("train", modal_rotor(rotor, held, count=8), start=0.0)
+    dashpots = [ShaftDashpots("coupling 1", "train", 0.1, 0.12, **damping)] if damping else []
+    bearings = [MountedBearing(bearing, "train", None) for bearing in held]
+    return couple([component], None, speeds={"train": speed}, bearings=bearings, dashpots=dashpots)
+
+
+def test_torsion_is_damped_as_two_inertias_on_a_spring_and_a_dashpot() -> None:
+    """ζ = c ω / 2k of the mode that the coupling makes, J' = J₁ J₂ / (J₁ + J₂)."""
+    modes = coupled_modes(machine(torsional=0.3).system)
+    shaft = STEEL.density * math.pi / 32.0 * 0.08**4 * 0.1
+    one, other = INERTIA[0] + shaft, INERTIA[1] + shaft
+    omega = math.sqrt(TORSIONAL * (one + other) / (one * other))
+    near = int(np.argmin(np.abs(2.0 * math.pi * modes.frequencies_hz - omega)))
+    assert modes.kinds[near] == "torsion"
+    assert 2.0 * math.pi * modes.frequencies_hz[near] == pytest.approx(omega, rel=1e-2)
+    assert modes.damping_ratios[near] == pytest.approx(0.3 * omega / (2.0 * TORSIONAL), rel=2e-2)
+    assert "coupling 1" in [part.name for part in modes.shares.parts]
+
+
+def test_axial_motion_is_damped_as_a_mass_on_a_spring_and_a_dashpot() -> None:
+    modes = coupled_modes(machine(axial=200.0).system)
+    mass = 5.0 + STEEL.density * math.pi / 4.0 * 0.08**2 * 0.1
+    omega = math.sqrt(AXIAL / mass)
+    near = int(np.argmin(np.abs(2.0 * math.pi * modes.frequencies_hz - omega)))
+    assert modes.kinds[near] == "axial"
+    assert modes.damping_ratios[near] == pytest.approx(200.0 * omega / (2.0 * AXIAL), rel=3e-2)
+
+
+def test_internal_damping_feeds_forward_whirl_above_its_frequency() -> None:
+    """In the turning shaft a whirl at ω is seen at ω - Ω: ζ = ζ₀ (1 - Ω/ω) forward and ζ₀ (1 + Ω/ω) backward."""
+
+    def lowest(speed: float) -> tuple[np.ndarray, np.ndarray]:
+        modes = coupled_modes(machine(speed, polar=(1e-5, 1e-5), lateral=100.0).system)
+        pair = [i for i, kind in enumerate(modes.kinds) if kind == "rotor"][:2]
+        return 2.0 * math.pi * modes.frequencies_hz[pair], modes.damping_ratios[pair]
+
+    (omega, _), (ratio, _) = lowest(0.0)
+    assert ratio > 1e-4
+    for part in (0.5, 1.0, 1.6):
+        _, ratios = lowest(part * omega)
+        # The shafts' own gyroscopic moments part the two frequencies a little.
+        expected = [ratio * (1.0 - part), ratio * (1.0 + part)]
+        np.testing.assert_allclose(np.sort(ratios), expected, atol=0.1 * ratio)

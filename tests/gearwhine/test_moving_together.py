@@ -1,0 +1,54 @@
+"""Keys that change together: `*` in a change, and several keys of one `--over`; materials whose shear is their own."""
+
+import pytest
+
+from gearwhine.case import CaseError, Material, load_case, swept_keys
+from gearwhine.stages.geometry import material_of
+from gearwhine.stages.machine import build_machine
+from gearwhine.sweep.points import sweep_points
+
+
+def test_a_star_stands_for_every_entry_that_has_the_key() -> None:
+    case = load_case("spur-pair", ["bearing.*.stiffness.xx=3e8 N/m"]).case
+    assert {bearing.stiffness.xx for bearing in case.bearing} == {3e8}
+    assert {bearing.stiffness.yy for bearing in case.bearing} != {3e8}
+    with pytest.raises(CaseError, match=r"a path with \* that some entries of the case have"):
+        load_case("spur-pair", ["bearing.*.hardness=1"])
+
+
+def test_keys_with_commas_between_move_together() -> None:
+    case = load_case("spur-pair").case
+    over = "bearing.*.stiffness.xx, bearing.*.stiffness.yy=1e8 N/m:3e8 N/m:3"
+    keys = [key for key in swept_keys(case, [over]) if key.key != "operation.speed"]
+    (key,) = keys
+    assert key.keys == ("bearing.*.stiffness.xx", "bearing.*.stiffness.yy")
+    points = sweep_points("spur-pair", ["transient.revolutions=2", "transient.discard=1"], keys)
+    stiffnesses = [{(b.stiffness.xx, b.stiffness.yy) for b in point.case.bearing} for point in points]
+    assert stiffnesses == [{(1e8, 1e8)}, {(2e8, 2e8)}, {(3e8, 3e8)}]
+    with pytest.raises(CaseError, match="each key once"):
+        swept_keys(case, ["bearing.0.at,bearing.0.at=10 mm,12 mm"])
+
+
+def test_a_shear_modulus_of_its_own_is_that_of_shafts_alone() -> None:
+    steel = Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0)
+    assert steel.is_isotropic
+    changes = ["material.steel.shear_modulus=70 GPa"]
+    case = load_case("spur-pair", changes).case
+    assert case.material["steel"].shear_modulus == 70e9
+    rotor = build_machine(case, None, ()).rotors[0]
+    stiffer = build_machine(load_case("spur-pair", ["material.steel.shear_modulus=90 GPa"]).case, None, ()).rotors[0]
+    # Elastic torsion goes with the root of the shear modulus.
+    ratio = stiffer.modal.torsional.frequencies[1] / rotor.modal.torsional.frequencies[1]
+    assert ratio == pytest.approx((90.0 / 70.0) ** 0.5, rel=1e-9)
+    with pytest.raises(CaseError, match="in a housing, whose solids are isotropic"):
+        material_of(load_case("small-gearbox", changes).case, "steel")
+    with pytest.raises(CaseError, match="of a material of this Young's modulus"):
+        load_case("spur-pair", ["material.steel.shear_modulus=7 GPa"])
+
+
+def test_shear_coefficients_may_be_above_one() -> None:
+    loaded = load_case("spur-pair", ["rotor.0.shear_coefficient=1.2"])
+    assert loaded.case.rotor[0].shear_coefficient == 1.2
+    assert any("is its reciprocal meant?" in warning for warning in loaded.warnings)
+    with pytest.raises(CaseError, match=r"above 0 and of at most 1\.5"):
+        load_case("spur-pair", ["rotor.0.shear_coefficient=1.6"])
