@@ -121,6 +121,16 @@ class Machine:
         """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
         return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
 
+    @property
+    def pressed_contacts(self) -> tuple[int, ...]:
+        """Number of the contact of each mesh that its mean load presses: drive flanks, or back flanks if braked."""
+        contacts, found, back = self.system.contacts, list[int](), len(self.meshes)
+        for number, mesh in enumerate(self.meshes):
+            has_back = mesh.backlash is not None
+            found.append(back if has_back and contacts[back].drives else number)
+            back += has_back
+        return tuple(found)
+
     def at_speed(self, speed: float) -> "Machine":
         """The machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
 

@@ -314,7 +314,14 @@ def _rest_position(linear: CoupledSystem) -> FloatArray:
 def _name_of(system: CoupledSystem, group: ExcitationGroup) -> str:
     """What a group's excitations are, for people."""
     names = [f"mesh {system.contacts[i].name}" for i in group.meshes]
+    rates = [2.0 * np.pi * abs(system.contacts[i].rate) for i in group.meshes]
     for frequency in group.frequencies:
+        # Harmonics of a mesh, such as those of a load that wanders along its face, go without saying.
+        if any(
+            abs(frequency / rate - max(round(frequency / rate), 1)) <= _SAME_FREQUENCY * frequency / rate
+            for rate in rates
+        ):
+            continue
         turning = [
             component.name
             for component, speed in zip(system.components, system.speeds, strict=True)

@@ -92,8 +92,9 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
     length = 2 * len(times) // (_ROWS + 1)
     units, spectra, orders = {}, {}, {}
     signals = {name: (signal, "m/s²") for name, signal in solved.histories.sensor_acceleration.items()}
-    for mesh in solved.machine.system.contacts[: len(solved.machine.meshes)]:
-        signals[mesh.name] = solved.histories.mesh_force[mesh.name], "N"
+    for number in solved.machine.pressed_contacts:
+        name = solved.machine.system.contacts[number].name
+        signals[name] = solved.histories.mesh_force[name], "N"
     for name, (signal, unit) in signals.items():
         found = signature.spectrogram(signal[span], interval, length, length // 2, start=float(times[0]))
         turned = signature.order_resampled(signal[span], times, turning, turns_per_second, per_turn=per_turn)

@@ -251,7 +251,7 @@ def _motion_document(machine: room.Machine, motion: SteadyMotion) -> dict[str, A
         "gear_pairs": [
             _pair_figures(mesh, motion.response, number)
             | {"force_lines": _lines(motion, motion.histories.mesh_force[name], "amplitude_n")}
-            for number, (name, mesh) in enumerate(_drives(machine))
+            for number, name, mesh in _pressed(machine)
         ],
         "sensors": [
             {
@@ -308,7 +308,7 @@ def _superposed_document(solved: SolvedSteady, sum_: room.SuperposedResponse) ->
                     motions, [one.histories.mesh_force[name] for one in motions], "amplitude_n"
                 ),
             }
-            for number, (name, mesh) in enumerate(_drives(solved.machine))
+            for number, name, mesh in _pressed(solved.machine)
         ],
         "sensors": [
             {
@@ -379,13 +379,17 @@ def _curve_document(solved: SolvedSteady, curve: room.ResponseCurve) -> dict[str
                 "peak_force_n": curve.peak_force[:, number].tolist(),
                 "contact_loss_fraction": curve.contact_loss[:, number].tolist(),
             }
-            for number, (_, mesh) in enumerate(_drives(solved.machine))
+            for number, _, mesh in _pressed(solved.machine)
         ],
         "sensors": [{"name": name, "rms_m_per_s2": values.tolist()} for name, values in solved.branch_rms.items()],
         "bifurcations": [{"kind": event.kind, "speed_rpm": event.speed * _RPM} for event in curve.bifurcations],
     }
 
 
-def _drives(machine: room.Machine) -> list[tuple[str, room.GearMesh]]:
-    """Each mesh with the name of its drive flanks' contact; these come first among the contacts."""
-    return [(contact.name, mesh) for contact, mesh in zip(machine.system.contacts, machine.meshes, strict=False)]
+def _pressed(machine: room.Machine) -> list[tuple[int, str, room.GearMesh]]:
+    """Each mesh with the number and the name of the contact that its mean load presses."""
+    numbers = machine.pressed_contacts
+    return [
+        (number, machine.system.contacts[number].name, mesh)
+        for number, mesh in zip(numbers, machine.meshes, strict=True)
+    ]

@@ -209,8 +209,7 @@ def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
     result = solved.result
     drives = len(solved.machine.meshes)
     pairs = []
-    for number, mesh in enumerate(solved.machine.meshes):
-        pressed = _pressed_contact(solved, number, drives)
+    for number, (mesh, pressed) in enumerate(zip(solved.machine.meshes, solved.machine.pressed_contacts, strict=True)):
         spectrum = solved.force_spectra[solved.machine.system.contacts[pressed].name]
         pairs.append(
             {
@@ -311,13 +310,6 @@ def _friction_document(solved: SolvedTransient, number: int) -> dict[str, float]
         "peak_power_w": float(found[:, 1].max()),
         "peak_force_n": float(np.abs(found[:, 0]).max()),
     }
-
-
-def _pressed_contact(solved: SolvedTransient, number: int, drives: int) -> int:
-    """Number of the contact of a mesh that its mean load presses: of the drive flanks, or of the back flanks."""
-    meshes, contacts = solved.machine.meshes, solved.machine.system.contacts
-    back = drives + sum(mesh.backlash is not None for mesh in meshes[:number])
-    return back if meshes[number].backlash is not None and contacts[back].drives else number
 
 
 def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float | None:

@@ -139,7 +139,9 @@ def _reduced(case: Case, solved: SolvedTransient, housing: HousingInMachine | No
     spectra = [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
     lines = spectra[0].frequencies if spectra else np.empty(0)
     kept = int(np.searchsorted(lines, solved.trusted_limit * (1.0 + 1e-9), side="right"))
-    drives = [contact.name for contact in solved.machine.system.contacts[: len(solved.machine.meshes)]]
+    contacts = solved.machine.system.contacts
+    # Under the drive flanks' name at every point, whichever are pressed there.
+    pressed = {contacts[i].name: contacts[number].name for i, number in enumerate(solved.machine.pressed_contacts)}
     document = transient_document(case, solved)
     document["seconds"] = {"total": seconds, "time_stepping": solved.result.seconds}
     add_warnings(document, () if housing is None else housing.warnings)
@@ -150,7 +152,7 @@ def _reduced(case: Case, solved: SolvedTransient, housing: HousingInMachine | No
         document=document,
         orders=lines[:kept] / turning_hz,
         sensor_spectra={name: spectrum.amplitude[:kept] for name, spectrum in solved.sensor_spectra.items()},
-        force_spectra={name: solved.force_spectra[name].amplitude[:kept] for name in drives},
+        force_spectra={name: solved.force_spectra[one].amplitude[:kept] for name, one in pressed.items()},
         bearing_force_mean={name: force.mean(axis=0) for name, force in forces.items()},
         bearing_force_rms={name: force.std(axis=0) for name, force in forces.items()},
         housing_frequencies_hz=np.empty(0) if housing is None else housing.frequencies_hz,

@@ -17,7 +17,7 @@ from gearwhine.cli import run_command
 from gearwhine.report.sections import sections_of
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
-from gearwhine.stages.steady import solve_steady
+from gearwhine.stages.steady import solve_steady, steady_document
 
 SHORT = (21, 30, 19, 56)  # 30 cycles of the first mesh are 19 of the second
 
@@ -164,3 +164,16 @@ def test_many_changes_of_contact_are_no_fault(machine: room.Machine) -> None:
     assert within(ready.part, ready.contacts, elements, start, -count // 2, varied=False) is None
     found = orbit.one_pass(ready.part, ready.contacts, elements, start, varied=False)
     assert len(found.trace.start) >= count
+
+
+def test_the_steady_motion_of_a_braked_machine_is_told_of_its_back_flanks() -> None:
+    """The mean force of the flanks that carry is the torque over the base radius."""
+    changes = ["operation.torque=-100 N*m", "gear_pair.0.backlash=0.1 mm", "rotor.0.modes=1", "rotor.1.modes=1"]
+    case = load_case("spur-pair", changes).case
+    machine = build_machine(case, None, solve_gears(case))
+    assert machine.pressed_contacts == (1,)
+    (motion,) = steady_document(case, solve_steady(case, machine, None))["motions"]
+    base_radius = 0.5 * 28 * 3.175e-3 * np.cos(np.radians(20.0))
+    (pair,) = motion["gear_pairs"]
+    assert pair["mean_force_n"] == pytest.approx(100.0 / base_radius, rel=1e-3)
+    assert pair["contact_loss_fraction"] == 0.0
