@@ -12,6 +12,7 @@ from gearwhine.doubtful import warning
 FloatArray = npt.NDArray[np.float64]
 
 _DIFFERENCE = 0.1  # part of the larger of both forces by which they may differ without a word
+_ROUNDING = 1e-6  # part of the load below which a component is none
 
 
 def bearing_load_warnings(case: Case, mean_force: Mapping[str, FloatArray]) -> list[dict[str, Any]]:
@@ -38,6 +39,8 @@ def bearing_load_warnings(case: Case, mean_force: Mapping[str, FloatArray]) -> l
         axial = abs(float(actual[2] - assumed[2]))
         if max(radial, axial) <= _DIFFERENCE * scale:
             continue
+        # What rounding leaves in a direction without load would be typed in as a load.
+        actual = np.where(np.abs(actual) > _ROUNDING * scale, actual, 0.0)
         sizes = [(float(np.hypot(*force[:2])), float(force[2])) for force in (assumed, actual)]
         found.append(
             warning(

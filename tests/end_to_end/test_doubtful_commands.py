@@ -70,3 +70,34 @@ def test_a_motion_that_teeth_cannot_follow_is_refused(
     assert "are pressed together by" in told
     assert "mm at most" in told
     assert "Traceback" not in told
+
+
+def test_steady_motions_of_an_unstable_machine_warn(
+    whirling: list[str], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert run_command(["steady", "spur-pair", "-q", "--json", *whirling]) == 0
+    told = capsys.readouterr()
+    assert any(entry["name"] == "unstable mode" for entry in json.loads(told.out)["warnings"])
+    assert "motions of this machine mean nothing beyond its onset" in told.err
+
+
+@pytest.mark.parametrize("command", ["run", "sweep"])
+def test_a_load_that_the_bearing_does_not_carry_is_warned_of(
+    command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """100 N written for a bearing that carries its share of 1718 N."""
+    changes = [
+        'bearing.0.stiffness={ rolling = { catalogue = { type = "deep-groove", bore = "35 mm", '
+        'outer_diameter = "72 mm", width = "17 mm" } } }',
+        'bearing.0.load={ x = "0 N", y = "100 N" }',
+        "transient.revolutions=3",
+        "transient.discard=2",
+    ]
+    settings = [part for change in changes for part in ("--set", change)]
+    more = ["--no-pictures"] if command == "run" else ["--over", "operation.speed=3000 rpm,3600 rpm"]
+    folder = tmp_path / "out"
+    assert run_command([command, "spur-pair", "-q", "--json", "-o", str(folder), *more, *settings]) == 0
+    document = json.loads(capsys.readouterr().out)
+    warned = [entry for entry in document["warnings"] if entry["name"] == "bearing load"]
+    assert warned
+    assert "100 N radial" in warned[0]["message"]
