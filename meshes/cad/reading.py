@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from meshes.cad.units import stated_unit
-from meshes.cad.worker import BEFORE_MESHING, STARTING, Request
+from meshes.cad.worker import FORESEEN, JOINING, MESHING, READING, STARTING, Request
 from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.mesh import Mesh
 from meshes.tetrahedra import Tetrahedra, check_mesh_request
@@ -21,7 +21,9 @@ from meshes.tetrahedra import Tetrahedra, check_mesh_request
 _LONGEST = 3600.0  # seconds that a file is given in all
 # Seconds to read and join solids, and more by the byte: a sound file of 20 kB takes a tenth of a second, a damaged one
 # may keep the kernel busy for ever.
-_READING, _READING_PER_BYTE = 6.0, 3e-4
+_READING, _READING_PER_BYTE = 5.0, 3e-4
+# Seconds to mesh them, and more by the element that is foreseen: gmsh makes some ten thousand of them a second.
+_MESHING, _MESHING_PER_ELEMENT = 6.0, 2e-3
 _LOOK = 0.2  # seconds between looks at the worker
 
 KINDS = {".step": "step", ".stp": "step", ".iges": "iges", ".igs": "iges", ".brep": "brep"}
@@ -82,7 +84,8 @@ def mesh_cad(
         Edge length aimed at there [m].
     time_limit : float, optional
         Seconds after which the attempt is given up, meshing included; by default reading and joining the solids is
-        given six seconds and five minutes for each megabyte of the file, and the whole an hour.
+        given five seconds and five minutes for each megabyte of the file, meshing six seconds and two for each thousand
+        elements foreseen, and the whole an hour.
 
     Raises
     ------
@@ -143,7 +146,7 @@ def _work(folder: Path, path: Path, reading_limit: float, time_limit: float) -> 
             errors = _errors_of(worker, folder, reading_limit, time_limit)
         except subprocess.TimeoutExpired as error:
             raise GeometryError(
-                f"CAD file {path}: given up after {error.timeout:g} s while {_stage(folder)}; "
+                f"CAD file {path}: given up after {error.timeout:.0f} s while {_stage(folder)}; "
                 "a larger mesh_size, or a simpler or healed solid, may help"
             ) from error
         finally:
@@ -160,20 +163,28 @@ def _work(folder: Path, path: Path, reading_limit: float, time_limit: float) -> 
 
 
 def _errors_of(worker: subprocess.Popen[bytes], folder: Path, reading_limit: float, time_limit: float) -> bytes:
-    """What a worker that ends in time wrote as errors; reading and joining are timed from when it has started."""
+    """What a worker that ends in time wrote as errors; each stage is timed from where it begins."""
     begin = time.monotonic()
-    started: float | None = None
+    since = {"": begin}
     while True:
         try:
             return worker.communicate(timeout=_LOOK)[1]
         except subprocess.TimeoutExpired as error:
             now, stage = time.monotonic(), _stage(folder)
-            if started is None and stage != STARTING:
-                started = now
-            if now - begin > time_limit:
-                raise subprocess.TimeoutExpired(error.cmd, time_limit) from error
-            if stage in BEFORE_MESHING and started is not None and now - started > reading_limit:
-                raise subprocess.TimeoutExpired(error.cmd, reading_limit) from error
+            # Reading and joining are one.
+            spent = now - since.setdefault(READING if stage == JOINING else stage, now)
+            limit = {READING: reading_limit, JOINING: reading_limit, MESHING: _meshing_limit(folder)}.get(
+                stage, _LONGEST
+            )
+            if now - begin > time_limit or spent > limit:
+                raise subprocess.TimeoutExpired(error.cmd, min(limit, time_limit)) from error
+
+
+def _meshing_limit(folder: Path) -> float:
+    """Seconds in which the elements that the worker foresees are to be made."""
+    foreseen = folder / FORESEEN
+    elements = float(foreseen.read_text(encoding="utf-8")) if foreseen.is_file() else 0.0
+    return min(_MESHING + _MESHING_PER_ELEMENT * elements, _LONGEST)
 
 
 def _stage(folder: Path) -> str:

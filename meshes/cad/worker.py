@@ -23,9 +23,10 @@ from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.gmsh_session import gmsh_session
 from meshes.tetrahedra import Tetrahedra, check_mesh_size, collect, mesh_solids
 
-STARTING, READING, JOINING = "starting", "reading it", "joining its solids"
-BEFORE_MESHING = (STARTING, READING, JOINING)
+STARTING, READING, JOINING, MESHING = "starting", "reading it", "joining its solids", "meshing it"
+FORESEEN = "foreseen"  # the file with the number of elements to come
 
+_FILLING = 10.0  # tetrahedra in a cube of their edge length, about
 _WATCH = 0.5  # seconds between looks at the parent
 _BLEND = 3.0  # elements grow to their full size over this many of the small ones
 
@@ -108,12 +109,19 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
         shape = conforming(gmsh, solids, glue=request.glue)
         filled = sum(abs(gmsh.model.occ.getMass(3, tag)) for tags in shape.solids.values() for tag in tags)
         check_mesh_size(filled * unit**3, extent(gmsh) * unit, request.mesh_size)
-        at("meshing it")
+        (folder / FORESEEN).write_text(f"{_foreseen(request, filled * unit**3):.0f}", encoding="utf-8")
+        at(MESHING)
         _refine(gmsh, request, unit)
         _mesh(gmsh, shape, request, unit)
         at("collecting its mesh")
         arrays = _save(folder, collect(gmsh, request.order, shape.faces, shape.solids, unit=unit))
         return {"solids": list(shape.solids), "unit": chosen.length, "remarks": chosen.remarks, "arrays": arrays}
+
+
+def _foreseen(request: Request, volume: float) -> float:
+    """How many elements a volume [m³] may take, those of the finer ones around places generously counted."""
+    finest = request.place_size if request.places and request.place_size is not None else request.mesh_size
+    return _FILLING * volume / request.mesh_size**3 * (request.mesh_size / finest) ** 3
 
 
 def _refine(gmsh: Any, request: Request, unit: float) -> None:

@@ -191,11 +191,11 @@ def test_the_reader_ends_with_a_parent_that_is_killed_and_takes_its_folder_along
 
 
 def test_a_reader_is_given_time_by_the_size_of_its_file(tmp_path: Path) -> None:
-    """Six seconds, and five minutes for each megabyte."""
+    """Five seconds, and five minutes for each megabyte."""
     path = tmp_path / "large.step"
     with path.open("wb") as file:
         file.truncate(2_000_000)
-    assert _reading_limit(path) == pytest.approx(606.0)
+    assert _reading_limit(path) == pytest.approx(605.0)
     with path.open("wb") as file:
         file.truncate(10**9)
     assert _reading_limit(path) == 3600.0
