@@ -196,7 +196,7 @@ def couple(
     gravity
         Acceleration of free fall along x, y, z [m/s²]; none by default.
     dashpots
-        In the rotors' couplings, at the nominal speeds.
+        In the rotors' couplings.
     rates
         The least and the highest speed that the machine will run at, as parts of ``speeds``: bearings' tables over
         speed are followed between them.
@@ -283,7 +283,7 @@ def couple(
     within = []
     for given in dashpots:
         which, rotor = parts.rotor(given.rotor)
-        rows, law_of_coupling = shaft_dashpots(given, rotor, speeds[given.rotor])
+        rows, law_of_coupling = shaft_dashpots(given, rotor, speeds[given.rotor], rates)
         within.append(replace(law_of_coupling, directions=np.array([embed(components, which, row) for row in rows]).T))
 
     senses = [1 if speeds[mesh.driver.rotor] >= 0.0 else -1 for mesh in meshes]

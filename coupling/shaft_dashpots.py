@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.component import RotorComponent
-from coupling.connector import LinearConnector
+from coupling.connector import LinearConnector, SpeedTable
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -46,13 +46,17 @@ class ShaftDashpots:
     axial: float = 0.0
 
 
-def shaft_dashpots(given: ShaftDashpots, rotor: RotorComponent, speed: float) -> tuple[FloatArray, LinearConnector]:
+def shaft_dashpots(
+    given: ShaftDashpots, rotor: RotorComponent, speed: float, rates: tuple[float, float] = (1.0, 1.0)
+) -> tuple[FloatArray, LinearConnector]:
     """Deflections of a coupling by its rotor's coordinates, shape (6, m), and the law over these as a connector.
 
     Parameters
     ----------
     speed : float
         Ω, signed [rad/s].
+    rates : two of float
+        The least and the highest speed that the machine will run at, as parts of it: what circulates goes with it.
     """
     left, right = rotor.motions(given.left), rotor.motions(given.right)
     middle = 0.5 * (given.right - given.left) * (left[3:] + right[3:])
@@ -65,4 +69,8 @@ def shaft_dashpots(given: ShaftDashpots, rotor: RotorComponent, speed: float) ->
     circulating = np.zeros((6, 6))
     for first, value in ((0, given.lateral), (2, given.tilt)):
         circulating[first, first + 1], circulating[first + 1, first] = speed * value, -speed * value
-    return rows, LinearConnector(given.name, rows.T, circulating, damping)
+    table = None
+    if rates[0] != rates[1] and np.any(circulating):
+        ends = np.array(rates)
+        table = SpeedTable(ends, ends[:, None, None] * circulating, np.stack([damping, damping]))
+    return rows, LinearConnector(given.name, rows.T, circulating, damping, over_speed=table)

@@ -201,17 +201,18 @@ def _add_bearings(grid: _Grid, variables: dict[str, Any], coordinates: dict[str,
     if not names:
         return
     coordinates["bearing"] = ("bearing", names, {})
-    coordinates["axis"] = ("axis", ["x", "y"], {})
-    missing = np.full(2, np.nan)
+    coordinates["axis"] = ("axis", ["x", "y", "z"], {})
+    coordinates["moment_axis"] = ("moment_axis", ["x", "y"], {})
+    missing = np.full(5, np.nan)
 
-    def forces(group: str) -> Callable[[PointResult], FloatArray]:
-        return lambda result: np.array([getattr(result, group).get(name, missing) for name in names])
+    def loads(group: str, parts: slice) -> Callable[[PointResult], FloatArray]:
+        return lambda result: np.array([getattr(result, group).get(name, missing)[parts] for name in names])
 
-    for group, what in (
-        ("bearing_force_mean", "mean force of the shaft on its bearing"),
-        ("bearing_force_rms", "root mean square of that force without its mean"),
-    ):
-        variables[group] = grid.rows(("bearing", "axis"), (len(names), 2), forces(group), _unit("N", what))
+    for kind, axis, unit, parts in (("force", "axis", "N", slice(3)), ("moment", "moment_axis", "N m", slice(3, 5))):
+        size = (len(names), parts.stop - (parts.start or 0))
+        for mean, what in (("mean", "mean {} of the shaft on its bearing"), ("rms", "rms of that {} without its mean")):
+            of = loads(f"bearing_force_{mean}", parts)
+            variables[f"bearing_{kind}_{mean}"] = grid.rows(("bearing", axis), size, of, _unit(unit, what.format(kind)))
 
 
 def _orders(results: Sequence[PointResult]) -> FloatArray:

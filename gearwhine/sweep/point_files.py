@@ -27,9 +27,10 @@ _SPECTRA = {
     "force_spectra": ("contact", "N", "peak amplitude of the gear-mesh force"),
 }
 _FORCES = {
-    "bearing_force_mean": "mean force of the shaft on its bearing",
-    "bearing_force_rms": "root mean square of that force without its mean",
+    "bearing_force_mean": "mean load of the shaft on its bearing",
+    "bearing_force_rms": "root mean square of that load without its mean",
 }
+_LOADS = ("x", "y", "z", "moment about x", "moment about y")
 
 
 def write_point(folder: Path, place: Path, point: Point, result: PointResult | PointFailure) -> None:
@@ -99,9 +100,9 @@ def _arrays(result: PointResult) -> Variables:
     for group, what in _FORCES.items():
         forces = getattr(result, group)
         if forces:
-            arrays |= {"bearing": ("bearing", list(forces), {}), "axis": ("axis", ["x", "y"], {})}
+            arrays |= {"bearing": ("bearing", list(forces), {}), "load": ("load", list(_LOADS), {})}
             values = np.array(list(forces.values()))
-            arrays[group] = (("bearing", "axis"), values, {"units": "N", "long_name": what})
+            arrays[group] = (("bearing", "load"), values, {"units": "N, N m of moments", "long_name": what})
     attributes = {"units": "Hz", "long_name": "housing natural frequency"}
     arrays["housing_frequencies_hz"] = ("housing_mode", result.housing_frequencies_hz, attributes)
     return arrays

@@ -42,7 +42,7 @@ class PointResult:
         Peak amplitude of acceleration [m/s²].
     force_spectra : dict of str to ndarray, shape (m,)
         Peak amplitude of the gear-mesh force [N], its mean at order zero.
-    bearing_force_mean, bearing_force_rms : dict of str to ndarray, shape (2,)
+    bearing_force_mean, bearing_force_rms : dict of str to ndarray, shape (5,)
         Along x and y [N]; the latter without the mean.
     housing_frequencies_hz : ndarray, shape (n_modes,)
         Empty without a housing.
@@ -147,7 +147,7 @@ def _reduced(case: Case, solved: SolvedTransient, housing: HousingInMachine | No
     add_warnings(document, () if housing is None else housing.warnings)
     add_warnings(document, machine_warnings(solved.machine))
     add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved)))
-    forces = solved.histories.bearing_force
+    forces = solved.histories.bearing_load
     return PointResult(
         document=document,
         orders=lines[:kept] / turning_hz,

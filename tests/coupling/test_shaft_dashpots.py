@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from coupling import Machine, MountedBearing, ShaftDashpots, couple, coupled_modes, rotor_component
+from coupling.shaft_dashpots import shaft_dashpots
 from rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
@@ -67,3 +68,16 @@ def test_internal_damping_feeds_forward_whirl_above_its_frequency() -> None:
         # The shafts' own gyroscopic moments part the two frequencies a little.
         expected = [ratio * (1.0 - part), ratio * (1.0 + part)]
         np.testing.assert_allclose(np.sort(ratios), expected, atol=0.1 * ratio)
+
+
+def test_what_circulates_goes_with_the_speed_of_a_run() -> None:
+    """Of a machine that runs at 0 to 1.5 of its speed, the ties at any of them are those of a machine of that speed."""
+    component = machine().rotors[0]
+    given = ShaftDashpots("coupling 1", "train", 0.1, 0.12, lateral=100.0, tilt=20.0)
+    _, law = shaft_dashpots(given, component, 300.0, (0.0, 1.5))
+    assert law.over_speed is not None
+    for rate in (0.0, 0.4, 1.0, 1.5):
+        _, there = shaft_dashpots(given, component, 300.0 * rate)
+        stiffness, damping = law.over_speed.at(rate)
+        np.testing.assert_allclose(stiffness, there.stiffness, atol=1e-9)
+        np.testing.assert_allclose(damping, there.damping)
