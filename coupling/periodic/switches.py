@@ -61,6 +61,41 @@ def next_part(x: float, other: float, third: float, f: float, f_other: float, f_
 
 
 @uncounted()
+def has_left(old: int, reference: Reference, contacts: Contacts, a: int, at: float, u: float, work: Work) -> bool:
+    """Whether a contact's law at a place u, passed at the time ``at``, is on another branch than the old one."""
+    trial = work.laws.shape[0] - 1
+    law(contacts, a, at, interpolated(work.delta, a, u), interpolated(work.rate, a, u), work.laws, trial)
+    return branch(reference, a, work.laws, trial) != old
+
+
+@uncounted()
+def touching_changes(
+    contacts: Contacts, a: int, time: float, h: float, stop: float, x: float, other: float, rank: int, near: float,
+    work: Work,
+) -> tuple[float, float]:  # fmt: skip
+    """Two places, ``near`` from each other at most, between which a pair begins or ceases to touch.
+
+    x and other are places on either side of it; the place on the side of x is returned first. Without a change between
+    x and other, these are returned.
+    """
+    f = nearness_of(contacts, a, min(time + x * h, stop), interpolated(work.delta, a, x), rank)
+    f_other = nearness_of(contacts, a, min(time + other * h, stop), interpolated(work.delta, a, other), rank)
+    if f * f_other >= 0.0:
+        return x, other
+    touches, swapped, third, f_third, part = f > 0.0, False, other, f_other, 0.5
+    while abs(x - other) > near:
+        u = x + part * (other - x)
+        value = nearness_of(contacts, a, min(time + u * h, stop), interpolated(work.delta, a, u), rank)
+        if ((value > 0.0) == touches) != swapped:
+            third, f_third = x, f
+        else:
+            third, f_third, other, f_other, swapped = other, f_other, x, f, not swapped
+        x, f = u, value
+        part = next_part(x, other, third, f, f_other, f_third, near)
+    return (other, x) if swapped else (x, other)
+
+
+@uncounted()
 def placed(
     reference: Reference,
     contacts: Contacts,
@@ -80,33 +115,24 @@ def placed(
     It does so between two places. Where a pair begins or ceases to touch, how near its flanks are tells where, in few
     looks; all else is found by halving.
     """
-    trial = work.laws.shape[0] - 1
-    gained, told = new > old, by_pairs(old, new)
-    rank = old // _PAIR + 1 if gained else old // _PAIR
-    f = f_other = f_third = 0.0
-    if told:
-        at = min(time + after * h, stop)
-        f = nearness_of(contacts, a, at, interpolated(work.delta, a, after), rank)
-        f_other = nearness_of(contacts, a, min(time + before * h, stop), interpolated(work.delta, a, before), rank)
-        told = f * f_other < 0.0
-    x, other, third, beyond, part = after, before, before, True, 0.5
-    while abs(x - other) > near:
-        u = x + part * (other - x)
-        at, delta, value, left = min(time + u * h, stop), interpolated(work.delta, a, u), 0.0, False
-        if told:
-            value = nearness_of(contacts, a, at, delta, rank)
-            left = (value > 0.0) == gained
+    if by_pairs(old, new):
+        rank = old // _PAIR + 1 if new > old else old // _PAIR
+        outside, inside = touching_changes(contacts, a, time, h, stop, after, before, rank, near, work)
+        # A motion that turns back may have left the branch before, and for another reason; and within rounding the
+        # law may be on its old branch still.
+        if inside > before and has_left(old, reference, contacts, a, min(time + inside * h, stop), inside, work):
+            after = inside
+        elif outside == after or has_left(old, reference, contacts, a, min(time + outside * h, stop), outside, work):
+            before, after = inside, outside
         else:
-            law(contacts, a, at, delta, interpolated(work.rate, a, u), work.laws, trial)
-            left = branch(reference, a, work.laws, trial) != old
-        if left == beyond:
-            third, f_third = x, f
+            before = outside
+    while after - before > near:
+        u = 0.5 * (before + after)
+        if has_left(old, reference, contacts, a, min(time + u * h, stop), u, work):
+            after = u
         else:
-            third, f_third, other, f_other = other, f_other, x, f
-        x, f, beyond = u, value, left
-        if told:
-            part = next_part(x, other, third, f, f_other, f_third, near)
-    return x if beyond else other
+            before = u
+    return after
 
 
 @uncounted(forceinline=True)

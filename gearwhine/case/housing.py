@@ -5,10 +5,9 @@ Attributes are named as the keys of the case file and are in SI; frequencies are
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
-import numpy as np
-import numpy.typing as npt
 from pydantic import ConfigDict, Discriminator, Field, Tag, field_validator, model_validator
 
 from gearwhine.case import units
@@ -87,6 +86,9 @@ class Material(Table):
         return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
 
 
+Rotation = tuple[UnitVector, UnitVector, UnitVector]
+
+
 class Turn(Table):
     """A rotation about an axis through the origin, counter-clockwise seen from its tip."""
 
@@ -94,11 +96,16 @@ class Turn(Table):
     angle: Angle
 
     @property
-    def matrix(self) -> npt.NDArray[np.float64]:
-        """By Rodrigues' formula, shape (3, 3)."""
-        k = np.array(unit_vector(self.axis))
-        across = np.cross(np.eye(3), k)
-        return np.asarray(np.eye(3) + np.sin(self.angle) * across + (1.0 - np.cos(self.angle)) * across @ across)
+    def matrix(self) -> Rotation:
+        """By Rodrigues' formula, rows of a 3 x 3 matrix."""
+        x, y, z = unit_vector(self.axis)
+        sine, cosine = math.sin(self.angle), math.cos(self.angle)
+        rest = 1.0 - cosine
+        return (
+            (cosine + rest * x * x, rest * x * y - sine * z, rest * x * z + sine * y),
+            (rest * y * x + sine * z, cosine + rest * y * y, rest * y * z - sine * x),
+            (rest * z * x - sine * y, rest * z * y + sine * x, cosine + rest * z * z),
+        )
 
 
 class Turned(Table):
@@ -118,12 +125,12 @@ class Turned(Table):
         return self
 
     @property
-    def rotation(self) -> npt.NDArray[np.float64]:
-        """R of x' = R x from the file's frame to the machine's, shape (3, 3)."""
+    def rotation(self) -> Rotation:
+        """R of x' = R x from the file's frame to the machine's, rows of a 3 x 3 matrix."""
         if self.turn is not None:
             return self.turn.matrix
-        order = {"x": [1, 2, 0], "y": [2, 0, 1]}.get(self.shafts_along or "z", [0, 1, 2])
-        return np.eye(3)[order]
+        x, y, z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+        return {"x": (y, z, x), "y": (z, x, y)}.get(self.shafts_along or "z", (x, y, z))
 
 
 class CadFile(Turned):

@@ -43,10 +43,10 @@ def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int 
     if given.mesh is not None:
         with _at_fault("housing.mesh", "a mesh of solid elements", file=True):
             mesh = read_mesh(given.mesh.file, unit=UNITS[given.mesh.unit])
-            mesh = mesh.rotated(given.mesh.rotation)
+            mesh = mesh.rotated(np.array(given.mesh.rotation))
         return _with_seats(case, mesh)
     assert given.cad is not None
-    turn = given.cad.rotation
+    turn = np.array(given.cad.rotation)
     with _at_fault("housing.cad", "a solid that can be meshed", file=True):
         found = mesh_cad(
             given.cad.file,

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, TipRelief, tooth_contact
@@ -41,6 +41,18 @@ def contacts(phase: float, turned: float) -> Contacts:
     )  # fmt: skip
 
 
+# A motion that rises first, so that its damping is full for a while, and then parts the flanks.
+@example(phase=0.3125, turned=0.25, begin=1e-5, end=0.0, swing=1e-5, before=0.03125, after=1.0)
+# Where rounding has how near the flanks are and the law part.
+@example(
+    phase=0.5972819124346805,
+    turned=0.0381913593211316,
+    begin=1.7198259610530312e-05,
+    end=1.8986978223300205e-05,
+    swing=-9.851665412168155e-06,
+    before=0.015625,
+    after=1.0,
+)
 @settings(deadline=None, max_examples=400)
 @given(
     phase=st.floats(0.0, 1.0),

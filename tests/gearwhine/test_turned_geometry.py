@@ -60,9 +60,9 @@ def test_a_turn_is_the_same_as_a_change_of_axes() -> None:
     by_axes = CadFile(file=__file__, mesh_size="10 mm", shafts_along="y").rotation
     turned = CadFile(file=__file__, mesh_size="10 mm", turn={"axis": [1, 1, 1], "angle": "120 deg"}).rotation
     np.testing.assert_allclose(turned, by_axes, atol=1e-15)
-    np.testing.assert_allclose(by_axes @ [0.0, 1.0, 0.0], [0.0, 0.0, 1.0])
+    np.testing.assert_allclose(np.array(by_axes) @ [0.0, 1.0, 0.0], [0.0, 0.0, 1.0])
     quarter = CadFile(file=__file__, mesh_size="10 mm", turn={"axis": "x", "angle": "90 deg"}).rotation
-    np.testing.assert_allclose(quarter @ [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], atol=1e-15)
+    np.testing.assert_allclose(np.array(quarter) @ [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], atol=1e-15)
     with pytest.raises(ValueError, match="not both"):
         CadFile(file=__file__, mesh_size="10 mm", shafts_along="x", turn={"axis": "x", "angle": "90 deg"})
 
