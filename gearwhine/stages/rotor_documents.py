@@ -30,6 +30,7 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "length_m": one.rotor.length,
                 "bearings": [bearing.name for bearing in one.bearings],
                 "lateral_hz": (one.rest.frequencies[one.rest.axial_share <= room.MOSTLY_AXIAL] / _HERTZ).tolist(),
+                "lateral_axial_share": one.rest.axial_share[one.rest.axial_share <= room.MOSTLY_AXIAL].tolist(),
                 "axial_hz": (one.axial / _HERTZ).tolist(),
                 "strain_energy": _strain_energy(one),
                 "torsional_hz": (one.torsional.frequencies / _HERTZ).tolist(),
@@ -41,6 +42,7 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 ],
                 "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
                 "critical_directions": one.critical.direction.round(6).tolist(),
+                "critical_axial_share": one.critical.axial_share.tolist(),
                 "critical_margins": _margins(one),
                 "campbell": _campbell(one),
                 "static": _static(one),
@@ -144,6 +146,7 @@ def _crossing(one: SolvedRotor, crossing: room.Crossing) -> dict[str, Any]:
     return {
         "speed_rpm": crossing.speed * _RPM,
         "direction": crossing.direction,
+        "axial_share": crossing.axial_share,
         "log_decrement": crossing.log_decrement,
         "margin": abs(crossing.speed / one.operation) - 1.0 if one.operation else None,
     }
