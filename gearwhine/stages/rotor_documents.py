@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 import rotors as room
+from gearwhine.doubtful import warning
 from gearwhine.stages.rotor_loads import SolvedResponse
 from gearwhine.stages.rotors import SolvedRotor
 from gearwhine.stages.torsion import SolvedTorsion
@@ -15,6 +16,11 @@ FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 _RPM = 60.0 / (2.0 * np.pi)
+
+_ROTATING = (
+    "rotor {!r}: the damping of its coupling across the axis turns with the shaft and feeds forward whirl at speeds "
+    "above its frequency; whirl and its stability are told without it here, and with it by `gearwhine system`"
+)
 
 # A damping ratio nearer to zero than this is rounding: the mode neither grows nor decays.
 NEUTRAL = 1e-9
@@ -48,14 +54,24 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "static": _static(one),
                 "unbalance_response": None if one.response is None else _response(one.response),
                 "rolling_bearings": [_rolling(name, state) for name, state in one.rolling.items()],
-                "damping": "of the bearings; the shaft's own acts in the coupled system",
+                "damping": "of the bearings; that of the shaft and of its couplings acts in the coupled system",
                 "torsional_response": None if one.torsion is None else _torsion(one.torsion),
                 "stiffness_map": None if one.stiffness_map is None else _stiffness_map(one.stiffness_map),
                 "certificate": _certificate(one),
             }
             for one in solved
-        ]
+        ],
+        "warnings": [
+            warning("rotating damping", _ROTATING.format(one.rotor.name), rotor=one.rotor.name)
+            for one in solved
+            if any(_damps_across(part) for part in one.rotor.segments)
+        ],
     }
+
+
+def _damps_across(part: room.Segment | room.Coupling) -> bool:
+    """Whether a coupling damps motion across the axis, which it does in the turning shaft."""
+    return isinstance(part, room.Coupling) and (part.lateral_damping > 0.0 or part.tilt_damping > 0.0)
 
 
 def _strain_energy(one: SolvedRotor) -> dict[str, Any]:
