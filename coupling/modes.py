@@ -9,7 +9,7 @@ import numpy.typing as npt
 from coupling.component import RotorComponent
 from coupling.contact_state import ContactState, linear_matrices, mean_contact
 from coupling.eigenpairs import Eigenpairs, quadratic_eigenpairs
-from coupling.shares import ModeShares, mode_shares
+from coupling.shares import ModeShares, group_bases, mode_shares
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -18,6 +18,7 @@ ComplexArray = npt.NDArray[np.complex128]
 COORDINATE_KINDS = ("housing", "rotor", "torsion", "axial", "pedestal", "residual")
 
 _MESH_SHARE = 0.3  # a mode with more of its strain energy than this in the teeth is called a mesh mode
+_TIED = 1e-6  # shares that differ by less are as large: rounding is not to choose between them
 _WHIRLS = 0.01  # a rotor with less of the kinetic energy in its bending than this has no whirl to speak of
 
 
@@ -141,7 +142,7 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
         where=tuple(_places(system, shares, kinds)),
         energy=tuple(energy),
         shares=shares,
-        whirl=whirl_directions(system, shapes),
+        whirl=whirl_directions(system, *group_bases(values, shapes)),
         certificate=ModesCertificate(
             expected=2 * system.size,
             found=zeros + pairs.values.size,
@@ -153,23 +154,25 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
     )
 
 
-def whirl_directions(system: CoupledSystem, shapes: ComplexArray) -> FloatArray:
+def whirl_directions(system: CoupledSystem, vectors: ComplexArray, means: FloatArray) -> FloatArray:
     """Sense of each component's bending about +z in modes, shape (m, c): see :class:`CoupledModes`.
 
     Counter-clockwise circles have y a quarter turn behind x. With x and y in the same mass-normalised shapes of the
-    shaft, the sense is the part of the kinetic energy in such circles less that in the opposite ones.
+    shaft, the sense is the part of the kinetic energy in such circles less that in the opposite ones. ``vectors`` and
+    ``means`` are those of :func:`coupling.shares.group_bases`: modes that cannot be told apart have one sense.
     """
-    found = np.full((len(shapes), len(system.components)), np.nan)
+    found = np.full((len(means), len(system.components)), np.nan)
+    whole = means @ (np.abs(vectors) ** 2).sum(axis=1)
     start = 0
     for number, component in enumerate(system.components):
         end = start + component.size
         if isinstance(component, RotorComponent):
             m = component.modal.lateral.count
-            x, y = shapes[:, start : start + m], shapes[:, start + m : start + 2 * m]
-            forward = (np.abs(x + 1j * y) ** 2).sum(axis=1)
-            backward = (np.abs(x - 1j * y) ** 2).sum(axis=1)
+            x, y = vectors[:, start : start + m], vectors[:, start + m : start + 2 * m]
+            forward = means @ (np.abs(x + 1j * y) ** 2).sum(axis=1)
+            backward = means @ (np.abs(x - 1j * y) ** 2).sum(axis=1)
             both = forward + backward
-            whirls = 0.5 * both > _WHIRLS * (np.abs(shapes) ** 2).sum(axis=1)
+            whirls = 0.5 * both > _WHIRLS * whole
             found[whirls, number] = ((forward - backward) / np.where(both > 0.0, both, 1.0))[whirls]
         start = end
     return found
@@ -186,20 +189,26 @@ def _energy_by_kind(system: CoupledSystem, shares: ModeShares) -> list[dict[str,
 def _kind(share: dict[str, float]) -> str:
     if share["mesh"] > _MESH_SHARE:
         return "mesh"
-    return max(COORDINATE_KINDS, key=lambda kind: share[kind])
+    most = max(share[kind] for kind in COORDINATE_KINDS)
+    return next(kind for kind in COORDINATE_KINDS if share[kind] >= most - _TIED)
 
 
 def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list[str]:
-    """Where each mode is: see :attr:`CoupledModes.where`."""
+    """Where each mode is: see :attr:`CoupledModes.where`; of parts that have as much the first."""
     owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
     labels = np.array(system.kinds)
     places = []
     for i, kind in enumerate(kinds):
         if kind == "mesh":
-            teeth = [(shares.strain[i, j], part.name) for j, part in enumerate(shares.parts) if part.kind == "contact"]
-            places.append(max(teeth)[1])
+            teeth = [j for j, part in enumerate(shares.parts) if part.kind == "contact"]
+            places.append(shares.parts[teeth[_largest(shares.strain[i][teeth])]].name)
             continue
         moving = shares.moving[i] * ((labels == kind) | (kind == "rigid"))
-        owned = np.bincount(owners, moving, len(system.components))
-        places.append(system.components[int(np.argmax(owned))].name)
+        owned = np.bincount(owners, moving, len(system.components)).astype(np.float64)
+        places.append(system.components[_largest(owned)].name)
     return places
+
+
+def _largest(values: FloatArray) -> int:
+    """Index of the largest of some shares; of those that are as large but for rounding the first."""
+    return int(np.flatnonzero(values >= values.max() - _TIED)[0])

@@ -25,7 +25,9 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_SAME = 1e-6  # part of an eigenvalue by which its neighbours may differ and their shapes still mix in rounding
+# Part of an eigenvalue by which its neighbours may differ and their shapes still mix in rounding: by what the
+# eigensolver misses, over this. A round shaft that hardly turns has its forward and backward whirl further apart.
+_SAME = 1e-8
 _INDEPENDENT = 1e-6  # of the largest singular value of a group's shapes, above which a direction is one of theirs
 _NOTHING = 1e-12  # strain or total energy below this part of the kinetic one is none
 
@@ -72,7 +74,7 @@ def mode_shares(
     """Shares of modes, shapes (m, n) along the rows, in the order of their frequencies."""
     groups = _groups(eigenvalues)
     eigenvalues = _over_groups(eigenvalues, groups)
-    shapes, means = _of_groups(shapes, groups)
+    shapes, means = _bases(shapes, groups)
     motion = means @ np.abs(shapes) ** 2
     mass = motion.sum(axis=1)
     parts: list[Part] = []
@@ -123,7 +125,15 @@ def _over_groups(values: ComplexArray, groups: list[slice]) -> ComplexArray:
     return np.concatenate([np.full(len(values[one]), values[one].mean()) for one in groups] or [values])
 
 
-def _of_groups(shapes: ComplexArray, groups: list[slice]) -> tuple[ComplexArray, FloatArray]:
+def group_bases(eigenvalues: ComplexArray, shapes: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+    """Vectors that span what groups of modes share, (b, n), and what makes each mode's mean of their numbers, (m, b).
+
+    A quadratic form of the shapes, summed over an orthonormal basis of a group's space, depends on no choice of it.
+    """
+    return _bases(shapes, _groups(eigenvalues))
+
+
+def _bases(shapes: ComplexArray, groups: list[slice]) -> tuple[ComplexArray, FloatArray]:
     """Shapes with an orthonormal basis (b, n) for those of each group, and what makes means of it, (m, b)."""
     bases: list[ComplexArray] = []
     means = np.zeros((len(shapes), 0))

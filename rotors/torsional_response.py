@@ -2,7 +2,8 @@
 
 Material damping is a complex shear modulus G (1 + 2iζ): at every frequency a piece loses the part of its energy
 that a mode of damping ratio ζ loses. With c = 1 + 2iζ a piece's equations θ' = τ/(c GJ), τ' = −ω²ρJ θ are those of
-`rotors.timoshenko` for ω²/c with torques counted in units of c. Springs to ground carry k (1 + 2iζ), dashpots iωc.
+`rotors.timoshenko` for ω²/c with torques counted in units of c. Springs to ground carry k (1 + 2iζ), dashpots iωc, and
+couplings, which are massless, k_θ (1 + 2iζ) + iωc_θ.
 """
 
 from collections.abc import Sequence
@@ -19,6 +20,7 @@ from .harmonic import finite_values
 from .rotor_lines import rod_line
 from .search import require_positions
 from .shaft import Rotor
+from .shaft_coupling import Coupling
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -58,12 +60,15 @@ class TorsionalResponse:
         (b,): ω, rad/s.
     damping_ratio
         ζ of the shaft.
+    softness
+        (p, b): what multiplies the twist of each piece under a torque, for the dashpot of a coupling beside it.
     """
 
     frequencies: FloatArray
     damping_ratio: float
     chain: Chain = field(repr=False)
     states: ComplexArray = field(repr=False)
+    softness: ComplexArray = field(repr=False)
 
     def angle(self, z: npt.ArrayLike) -> ComplexArray:
         """Complex angle at positions z (m), (b, len(z)), rad."""
@@ -78,6 +83,7 @@ class TorsionalResponse:
         modulus = 1.0 + 2j * self.damping_ratio
         transfers = self.chain.transfers_to(pieces, fractions, self.frequencies**2 / modulus)
         transfers = in_units_of(transfers, modulus)
+        transfers[..., 0, 1] *= self.softness[pieces]
         return np.asarray(np.einsum("zbij,bzj->bzi", transfers, self.states[:, pieces]))
 
 
@@ -125,6 +131,8 @@ def torsional_response(
     terms = modulus * chain.finite_stiffness[:, 0] + 1j * omega[:, None] * dashed
     terms = terms - omega[:, None] ** 2 * chain.node_inertia[:, 0]
     transfers = in_units_of(chain.transfers(omega**2 / modulus), modulus)
+    softness = _softness(rotor, chain, omega, modulus)
+    transfers[..., 0, 1] *= softness
     order = 2 * chain.nodes.size
     sides = np.zeros((omega.size, 1, order), dtype=np.complex128)
     for torque in torques:
@@ -132,7 +140,19 @@ def torsional_response(
         if not chain.constrained[node, 0]:
             sides[:, 0, 2 * node] -= torque.amplitude * unit
     solved = _pattern(chain.nodes.size).solve(_values(chain, terms, transfers), sides)
-    return TorsionalResponse(omega, damping_ratio, chain, solved.reshape(omega.size, -1, 2))
+    return TorsionalResponse(omega, damping_ratio, chain, solved.reshape(omega.size, -1, 2), softness)
+
+
+def _softness(rotor: Rotor, chain: Chain, omega: FloatArray, modulus: complex) -> ComplexArray:
+    """Of every piece its twist under a torque as a part of what it is without the dashpots of couplings, (p, b)."""
+    found = np.ones((chain.lengths.size, omega.size), dtype=np.complex128)
+    middles = 0.5 * (chain.nodes[1:] + chain.nodes[:-1])
+    for left, part in zip(rotor.joints[:-1].tolist(), rotor.segments, strict=True):
+        if isinstance(part, Coupling) and part.torsional_damping > 0.0:
+            inside = (middles > left) & (middles < left + part.length)
+            spring = modulus * part.torsional_stiffness
+            found[inside] = spring / (spring + 1j * omega * part.torsional_damping)
+    return found
 
 
 def in_units_of(transfers: ComplexArray, unit: complex) -> ComplexArray:

@@ -37,8 +37,9 @@ START_REACH = 1.2
 # Behind the modes asked for, starting values are followed to the first that lies this far from the one before it: the
 # proof's limit finds its gap there.
 WIDE_GAP = 0.01
-# Part of a motion's kinetic energy above which it is called axial.
-MOSTLY_AXIAL = 0.5
+# Part of a motion's kinetic energy above which it is called axial. One with less along the axis is still driven by
+# unbalance, by the root of what is left for the motion across it.
+MOSTLY_AXIAL = 0.9
 # A limit in a gap narrower than this would be too near a root to count by.
 LEAST_GAP = 1e-6
 

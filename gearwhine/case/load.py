@@ -16,6 +16,7 @@ from gearwhine.case.bundled import bundled_case, bundled_names
 from gearwhine.case.check_provenance import without_changed
 from gearwhine.case.checks import check, warnings_of
 from gearwhine.case.draft import draft_of_case, draft_of_document
+from gearwhine.case.dump import case_document
 from gearwhine.case.explain import findings_of
 from gearwhine.case.model import Case
 from gearwhine.case.overrides import apply_overrides
@@ -73,7 +74,14 @@ def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> 
     """
     path, content = _read(source)
     written = _as_case(_parse(content, path.name), path)
-    document, sources = apply_overrides(written, overrides)
+
+    def resolved(document: dict[str, Any]) -> Mapping[str, Any]:
+        try:
+            return case_document(parse_case(document, folder=path.parent))
+        except CaseError:  # which a later change may mend
+            return document
+
+    document, sources = apply_overrides(written, overrides, resolved)
     document = without_changed(document, written, sources.keys())
     case = parse_case(document, folder=path.parent, source=path.name, sources=sources)
     return LoadedCase(case, path, warnings_of(case))

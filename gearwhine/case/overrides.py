@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Any
 
@@ -39,12 +39,26 @@ def place_in_list(entries: list[Any], step: str) -> int | None:
     return int(step) if step.isdecimal() and len(step) < 10 and int(step) < len(entries) else None
 
 
-def apply_overrides(document: dict[str, Any], overrides: Iterable[str]) -> tuple[dict[str, Any], dict[Location, str]]:
+def apply_overrides(
+    document: dict[str, Any],
+    overrides: Iterable[str],
+    resolved: Callable[[dict[str, Any]], Mapping[str, Any]] = dict,
+) -> tuple[dict[str, Any], dict[Location, str]]:
     """Apply ``key.path=value`` texts to a copy of a document, in order.
 
     A value is written as in TOML; what is not TOML (``10 mm``, ``lumped``) stands for itself as text. An empty
     value takes the key away. Keys that are not yet there are added; whether they may be is for the models to say. A
-    step ``*`` stands for every entry of a list or a table, and leaves out those that have not the key.
+    step ``*`` stands for every entry of a list or a table, and leaves out those that have not the key, as written or by
+    default.
+
+    Parameters
+    ----------
+    document
+        As written.
+    overrides
+        Texts.
+    resolved
+        Makes of a document one with its defaults written out, for what ``*`` stands for.
 
     Returns
     -------
@@ -65,7 +79,9 @@ def apply_overrides(document: dict[str, Any], overrides: Iterable[str]) -> tuple
             continue
         try:
             value = _read_value(value_text.strip())
-            places = [place for path in _expanded(document, steps) for place in _set(document, path, value)]
+            # What is by default alone cannot be taken away.
+            whole = resolved(document) if "*" in steps and value is not NOTHING else document
+            places = [place for path in _expanded(document, steps, whole) for place in _set(document, path, value)]
         except _LeadsNowhereError as stop:
             problems.append(Problem(stop.key, stop.value, stop.expected, source=f"--set {override}"))
         else:
@@ -80,11 +96,12 @@ class _LeadsNowhereError(Exception):
         self.key, self.value, self.expected = key_of((*location, step)), step, expected
 
 
-def _expanded(document: Any, steps: tuple[str, ...]) -> list[tuple[str, ...]]:
-    """The paths that a path with wildcards stands for; itself without any."""
+def _expanded(document: Any, steps: tuple[str, ...], resolved: Any) -> list[tuple[str, ...]]:
+    """The paths that a path with wildcards stands for, in a document or once it is resolved; itself without any."""
     if "*" not in steps:
         return [steps]
-    found = [tuple(str(step) for step in place) for place in matching_places(document, steps)]
+    places = [place for known in (resolved, document) for place in matching_places(known, steps)]
+    found = list(dict.fromkeys(tuple(str(step) for step in place) for place in places))
     if not found:
         raise _LeadsNowhereError((), ".".join(steps), "a path with * that some entries of the case have")
     return found

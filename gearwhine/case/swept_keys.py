@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from decimal import Decimal, localcontext
 
 from gearwhine.case import units
+from gearwhine.case.dump import case_document
 from gearwhine.case.fields import MOST_ENTRIES
 from gearwhine.case.model import Case
-from gearwhine.case.overrides import parse_key_path
-from gearwhine.case.problems import NOTHING, CaseError, Problem
+from gearwhine.case.overrides import matching_places, parse_key_path
+from gearwhine.case.problems import NOTHING, CaseError, Problem, key_of
 
 SPEED_KEY = "operation.speed"
 
@@ -77,13 +78,14 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
             keys.append(parse_over(text))
         except CaseError as error:
             problems += error.problems
-    paths = list[tuple[str, ...] | None]()
+    paths = list[tuple[str, ...]]()
     for key in keys:
-        for one in key.keys:
-            path = parse_key_path(one)
-            if path in paths:
-                problems.append(Problem("--over", key.key, "each key once"))
-            paths.append(path)
+        own = [path for one in key.keys for path in _paths(case, one)]
+        if not own:
+            problems.append(Problem("--over", key.key, "a path with * that some entries of the case have"))
+        if len(set(own)) < len(own) or set(own) & set(paths):
+            problems.append(Problem("--over", key.key, "each key once"))
+        paths += own
     if case.sweep is not None and parse_key_path(SPEED_KEY) not in paths:
         keys.insert(0, _speeds(case.sweep.speeds))
     if not keys and not problems:
@@ -95,6 +97,13 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
     if problems:
         raise CaseError(problems)
     return tuple(keys)
+
+
+def _paths(case: Case, key: str) -> list[tuple[str, ...]]:
+    """The steps of a key, or of all that it stands for, by numbers where entries of lists have names."""
+    document, steps = case_document(case), parse_key_path(key) or ()
+    found = [parse_key_path(key_of(place)) or () for place in matching_places(document, steps)]
+    return found if found or "*" in steps else [steps]
 
 
 def parse_over(text: str) -> SweptKey:

@@ -15,7 +15,7 @@ from gearwhine.screen.console import counted, open_console, show_written
 _MOST = 12  # rows of a table
 _MAP_ROWS = 5  # of the critical-speed map
 _REACH = 2.0  # critical speeds beyond so many times the speed of operation are only counted
-_MOSTLY_AXIAL = 0.5  # part of the kinetic energy above which a motion is called axial
+_MOSTLY_AXIAL, _PARTLY_AXIAL = 0.9, 0.05  # parts of the kinetic energy: of a motion called axial, and worth a word
 _PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 _NEUTRAL = 1e-9  # a damping ratio this near to zero neither grows nor decays
 _ROUNDING = 1e-9  # a torque that is no more than this part of the largest is none
@@ -48,7 +48,10 @@ def show_rotors(document: dict[str, Any]) -> None:
 
 def _at_rest(console: Console, rotor: dict[str, Any]) -> None:
     """Frequencies at rest with their kind, ascending as far as bending and torsion are both listed."""
-    bending, torsion = list(_bending(rotor["lateral_hz"])), list(_torsion(rotor["torsional_hz"]))
+    bending, torsion = (
+        list(_bending(rotor["lateral_hz"], rotor["lateral_axial_share"])),
+        list(_torsion(rotor["torsional_hz"])),
+    )
     axial = [(frequency, "axial") for frequency in rotor["axial_hz"]]
     known = min(rows[-1][0] for rows in (bending, torsion) if rows) if bending or torsion else 0.0
     rows = [row for row in sorted([*bending, *torsion, *axial], key=lambda row: row[0]) if row[0] <= known]
@@ -61,13 +64,14 @@ def _with_bearings_at(speed: float | None) -> str:
     return "" if speed is None else f", with the bearings' coefficients at {speed:.6g} rpm"
 
 
-def _bending(frequencies: Sequence[float]) -> Iterator[tuple[float, str]]:
+def _bending(frequencies: Sequence[float], axial_shares: Sequence[float]) -> Iterator[tuple[float, str]]:
     place = 0
     while place < len(frequencies):
         frequency = frequencies[place]
         double = place + 1 < len(frequencies) and frequencies[place + 1] - frequency <= _SAME * frequencies[place + 1]
         kind = "bending" if frequency > 0.0 else "moves freely"
-        yield frequency, f"{kind}, both planes" if double else f"{kind}, one plane"
+        planes = "both planes" if double else "one plane"
+        yield frequency, f"{kind}, {planes}{_with_axial(axial_shares[place])}"
         place += 2 if double else 1
 
 
@@ -90,7 +94,7 @@ def _whirl(console: Console, rotor: dict[str, Any]) -> None:
         rows.append(
             (
                 f"{frequency:.5g}",
-                _whirl_name(turning) if along <= _MOSTLY_AXIAL else "along the axis",
+                _whirl_name(turning, along),
                 "0" if state == "undamped" else f"{decrement:.3g}",
                 state,
                 strained,
@@ -135,7 +139,7 @@ def _orders(console: Console, campbell: dict[str, Any]) -> None:
         if one["critical_speeds"] is None:
             rows.append((order, one["why_no_critical_speeds"], ""))
         rows += [
-            (order, f"{abs(each['speed_rpm']):.5g}", _whirl_name(turning * each["direction"]))
+            (order, f"{abs(each['speed_rpm']):.5g}", _whirl_name(turning * each["direction"], each["axial_share"]))
             for each in one["critical_speeds"] or ()
         ]
     if rows:
@@ -153,7 +157,8 @@ def _crossings(console: Console, rotor: dict[str, Any], campbell: dict[str, Any]
     for one in campbell["critical_speeds"]:
         speed, way, margin = abs(one["speed_rpm"]), turning * one["direction"], one["margin"]
         decrement = f"{one['log_decrement']:.3g}" if abs(one["log_decrement"]) > _NEUTRAL else "0"
-        rows.append((f"{speed:.5g}", _whirl_name(way), decrement, "" if margin is None else _beside(margin)))
+        whirl = _whirl_name(way, one["axial_share"])
+        rows.append((f"{speed:.5g}", whirl, decrement, "" if margin is None else _beside(margin)))
         if margin is not None and way >= -1.0 + _PLANAR:  # circular backward whirl takes no work from unbalance
             excited.append((abs(margin), speed, margin))
     if rows:
@@ -172,15 +177,16 @@ def _crossings(console: Console, rotor: dict[str, Any], campbell: dict[str, Any]
 def _undamped(console: Console, rotor: dict[str, Any]) -> None:
     """Undamped critical speeds, which way they whirl, and how far they are from the speed of operation."""
     speeds, directions, margins = (rotor[f"critical_{key}"] for key in ("speeds_rpm", "directions", "margins"))
+    names = [_whirl_name(*one) for one in zip(directions, rotor["critical_axial_share"], strict=True)]
     title = "Undamped critical speeds"
     if margins is None:
-        listed = [(f"{speed:.5g}", _whirl_name(way)) for speed, way in zip(speeds, directions, strict=True)]
+        listed = [(f"{speed:.5g}", name) for speed, name in zip(speeds, names, strict=True)]
         _show(console, title, ("speed [rpm]", "whirl"), listed[:_MOST])
         return
     reach = sum(margin <= _REACH - 1.0 for margin in margins) + 1  # and the first beyond
     rows = [
-        (f"{speed:.5g}", _whirl_name(way), _beside(margin))
-        for speed, way, margin in list(zip(speeds, directions, margins, strict=True))[: min(reach, _MOST)]
+        (f"{speed:.5g}", name, _beside(margin))
+        for speed, name, margin in list(zip(speeds, names, margins, strict=True))[: min(reach, _MOST)]
     ]
     _show(console, title, ("speed [rpm]", "whirl", "from operation"), rows)
     excited = [
@@ -288,10 +294,16 @@ def _beside(margin: float) -> str:
     return f"{100.0 * abs(margin):.3g} % {'above' if margin > 0.0 else 'below'}"
 
 
-def _whirl_name(direction: float) -> str:
-    if abs(direction) <= _PLANAR:
-        return "in a plane"
-    return "forward" if direction > 0.0 else "backward"
+def _whirl_name(direction: float, axial_share: float) -> str:
+    if axial_share > _MOSTLY_AXIAL:
+        return "along the axis"
+    way = "in a plane" if abs(direction) <= _PLANAR else "forward" if direction > 0.0 else "backward"
+    return way + _with_axial(axial_share)
+
+
+def _with_axial(share: float) -> str:
+    """How much of a lateral motion is along the axis, where it is worth a word."""
+    return f", {100.0 * share:.0f} % along the axis" if share >= _PARTLY_AXIAL else ""
 
 
 def _stability(campbell: dict[str, Any]) -> str:

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 import rotors as room
+from gearwhine.doubtful import warning
 from gearwhine.stages.rotor_loads import SolvedResponse
 from gearwhine.stages.rotors import SolvedRotor
 from gearwhine.stages.torsion import SolvedTorsion
@@ -15,6 +16,11 @@ FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 _RPM = 60.0 / (2.0 * np.pi)
+
+_ROTATING = (
+    "rotor {!r}: the damping of its coupling across the axis turns with the shaft and feeds forward whirl at speeds "
+    "above its frequency; whirl and its stability are told without it here, and with it by `gearwhine system`"
+)
 
 # A damping ratio nearer to zero than this is rounding: the mode neither grows nor decays.
 NEUTRAL = 1e-9
@@ -30,6 +36,7 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 "length_m": one.rotor.length,
                 "bearings": [bearing.name for bearing in one.bearings],
                 "lateral_hz": (one.rest.frequencies[one.rest.axial_share <= room.MOSTLY_AXIAL] / _HERTZ).tolist(),
+                "lateral_axial_share": one.rest.axial_share[one.rest.axial_share <= room.MOSTLY_AXIAL].tolist(),
                 "axial_hz": (one.axial / _HERTZ).tolist(),
                 "strain_energy": _strain_energy(one),
                 "torsional_hz": (one.torsional.frequencies / _HERTZ).tolist(),
@@ -41,19 +48,30 @@ def rotors_document(solved: tuple[SolvedRotor, ...]) -> dict[str, Any]:
                 ],
                 "critical_speeds_rpm": (one.critical.speeds * _RPM).tolist(),
                 "critical_directions": one.critical.direction.round(6).tolist(),
+                "critical_axial_share": one.critical.axial_share.tolist(),
                 "critical_margins": _margins(one),
                 "campbell": _campbell(one),
                 "static": _static(one),
                 "unbalance_response": None if one.response is None else _response(one.response),
                 "rolling_bearings": [_rolling(name, state) for name, state in one.rolling.items()],
-                "damping": "of the bearings; the shaft's own acts in the coupled system",
+                "damping": "of the bearings; that of the shaft and of its couplings acts in the coupled system",
                 "torsional_response": None if one.torsion is None else _torsion(one.torsion),
                 "stiffness_map": None if one.stiffness_map is None else _stiffness_map(one.stiffness_map),
                 "certificate": _certificate(one),
             }
             for one in solved
-        ]
+        ],
+        "warnings": [
+            warning("rotating damping", _ROTATING.format(one.rotor.name), rotor=one.rotor.name)
+            for one in solved
+            if any(_damps_across(part) for part in one.rotor.segments)
+        ],
     }
+
+
+def _damps_across(part: room.Segment | room.Coupling) -> bool:
+    """Whether a coupling damps motion across the axis, which it does in the turning shaft."""
+    return isinstance(part, room.Coupling) and (part.lateral_damping > 0.0 or part.tilt_damping > 0.0)
 
 
 def _strain_energy(one: SolvedRotor) -> dict[str, Any]:
@@ -144,6 +162,7 @@ def _crossing(one: SolvedRotor, crossing: room.Crossing) -> dict[str, Any]:
     return {
         "speed_rpm": crossing.speed * _RPM,
         "direction": crossing.direction,
+        "axial_share": crossing.axial_share,
         "log_decrement": crossing.log_decrement,
         "margin": abs(crossing.speed / one.operation) - 1.0 if one.operation else None,
     }

@@ -174,9 +174,9 @@ def _coupling(entry: Entry, remarks: Remarks) -> tuple[Coupling, tuple[tuple[flo
     """A coupling, and mass, polar and diametral inertia of its two halves where these differ."""
     _note_unknown(entry, _COUPLING_KEYS, remarks)
     for name in _DAMPINGS:
-        if (value := entry.number(name, 0.0)) != 0.0:
-            remarks.add(entry.place, f"{name} is {value:g}; the coupling's damping is left out")
-    for x, y in (("kt_x", "kt_y"), ("kr_x", "kr_y")):
+        if entry.number(name, 0.0) < 0.0:
+            raise entry.error(name, "damping that is not negative")
+    for x, y in (("kt_x", "kt_y"), ("kr_x", "kr_y"), ("ct_x", "ct_y"), ("cr_x", "cr_y")):
         if entry.number(x, 0.0) != entry.number(y, 0.0):
             raise entry.error(y, f"{entry.number(x, 0.0):g}, the value of {x}: a coupling turns with the shaft")
     for name in ("kt_x", "kt_z", "kr_x", "kr_z"):
@@ -204,6 +204,10 @@ def _coupling(entry: Entry, remarks: Remarks) -> tuple[Coupling, tuple[tuple[flo
         mass=mass,
         polar_inertia=polar,
         diametral_inertia=diametral,
+        lateral_damping=entry.number("ct_x", 0.0),
+        tilt_damping=entry.number("cr_x", 0.0),
+        torsional_damping=entry.number("cr_z", 0.0),
+        axial_damping=entry.number("ct_z", 0.0),
     )
     return coupling, () if alike else tuple(ends)
 

@@ -231,3 +231,30 @@ def test_shares_of_equal_modes_do_not_depend_on_their_basis() -> None:
         np.testing.assert_allclose(turned.kinetic, modes.shares.kinetic, atol=1e-12)
         np.testing.assert_allclose(turned.strain, modes.shares.strain, atol=1e-12)
         np.testing.assert_allclose(turned.damping, modes.shares.damping, atol=1e-12)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_of_parts_that_have_as_much_the_first_is_named(sign: float) -> None:
+    """Two masses tied to each other alike: both modes move both, and rounding must not choose between them."""
+    tied = CoupledSystem(
+        (mass("one"), mass("two")),
+        (0.0, 0.0),
+        (
+            spring("left", [1.0, 0.0], 3.0 * (1.0 + sign * 1e-13), 0.0),
+            spring("right", [0.0, 1.0], 3.0, 0.0),
+            spring("between", [1.0, -1.0], 0.1, 0.0),
+        ),
+    )
+    assert coupled_modes(tied).where == ("one", "one")
+
+
+def test_modes_that_can_be_told_apart_keep_their_own_shares() -> None:
+    """Springs that differ by 1e-7, ten times what makes a group: each mode is of its own mass."""
+    apart = CoupledSystem(
+        (mass("one"), mass("two")),
+        (0.0, 0.0),
+        (spring("left", [1.0, 0.0], 3.0, 0.0), spring("right", [0.0, 1.0], 3.0 * (1.0 + 1e-7), 0.0)),
+    )
+    modes = coupled_modes(apart)
+    np.testing.assert_allclose(modes.shares.kinetic, np.eye(2), atol=1e-6)
+    assert modes.where == ("one", "two")

@@ -1,5 +1,7 @@
 """The machine's Campbell diagram: against the exact rotor equations, and modes followed where they cross and veer."""
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -170,3 +172,14 @@ def test_speeds_that_make_no_diagram() -> None:
         system_campbell(machine(ROUND, 10.0), [1.0, 2.0], frequency_limit=0.0)
     with pytest.raises(CouplingError, match="stands still"):
         system_campbell(machine(ROUND, 0.0), [1.0, 2.0], frequency_limit=100.0)
+
+
+def test_a_round_shaft_at_rest_whirls_in_no_sense() -> None:
+    """Forward and backward whirl are one double root there: rounding must not choose the sense that is told."""
+    system = machine(ROUND, 300.0).at_speed(1e-12).system
+    stiffer = [
+        replace(one, stiffness=one.stiffness * (1.0 + 1e-15 * number)) for number, one in enumerate(system.linear)
+    ]
+    for one in (system, replace(system, linear=tuple(stiffer))):
+        whirl = coupled_modes(one).whirl
+        assert np.nanmax(np.abs(whirl)) < 1e-6

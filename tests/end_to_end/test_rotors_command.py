@@ -255,3 +255,19 @@ def test_motion_along_the_axis_is_neither_bending_nor_critical(solved_rotor: Any
     assert all(abs(speed / bounce - 1.0) > 0.1 for speed in crossed)
     shares = rotor["whirl"][0]["axial_share"]
     assert (max(shares) > 0.9) == (tie > 0.0)
+
+
+def test_damping_of_a_coupling_that_whirl_is_told_without_is_warned_of(gearwhine: Any, tmp_path: Path) -> None:
+    """Rotating damping makes forward whirl grow at speed: `system` has it, `rotors` says that it has not."""
+    soft = "lateral_stiffness = 1e9, axial_stiffness = 1e9, tilt_stiffness = 1e7, torsional_stiffness = 1e6"
+    plain = 'segments = [{ length = "100 mm", diameter = "80 mm" }]'
+    half = '{ length = "49 mm", diameter = "80 mm" }'
+    for damping, told in (("lateral_damping = 50", True), ("torsional_damping = 5", False)):
+        coupling = f'{{ length = "2 mm", coupling = {{ {soft}, {damping} }} }}'
+        text = JEFFCOTT.replace(plain, f"segments = [{half}, {coupling}, {half}]")
+        (tmp_path / "coupled.toml").write_text(text, encoding="utf-8")
+        outcome = gearwhine("rotors", "coupled.toml", "--json", "-q")
+        assert outcome.code == 0, outcome.err
+        found = [one["message"] for one in outcome.document["warnings"] if one["name"] == "rotating damping"]
+        assert bool(found) == told
+        assert all("with it by `gearwhine system`" in message for message in found)

@@ -16,6 +16,28 @@ def test_a_star_stands_for_every_entry_that_has_the_key() -> None:
         load_case("spur-pair", ["bearing.*.hardness=1"])
 
 
+def test_a_star_stands_for_what_is_by_default_too() -> None:
+    """As in [update]: of two rotors one has the key in writing, or none."""
+    for written in (["rotor.0.damping_ratio=0.01"], []):
+        case = load_case("spur-pair", [*written, "rotor.*.damping_ratio=0.02"]).case
+        assert [rotor.damping_ratio for rotor in case.rotor] == [0.02, 0.02]
+    (key, *_) = swept_keys(load_case("spur-pair").case, ["rotor.*.damping_ratio=0.01,0.02"])
+    points = sweep_points("spur-pair", ["rotor.1.damping_ratio=0.03"], [key])
+    assert [[rotor.damping_ratio for rotor in point.case.rotor] for point in points] == [[0.01] * 2, [0.02] * 2]
+    # What is there by default alone cannot be taken away.
+    assert load_case("spur-pair", ["rotor.0.damping_ratio=0.01", "rotor.*.damping_ratio="]).case.rotor[0].damping_ratio
+
+
+def test_a_key_under_two_names_is_gone_through_once() -> None:
+    case = load_case("spur-pair").case
+    name = case.bearing[0].name
+    for other in ("bearing[0].stiffness.xx", f"bearing.{name}.stiffness.xx"):
+        with pytest.raises(CaseError, match="each key once"):
+            swept_keys(case, ["bearing.*.stiffness.xx=1e8,2e8", f"{other}=3e8,4e8"])
+    with pytest.raises(CaseError, match="that some entries of the case have"):
+        swept_keys(case, ["bearing.*.hardness=1,2"])
+
+
 def test_keys_with_commas_between_move_together() -> None:
     case = load_case("spur-pair").case
     over = "bearing.*.stiffness.xx, bearing.*.stiffness.yy=1e8 N/m:3e8 N/m:3"

@@ -1,8 +1,12 @@
 """Orders along a run, whatever the tooth numbers: windows need no whole turns of every shaft."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
+from coupling import Turning
 from gearwhine.case import Case, load_case, mesh_frequencies
 from gearwhine.figures.transient import _speed
 from gearwhine.stages.gears import solve_gears
@@ -52,3 +56,31 @@ def test_a_run_too_short_for_orders_says_so() -> None:
 
 def test_captions_of_a_run_name_its_speeds() -> None:
     assert _speed(*run_up((27, 29), 0.06)) == "1500 to 4500 rpm, averaged over the run"
+
+
+def long_run(solved: SolvedTransient, orders: dict[float, float]) -> SolvedTransient:
+    """The same machine along 660 turns from 600 to 6000 rpm, its mesh force with these amplitudes at these orders."""
+    turning = Turning(np.array([0.0, 12.0]), np.array([600.0, 6000.0]) / 5500.0)
+    times = np.arange(0.0, 12.0, 1.0 / 7000.0)
+    turns = 5500.0 / 60.0 * turning.at(times)[0]
+    force = 1000.0 + sum(size * np.cos(2.0 * np.pi * order * turns + order) for order, size in orders.items())
+    name = solved.machine.system.contacts[0].name
+    histories = replace(solved.histories, times=times, sensor_acceleration={}, mesh_force={name: force})
+    return replace(solved, turning=turning, signals=replace(solved.signals, histories=histories))
+
+
+@pytest.mark.parametrize(("teeth", "within"), [((27, 29), 0.01), ((26, 30), 1e-4)])
+def test_a_long_run_has_every_order_at_its_amplitude(teeth: tuple[int, int], within: float) -> None:
+    """Of 26/30 teeth 15 turns are whole ones of both shafts, and each order is a line; of 27/29 it lies between."""
+    case, solved = run_up(teeth, 0.06)
+    ratio = teeth[0] / teeth[1]
+    given = {1.0: 60.0, ratio: 40.0, float(teeth[0]): 200.0, 2.0 * teeth[0]: 30.0}
+    run = long_run(solved, given)
+    found = solve_run_signature(case, run)
+    assert found is not None
+    rows: list[dict[str, Any]] = run_signature_document(found)["orders"]
+    assert sorted(row["order"] for row in rows) == pytest.approx(sorted([*given, 3.0 * teeth[0]]))
+    for order, size in given.items():
+        (row,) = [row for row in rows if abs(row["order"] - order) < 1e-9]
+        assert row["highest_amplitude"] == pytest.approx(size, rel=within)
+    assert run_signature_warnings(case, run) == []

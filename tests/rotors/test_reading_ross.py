@@ -211,6 +211,8 @@ def without(content: Document, *path: str) -> Document:
 
 
 FIRST = "ShaftElement_Shaft Element 0"
+WHOLE = {"n": 2, "m_l": 1.0, "m_r": 1.0, "Ip_l": 0.1, "Ip_r": 0.1,
+         "kt_x": 1e8, "kt_y": 1e8, "kt_z": 1e7, "kr_x": 1e5, "kr_y": 1e5, "kr_z": 1e5}  # fmt: skip
 COUPLED = {"n": 2, "m_l": 1.0, "m_r": 1.0, "Ip_l": 0.1, "Ip_r": 0.1, "kr_z": 1e5}
 WRONG: dict[str, tuple[Document, str]] = {
     "no length": (without(two_elements(), FIRST, "L"), f"{FIRST}.L is 'missing'; expected a finite number"),
@@ -249,6 +251,8 @@ WRONG: dict[str, tuple[Document, str]] = {
                                         BearingElement_s=bearing(3, "s", frequency=[0.0, 1.0])), "s.frequency is"),
     "mass unlike in y": (two_elements(PointMass_p={"n": 0, "mx": 1.0, "my": 2.0}), "PointMass_p.my is 2.0; expected 1"),
     "loose coupling": (two_elements(CouplingElement_c=dict(COUPLED)), "CouplingElement_c.kt_x is 'missing'; expected"),
+    "coupling damped unlike in y": (two_elements(CouplingElement_c=WHOLE | {"ct_x": 5.0}), "_c.ct_y is 'missing'"),
+    "coupling that drives": (two_elements(CouplingElement_c=WHOLE | {"cr_z": -5.0}), "c.cr_z is -5"),
     "coupling unlike in y": (two_elements(CouplingElement_c=COUPLED | {"kt_x": 1e5, "kt_y": 2e5}), "c.kt_y is 200000"),
     "a value at the top": ({"shaft": 3}, "shaft is 3; expected a table"),
     "nothing": ({}, "no elements; expected a rotor saved by ROSS"),

@@ -14,10 +14,12 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
+    Torque,
     solve_axial_modes,
     solve_lateral_modes,
     solve_torsional_chain,
     solve_torsional_modes,
+    torsional_response,
 )
 from rotors.root_count import isolate
 from rotors.rotor_lines import axial_chain_on, bending_chain
@@ -123,3 +125,19 @@ def test_axial_rod_on_a_spring(pieces: int) -> None:
         atol=1e-9,
     )
     np.testing.assert_allclose(modes.displacement, modes.evaluate(modes.stations), atol=1e-12)
+
+
+def test_a_coupling_damps_the_torsional_response() -> None:
+    """Two discs on k + iωc: the angles of both, half way between, and the torque that the coupling carries."""
+    coupling = Coupling(0.05, 3e9, 2e7, 4e4, 5e6, torsional_damping=8.0)
+    bar = Segment(0.01, 0.2, 0.0, RIGID)
+    rotor = Rotor("pair", [bar, coupling, bar], [Disc(0.0, 5.0, 0.1, 0.06), Disc(0.07, 8.0, 0.2, 0.12)])
+    omega = np.array([100.0, 775.0, 2000.0])
+    found = torsional_response(rotor, [Torque(0.0, 3.0)], omega, damping_ratio=0.01)
+    for number, frequency in enumerate(omega):
+        spring = 4e4 * (1.0 + 0.02j) + 8j * frequency
+        dynamic = np.array([[spring - 0.1 * frequency**2, -spring], [-spring, spring - 0.2 * frequency**2]])
+        angles = np.linalg.solve(dynamic, [3.0, 0.0])
+        np.testing.assert_allclose(found.angle([0.0, 0.07])[number], angles, rtol=1e-6)
+        assert found.torque([0.03])[number, 0] == pytest.approx(spring * (angles[1] - angles[0]), rel=1e-6)
+        assert found.angle([0.035])[number, 0] == pytest.approx(angles.mean(), rel=1e-6)

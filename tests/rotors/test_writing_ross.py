@@ -3,6 +3,7 @@
 That ROSS itself loads them and solves the same rotor, `tests/validation/test_against_ross.py` shows.
 """
 
+import dataclasses
 import tempfile
 import tomllib
 from pathlib import Path
@@ -45,6 +46,8 @@ def test_written_elements_are_as_short_as_asked_and_meet_every_station(tmp_path:
 def test_cones_couplings_tables_and_pedestals_come_back(tmp_path: Path) -> None:
     cone = Segment(0.3, 0.08, 0.04, OURS, "cowper", 0.05, 0.0, axial_force=-300.0)
     coupling = Coupling(0.1, 1e8, 1e5, 2e5, 3e7, mass=4.0, polar_inertia=0.04, diametral_inertia=0.03)
+    for number, what in enumerate(("lateral", "tilt", "torsional", "axial"), 1):
+        coupling = dataclasses.replace(coupling, **{f"{what}_damping": 7.0 * number})
     rotor = Rotor("r", [cone, coupling, Segment(0.2, 0.05, 0.0, OURS, 1e9)], [Disc(0.15, 2.0)])
     stand = Pedestal(np.diag([1e8, 2e8]), np.array([[10.0, 1.0], [-1.0, 20.0]]), 6.0)
     table = np.stack([np.diag([1e6, 2e6, 3e6, 0.0, 0.0]), np.diag([2e6, 3e6, 4e6, 0.0, 0.0])])
