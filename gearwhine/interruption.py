@@ -3,9 +3,15 @@
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from queue import SimpleQueue
 from types import FrameType
+from typing import TypeVar
+
+T = TypeVar("T")
+
+_NUMBERS = (signal.SIGINT, signal.SIGTERM)
 
 _AGAIN = 0.05
 """After how long an interruption that had to wait comes again [s]."""
@@ -22,7 +28,7 @@ def interruptible() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.getsignal(number) for number in _NUMBERS}
     hook = sys.unraisablehook
     _raised.clear()
     for number, handler in before.items():
@@ -35,6 +41,64 @@ def interruptible() -> Iterator[None]:
         sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Hold back what interrupts the main thread until the block ends.
+
+    For calls of libraries with threads of their own: an interruption that strikes between the taking of a lock and the
+    block that gives it back leaves those threads waiting for ever.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    held: list[int] = []
+    before = {number: signal.getsignal(number) for number in _NUMBERS}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:
+            signal.signal(number, lambda late, _: held.append(late))
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        if held:
+            signal.raise_signal(held[0])
+
+
+def each_aside(items: Iterable[T]) -> Iterator[T]:
+    """Give what an iterable gives, worked out on a thread of its own where no interruption strikes.
+
+    The thread that takes the items waits for them where an interruption is safe. An iterable that is left before its
+    end goes on until it ends by itself.
+    """
+    given: SimpleQueue[tuple[list[T], BaseException | None]] = SimpleQueue()
+
+    def work() -> None:
+        try:
+            for item in items:
+                given.put(([item], None))
+        except BaseException as error:
+            given.put(([], error))
+        else:
+            given.put(([], None))
+
+    with uninterrupted():
+        threading.Thread(target=work, daemon=True).start()
+    while True:
+        found, error = given.get()
+        if error is not None:
+            raise error
+        if not found:
+            return
+        yield found[0]
+
+
+def aside(work: Callable[[], T]) -> T:
+    """What a call returns, made on a thread of its own; see :func:`each_aside`."""
+    (found,) = each_aside(work() for _ in range(1))
+    return found
 
 
 _raised: list[int] = []

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from gearwhine.interruption import aside, each_aside
 from housing.updating import Each, one_by_one
 
 
@@ -38,7 +39,7 @@ def side_by_side(workers: int) -> Iterator[Each]:
             with warnings.catch_warnings():
                 # Dask would rather have large tasks scattered first; ours are few and long.
                 warnings.filterwarnings("ignore", message="Sending large graph")
-                futures = [client.submit(work, task, pure=False) for task in tasks]
-            return (future.result() for future in futures)
+                futures = aside(lambda: [client.submit(work, task, pure=False) for task in tasks])
+            return each_aside(future.result() for future in futures)
 
         yield each

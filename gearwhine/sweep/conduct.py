@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.failures import WorkersError
+from gearwhine.interruption import aside, each_aside
 from gearwhine.output import staging
 from gearwhine.progress import Progress
 from gearwhine.stages.housing import SolvedHousing, solve_housing
@@ -84,11 +85,11 @@ def conduct_sweep(
                     await_workers(client, workers)
                 told = _teller(len(points), len(resumed), progress)
                 told(0)
-                futures = _submitted(client, {number: points[number] for number in todo}, shared)
+                futures = aside(lambda: _submitted(client, {number: points[number] for number in todo}, shared))
                 # Now, not before: the points need not wait for this.
                 _keep(unkept, folder)
                 _read_what_writes()
-                for count, (number, outcome) in enumerate(_as_they_end(client, futures), start=1):
+                for count, (number, outcome) in enumerate(each_aside(_as_they_end(client, futures)), start=1):
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
                     told(count)

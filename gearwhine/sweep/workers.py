@@ -8,17 +8,19 @@ import os
 import signal
 import threading
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from multiprocessing import resource_tracker
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from gearwhine.case import CaseError, Problem
 from gearwhine.failures import WorkersError
+from gearwhine.interruption import aside, uninterrupted
 
 if TYPE_CHECKING:
-    from distributed import Client, WorkerPlugin
+    from distributed import Client, LocalCluster, WorkerPlugin
 
 # Every worker is one thread: BLAS and factorisations with threads of their own on top cost more than they give.
 _ONE_THREAD = dict.fromkeys(
@@ -27,6 +29,8 @@ _ONE_THREAD = dict.fromkeys(
 _FIND_SCHEDULER = "10s"
 # Longer than a process takes to start on the slowest machine; without an end, one that never comes is waited for.
 _WORKERS_COME = 300.0  # seconds
+# What is still open then ends with this process.
+_CLOSES = 10.0  # seconds
 
 
 def default_workers() -> int:
@@ -83,7 +87,7 @@ def connected(
 
 
 def await_workers(client: Client, workers: int) -> None:
-    """Wait until so many workers are there.
+    """Wait until so many workers are there. An interruption strikes outside of what waits.
 
     Raises
     ------
@@ -91,7 +95,7 @@ def await_workers(client: Client, workers: int) -> None:
         Where the processes do not start.
     """
     try:
-        client.wait_for_workers(workers, timeout=_WORKERS_COME)
+        aside(lambda: client.wait_for_workers(workers, timeout=_WORKERS_COME))
     except TimeoutError as error:
         raise WorkersError(f"the workers did not start: {error}") from error
 
@@ -101,36 +105,48 @@ def _own_processes(workers: int, scratch: str, plugins: Sequence[WorkerPlugin]) 
     from distributed import Client, LocalCluster
 
     others = set(multiprocessing.active_children())
-    try:
-        with _without_ctrl_c():
-            cluster = LocalCluster(
-                n_workers=0,
-                threads_per_worker=1,
-                processes=True,
-                # None: points hand back kilobytes, so nothing is to be spilled to disk.
-                memory_limit=0,
-                local_directory=scratch,
-                plugins=tuple(plugins),
-                silence_logs=logging.CRITICAL,
-                # No dashboard, and a port that nobody else has for what is left of its server.
-                dashboard_address="127.0.0.1:0",
-                scheduler_kwargs={"dashboard": False},
-            )
-    except (OSError, RuntimeError, TimeoutError) as error:
-        raise WorkersError(f"the workers did not start: {error}") from error
-    try:
-        with Client(cluster, set_as_default=False) as client:
+    with ExitStack() as ended:
+        try:
+            with uninterrupted(), _without_ctrl_c():
+                cluster = LocalCluster(
+                    n_workers=0,
+                    threads_per_worker=1,
+                    processes=True,
+                    # None: points hand back kilobytes, so nothing is to be spilled to disk.
+                    memory_limit=0,
+                    local_directory=scratch,
+                    plugins=tuple(plugins),
+                    silence_logs=logging.CRITICAL,
+                    # No dashboard, and a port that nobody else has for what is left of its server.
+                    dashboard_address="127.0.0.1:0",
+                    scheduler_kwargs={"dashboard": False},
+                )
+                ended.callback(_end, cluster, others)
+        except (OSError, RuntimeError, TimeoutError) as error:
+            raise WorkersError(f"the workers did not start: {error}") from error
+        with uninterrupted():
+            client = Client(cluster, set_as_default=False)
+            ended.callback(_close, client)
             # Now, not before: a client waits for the workers that the cluster is starting.
             cluster.scale(workers)
-            yield client
-    finally:
-        # What they hold has been handed back or is not wanted, and waiting for them to end takes seconds; those that
-        # are starting still, the cluster does not know yet.
+        yield client
+
+
+def _close(client: Client) -> None:
+    with uninterrupted(), suppress(TimeoutError):
+        client.close(timeout=_CLOSES)
+
+
+def _end(cluster: LocalCluster, others: set[BaseProcess]) -> None:
+    """End a cluster of our own with its workers: all processes started from this one but the others."""
+    # What they hold has been handed back or is not wanted, and waiting for them to end takes seconds; those that are
+    # starting still, the cluster does not know yet.
+    with uninterrupted(), suppress(TimeoutError):
         for nanny in cluster.workers.values():
             nanny.auto_restart = False
         for process in set(multiprocessing.active_children()) - others:
             process.kill()
-        cluster.close()
+        cluster.close(timeout=_CLOSES)
 
 
 @contextmanager
@@ -138,12 +154,14 @@ def _cluster_at(address: str) -> Iterator[Client]:
     from distributed import Client
 
     try:
-        client = Client(address, timeout=_FIND_SCHEDULER, set_as_default=False)
+        client = aside(lambda: Client(address, timeout=_FIND_SCHEDULER, set_as_default=False))
     except (OSError, ValueError, RuntimeError, TimeoutError) as error:
         expected = f"the address of a running Dask scheduler, such as tcp://host:8786 ({error})"
         raise CaseError([Problem("--scheduler", address, expected)]) from error
-    with client:
+    try:
         yield client
+    finally:
+        _close(client)
 
 
 @contextmanager

@@ -45,6 +45,16 @@ def start(folder: Path, arguments: tuple[str, ...]) -> "subprocess.Popen[str]":
     return subprocess.Popen(command, text=True, cwd=folder, env=environment, start_new_session=True, **pipes)
 
 
+def said(process: "subprocess.Popen[str]", within: float) -> tuple[str, str]:
+    """What a command writes until it ends; one that does not is killed, lest its pipes trouble other tests."""
+    try:
+        return process.communicate(timeout=within)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        raise
+
+
 def workers_of(process: "subprocess.Popen[str]") -> list[psutil.Process]:
     workers = []
     for child in psutil.Process(process.pid).children(recursive=True):
@@ -72,7 +82,7 @@ def interrupted_and_hurt(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path
     wait_for(lambda: list(points.glob("*.nc")), process)
     hands = workers_of(process)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
-    out, errors = process.communicate(timeout=60)
+    out, errors = said(process, 60.0)
     assert (process.returncode, out) == (130, "")
     assert "Traceback" not in errors
     assert "interrupted" in errors
@@ -85,7 +95,7 @@ def interrupted_and_hurt(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path
     before = len(list(points.iterdir()))
     wait_for(lambda: len(list(points.iterdir())) > before, process)
     workers_of(process)[0].send_signal(signal.SIGKILL)
-    out, errors = process.communicate(timeout=240)
+    out, errors = said(process, 240.0)
     assert process.returncode == 1, errors
     assert "3 of 6 points failed" in errors
     assert "Traceback" not in errors
@@ -101,7 +111,7 @@ def test_ctrl_c_while_workers_start_is_quiet_and_leaves_none(tmp_path: Path) -> 
     wait_for(lambda: workers_of(process), process)
     hands = psutil.Process(process.pid).children(recursive=True)
     os.killpg(process.pid, signal.SIGINT)
-    out, errors = process.communicate(timeout=60)
+    out, errors = said(process, 60.0)
     assert (process.returncode, out) == (130, "")
     assert "Traceback" not in errors
     _, alive = psutil.wait_procs(hands, timeout=10)
@@ -173,7 +183,7 @@ def housed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict, dict]:
     arguments = (*HOUSED, "-o", "out", "--over", "operation.speed=3000 rpm,6000 rpm")
     with cluster(folder) as address:
         process = start(folder, (*arguments, "--scheduler", address))
-        out, errors = process.communicate(timeout=240)
+        out, errors = said(process, 240.0)
     assert process.returncode == 0, errors
     assert run_command([str(folder / "out") if part == "out" else part for part in arguments]) == 0
     again = (folder / "out" / "summary.json").read_text(encoding="utf-8")

@@ -2,6 +2,7 @@
 
 import signal
 import sys
+import threading
 import time
 import weakref
 from collections.abc import Iterator
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from gearwhine.cli import command_line
+from gearwhine.interruption import aside, each_aside, uninterrupted
 
 
 @pytest.fixture(autouse=True)
@@ -86,3 +88,43 @@ def test_the_handlers_are_given_back(monkeypatch: pytest.MonkeyPatch) -> None:
     assert command_line.run_command([]) == 0
     assert handlers() == before
     assert not set(within) & set(before)
+
+
+def test_what_is_held_back_strikes_at_the_end_of_the_block() -> None:
+    done = []
+
+    def work() -> None:
+        with uninterrupted():
+            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(signal.SIGINT)
+            done.append("inside")
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert done == ["inside"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_what_is_worked_out_aside_is_waited_for_where_an_interruption_is_safe() -> None:
+    """The thread at work never sees one: it gives back its lock, however often the one that waits is interrupted."""
+    lock, told = threading.Lock(), threading.Event()
+
+    def items() -> Iterator[int]:
+        with lock:
+            told.wait(20.0)
+            yield 1
+
+    found = each_aside(items())
+    timer = threading.Timer(0.1, signal.pthread_kill, (threading.get_ident(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        next(found)
+    told.set()
+    assert lock.acquire(timeout=10.0)
+
+
+def test_results_and_errors_come_from_aside() -> None:
+    assert list(each_aside(iter([1, None, 3]))) == [1, None, 3]
+    assert aside(lambda: None) is None
+    with pytest.raises(ZeroDivisionError):
+        aside(lambda: 1 / 0)
