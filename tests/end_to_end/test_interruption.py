@@ -80,7 +80,8 @@ def test_an_interrupted_run_goes_on_to_the_same_results(start_process, tmp_path:
         xr.open_dataset(tmp_path / "out/results.nc") as resumed,
         xr.open_dataset(tmp_path / "whole.nc") as whole,
     ):
-        assert resumed.equals(whole)
+        assert set(resumed.variables) == set(whole.variables)
+        assert [name for name in resumed.variables if not resumed[name].equals(whole[name])] == []
         assert all(resumed[name].values.tobytes() == whole[name].values.tobytes() for name in NUMBERS)
 
 
