@@ -8,6 +8,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -81,7 +82,13 @@ def test_an_interrupted_run_goes_on_to_the_same_results(start_process, tmp_path:
         xr.open_dataset(tmp_path / "whole.nc") as whole,
     ):
         assert set(resumed.variables) == set(whole.variables)
-        assert [name for name in resumed.variables if not resumed[name].equals(whole[name])] == []
+        for name, found in resumed.variables.items():
+            if found.dtype.kind in "fc":
+                # To rounding: sums of shapes turn on where in memory their arrays begin.
+                least = 1e-12 * float(np.nanmax(np.abs(found.values), initial=0.0))
+                np.testing.assert_allclose(found, whole[name], rtol=1e-12, atol=least, err_msg=str(name))
+            else:
+                assert found.equals(whole[name].variable), name
         assert all(resumed[name].values.tobytes() == whole[name].values.tobytes() for name in NUMBERS)
 
 
