@@ -38,8 +38,8 @@ class FrequencyResponse:
         Of the whole system.
     sensor_acceleration : dict of str to ndarray of complex, shape (f,)
         Along each sensor [m/s²].
-    bearing_force : dict of str to ndarray of complex, shape (f, 2)
-        Force of each shaft on its bearing along x and y [N].
+    bearing_load : dict of str to ndarray of complex, shape (f, 5)
+        Of each shaft on its bearing: forces along x, y, z [N], moments about x and y [N m]; 0 where nothing holds.
     mesh_force : dict of str to ndarray of complex, shape (f,)
         Force along each line of action [N]; contacts that do not touch are left out.
     """
@@ -49,8 +49,13 @@ class FrequencyResponse:
     frequencies: FloatArray
     coordinates: ComplexArray
     sensor_acceleration: dict[str, ComplexArray]
-    bearing_force: dict[str, ComplexArray]
+    bearing_load: dict[str, ComplexArray]
     mesh_force: dict[str, ComplexArray]
+
+    @property
+    def bearing_force(self) -> dict[str, ComplexArray]:
+        """Force of each shaft on its bearing along x and y [N], shape (f, 2) each."""
+        return {name: load[:, :2] for name, load in self.bearing_load.items()}
 
 
 def mesh_error_response(
@@ -176,7 +181,7 @@ def unbalance_response(
         frequencies=frequencies,
         coordinates=np.concatenate([part.coordinates for part in parts]),
         sensor_acceleration=_joined([part.sensor_acceleration for part in parts]),
-        bearing_force=_joined([part.bearing_force for part in parts]),
+        bearing_load=_joined([part.bearing_load for part in parts]),
         mesh_force=_joined([part.mesh_force for part in parts]),
     )
 
@@ -210,12 +215,13 @@ def _named(
 ) -> FrequencyResponse:
     """What coordinates (f, n) mean at sensors, bearings and meshes; one mesh may have a unit error."""
     system, rate = machine.system, 1j * frequencies
-    forces = {}
+    loads = {}
     for connector in system.linear[: len(machine.bearings)]:
         deflection = moved @ connector.directions
-        forces[connector.name] = (
+        loads[connector.name] = np.zeros((len(moved), 5), dtype=np.complex128)
+        loads[connector.name][:, list(connector.axes or range(deflection.shape[1]))] = (
             deflection @ connector.stiffness.T + (rate[:, None] * deflection) @ connector.damping.T
-        )[:, :2]
+        )
     pressed = {}
     for number, tooth in enumerate(system.contacts):
         if state.stiffness[number] != 0.0 or state.damping[number] != 0.0:
@@ -227,6 +233,6 @@ def _named(
         frequencies=np.asarray(frequencies),
         coordinates=moved,
         sensor_acceleration={name: -(frequencies**2) * (moved @ row) for name, row in sensor_rows(machine).items()},
-        bearing_force=forces,
+        bearing_load=loads,
         mesh_force=pressed,
     )

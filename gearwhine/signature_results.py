@@ -21,11 +21,20 @@ def write_signature(
     if found.bearing_spectra:
         spectra = list(found.bearing_spectra.values())
         coordinates["frequency"] = ("frequency", spectra[0].frequencies, _unit("Hz", "frequency"))
-        variables["bearing_force_spectrum"] = (
-            ("bearing", "axis", "frequency"),
-            np.array([spectrum.amplitude[:2] for spectrum in spectra]),
-            _unit("N", "peak amplitude of the force of the shaft on its bearing") | {"window": spectra[0].window},
-        )
+        axes = transient.histories.tie_axes
+        loads = np.zeros((len(spectra), 5, len(spectra[0].frequencies)))
+        for load, (name, spectrum) in zip(loads, found.bearing_spectra.items(), strict=True):
+            load[list(axes[name])] = spectrum.amplitude
+        for name, dimensions, amplitude, unit, what in (
+            ("force", ("axis",), loads[:, :2], "N", "force of the shaft on its bearing"),
+            ("axial_force", (), loads[:, 2], "N", "force of the shaft on its bearing along z"),
+            ("moment", ("moment_axis",), loads[:, 3:], "N m", "moment of the shaft on its bearing about x and y"),
+        ):
+            variables[f"bearing_{name}_spectrum"] = (
+                ("bearing", *dimensions, "frequency"),
+                amplitude,
+                _unit(unit, f"peak amplitude of the {what}") | {"window": spectra[0].window},
+            )
     if transient.modal.coordinates:
         _coordinates(transient, variables, coordinates)
     if any(found.lines.values()):

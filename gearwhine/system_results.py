@@ -59,29 +59,42 @@ def _responses(
     per: str,
     variables: Variables,
 ) -> None:
-    for kind, unit, what in (
-        ("sensor_acceleration", "m s-2", "acceleration along the sensor"),
-        ("bearing_force", "N", "force of the shaft on its bearing"),
-        ("mesh_force", "N", "gear-mesh force along the line of action"),
+    loads = _each(responses, "bearing_load").reshape(len(responses), -1, len(responses[0].frequencies), 5)
+    for part, kind, dimensions, unit, what, tables in (
+        (
+            "sensor",
+            "acceleration",
+            (),
+            "m s-2",
+            "acceleration along the sensor",
+            _each(responses, "sensor_acceleration"),
+        ),
+        ("bearing", "force", ("plane",), "N", "force of the shaft on its bearing", loads[..., :2]),
+        ("bearing", "axial_force", (), "N", "force of the shaft on its bearing along z", loads[..., 2]),
+        ("bearing", "moment", ("plane",), "N m", "moment of the shaft on its bearing about x and y", loads[..., 3:]),
+        ("mesh", "force", (), "N", "gear-mesh force along the line of action", _each(responses, "mesh_force")),
     ):
-        tables = [np.array(list(getattr(one, kind).values())) for one in responses]
-        if not tables[0].size:
+        if not tables.size:
             continue
-        values = np.array(tables)
-        dimensions = (excitation, f"{name}_{kind.split('_')[0]}", abscissa, *(("plane",) if values.ndim == 4 else ()))
-        variables[f"{name}_{kind}"] = (dimensions, np.abs(values), _unit(f"{unit} {per}".strip(), f"{what}, peak"))
-        variables[f"{name}_{kind}_phase"] = (dimensions, np.angle(values), _unit("rad", f"phase of the {what}"))
+        along = (excitation, f"{name}_{part}", abscissa, *dimensions)
+        variables[f"{name}_{part}_{kind}"] = (along, np.abs(tables), _unit(f"{unit} {per}".strip(), f"{what}, peak"))
+        variables[f"{name}_{part}_{kind}_phase"] = (along, np.angle(tables), _unit("rad", f"phase of the {what}"))
+
+
+def _each(responses: tuple[FrequencyResponse, ...], kind: str) -> npt.NDArray[np.complex128]:
+    """One kind of signals of all responses, shape (r, n, f, ...)."""
+    return np.array([list(getattr(one, kind).values()) for one in responses], dtype=np.complex128)
 
 
 def _names(response: FrequencyResponse, name: str, coordinates: Variables) -> None:
     for kind, values in (
         ("sensor", response.sensor_acceleration),
-        ("bearing", response.bearing_force),
+        ("bearing", response.bearing_load),
         ("mesh", response.mesh_force),
     ):
         if values:
             coordinates[f"{name}_{kind}"] = (f"{name}_{kind}", list(values), {})
-    if response.bearing_force:
+    if response.bearing_load:
         coordinates["plane"] = ("plane", ["x", "y"], {})
 
 

@@ -155,8 +155,12 @@ def _response(response: room.FrequencyResponse, speeds_rpm: FloatArray | None = 
         "per": response.unit,
         "mesh_force_n": {name: peaks(values) for name, values in response.mesh_force.items()},
         "bearing_force_n": {
-            name: {axis: peaks(values[:, i]) for i, axis in enumerate("xy")}
-            for name, values in response.bearing_force.items()
+            name: {axis: peaks(load[:, i]) for i, axis in enumerate("xyz")}
+            for name, load in response.bearing_load.items()
+        },
+        "bearing_moment_n_m": {
+            name: {axis: peaks(load[:, 3 + i]) for i, axis in enumerate("xy")}
+            for name, load in response.bearing_load.items()
         },
         "sensor_acceleration_m_per_s2": {name: peaks(v) for name, v in response.sensor_acceleration.items()},
     }

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coupling import coupled_modes
+from coupling import coupled_modes, mesh_error_response
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.stages.gears import solve_gears
@@ -46,6 +46,37 @@ def test_the_results_hold_the_axial_force_and_the_moments_of_bearings(results: P
     (left,) = [row for row in summary["bearings"] if row["name"] == "input-left"]
     assert left["mean_force_n"][2] == pytest.approx(thrust, rel=1e-5)
     assert left["mean_moment_n_m"] == [0.0, 0.0]
+
+
+def test_the_spectra_hold_the_axial_force_and_the_moments_of_bearings(results: Path) -> None:
+    """Held against a Fourier sum of the histories on file; a radial bearing's line of no axial force is none."""
+    case = load_case("helical-pair", SHORTER).case
+    (mesh,) = mesh_frequencies(case)
+    with xr.open_dataset(results / "results.nc") as data:
+        turns = np.exp(-2j * np.pi * mesh * data["time"].values)
+        for name in ("force", "axial_force", "moment"):
+            spectrum = data[f"bearing_{name}_spectrum"].sel(frequency=mesh, method="nearest")
+            assert spectrum.frequency.item() == pytest.approx(mesh, rel=1e-9)
+            course = data[f"bearing_{name}"].astype(float).transpose("bearing", ..., "time").values
+            direct = 2.0 / len(turns) * np.abs(course @ turns)
+            np.testing.assert_allclose(spectrum.values, direct, rtol=0.02, atol=2e-3 * direct.max())
+        lines = data["bearing_axial_force_spectrum"].sel(frequency=mesh, method="nearest")
+        assert lines.sel(bearing="input-left").item() > 1.0
+        assert lines.sel(bearing="input-right").item() == 0.0
+
+
+def test_the_response_to_an_error_holds_the_thrust_that_bearings_take() -> None:
+    """Far below all modes the bearings of a shaft take the axial part of the teeth's force: F_bt tan β_b."""
+    case = load_case("helical-pair").case
+    found = mesh_error_response(build_machine(case, None, solve_gears(case)), np.array([2.0 * np.pi]))
+    base = math.asin(math.sin(math.radians(15.0)) * math.cos(math.radians(20.0)))
+    (force,) = found.mesh_force.values()
+    axial = {
+        shaft: sum(load[0, 2] for name, load in found.bearing_load.items() if name.startswith(shaft))
+        for shaft in ("input", "output")
+    }
+    assert abs(axial["input"]) == pytest.approx(abs(force[0]) * math.tan(base), rel=1e-3)
+    assert abs(axial["input"] + axial["output"]) < 1e-3 * abs(axial["input"])
 
 
 def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Path) -> None:

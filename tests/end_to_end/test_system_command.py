@@ -54,6 +54,11 @@ def test_over_speed_with_files(gearwhine: Any, tmp_path: Path) -> None:
         largest = document["transmissibility"][0]["sensor_acceleration_m_per_s2"]["top"][0]["amplitude"]
         assert peak == pytest.approx(largest)
         assert data["unbalance_response_bearing_force"].dims[-2:] == ("unbalance_speed", "plane")
+        assert data["unbalance_response_bearing_axial_force"].dims[-1] == "unbalance_speed"
+        assert data["transmissibility_bearing_moment"].attrs["units"] == "N m m-1"
+        (bearing, peaks) = next(iter(document["transmissibility"][0]["bearing_force_n"].items()))
+        found = data["transmissibility_bearing_force"].sel(transmissibility_bearing=bearing, plane="y").max().item()
+        assert max(one["amplitude"] for one in peaks["y"]) == pytest.approx(found)
 
 
 def test_contact_of_an_instant(gearwhine: Any) -> None:
