@@ -44,10 +44,11 @@ from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.free_speed import free_speed
 from coupling.histories import Histories, Recorded, histories, nothing_recorded, transient_outputs
 from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
-from coupling.machine import GearMesh, Machine, MountedBearing, MountedGear, couple
+from coupling.machine import Machine, couple
 from coupling.marching import Block, Checkpoint, march_blocks, march_key, sample_times
 from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_rows, with_modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
+from coupling.mounted import GearMesh, MountedBearing, MountedGear
 from coupling.periodic import (
     LONGEST_COMMON_PERIOD,
     ExcitationGroup,

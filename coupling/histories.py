@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from coupling.bearing_arrays import bearing_arrays
 from coupling.connector import LinearConnector, NonlinearConnector
-from coupling.machine import Machine, MountedGear
+from coupling.machine import Machine
+from coupling.mounted import MountedGear
 from coupling.settings import TransientOutputs
 from coupling.sliding import friction_of
 from coupling.system import embed

@@ -232,7 +232,7 @@ class LoadedParts:
             One for each train at most; a train without is driven at the left end of its first rotor.
         """
         total = np.zeros(sum(component.size for component in self._components))
-        for train in _trains(list(self._rotors), pairs):
+        for train in trains(list(self._rotors), pairs):
             here = [drive for drive in drives if drive.rotor in train] or [Drive(train[0], 0.0)]
             if len(here) > 1:
                 raise CouplingError(
@@ -257,12 +257,12 @@ def _dashpot(slope: TorqueSlope, row: FloatArray) -> LinearConnector:
     return LinearConnector(slope.name, row[:, None], *middle, over_speed=table)
 
 
-def _trains(names: Sequence[str], pairs: Sequence[tuple[str, str]]) -> list[list[str]]:
-    """Names that pairs tie together, in their order."""
-    trains = [[name] for name in names]
+def trains(names: Sequence[str], pairs: Sequence[tuple[str, str]]) -> list[list[str]]:
+    """Rotors that gear pairs tie together, in their order; a rotor that none ties is a train of its own."""
+    found = [[name] for name in names]
     for first, second in pairs:
-        one, other = (next(train for train in trains if name in train) for name in (first, second))
+        one, other = (next(train for train in found if name in train) for name in (first, second))
         if one is not other:
-            trains.remove(other)
+            found.remove(other)
             one += other
-    return [sorted(train, key=list(names).index) for train in trains]
+    return [sorted(train, key=list(names).index) for train in found]

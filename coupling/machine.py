@@ -8,14 +8,16 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.base_motion import BaseMotion, base_loads, gravity_load
-from coupling.bearing_law import BearingLaw, RollingLaw
+from coupling.bearing_law import RollingLaw
 from coupling.component import Component, HousingComponent, RotorComponent, pedestal_component
 from coupling.connector import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
 from coupling.errors import CouplingError
 from coupling.gear_phases import mesh_phases
-from coupling.gears import GearPairGeometry, ToothContact, sliding_friction
+from coupling.gear_train import require_balance, require_meshing
+from coupling.gears import ToothContact, sliding_friction
 from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance, constant_torques
 from coupling.mean_mesh import mean_meshes
+from coupling.mounted import GearMesh, MountedBearing
 from coupling.pressed_flanks import with_pressed_flanks
 from coupling.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from coupling.shuttling import shuttling_loads
@@ -31,52 +33,6 @@ FloatArray = npt.NDArray[np.float64]
 _GREATEST_COMPRESSION = 0.25
 
 _PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two speeds of its table
-
-
-@dataclass(frozen=True)
-class MountedBearing:
-    """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None.
-
-    With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take.
-    """
-
-    bearing: Bearing
-    rotor: str
-    seat: str | None
-    law: BearingLaw | None = None
-
-
-@dataclass(frozen=True)
-class MountedGear:
-    """Where a gear sits: its rotor, the distance from the rotor's left end and the axis in the x-y plane [m]."""
-
-    name: str
-    rotor: str
-    at: float
-    axis: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class GearMesh:
-    """A driver and a driven gear with the law of their contact.
-
-    Attributes
-    ----------
-    driver, driven : MountedGear
-    geometry : GearPairGeometry
-    contact : ToothContact
-    backlash : float, optional
-        Gap between the back flanks along their line of action [m]; None where they can never meet.
-    friction : float
-        Coefficient of friction between the teeth, from 0 to 0.5.
-    """
-
-    driver: MountedGear
-    driven: MountedGear
-    geometry: GearPairGeometry
-    contact: ToothContact
-    backlash: float | None = None
-    friction: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -205,7 +161,9 @@ def couple(
     ------
     CouplingError
         Where a name has no component, two components share one, a rotor has no speed, a seat no housing, a train more
-        than one drive, or helical gears push a rotor that no bearing holds along its axis.
+        than one drive, helical gears push a rotor that no bearing holds along its axis, or the gears of a pair cannot
+        be in mesh: by speeds that are not in the ratio of their teeth, or of one sense; by axes that are not at their
+        centre distance; by faces that do not overlap.
     rotors.RotorError
         Where a bearing's table does not reach as far as the speeds.
     """
@@ -226,6 +184,8 @@ def couple(
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
     parts = LoadedParts(components, speeds)
 
+    require_meshing(meshes, {rotor.name: rotor.start for rotor in rotors}, speeds)
+    require_balance(meshes, torques, speeds)
     _require_thrust_carried(rotors, speeds, bearings, meshes, torques)
     linear, nonlinear = [], []
     for mounted in bearings:

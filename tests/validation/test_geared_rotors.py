@@ -90,7 +90,8 @@ def turbo_generator(sense: int = 1, centre_line: float = 0.0, lateral: float = 3
             moments_at=[disc.at for disc in discs[i]],
         )
         twist = solve_torsional_modes(rotor, frequency_limit=torsion)
-        components.append(rotor_component(name, ModalRotor(basis, twist), start=0.0))
+        # The gears stand opposite each other.
+        components.append(rotor_component(name, ModalRotor(basis, twist), start=gears_at[0] - gears_at[i]))
         bearings += [MountedBearing(bearing, name, None) for bearing in held]
     angle = np.radians(22.5)
     wheels = [

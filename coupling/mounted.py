@@ -1,0 +1,58 @@
+"""Bearings and gears where they sit in the machine, and gear pairs in mesh."""
+
+from dataclasses import dataclass
+
+from coupling.bearing_law import BearingLaw
+from coupling.gears import GearPairGeometry, ToothContact
+from rotors import Bearing
+
+
+@dataclass(frozen=True)
+class MountedBearing:
+    """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None.
+
+    With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take.
+    """
+
+    bearing: Bearing
+    rotor: str
+    seat: str | None
+    law: BearingLaw | None = None
+
+
+@dataclass(frozen=True)
+class MountedGear:
+    """Where a gear sits: its rotor, the distance from the rotor's left end and the axis in the x-y plane [m]."""
+
+    name: str
+    rotor: str
+    at: float
+    axis: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class GearMesh:
+    """A driver and a driven gear with the law of their contact.
+
+    Attributes
+    ----------
+    driver, driven : MountedGear
+    geometry : GearPairGeometry
+    contact : ToothContact
+    backlash : float, optional
+        Gap between the back flanks along their line of action [m]; None where they can never meet.
+    friction : float
+        Coefficient of friction between the teeth, from 0 to 0.5.
+    """
+
+    driver: MountedGear
+    driven: MountedGear
+    geometry: GearPairGeometry
+    contact: ToothContact
+    backlash: float | None = None
+    friction: float = 0.0
+
+    @property
+    def label(self) -> str:
+        """What messages call the pair."""
+        return f"gear pair {self.driver.name!r} -> {self.driven.name!r}"
