@@ -6,7 +6,7 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -14,13 +14,16 @@ from typing import Any
 from gearwhine.locks import alone_in, held, in_use
 
 SUMMARY = "summary.json"
+COMMANDS = ("run", "modes", "rotors", "gears", "system", "steady", "sweep", "compare", "survey", "update", "render")
+"""Commands that leave results in the output folder."""
+
 _STAGING = ".partial-"
 _DRAWN = (".png", ".glb", ".vtu")
 _LONGEST = 60  # of a name in a file's [characters]
 
 
 @contextmanager
-def staging(folder: Path, *, replacing: bool = False) -> Iterator[Path]:
+def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -> Iterator[Path]:
     """A folder inside the output folder whose files move out to it, one by one and whole, at the end.
 
     Where the work fails or is interrupted, the output folder keeps what it had. What a killed run left behind is
@@ -30,9 +33,11 @@ def staging(folder: Path, *, replacing: bool = False) -> Iterator[Path]:
     ----------
     folder : path
         The output folder.
-    replacing : bool
-        Whether this run replaces all results: drawings that the earlier run's summary lists and this one does not draw
-        anew are then cleared away, so that no old mode stands among the new ones.
+    settle : callable, optional
+        Called with the staged folder right before its files move, when no other run moves any. Returns the place of a
+        command's results, relative to the output folder; drawings that the earlier summary there lists and this run
+        does not draw anew are then cleared away, so that no old mode stands among the new ones. None where the files
+        add to earlier ones.
     """
     made = not folder.exists()
     with ExitStack() as stack:
@@ -45,7 +50,8 @@ def staging(folder: Path, *, replacing: bool = False) -> Iterator[Path]:
         try:
             yield place
             with alone_in(folder):
-                _move_out(place, folder, replacing=replacing)
+                replaced = None if settle is None else settle(place)
+                _move_out(place, folder, replaced)
         except OSError as error:
             # Libraries that write files do not say where there was no room.
             if error.filename is None and (error.errno == errno.ENOSPC or os.strerror(errno.ENOSPC) in str(error)):
@@ -58,27 +64,37 @@ def staging(folder: Path, *, replacing: bool = False) -> Iterator[Path]:
                     folder.rmdir()
 
 
-def earlier_drawings(folder: Path) -> list[str]:
-    """Drawings in an output folder that the summary of an earlier run lists: plain names of files, no others."""
+def read_summary(folder: Path) -> Mapping[str, Any] | None:
+    """The summary of a command's results in a folder; None where there is none, or what is there is no such thing."""
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-        listed = [*summary.get("files", ()), *summary.get("earlier_drawings", ())]
-    except (OSError, ValueError, AttributeError, TypeError):  # none there, or not one of ours
-        return []
-    names = {name for name in listed if isinstance(name, str) and Path(name).name == name}
-    drawn = (name for name in names if name.endswith(_DRAWN))
-    return sorted(name for name in drawn if (folder / name).is_file() and not (folder / name).is_symlink())
+    except (OSError, ValueError):
+        return None
+    return summary if isinstance(summary, Mapping) else None
 
 
-def _move_out(place: Path, folder: Path, *, replacing: bool) -> None:
+def listed_files(folder: Path, own: Path) -> list[Path]:
+    """Files that the summary in a place of the output folder lists and that stand there: no links, no other places."""
+    names = (read_summary(folder / own) or {}).get("files", ())
+    texts = {name for name in names if isinstance(name, str) and name} if isinstance(names, list) else set()
+    found = (Path(text) for text in sorted(texts))
+    return [one for one in found if one == own / one.name and _is_plain_file(folder / one)]
+
+
+def _is_plain_file(path: Path) -> bool:
+    return path.is_file() and not path.is_symlink()
+
+
+def _move_out(place: Path, folder: Path, replaced: Path | None) -> None:
     """Move a run's files to the output folder, and clear away what it does not draw anew."""
     names = [path.relative_to(place) for path in sorted(place.rglob("*")) if path.is_file()]
-    stale = [name for name in earlier_drawings(folder) if Path(name) not in names] if replacing else []
+    stale = [] if replaced is None else [one for one in listed_files(folder, replaced) if one.suffix in _DRAWN]
     # The summary moves last: where it is new, all is new, and until then the old one lists what is to be cleared.
     for name in sorted(names, key=lambda name: name.name == SUMMARY):
         if name.name == SUMMARY:
             for old in stale:
-                (folder / old).unlink(missing_ok=True)
+                if old not in names:
+                    (folder / old).unlink(missing_ok=True)
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         os.replace(place / name, target)

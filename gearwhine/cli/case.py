@@ -60,8 +60,8 @@ def examples(
 
 
 def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
-    """The results folder OUT (default: ./<case>-results) as one HTML page, report.html in it."""
+    """All results in the folder OUT (default: ./<case>-results) as one HTML page, report.html in it."""
     from gearwhine.screen import show_files
     from gearwhine.work.case import report_case
 
-    on_case(case, common, lambda given, progress: report_case(results_folder(case, common)), show_files)
+    on_case(case, common, lambda given, progress: report_case(given, results_folder(case, common)), show_files)

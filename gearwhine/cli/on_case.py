@@ -63,6 +63,7 @@ def hand_over(document: dict[str, Any], common: Common, show: Callable[[dict[str
 def _check_folder(folder: Path) -> None:
     """Refuse a place where no results can go before the work begins, and make nothing yet."""
     from gearwhine.case import CaseError, Problem
+    from gearwhine.output import COMMANDS
 
     if any(len(os.fsencode(part)) > _LONGEST_NAME for part in folder.parts) or len(os.fsencode(folder)) > _LONGEST_PATH:
         shown = f"{str(folder)[:_LONGEST_SHOWN]}…"
@@ -80,3 +81,8 @@ def _check_folder(folder: Path) -> None:
         if taken:
             expected = f"a folder for the results; in this one {taken[0]!r}, where a file would go, is a folder"
             raise CaseError([Problem("--output", str(folder), expected)])
+        for name in COMMANDS:
+            place = folder / name
+            if place.is_symlink() or (place.exists() and not place.is_dir()):
+                expected = f"a folder for the results; in this one {name!r}, where that command's go, is no folder"
+                raise CaseError([Problem("--output", str(folder), expected)])

@@ -1,24 +1,31 @@
 """The page itself: one HTML file with its pictures inside, without scripts, that prints as it reads."""
 
 import base64
-import json
-from collections.abc import Iterable, Mapping, Sequence
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from datetime import datetime
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from gearwhine import __version__
-from gearwhine.case import CaseError, Problem
+from gearwhine.case import Case, CaseError, Problem, dump_case
 from gearwhine.output import SUMMARY
 from gearwhine.report.sections import Section, sections_of
 from gearwhine.report.tables import Table
+from gearwhine.stages.contents import file_contents
+from gearwhine.work.results_folder import results_in
 
+_DIFFERENCES = 6  # keys of the case that are named
+_REMARKS = "provenance."  # says where a value is from, and changes none
 _LARGEST_PICTURE = 8 << 20  # bytes: a larger file is no picture of ours
 _STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #202428; max-width: 64rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; margin-bottom: 0; }
-h2 { font-size: 1.15rem; margin-top: 2.2rem; border-bottom: 1px solid #e4e7ea; }
-p { margin: .4rem 0; } .note { color: #6a7178; } table { border-collapse: collapse; margin: .8rem 0; }
+h2 { font-size: 1.3rem; margin: 2.6rem 0 .4rem; border-bottom: 2px solid #202428; }
+h3 { font-size: 1.1rem; margin-top: 1.8rem; border-bottom: 1px solid #e4e7ea; }
+p { margin: .4rem 0; } .note { color: #6a7178; } .doubt { color: #a33; }
+table { border-collapse: collapse; margin: .8rem 0; }
 caption { text-align: left; color: #6a7178; padding: .2rem 0; }
 th, td { padding: .15rem .7rem; text-align: right; border-bottom: 1px solid #e4e7ea; }
 td { font-variant-numeric: tabular-nums; }
@@ -28,20 +35,40 @@ img { max-width: 100%; } pre { background: #f5f6f7; padding: .8rem; overflow-x: 
 """
 
 
-def report_page(folder: Path) -> str:
-    """The results in a folder as HTML.
+def report_page(folder: Path, case: Case | None = None) -> str:
+    """All results in a folder as HTML, the newest first, each with when it was made and whether it fits the case.
+
+    Parameters
+    ----------
+    folder
+        The output folder of one command or several.
+    case
+        Against which the case of each result is held; without it the newest result's.
 
     Raises
     ------
     CaseError
-        Where the folder holds no results, or their summary cannot be read.
+        Where the folder holds no results, or a summary cannot be read.
     """
-    document = _summary(folder)
-    pictures = sorted(path for path in folder.glob("*.png") if _is_picture(path))
-    sections = sections_of(document)
+    results = _results(folder)
+    present = _case_of(folder / results[0][0]) if case is None else tomllib.loads(dump_case(case))
+    title = str(results[0][1].get("title") or (present or {}).get("title") or folder.name)
+    return (
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style></head><body>\n'
+        f"<h1>{escape(title)}</h1>\n"
+        f'<p class="note">gearwhine {escape(__version__)}; amplitudes are peaks unless they say rms.</p>\n'
+        + "".join(_result(folder / own, document, present) for own, document in results)
+        + "</body></html>\n"
+    )
+
+
+def _result(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None) -> str:
+    """One command's results."""
+    pictures = sorted(path for path in place.glob("*.png") if _is_picture(path))
     shown: set[Path] = set()
     parts = []
-    for section in sections:
+    for section in sections_of(document):
         own = [path for path in pictures if path not in shown and path.name.startswith(section.pictures)]
         shown.update(own)
         parts.append(_section(section, own))
@@ -50,29 +77,91 @@ def report_page(folder: Path) -> str:
     if warnings := document.get("warnings"):
         messages = [str(entry.get("message", entry)) for entry in warnings if isinstance(entry, Mapping)]
         parts.insert(0, _section(Section("Warnings", tuple(messages)), []))
-    title = str(document.get("title") or folder.name)
-    return (
-        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style></head><body>\n'
-        f"<h1>{escape(title)}</h1>\n"
-        f'<p class="note">gearwhine {escape(__version__)}; amplitudes are peaks unless they say rms.</p>\n'
-        + "".join(parts)
-        + _case(folder)
-        + "</body></html>\n"
+    return _origin(place, document, present) + "".join(parts) + _case(place)
+
+
+def _origin(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None) -> str:
+    """Which command made a result and when, and what of its case or input files is different now."""
+    command = document.get("command")
+    heading = f"gearwhine {command}" if isinstance(command, str) else "Results"
+    sentences = [f"Made {_moment(document.get('made_at'))}."] if document.get("made_at") else []
+    for doubt in (*_differences(_case_of(place), present), *_changed_files(document.get("input_files"))):
+        sentences.append(f"Does not fit the case any more: {doubt}.")
+    told = "".join(
+        f'<p class="{"doubt" if sentence.startswith("Does not") else "note"}">{escape(sentence)}</p>\n'
+        for sentence in sentences
     )
+    return f"<h2>{escape(heading)}</h2>\n{told}"
 
 
-def _summary(folder: Path) -> Mapping[str, Any]:
-    expected = f"a results folder with {SUMMARY}: run a command on the case with -o first"
+def _moment(text: object) -> str:
     try:
-        document = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise CaseError([Problem("report", str(folder), expected)]) from None
-    except ValueError as error:
-        raise CaseError([Problem("report", str(folder / SUMMARY), f"{expected}; this one is damaged")]) from error
-    if not isinstance(document, Mapping):
-        raise CaseError([Problem("report", str(folder / SUMMARY), f"{expected}; this one is not a command's")])
-    return document
+        return datetime.fromisoformat(str(text)).strftime("on %Y-%m-%d at %H:%M:%S %Z").strip()
+    except ValueError:
+        return f"at {text}"
+
+
+def _differences(made: Mapping[str, Any] | None, present: Mapping[str, Any] | None) -> list[str]:
+    """Keys in which the case of a result differs from the present one, in one sentence."""
+    if made is None or present is None:
+        return []
+    before, now = (
+        {key: value for key, value in _entries(one) if not key.startswith(_REMARKS)} for one in (made, present)
+    )
+    keys = [key for key in dict.fromkeys([*before, *now]) if before.get(key) != now.get(key)]
+    if not keys:
+        return []
+    listed = ", ".join(
+        f"{key} was {before.get(key, 'absent')}, is {now.get(key, 'absent')}" for key in keys[:_DIFFERENCES]
+    )
+    more = len(keys) - _DIFFERENCES
+    return [listed + (f", and {more} more keys" if more > 0 else "")]
+
+
+def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
+    """Each number or text of a case with its path of keys; entries of lists by their names."""
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _entries(inner, f"{key}.{name}" if key else name)
+    elif isinstance(value, list) and value and all(isinstance(one, Mapping) for one in value):
+        for place, one in enumerate(value):
+            yield from _entries(one, f"{key}.{one.get('name', place)}")
+    else:
+        yield key, value
+
+
+def _changed_files(files: object) -> list[str]:
+    """Input files whose content is another now, or that are gone."""
+    if not isinstance(files, Mapping):
+        return []
+    found = []
+    for name, content in files.items():
+        try:
+            changed = file_contents([Path(name)])[str(Path(name))] != content
+        except OSError:
+            found.append(f"{name} cannot be read")
+        else:
+            if changed:
+                found.append(f"{name} has changed")
+    return found
+
+
+def _results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
+    expected = f"a results folder with {SUMMARY}: run a command on the case with -o first"
+    found = results_in(folder)
+    if (folder / SUMMARY).exists() and not any(own == Path() for own, _ in found):
+        raise CaseError([Problem("report", str(folder / SUMMARY), f"{expected}; this one is damaged")])
+    if not found:
+        raise CaseError([Problem("report", str(folder), expected)])
+    return found
+
+
+def _case_of(place: Path) -> Mapping[str, Any] | None:
+    """The resolved case beside a result; None where it cannot be read."""
+    try:
+        return tomllib.loads((place / "case.toml").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
 
 
 def _is_picture(path: Path) -> bool:
@@ -82,7 +171,7 @@ def _is_picture(path: Path) -> bool:
 def _section(section: Section, pictures: Sequence[Path]) -> str:
     sentences = "".join(f"<p>{escape(sentence)}</p>\n" for sentence in section.sentences)
     tables = "".join(_table(table) for table in section.tables)
-    return f"<h2>{escape(section.title)}</h2>\n{sentences}{tables}{_figures(pictures)}"
+    return f"<h3>{escape(section.title)}</h3>\n{sentences}{tables}{_figures(pictures)}"
 
 
 def _table(table: Table) -> str:
@@ -126,4 +215,4 @@ def _case(folder: Path) -> str:
         text = (folder / "case.toml").read_text(encoding="utf-8")
     except (OSError, ValueError):
         return ""
-    return f"<h2>Case</h2>\n<details><summary>as it was resolved</summary><pre>{escape(text)}</pre></details>\n"
+    return f"<h3>Case</h3>\n<details><summary>as it was resolved</summary><pre>{escape(text)}</pre></details>\n"

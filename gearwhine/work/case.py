@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from gearwhine.case import CaseError, Problem, bundled_case, bundled_cases
+from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases
 from gearwhine.output import staging
 
 
@@ -27,11 +27,11 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
     return {"folder": str(folder), "files": [source.name]}
 
 
-def report_case(folder: Path) -> dict[str, Any]:
-    """The results in a folder as one HTML page."""
+def report_case(case: Case, folder: Path) -> dict[str, Any]:
+    """The results in a folder as one HTML page, which marks those that do not fit the case any more."""
     from gearwhine.report import report_page
 
-    page = report_page(folder)
+    page = report_page(folder, case)
     with staging(folder) as place:
         (place / "report.html").write_text(page, encoding="utf-8")
     return {"folder": str(folder), "files": ["report.html"]}

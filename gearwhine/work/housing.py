@@ -14,8 +14,7 @@ from gearwhine.stages import comparison_documents, housing_documents, mesh_healt
 from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import measured as measured_stage
-from gearwhine.stages.kept_modes import keep_modes
-from gearwhine.work.results_folder import files_in, kept_in
+from gearwhine.work.results_folder import kept_in
 
 
 def mesh_case(case: Case, folder: Path, suffix: str, progress: Progress) -> dict[str, Any]:
@@ -60,7 +59,7 @@ def modes_case(
         results.write(place / "results.nc", case, housing, (), (), None, None)
         results.write_shapes(place / "modes.vtu", housing)
 
-    return kept_in(housing_documents.modes_document(housing, detail=detail), case, folder, write, housing)
+    return kept_in("modes", housing_documents.modes_document(housing, detail=detail), case, folder, write, housing)
 
 
 def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: bool = False) -> dict[str, Any]:
@@ -84,7 +83,7 @@ def compare_case(case: Case, folder: Path | None, progress: Progress, *, fresh: 
         if likeness is not None:
             write_likeness(place, likeness)
 
-    return kept_in(document | housing_documents.origin_document(housing), case, folder, write, housing)
+    return kept_in("compare", document | housing_documents.origin_document(housing), case, folder, write, housing)
 
 
 def survey_case(
@@ -95,7 +94,7 @@ def survey_case(
     progress(f"choosing {sensors} sensors")
     planned = survey_plan.plan_housing(case, housing, sensors, modes)
     document = survey_plan.plan_document(planned, housing) | housing_documents.origin_document(housing)
-    return kept_in(document, case, folder, lambda place: survey_plan.write_plan(place, planned), housing)
+    return kept_in("survey", document, case, folder, lambda place: survey_plan.write_plan(place, planned), housing)
 
 
 def update_case(
@@ -109,7 +108,7 @@ def update_case(
     def write(place: Path) -> None:
         (place / "updated.toml").write_text(update_documents.updated_case(case, solved), encoding="utf-8")
 
-    return kept_in(update_documents.update_document(case, solved), case, folder, write)
+    return kept_in("update", update_documents.update_document(case, solved), case, folder, write)
 
 
 def render_case(
@@ -134,14 +133,14 @@ def render_case(
     comparison, survey = None, None
     if case.measured is not None and (measured or housing.strengths is not None):
         comparison, survey = comparison_stage.compare_with_survey(case, housing, progress)
-    document: dict[str, Any] = {}
-    with staging(folder) as place:
+    document = housing_documents.origin_document(housing)
+
+    def write(place: Path) -> None:
         if which is not None:
             draw_modes(housing, comparison, which, view, mode_format, place, progress)
         if lines:
             document["lines"] = draw_lines(housing, folder, lines, view, mode_format, place, progress)
         if measured:
             draw_measured(case, housing, comparison, survey, view, place)
-        keep_modes(place, housing)
-        files = files_in(place, housing, summary=False)
-    return document | {"folder": str(folder), "files": files, **housing_documents.origin_document(housing)}
+
+    return kept_in("render", document, case, folder, write, housing)

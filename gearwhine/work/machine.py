@@ -41,7 +41,7 @@ def rotors_case(case: Case, folder: Path | None, progress: Progress, *, write_ro
             remarks = rotor_stage.write_ross_files(place, rotors)
             add_warnings(document, [warning("ross", remark) for remark in remarks])
 
-    return kept_in(document, case, folder, write)
+    return kept_in("rotors", document, case, folder, write)
 
 
 def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str, Any]:
@@ -56,7 +56,7 @@ def gears_case(case: Case, folder: Path | None, progress: Progress) -> dict[str,
         results.write(place / "results.nc", case, None, (), pairs, None, None)
         figures.draw_gear_pairs(place, pairs, progress)
 
-    return kept_in(gear_documents.gears_document(pairs), case, folder, write)
+    return kept_in("gears", gear_documents.gears_document(pairs), case, folder, write)
 
 
 def system_case(
@@ -87,7 +87,7 @@ def system_case(
         results.write(place / "results.nc", case, housing, (), (), solved, None)
         figures.draw_system(place, case, solved)
 
-    return kept_in(joined(document, housing_documents.origin_document(housing)), case, folder, write, housing)
+    return kept_in("system", joined(document, housing_documents.origin_document(housing)), case, folder, write, housing)
 
 
 def steady_case(
@@ -118,7 +118,7 @@ def steady_case(
         results.write(place / "results.nc", case, housing, (), (), None, None, steady=solved)
         figures.draw_steady(place, case, solved)
 
-    return kept_in(joined(document, housing_documents.origin_document(housing)), case, folder, write, housing)
+    return kept_in("steady", joined(document, housing_documents.origin_document(housing)), case, folder, write, housing)
 
 
 def sweep_case(
@@ -155,4 +155,4 @@ def sweep_case(
         draw_sweep(place, case.title, dataset)
         document["seconds"] = {"total": time.perf_counter() - start}
 
-    return kept_in(document, case, folder, write)
+    return kept_in("sweep", document, case, folder, write)

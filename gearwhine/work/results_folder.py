@@ -1,44 +1,121 @@
-"""What every command leaves in its folder: the case, the modes, its own files, and the summary that lists them."""
+"""The results folder: each command's results by themselves, with the case, its input files and when they were made.
 
-from collections.abc import Callable
+A command's results stand in the folder itself where no other command's do, else in a sub-folder named for the command;
+those of ``run`` always stand in the folder itself, and what another command left there moves to its sub-folder. The
+housing's modes are shared by all.
+"""
+
+import os
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from gearwhine.case import Case, dump_case
 from gearwhine.doubtful import add_warnings
-from gearwhine.output import SUMMARY, earlier_drawings, finite, json_text, staging
+from gearwhine.output import COMMANDS, SUMMARY, finite, json_text, listed_files, read_summary, staging
+from gearwhine.stages.contents import file_contents
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
 
+_FOREMOST = "run"
+_ADDING = "render"  # draws what it is asked for, beside what it drew before
+
 
 def kept_in(
+    command: str,
     document: dict[str, Any],
     case: Case,
     folder: Path | None,
     write: Callable[[Path], None] = lambda place: None,
     housing: SolvedHousing | None = None,
 ) -> dict[str, Any]:
-    """The document; where a folder is given, also in it, with the resolved case, the modes and what ``write`` adds."""
+    """Keep a command's results in a folder, where one is given, and return its document.
+
+    Parameters
+    ----------
+    command
+        One of `gearwhine.output.COMMANDS`.
+    document
+        What is printed and kept as the summary; it gains the command, the time, the input files and the files written.
+    case
+        Kept as it is resolved.
+    folder
+        The output folder.
+    write
+        Writes the command's own files into a folder.
+    housing
+        Whose modes are kept.
+    """
     add_warnings(document)
     if folder is None:
         return document
-    with staging(folder) as place:
+
+    def settle(place: Path) -> Path | None:
+        own = _place_of(folder, command)
+        (place / own).mkdir(exist_ok=True)
+        for path in sorted(place.iterdir()):
+            if path.is_file() and path.name != MODES_FILE:
+                path.rename(place / own / path.name)
+        names = {path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()}
+        if housing is not None and housing.source is not None:
+            names.add(MODES_FILE)
+        files = [*sorted(names), (own / SUMMARY).as_posix()]
+        document.update(
+            command=command, made_at=_now(), input_files=_input_files(case), folder=str(folder), files=files
+        )
+        (place / own / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
+        return None if command == _ADDING else own
+
+    with staging(folder, settle) as place:
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
         write(place)
         if housing is not None:
             keep_modes(place, housing)
-        files = files_in(place, housing)
-        document |= {"folder": str(folder), "files": files}
-        # Drawings that stay from an earlier run are listed on, so that the next one that draws anew clears them.
-        if stay := [name for name in earlier_drawings(folder) if name not in files]:
-            document["earlier_drawings"] = stay
-        (place / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
     return document
 
 
-def files_in(place: Path, housing: SolvedHousing | None, *, summary: bool = True) -> list[str]:
-    """The results' files: those staged, the mode file that was read and stays, and the summary last."""
-    names = {str(path.relative_to(place)) for path in place.rglob("*") if path.is_file()}
-    if housing is not None and housing.source is not None:
-        names.add(MODES_FILE)
-    return sorted(names) + ([SUMMARY] if summary else [])
+def results_in(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
+    """The results that a folder holds: the place of each, relative to the folder, and its document; newest first."""
+    places = [Path(), *(Path(command) for command in COMMANDS if not (folder / command).is_symlink())]
+    found = [(own, summary) for own in places if (summary := read_summary(folder / own)) is not None]
+    return sorted(found, key=lambda one: str(one[1].get("made_at", "")), reverse=True)
+
+
+def _place_of(folder: Path, command: str) -> Path:
+    """Where a command's results go, relative to the folder, which is made ready for them."""
+    if not (folder / SUMMARY).exists():
+        return Path()
+    owner = (read_summary(folder) or {}).get("command")
+    if owner == command:
+        return Path()
+    if command != _FOREMOST:
+        return Path(command)
+    if owner in COMMANDS:
+        _give_way(folder, str(owner))
+    return Path()
+
+
+def _give_way(folder: Path, owner: str) -> None:
+    """Move the results of a command from the folder itself to its sub-folder."""
+    (folder / owner).mkdir(exist_ok=True)
+    document = dict(read_summary(folder) or {})
+    shared = [MODES_FILE] if (folder / MODES_FILE).is_file() else []
+    names = [one.name for one in listed_files(folder, Path()) if one.name not in (MODES_FILE, SUMMARY)]
+    document["files"] = [*shared, *(f"{owner}/{name}" for name in [*names, SUMMARY])]
+    for name in names:
+        os.replace(folder / name, folder / owner / name)
+    (folder / owner / SUMMARY).write_text(json_text(document) + "\n", encoding="utf-8")
+    (folder / SUMMARY).unlink()
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def _input_files(case: Case) -> dict[str, Any]:
+    """Digests of the files that a case names; none where one cannot be read any more."""
+    try:
+        return file_contents(case.model_dump())
+    except OSError:
+        return {}

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.case import Case, dump_case, mesh_frequencies, require
+from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.comparison_files import draw_comparison_pictures, write_comparison
 from gearwhine.doubtful import add_warnings, joined
 from gearwhine.drawings import draw_modes
 from gearwhine.march_files import kept_march
-from gearwhine.output import SUMMARY, finite, json_text, staging
+from gearwhine.output import staging
 from gearwhine.progress import Progress
 from gearwhine.stages import comparison as comparison_stage
 from gearwhine.stages import comparison_documents, gear_analysis, gear_documents, housing_documents, rotor_documents
@@ -31,7 +31,7 @@ from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
 from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.thrust import require_carried_thrust
 from gearwhine.stages.uncertainty import add_uncertainty
-from gearwhine.work.results_folder import files_in
+from gearwhine.work.results_folder import kept_in
 
 if TYPE_CHECKING:
     from gearwhine.stages.gear_analysis import PairAnalysis
@@ -139,19 +139,19 @@ def _run_case(
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
-    add_warnings(document)
     begin = time.perf_counter()
-    with staging(folder, replacing=True) as place:
+    solved = _Solved(rotors, analysed, housing, comparison, system, transient, signature, run)
+
+    def write(place: Path) -> None:
         progress("writing results")
-        solved = _Solved(rotors, analysed, housing, comparison, system, transient, signature, run)
         _write(place, case, solved)
         if pictures:
             _draw(place, case, solved, progress)
         timed("writing", begin)
         seconds["total"] = time.perf_counter() - start
-        document |= {"seconds": seconds, "folder": str(folder), "files": files_in(place, housing)}
-        (place / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
-    return document
+        document["seconds"] = seconds
+
+    return kept_in("run", document, case, folder, write, housing)
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,6 @@ def _write(place: Path, case: Case, solved: _Solved) -> None:
     """The files of results."""
     from gearwhine import results
 
-    (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
     results.write(
         place / "results.nc",
         case,
@@ -186,7 +185,6 @@ def _write(place: Path, case: Case, solved: _Solved) -> None:
     )
     if solved.housing is not None:
         results.write_shapes(place / "modes.vtu", solved.housing)
-        keep_modes(place, solved.housing)
         if solved.comparison is not None:
             write_comparison(place, solved.comparison)
 

@@ -14,7 +14,7 @@ from housing import read_modes, renderer
 
 COARSE = ("--set", 'housing.box.mesh_size="45 mm"')
 CLOCK = ("seconds", "seconds_when_solved")
-ORIGIN = ("reused", "modes_read_from", "warnings", "folder", "files", "earlier_drawings")
+ORIGIN = ("reused", "modes_read_from", "warnings", "folder", "files", "made_at", "command", "input_files")
 
 
 def result(document: dict) -> dict:
@@ -154,8 +154,11 @@ def test_every_command_that_needs_modes_reads_them(gearwhine, tmp_path: Path) ->
     assert command("compare")["reused"] is True
     models = command("render", "--format", "glb", "--modes", "1-2")
     assert models["reused"] is True
-    assert sorted(models["files"]) == sorted(["modes.nc", *(path.name for path in (tmp_path / "out").glob("*.glb"))])
-    assert len(models["files"]) == 3
+    drawn = sorted(path.name for path in (tmp_path / "out" / "render").glob("*.glb"))
+    assert models["files"][:-1] == ["modes.nc", "render/case.toml", *(f"render/{name}" for name in drawn)]
+    assert len(drawn) == 2
+    command("render", "--format", "glb", "--modes", "3")
+    assert len(list((tmp_path / "out" / "render").glob("*.glb"))) == 3  # beside those drawn before
 
 
 def test_a_run_reads_modes_and_clears_the_pictures_of_the_last_one(

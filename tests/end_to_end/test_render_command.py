@@ -39,7 +39,8 @@ def test_a_line_is_drawn_in_its_true_size(gearwhine, run_on_file: Path, tmp_path
     largest = np.linalg.norm(shape, axis=1).max()
     assert line["largest_acceleration_m_per_s2"] == pytest.approx(largest, rel=1e-6)
     assert line["largest_displacement_m"] == pytest.approx(largest / (2 * np.pi * 500.0) ** 2, rel=1e-6)
-    assert "line-500.0Hz.png" in outcome.document["files"]
+    # Beside the run's results, in a place of its own.
+    assert "render/line-500.0Hz.png" in outcome.document["files"]
     assert not any(name.startswith("mode-") for name in outcome.document["files"])
     beyond = gearwhine("render", *CASE, "-o", "out", "--line", "1100")
     assert beyond.code == 2

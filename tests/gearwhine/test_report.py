@@ -9,6 +9,7 @@ import pytest
 
 from gearwhine.case import CaseError
 from gearwhine.report import report_page, sections_of
+from gearwhine.stages.contents import file_contents
 
 VOID = {"meta", "img"}
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR42mNk+A8AAQUBAScY42YAAAAASUVORK5CYII=")
@@ -141,6 +142,51 @@ def test_columns_without_values_are_left_out() -> None:
     columns, rows = table.filled()
     assert "MAC" not in [column.heading for column in columns]
     assert rows == [["658.0", "684.0", "+3.95", "1"]]
+
+
+def write(place: Path, document: dict[str, object], case: str) -> None:
+    place.mkdir(exist_ok=True)
+    (place / "summary.json").write_text(json.dumps(document), encoding="utf-8")
+    (place / "case.toml").write_text(case, encoding="utf-8")
+
+
+CASE = 'title = "two"\n[operation]\nspeed = {speed}\n[[bearing]]\nname = "left"\nload = {load}\n'
+
+
+def test_all_results_of_a_folder_are_shown_the_newest_first(tmp_path: Path) -> None:
+    write(tmp_path, {"command": "run", "made_at": "2026-01-01T10:00:00+00:00"}, CASE.format(speed=1, load=2))
+    write(
+        tmp_path / "system", {"command": "system", "made_at": "2026-02-01T10:00:00+00:00"}, CASE.format(speed=1, load=2)
+    )
+    (tmp_path / "holiday").mkdir()
+    (tmp_path / "holiday" / "summary.json").write_text(json.dumps(RUN), encoding="utf-8")
+    text = read(tmp_path).text
+    assert text.index("gearwhine system") < text.index("on 2026-02-01 at 10:00:00 UTC") < text.index("gearwhine run")
+    assert "Does not fit" not in text
+    assert "Gears &" not in text
+
+
+def test_results_of_another_case_are_marked_with_what_differs(tmp_path: Path) -> None:
+    write(tmp_path, {"command": "run", "made_at": "2026-01-01T10:00:00+00:00"}, CASE.format(speed=1, load=2))
+    write(
+        tmp_path / "gears", {"command": "gears", "made_at": "2026-02-01T10:00:00+00:00"}, CASE.format(speed=1, load=3)
+    )
+    page = read(tmp_path)
+    (doubt,) = [line for line in page.text.splitlines() if "Does not fit the case any more" in line]
+    assert "bearing.left.load was 2, is 3" in doubt
+    assert page.text.index("gearwhine run") < page.text.index(doubt)
+
+
+def test_results_of_a_file_that_has_changed_are_marked(tmp_path: Path) -> None:
+    measured = tmp_path / "measured.csv"
+    measured.write_text("1", encoding="utf-8")
+    kept = {"command": "compare", "input_files": file_contents([measured])}
+    write(tmp_path / "out", kept, CASE.format(speed=1, load=2))
+    assert "Does not fit" not in read(tmp_path / "out").text
+    measured.write_text("2", encoding="utf-8")
+    assert f"{measured} has changed" in read(tmp_path / "out").text
+    measured.unlink()
+    assert f"{measured} cannot be read" in read(tmp_path / "out").text
 
 
 @pytest.mark.parametrize("content", [None, "{", "[1]"])

@@ -8,41 +8,47 @@ from pathlib import Path
 
 import pytest
 
-from gearwhine.output import earlier_drawings, staging
+from gearwhine.output import listed_files, staging
 
 
-def results(folder: Path, names: list[str], *, replacing: bool, **more: object) -> None:
-    """A run that leaves these files and lists them."""
-    with staging(folder, replacing=replacing) as place:
+def results(folder: Path, names: list[str], own: Path = Path()) -> None:
+    """A command that leaves these files and lists them."""
+
+    def settle(place: Path) -> Path:
+        return own
+
+    with staging(folder, settle) as place:
+        (place / own).mkdir(exist_ok=True)
         for name in names:
-            (place / name).write_text(f"{name} of {len(names)}", encoding="utf-8")
-        (place / "summary.json").write_text(json.dumps({"files": [*names, "summary.json"], **more}), encoding="utf-8")
+            (place / own / name).write_text(f"{name} of {len(names)}", encoding="utf-8")
+        listed = [(own / name).as_posix() for name in [*names, "summary.json"]]
+        (place / own / "summary.json").write_text(json.dumps({"files": listed}), encoding="utf-8")
 
 
 def names_in(folder: Path) -> set[str]:
     return {path.name for path in folder.iterdir()}
 
 
-def test_a_new_run_clears_the_drawings_of_the_last_one(tmp_path: Path) -> None:
-    results(tmp_path, ["mode-07.png", "mode-08.png", "mode-07.glb", "modes.vtu", "results.nc"], replacing=True)
-    (tmp_path / "photo.png").write_text("mine", encoding="utf-8")
-    results(tmp_path, ["mode-08.png", "mode-09.png", "results.nc"], replacing=True)
-    assert names_in(tmp_path) == {"mode-08.png", "mode-09.png", "results.nc", "summary.json", "photo.png"}
-    assert (tmp_path / "mode-08.png").read_text(encoding="utf-8") == "mode-08.png of 3"
+@pytest.mark.parametrize("own", [Path(), Path("system")])
+def test_new_results_clear_the_drawings_of_the_last_ones(tmp_path: Path, own: Path) -> None:
+    results(tmp_path, ["mode-07.png", "mode-08.png", "mode-07.glb", "modes.vtu", "results.nc"], own)
+    (tmp_path / own / "photo.png").write_text("mine", encoding="utf-8")
+    results(tmp_path, ["mode-08.png", "mode-09.png", "results.nc"], own)
+    assert names_in(tmp_path / own) == {"mode-08.png", "mode-09.png", "results.nc", "summary.json", "photo.png"}
+    assert (tmp_path / own / "mode-08.png").read_text(encoding="utf-8") == "mode-08.png of 3"
 
 
-def test_a_run_that_adds_clears_nothing(tmp_path: Path) -> None:
-    results(tmp_path, ["mode-07.png"], replacing=True)
-    results(tmp_path, ["results.nc"], replacing=False, earlier_drawings=earlier_drawings(tmp_path))
-    assert "mode-07.png" in names_in(tmp_path)
-    # ... and the drawing is not forgotten by the next one that replaces all.
-    results(tmp_path, ["mode-01.png"], replacing=True)
-    assert names_in(tmp_path) == {"mode-01.png", "results.nc", "summary.json"}
+def test_results_elsewhere_clear_nothing(tmp_path: Path) -> None:
+    results(tmp_path, ["mode-07.png"])
+    results(tmp_path, ["mode-01.png"], Path("system"))
+    with staging(tmp_path) as place:
+        (place / "report.html").write_text("", encoding="utf-8")
+    assert names_in(tmp_path) == {"mode-07.png", "summary.json", "system", "report.html"}
 
 
 def test_a_failed_run_clears_nothing(tmp_path: Path) -> None:
-    results(tmp_path, ["mode-07.png"], replacing=True)
-    with pytest.raises(RuntimeError), staging(tmp_path, replacing=True):
+    results(tmp_path, ["mode-07.png"])
+    with pytest.raises(RuntimeError), staging(tmp_path, lambda place: Path()):
         raise RuntimeError
     assert names_in(tmp_path) == {"mode-07.png", "summary.json"}
 
@@ -54,7 +60,7 @@ def test_a_failed_run_clears_nothing(tmp_path: Path) -> None:
 def test_a_summary_that_is_not_ours_lists_nothing(tmp_path: Path, content: str) -> None:
     (tmp_path / "summary.json").write_text(content, encoding="utf-8")
     (tmp_path / "mode.png").write_text("mine", encoding="utf-8")
-    assert earlier_drawings(tmp_path) == []
+    assert listed_files(tmp_path, Path()) == []
 
 
 def test_only_plain_names_of_drawings_in_the_folder_are_cleared(tmp_path: Path) -> None:
@@ -67,7 +73,7 @@ def test_only_plain_names_of_drawings_in_the_folder_are_cleared(tmp_path: Path) 
     (folder / "link.png").symlink_to(tmp_path / "outside.png")
     listed = ["../outside.png", str(kept[0]), "inner/deep.png", "results.nc", "notes.txt", "link.png", "folder.png", ""]
     (folder / "summary.json").write_text(json.dumps({"files": listed}), encoding="utf-8")
-    results(folder, ["mode-01.png"], replacing=True)
+    results(folder, ["mode-01.png"])
     assert all(path.read_text(encoding="utf-8") == "mine" for path in kept)
     assert (folder / "link.png").is_symlink()
     assert (folder / "folder.png").is_dir()

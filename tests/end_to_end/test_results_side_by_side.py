@@ -1,0 +1,75 @@
+"""Commands that share an output folder: each keeps its own results, and none replaces another's."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+SHORT = ("--set", "transient.revolutions=3", "--set", "transient.discard=1")
+
+
+def contents(folder: Path, but: str) -> dict[str, bytes]:
+    """Of all files outside one sub-folder."""
+    found = (path for path in folder.rglob("*") if path.is_file() and path.relative_to(folder).parts[0] != but)
+    return {str(path.relative_to(folder)): path.read_bytes() for path in found}
+
+
+def test_results_of_a_run_outlive_those_of_every_other_command(gearwhine: Callable[..., Any], tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert gearwhine("run", "spur-pair", "-q", "-o", "out", "--no-pictures", *SHORT).code == 0
+    before = contents(out, "")
+    for command in ("rotors", "gears", "system"):
+        outcome = gearwhine(command, "spur-pair", "-q", "--json", "-o", "out")
+        assert outcome.code == 0, outcome.err
+        assert f"{command}/results.nc" in outcome.document["files"]
+        assert all((out / name).is_file() for name in outcome.document["files"])
+        kept = json.loads((out / command / "summary.json").read_text(encoding="utf-8"))
+        assert kept == outcome.document
+        assert contents(out, command) == before
+        before = contents(out, "")
+    with xr.open_dataset(out / "results.nc") as run, xr.open_dataset(out / "rotors" / "results.nc") as rotors:
+        assert "mesh_force" in run
+        assert "mesh_force" not in rotors
+
+    # Once more: its own results alone are new.
+    gearwhine("gears", "spur-pair", "-q", "-o", "out", "--set", "gear_pair.0.friction=0.05")
+    assert contents(out, "gears") == {name: data for name, data in before.items() if not name.startswith("gears/")}
+    assert gearwhine("report", "spur-pair", "-q", "-o", "out", *SHORT).code == 0
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert page.index("gearwhine gears") < page.index("gearwhine system") < page.index("gearwhine run")
+    assert "gear_pair.0.friction was 0.05, is" in page
+    # Its transient does not, where only the default was asked for.
+    assert "transient.revolutions was" in page
+
+
+def test_a_run_has_the_folder_itself_and_what_was_there_moves(gearwhine: Callable[..., Any], tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    first = gearwhine("gears", "spur-pair", "-q", "--json", "-o", "out").document
+    assert "results.nc" in first["files"]
+    before = contents(out, "")
+    (out / "mine.txt").write_text("mine", encoding="utf-8")
+    assert gearwhine("run", "spur-pair", "-q", "-o", "out", "--no-pictures", *SHORT).code == 0
+    for name, data in before.items():
+        if name != "summary.json":
+            assert (out / "gears" / name).read_bytes() == data
+    moved = json.loads((out / "gears" / "summary.json").read_text(encoding="utf-8"))
+    assert moved == first | {"files": [f"gears/{name}" for name in first["files"]]}
+    assert (out / "mine.txt").read_text(encoding="utf-8") == "mine"
+    assert {path.name for path in out.iterdir()} == {"gears", "mine.txt", "case.toml", "results.nc", "summary.json"}
+
+
+@pytest.mark.parametrize("how", ["file", "link"])
+def test_a_sub_folder_that_is_none_is_refused_before_the_work(
+    gearwhine: Callable[..., Any], tmp_path: Path, how: str
+) -> None:
+    (tmp_path / "out").mkdir()
+    if how == "file":
+        (tmp_path / "out" / "gears").write_text("", encoding="utf-8")
+    else:
+        (tmp_path / "out" / "gears").symlink_to(tmp_path)
+    outcome = gearwhine("gears", "spur-pair", "-q", "-o", "out")
+    assert outcome.code == 2
+    assert "'gears', where that command's go, is no folder" in outcome.err
