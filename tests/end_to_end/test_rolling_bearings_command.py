@@ -67,6 +67,11 @@ def test_rolling_geometry_is_the_matrix_that_it_makes(rolling: dict[str, Any]) -
     told = document["rolling_bearings"][0]
     assert told["loaded_elements"] > 0
     assert told["residual"] < 1e-10
+    assert told["load_n"] == pytest.approx([0.0, -400.0, 0.0], abs=1e-6)
+    # Pressed down it goes down; what the preload pushes along +z or -z is told by its displacement.
+    assert told["displacement_m"][1] < 0.0
+    if rolling.get("arrangement") is None and "carries" in rolling:
+        assert told["displacement_m"][2] != 0.0
     by_matrix = parse_case(friswell(stiffness={"matrix": told["stiffness"]}))
     same = rotors_document(solve_rotors(by_matrix))["rotors"][0]
     np.testing.assert_allclose(same["lateral_hz"], document["lateral_hz"], rtol=1e-9)

@@ -1,0 +1,170 @@
+"""Puts hand-made faults into the code, one at a time, and tells which of them the tests let through: faults.py
+
+Each fault of `faults.toml` replaces a piece of one file: two axes swapped, a sign, a unit, a name. The tests of its
+area run on a copy of the tree with the fault in it; where all of them pass, it is missed. The copies, one for each
+worker, stand in a temporary folder with kernels of their own, and the checkout is not touched::
+
+    python benchmarks/faults.py                       # all: an hour on two cores
+    python benchmarks/faults.py --area figures --area report
+    python benchmarks/faults.py --only 12 --only 40   # by number, with the end of the tests' output
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import tomllib
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from queue import Empty, SimpleQueue
+
+ROOT = Path(__file__).parent.parent
+LIST = Path(__file__).with_suffix(".toml")
+_NOTHING_RAN = (3, 4, 5)  # pytest's exit codes for its own failure, wrong usage and no tests
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A piece of a file and what stands in its place; ``number`` is its place in the list, from 1."""
+
+    number: int
+    area: str
+    file: str
+    before: str
+    after: str
+
+    def put_into(self, root: Path) -> str:
+        """Change the file below a root, and return its text as it was.
+
+        Raises
+        ------
+        ValueError
+            Where the piece does not stand in the file exactly once.
+        """
+        path = root / self.file
+        text = path.read_text(encoding="utf-8")
+        if text.count(self.before) != 1:
+            raise ValueError(
+                f"fault {self.number}: {self.before!r} stands {text.count(self.before)} times in {self.file}; "
+                "expected once"
+            )
+        path.write_text(text.replace(self.before, self.after), encoding="utf-8")
+        return text
+
+
+def read_faults() -> tuple[list[Fault], dict[str, list[str]]]:
+    """The faults, and for each area the tests that are to catch its faults."""
+    listed = tomllib.loads(LIST.read_text(encoding="utf-8"))
+    faults = [Fault(number, **entry) for number, entry in enumerate(listed["fault"], start=1)]
+    unknown = {fault.area for fault in faults} - set(listed["tests"])
+    if unknown:
+        raise ValueError(f"areas without tests: {', '.join(sorted(unknown))}")
+    return faults, listed["tests"]
+
+
+def copy_tree(target: Path) -> None:
+    """Copy every file of the checkout that is not ignored."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+    )
+    for name in filter(None, listed.stdout.decode().split("\0")):
+        source = ROOT / name
+        if source.is_file():
+            (target / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(source, target / name)
+
+
+def environment(root: Path) -> dict[str, str]:
+    """Of a process that works on a copy, on one thread."""
+    return os.environ | {
+        "PYTHONPATH": str(root),
+        "NUMBA_CACHE_DIR": str(root / ".kernels"),
+        "OMP_NUM_THREADS": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+
+
+def run_tests(root: Path, tests: list[str]) -> tuple[int, str]:
+    """Run tests on a copy until the first fails: the exit code and the end of what they print."""
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "--no-header", "-p", "no:cacheprovider", "--tb=line", *tests]
+    outcome = subprocess.run(command, cwd=root, env=environment(root), capture_output=True, text=True, check=False)
+    return outcome.returncode, outcome.stdout[-1500:]
+
+
+def caught(root: Path, fault: Fault, tests: list[str]) -> tuple[bool, str]:
+    """Whether tests fail with a fault in the copy, and the end of what they print."""
+    before = fault.put_into(root)
+    try:
+        code, text = run_tests(root, tests)
+    finally:
+        (root / fault.file).write_text(before, encoding="utf-8")
+    if code in _NOTHING_RAN:
+        raise RuntimeError(f"fault {fault.number}: pytest ended with {code}\n{text}")
+    return code != 0, text
+
+
+def main() -> None:
+    """Try the faults, tell each as it ends, and a table by area."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--area", action="append", help="only faults of this area; may be repeated")
+    parser.add_argument("--only", action="append", type=int, help="only the fault of this number; may be repeated")
+    parser.add_argument("--workers", type=int, default=2)
+    given = parser.parse_args()
+    faults, tests = read_faults()
+    chosen = [
+        fault
+        for fault in faults
+        if (not given.area or fault.area in given.area) and (not given.only or fault.number in given.only)
+    ]
+    waiting: SimpleQueue[Fault] = SimpleQueue()
+    for fault in chosen:
+        waiting.put(fault)
+    done: dict[int, bool] = {}
+    failures: list[BaseException] = []
+
+    def work(root: Path) -> None:
+        try:
+            copy_tree(root)
+            subprocess.run([sys.executable, "scripts/compile_kernels.py"], cwd=root, env=environment(root), check=True)
+            while not failures:
+                fault = waiting.get_nowait()
+                begin = time.perf_counter()
+                done[fault.number], text = caught(root, fault, tests[fault.area])
+                verdict = "caught" if done[fault.number] else "MISSED"
+                sys.stdout.write(
+                    f"{fault.number:4d} {verdict} {time.perf_counter() - begin:6.1f} s  {fault.area}: {fault.file}: "
+                    f"{fault.before.strip()!r} -> {fault.after.strip()!r}\n" + (text if given.only else "")
+                )
+                sys.stdout.flush()
+        except Empty:
+            return
+        except BaseException as error:
+            failures.append(error)
+
+    with tempfile.TemporaryDirectory(prefix="faults-") as folder:
+        places = [Path(folder) / str(number) for number in range(given.workers)]
+        workers = [threading.Thread(target=work, args=(place,)) for place in places]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+    if failures:
+        raise failures[0]
+    total, found = Counter(fault.area for fault in chosen), Counter(f.area for f in chosen if done[f.number])
+    for area in [*total, "all"]:
+        many = len(chosen) if area == "all" else total[area]
+        those = sum(done.values()) if area == "all" else found[area]
+        sys.stdout.write(f"{area:12} {those:4d} of {many:4d} caught, {100.0 * those / many:.0f} %\n")
+
+
+if __name__ == "__main__":
+    main()
