@@ -3,7 +3,6 @@
 import json
 from collections.abc import Iterator
 from math import acos, cos, pi, sqrt, tan
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np

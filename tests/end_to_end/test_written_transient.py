@@ -5,7 +5,6 @@ The machine has nothing alike, so that a swapped axis, sign, bearing or gear pai
 
 import json
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
