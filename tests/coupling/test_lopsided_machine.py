@@ -65,10 +65,14 @@ def bearings_of(name: str) -> list[Bearing]:
     if name == "two":
         table = np.array([stiffness, 1.6 * stiffness])
         return [Bearing(f"two {at}", at, table, damping, TABLE) for at in (0.02, 0.28)]
-    return [
-        Bearing("three 0.0", 0.0, stiffness, damping),
-        Bearing("three 0.3", 0.3, 1.2 * stiffness, damping, pedestal=PEDESTAL),
-    ] if name == "three" else [Bearing(f"one {at}", at, (1.0 + at) * stiffness, damping) for at in (0.0, 0.25)]
+    return (
+        [
+            Bearing("three 0.0", 0.0, stiffness, damping),
+            Bearing("three 0.3", 0.3, 1.2 * stiffness, damping, pedestal=PEDESTAL),
+        ]
+        if name == "three"
+        else [Bearing(f"one {at}", at, (1.0 + at) * stiffness, damping) for at in (0.0, 0.25)]
+    )
 
 
 @cache
@@ -156,7 +160,9 @@ def test_a_machine_at_another_speed_is_the_one_built_there(speed: float) -> None
         assert getattr(turned, name) == getattr(built, name)
     for name in ("stiffness", "damping", "load"):
         expected = getattr(built.system, name)
-        np.testing.assert_allclose(getattr(turned.system, name), expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
+        np.testing.assert_allclose(
+            getattr(turned.system, name), expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max()
+        )
     assert len(turned.system.harmonic_loads) == len(built.system.harmonic_loads) > 4
     for one, other in zip(turned.system.harmonic_loads, built.system.harmonic_loads, strict=True):
         assert one.frequency == pytest.approx(other.frequency, rel=1e-14)
@@ -208,7 +214,9 @@ def test_a_pedestal_off_the_origin_feels_the_base_turn() -> None:
     moved = harmonic.amplitude[:3] + np.cross(harmonic.amplitude[3:], place)
     np.testing.assert_allclose(shaken.amplitude[first : first + 2], -np.sqrt(6.0) * moved[:2], rtol=1e-12)
     # And its own weight.
-    np.testing.assert_allclose(parts_of.system.load[first : first + 2], np.sqrt(6.0) * np.array([1.0, -9.0]), rtol=1e-12)
+    np.testing.assert_allclose(
+        parts_of.system.load[first : first + 2], np.sqrt(6.0) * np.array([1.0, -9.0]), rtol=1e-12
+    )
 
 
 def test_a_pedestal_yields_by_its_own_matrices() -> None:
@@ -220,7 +228,7 @@ def test_a_pedestal_yields_by_its_own_matrices() -> None:
 
 
 def test_responses_to_a_mesh_error_are_the_parts_forces() -> None:
-    """Bearings by their own matrices over the relative motion; each mesh by its compression, the error its own alone."""
+    """Bearings by their own matrices over the relative motion; a mesh by its compression, the error its own."""
     parts_of, w = machine(), np.array([700.0, 1500.0, 2900.0])
     names = [part.name for part in parts_of.system.components]
     cuts = np.cumsum([0, *(part.size for part in parts_of.system.components)])
@@ -261,7 +269,9 @@ def test_unbalances_of_one_shaft_alone() -> None:
         ratio = -24 / 31 if name == "two" else 1.0
         np.testing.assert_allclose(found.frequencies, np.array([200.0, 350.0]) * ratio)
         alone = unbalance_response(machine(unbalanced=(name,)), [200.0, 350.0], rotor=name)
-        np.testing.assert_allclose(found.coordinates, alone.coordinates, rtol=1e-9, atol=1e-12 * np.abs(alone.coordinates).max())
+        np.testing.assert_allclose(
+            found.coordinates, alone.coordinates, rtol=1e-9, atol=1e-12 * np.abs(alone.coordinates).max()
+        )
 
 
 def test_receptance_has_a_row_for_each_output_and_is_conjugate_at_negative_frequency() -> None:

@@ -98,7 +98,7 @@ def test_every_quantity_has_its_dimensions_and_unit(written: Written) -> None:
 
 
 def test_a_slow_error_turns_the_shafts_as_rigid_bodies(written: Written) -> None:
-    """Shafts of inertias J, teeth that hold: A F = -w² e, A of the compliances of free bodies along the lines of action.
+    """Shafts of inertias J, teeth that hold: A F = -w² e, A by free bodies along the lines of action.
 
     δ = s (r θ + r' θ') of either pair, s the driver's sense; F turns the driver back by s r F and the other likewise.
     """

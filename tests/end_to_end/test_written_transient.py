@@ -174,7 +174,7 @@ def test_gear_pairs_are_told_with_their_own_forces(written: Written) -> None:
 
 
 def test_compression_is_what_gears_move_towards_each_other(written: Written) -> None:
-    """δ = e (u_driver - u_driven) + s (r θ_driver + r θ_driven), s the driver's sense, and k δ > 0 where teeth press."""
+    """δ = e (u_driver - u_driven) + s (r θ_driver + r θ_driven), s the driver's sense; δ > 0 where teeth press."""
     data = written.data
     for pair in PAIRS:
         driver, driven = (GEARS[name] for name in pair)

@@ -67,6 +67,10 @@ def test_the_source_s_table_stands_on_the_plane_within_its_band(tmp_path: Path) 
     errors = next(line for line in below.lines if line.get_label() == "error")
     printed = [error for _, _, error in TABLE_II]
     assert np.asarray(errors.get_ydata()) == pytest.approx(printed, abs=0.051)  # the source rounds 2.55 up
+    (stems,) = (group for group in below.collections if len(group.get_paths()) == len(TABLE_II))
+    ends = np.array([path.vertices[[0, -1]] for path in stems.get_paths()])
+    assert ends[:, 0, 1] == pytest.approx(0.0)
+    assert ends[:, 1, 1] == pytest.approx(printed, abs=0.051)
     band = plane.collections[0].get_paths()[0].vertices
     edge = plane.get_xlim()[1]
     assert (0.95 * edge, 1.05 * edge) == pytest.approx(sorted(set(band[np.isclose(band[:, 0], edge), 1])))

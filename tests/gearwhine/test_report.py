@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from gearwhine.case import CaseError
-from gearwhine.report import report_page, sections_of
+from gearwhine.report import columns, report_page, sections_of
+from gearwhine.report.tables import table_of
 from gearwhine.stages.contents import file_contents
 
 VOID = {"meta", "img"}
@@ -195,3 +196,208 @@ def test_a_folder_without_results_is_refused(tmp_path: Path, content: str | None
         (tmp_path / "summary.json").write_text(content, encoding="utf-8")
     with pytest.raises(CaseError, match="a results folder with"):
         report_page(tmp_path)
+
+
+# Documents in which no two figures are alike, and each table's cells as they must read.
+CELLS = {
+    "MODES": (
+        {"number": 3, "frequency_hz": 657.891, "damping_ratio": 0.0123, "strength": 0.4567},
+        {"mode": "3", "frequency [Hz]": "657.89", "damping ratio": "0.0123", "strength [1/kg]": "0.4567"},
+    ),
+    "PAIRS": (
+        {
+            "measured_hz": 658.0,
+            "model_hz": 684.04,
+            "error_percent": 3.951,
+            "mode": 2,
+            "mac": 0.912,
+            "confidence": 0.87,
+            "strength": 1.5,
+        },
+        {
+            "measured [Hz]": "658.0",
+            "model [Hz]": "684.0",
+            "error [%]": "+3.95",
+            "mode": "2",
+            "MAC": "0.912",
+            "confidence": "0.87",
+            "strength [1/kg]": "1.5",
+        },
+    ),
+    "GEARS": (
+        {
+            "driver": "a",
+            "driven": "b",
+            "contact_ratio": 1.63804,
+            "mesh_frequency_hz": 2566.67,
+            "stiffness_n_per_m": {"mean": 2.512e8},
+            "transmission_error_m": {"mean": 7.684e-6, "peak_to_peak": 3.0042e-6},
+        },
+        {
+            "driver": "a",
+            "driven": "b",
+            "contact ratio": "1.6380",
+            "mesh frequency [Hz]": "2566.67",
+            "mean stiffness [N/µm]": "251.2",
+            "mean transmission error [µm]": "7.68",
+            "peak to peak [µm]": "3.004",
+        },
+    ),
+    "MESHES": (
+        {
+            "driver": "a",
+            "driven": "b",
+            "mean_force_n": 1718.2,
+            "peak_force_n": 2745.4,
+            "contact_loss_fraction": 0.0333,
+            "friction": {"mean_power_w": 44.41},
+            "rms_compression_m": 5.552e-6,
+        },
+        {
+            "driver": "a",
+            "driven": "b",
+            "mean force [N]": "1718",
+            "largest force [N]": "2745",
+            "apart [%]": "3.33",
+            "friction takes [W]": "44.4",
+            "a.c. compression [µm rms]": "5.55",
+        },
+    ),
+    "ORDERS": (
+        {
+            "signal": "top",
+            "name": "1× a -> b",
+            "highest_amplitude": 12.34,
+            "unit": "m/s²",
+            "at_rpm": 2345.0,
+            "frequency_hz": 1094.4,
+        },
+        {
+            "signal": "top",
+            "order": "1× a -> b",
+            "highest [peak]": "12.3",
+            "unit": "m/s²",
+            "at [rpm]": "2345",
+            "that is [Hz]": "1094",
+        },
+    ),
+    "LINES": (
+        {
+            "sensor": "top",
+            "frequency_hz": 2566.67,
+            "amplitude_m_per_s2": 1.505,
+            "level_db": 120.54,
+            "uncertainty": 0.0345,
+            "name": "1× a -> b",
+            "by": "housing mode 7",
+        },
+        {
+            "sensor": "top",
+            "line [Hz]": "2566.7",
+            "amplitude [m/s², peak]": "1.5",
+            "level [dB re 1e-6 m/s²]": "120.5",
+            "± by the modal basis [%]": "3.5",
+            "what it is": "1× a -> b",
+            "mostly by": "housing mode 7",
+        },
+    ),
+    "SYSTEM": (
+        {"frequency_hz": 812.345, "damping_ratio": 0.0234, "kind": "rotor", "where": "input"},
+        {"frequency [Hz]": "812.35", "damping ratio": "0.0234", "kind": "rotor", "where": "input"},
+    ),
+    "ROTORS": (
+        {
+            "name": "input",
+            "mass_kg": 1.2345,
+            "lateral_hz": [100.04, 200.0],
+            "torsional_hz": [0.0, 900.06],
+            "axial_hz": [300.0],
+            "critical_speeds_rpm": [6001.4],
+        },
+        {
+            "rotor": "input",
+            "mass [kg]": "1.234",
+            "bending at rest [Hz]": "100.0, 200.0",
+            "torsion [Hz]": "0.0, 900.1",
+            "along the axis [Hz]": "300.0",
+            "critical speeds [rpm]": "6001",
+        },
+    ),
+    "BEARINGS": (
+        {
+            "name": "left",
+            "mean_force_n": [1.04, -2.0, 3.0],
+            "rms_force_n": [4.004, 5.0, 6.0],
+            "mean_moment_n_m": [7.0, 8.0],
+        },
+        {
+            "bearing": "left",
+            "mean force x, y, z [N]": "1.0, -2.0, 3.0",
+            "a.c. force x, y, z [N rms]": "4.00, 5.00, 6.00",
+            "mean moment x, y [N m]": "7.00, 8.00",
+        },
+    ),
+    "PARAMETERS": (
+        {"name": "wall", "before": 0.012, "after": 0.013, "standard_deviation": 0.0016},
+        {"parameter": "wall", "before (SI)": "0.012", "after (SI)": "0.013", "± (SI)": "0.0016"},
+    ),
+    "HELD_BACK": (
+        {
+            "measured_hz": 658.0,
+            "predicted_hz": 700.04,
+            "error_percent": 6.383,
+            "standard_deviation_percent": 2.0,
+            "before_error_percent": -9.5,
+            "rms_error_percent_of_the_others": 0.75,
+        },
+        {
+            "held back [Hz]": "658.0",
+            "predicted [Hz]": "700.0",
+            "error [%]": "+6.38",
+            "expected ± [%]": "2.00",
+            "error before [%]": "-9.50",
+            "rms of the others [%]": "0.75",
+        },
+    ),
+    "EVENTS": (
+        {"speed_rpm": 5100.04, "kind": "fold"},
+        {"speed [rpm]": "5100.0", "what happens": "fold"},
+    ),
+}
+
+
+@pytest.mark.parametrize("table", CELLS)
+def test_every_cell_shows_its_own_quantity_in_its_unit(table: str) -> None:
+    row, expected = CELLS[table]
+    (one,) = table_of(getattr(columns, table), [row])
+    shown, ((*texts,),) = one.filled()
+    assert {column.heading: text for column, text in zip(shown, texts, strict=True)} == expected
+    assert [column.heading for column in shown] == list(expected)
+
+
+def test_every_table_is_held_against_its_cells() -> None:
+    assert set(CELLS) == {name for name in vars(columns) if name.isupper()}
+
+
+def test_warnings_stand_before_the_results(tmp_path: Path) -> None:
+    document = {"command": "gears", "warnings": [{"name": "runout", "message": "teeth run out by 3 µm"}]} | RUN
+    write(tmp_path, document, CASE.format(speed=1, load=2))
+    text = read(tmp_path).text
+    assert text.index("Warnings") < text.index("teeth run out by 3 µm") < text.index("Housing modes")
+
+
+def test_modes_that_miss_their_proof_are_not_called_complete(tmp_path: Path) -> None:
+    for complete, words in ((True, ", complete:"), (False, ", NOT complete:")):
+        certificate = {"found": 6, "limit_hz": 3200.0, "expected": 7, "complete": complete, "max_residual": 2e-12}
+        (section,) = sections_of({"housing": {"certificate": certificate}})
+        assert words in section.sentences[0]
+        assert "6 modes below 3200 Hz" in section.sentences[0]
+        assert "demands 7" in section.sentences[0]
+
+
+def test_keys_that_came_or_went_are_told_too(tmp_path: Path) -> None:
+    write(tmp_path, {"command": "run", "made_at": "2026-02-01T10:00:00+00:00"}, 'title = "two"\nnew = 4\n')
+    write(tmp_path / "gears", {"command": "gears", "made_at": "2026-01-01T10:00:00+00:00"}, 'title = "two"\nold = 3\n')
+    (doubt,) = [line for line in read(tmp_path).text.splitlines() if "Does not fit the case any more" in line]
+    assert "old was 3, is absent" in doubt
+    assert "new was absent, is 4" in doubt

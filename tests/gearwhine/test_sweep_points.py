@@ -15,7 +15,7 @@ from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.machine import build_machine, housing_in_machine
 from gearwhine.stages.transient import solve_transient
-from gearwhine.sweep import PointFailure, PointResult, SweptPoint, gathered, sweep_points
+from gearwhine.sweep import PointFailure, PointResult, SweptPoint, gathered, sweep_document, sweep_points
 from gearwhine.sweep.point_files import read_point, stale_points, write_point
 from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.solution import solve_point
@@ -179,3 +179,79 @@ def test_a_waterfall_draws_a_row_for_each_spectrum() -> None:
         draw_waterfall("none", [1, 2, 3], frequencies, np.nan * heights, value_name="speed", unit="m/s²")
     with pytest.raises(ValueError, match="not"):
         draw_waterfall("unlike", [1, 2], frequencies, heights, value_name="speed", unit="m/s²")
+
+
+def made_up(number: int) -> PointResult:
+    """A result whose every figure tells its point."""
+    load = number + np.array([0.1, 0.2, 0.3, 0.4, 0.5])
+    pairs = [
+        {
+            "mean_force_n": 100.0 * number + one,
+            "peak_force_n": 200.0 * number + one,
+            "mesh_frequency_hz": 300.0 * number + one,
+            "contact_loss_fraction": 0.01 * number + 0.001 * one,
+        }
+        for one in (1, 2)
+    ]
+    peaks = [{"frequency_hz": 10.0 * number, "amplitude_m_per_s2": 0.5 * number}]
+    return PointResult(
+        document={
+            "speed_rpm": 60.0 * (number + 1),
+            "trusted_below_hz": 900.0 + number,
+            "energy_error": 1e-5 * number,
+            "steps": 1000 + number,
+            "sensors": [{"name": "top", "rms_m_per_s2": 7.0 * number, "peaks": peaks}],
+            "gear_pairs": pairs,
+        },
+        orders=np.array([0.0, 1.0, 2.5]),
+        sensor_spectra={"top": number + np.array([0.0, 1.0, 2.0])},
+        force_spectra={"a -> b": number + np.array([3.0, 4.0, 5.0]), "c -> d": number + np.array([6.0, 7.0, 8.0])},
+        bearing_force_mean={"left": load, "right": -load},
+        bearing_force_rms={"left": 10.0 * load, "right": 20.0 * load},
+        window="hann",
+    )
+
+
+def test_every_figure_of_a_point_stands_at_its_place() -> None:
+    """On a square grid, where rows and columns could be taken for each other."""
+    over = ("operation.speed=3000 rpm,6000 rpm", "operation.torque=10 N*m,30 N*m")
+    points = points_of(over=over)
+    keys = swept_keys(load_case("small-gearbox").case, over)
+    swept = [SweptPoint(point, made_up(number), resumed=number == 2) for number, point in enumerate(points)]
+    data = gathered(points[0].case, keys, swept)
+    for number, (i, j) in enumerate([(0, 0), (0, 1), (1, 0), (1, 1)]):
+        at = data.isel(speed=i, operation_torque=j)
+        assert float(at.rotation_speed) == 60.0 * (number + 1)
+        assert at.frequency.values == pytest.approx((number + 1) * np.array([0.0, 1.0, 2.5]))
+        assert (float(at.trusted_limit), float(at.steps)) == (900.0 + number, 1000 + number)
+        assert at.sensor_spectrum.values.tolist() == [[number + one for one in (0.0, 1.0, 2.0)]]
+        assert at.mesh_force_spectrum.sel(contact="c -> d").values.tolist() == [number + one for one in (6.0, 7.0, 8.0)]
+        assert float(at.sensor_rms.sel(sensor="top")) == 7.0 * number
+        assert float(at.sensor_peak_frequency[0, 0]) == 10.0 * number
+        assert float(at.sensor_peak_amplitude[0, 0]) == 0.5 * number
+        for which, contact in enumerate(("a -> b", "c -> d"), start=1):
+            pair = at.sel(contact=contact)
+            assert float(pair.mesh_force_mean) == 100.0 * number + which
+            assert float(pair.mesh_force_peak) == 200.0 * number + which
+            assert float(pair.mesh_frequency) == 300.0 * number + which
+            assert float(pair.contact_loss) == 0.01 * number + 0.001 * which
+        for name, mean, rms in (("left", 1.0, 10.0), ("right", -1.0, 20.0)):
+            load = number + np.array([0.1, 0.2, 0.3, 0.4, 0.5])
+            bearing = at.sel(bearing=name)
+            assert bearing.bearing_force_mean.values == pytest.approx(mean * load[:3])
+            assert bearing.bearing_moment_mean.values == pytest.approx(mean * load[3:])
+            assert bearing.bearing_force_rms.values == pytest.approx(rms * load[:3])
+            assert bearing.bearing_moment_rms.values == pytest.approx(rms * load[3:])
+    units = {name: data[name].attrs["units"] for name in ("speed", "operation_torque", "frequency", "mesh_frequency")}
+    assert units == {"speed": "rpm", "operation_torque": "N*m", "frequency": "Hz", "mesh_frequency": "Hz"}
+    assert {data[f"bearing_{kind}_mean"].attrs["units"] for kind in ("force", "moment")} == {"N", "N m"}
+    document = sweep_document(keys, swept)
+    assert (document["done"], document["failed"], document["resumed"]) == (4, 0, 1)
+    assert [row["resumed"] for row in document["points"]] == [False, False, True, False]
+    assert [row["values"]["operation_torque"] for row in document["points"]] == [10.0, 30.0, 10.0, 30.0]
+
+
+def test_points_of_other_code_are_not_taken_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = points_of()[0].key
+    monkeypatch.setattr("gearwhine.sweep.points.code_digest", lambda: "another")
+    assert points_of()[0].key != before

@@ -1,0 +1,263 @@
+"""What figures of a motion and of made-up curves draw: the data, their order and units, names beside their own."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from lopsided_case import PAIRS, lopsided
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+
+import coupling.gears as gears
+from coupling import FrequencyResponse
+from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.figures import (
+    draw_campbell,
+    draw_contact_path,
+    draw_harris_map,
+    draw_transient,
+    draw_transmissibility,
+    draw_transmission_error,
+)
+from gearwhine.figures.style import BLUE, GREY
+from gearwhine.stages.gears import solve_gears
+from gearwhine.stages.housing import solve_housing
+from gearwhine.stages.machine import build_machine
+from gearwhine.stages.signature import SolvedSignature, solve_signature
+from gearwhine.stages.system import solve_system
+from gearwhine.stages.transient import SolvedTransient, solve_transient
+
+
+class Drawn(NamedTuple):
+    """A motion, its lines, and the figures of it by their files' names."""
+
+    solved: SolvedTransient
+    signature: SolvedSignature
+    figures: dict[str, Figure]
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
+    folder = tmp_path_factory.mktemp("lopsided")
+    path = folder / "lopsided.toml"
+    transient = "[transient]\nrevolutions = 4\ndiscard = 2\npoints_per_revolution = 200\ntolerance = 5e-3\n"
+    path.write_text(lopsided(more=transient), encoding="utf-8")
+    case = load_case(str(path)).case
+    pairs, housing = solve_gears(case), solve_housing(case)
+    machine = build_machine(case, housing, pairs)
+    solved = solve_transient(case, machine, mesh_frequencies(case), housing=housing)
+    modes = solve_system(case, machine, housing).modes
+    signature = solve_signature(solved, modes, housing.modes.frequencies_hz)
+    figures: dict[str, Figure] = {}
+
+    def keep(figure: Figure, file: Path) -> str:
+        figures[file.name] = figure
+        return file.name
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("gearwhine.figures.transient.save", keep)
+        draw_transient(folder, case, solved, signature, housing, None)
+    return Drawn(solved, signature, figures)
+
+
+def panels(figure: Figure) -> list[Axes]:
+    """From the top, each place once: a second axis beside one is left out."""
+    found: dict[tuple[float, float], Axes] = {}
+    for axes in figure.axes:
+        place = axes.get_position()
+        found.setdefault((-round(place.y0, 6), round(place.x0, 6)), axes)
+    return [found[place] for place in sorted(found)]
+
+
+def heights(axes: Axes) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies and amplitudes of the lines of a spectrum, which is one path broken between them."""
+    (path,) = (line for line in axes.get_lines() if np.isnan(np.asarray(line.get_ydata(), dtype=float)).any())
+    return np.asarray(path.get_xdata())[1::3], np.asarray(path.get_ydata())[1::3]
+
+
+def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
+    figure = drawn.figures["spectrum.png"]
+    assert "3000 rpm, 45 N·m" in "".join(text.get_text() for text in figure.texts)
+    shown = panels(figure)
+    assert len(shown) == 2
+    for axes, (name, spectrum) in zip(shown, drawn.solved.sensor_spectra.items(), strict=True):
+        assert name in [text.get_text() for text in axes.texts]
+        frequencies, amplitude = heights(axes)
+        inside = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= drawn.solved.trusted_limit)
+        assert frequencies == pytest.approx(spectrum.frequencies[inside])
+        top = spectrum.amplitude[inside].max()
+        assert amplitude == pytest.approx(np.maximum(spectrum.amplitude[inside], 1e-5 * top))
+        (beside,) = (other for other in figure.axes if other is not axes and other.bbox.bounds == axes.bbox.bounds)
+        assert beside.get_ylabel() == "level [dB]"
+        low, high = axes.get_ylim()
+        assert beside.get_ylim() == pytest.approx([20.0 * np.log10(a / np.sqrt(2.0) / 1e-6) for a in (low, high)])
+        assert axes.get_ylabel() == "acceleration [m/s²]"
+        marked = {
+            round(float(np.asarray(line.get_xdata())[0]), 3)
+            for line in axes.get_lines()
+            if line.get_linestyle() == "--" and len(np.asarray(line.get_xdata())) == 2
+        }
+        assert {round(n * 1150.0, 3) for n in (1, 2)} <= marked
+        # A leader ends at the height of each named line.
+        width, tall = axes.get_position().width, axes.get_position().height
+        assert width > tall
+        ends = [
+            axes.transData.inverted().transform(line.get_transform().transform(line.get_xydata()[0]))
+            for line in axes.get_lines()
+            if line.get_linewidth() == 0.5
+        ]
+        told = drawn.signature.lines[name][: len(ends)]
+        assert ends
+        for line in told:
+            gap = min(abs(np.log(max(y, 1e-12) / abs(line.value))) + abs(x / line.frequency - 1.0) for x, y in ends)
+            assert gap < 1e-6, (name, line.frequency)
+    assert shown[-1].get_xlabel() == "frequency [Hz]"
+
+
+def test_each_pair_s_force_stands_in_its_own_row(drawn: Drawn) -> None:
+    figure = drawn.figures["mesh-force.png"]
+    assert figure.get_suptitle().endswith("gear-mesh force at 3000 rpm, 45 N·m")
+    figure.canvas.draw()
+    rows = figure.axes
+    times = drawn.solved.histories.times
+    for number, (pair, hertz) in enumerate(zip(PAIRS, (1150.0, 1150.0 * 21 / 47), strict=True)):
+        name = " -> ".join(pair)
+        left, right = rows[2 * number : 2 * number + 2]
+        assert left.get_title(loc="left") == f"{name}: six mesh periods"
+        (line,) = left.get_lines()
+        x, y = (np.asarray(data) for data in line.get_data())
+        assert x[0] == 0.0
+        assert x[-1] == pytest.approx(6e3 / hertz, abs=1e3 * (times[1] - times[0]))
+        assert (left.get_xlabel(), left.get_ylabel()) == ("time [ms]", "mesh force [N]")
+        np.testing.assert_array_equal(y, drawn.solved.histories.mesh_force[name][: len(y)])
+        frequencies, amplitude = heights(right)
+        spectrum = drawn.solved.force_spectra[name]
+        assert amplitude.max() == pytest.approx(
+            spectrum.amplitude[1:][spectrum.frequencies[1:] <= frequencies[-1]].max()
+        )
+
+
+def test_orbits_show_x_across_and_y_up(drawn: Drawn) -> None:
+    figure = drawn.figures["orbits.png"]
+    names = list(drawn.solved.histories.gear_motion)
+    for column, name in enumerate(names):
+        above, below = figure.axes[column], figure.axes[column + len(names)]
+        motion = 1e6 * drawn.solved.histories.gear_motion[name][:, :2]
+        assert above.get_title() == name
+        np.testing.assert_allclose(above.get_lines()[-1].get_xydata(), motion)
+        np.testing.assert_allclose(below.get_lines()[0].get_xydata(), motion - motion.mean(axis=0), atol=1e-9)
+        # The arrow goes from where the gear stands without load.
+        (arrow,) = (text for text in above.texts if getattr(text, "arrow_patch", None) is not None)
+        np.testing.assert_allclose(arrow.xy, motion.mean(axis=0))
+        assert arrow.get_position() == (0.0, 0.0)
+
+
+def test_bars_of_a_line_stand_under_its_name_the_largest_on_top(drawn: Drawn) -> None:
+    figure = drawn.figures["contributions.png"]
+    headings = [text for text in figure.texts if " m/s² peak, " in text.get_text()]
+    expected = [(name, line) for name, lines in drawn.signature.lines.items() for line in lines[:3]]
+    assert len(headings) == len(expected)
+    for text, (name, line) in zip(sorted(headings, key=lambda text: -text.get_position()[1]), expected, strict=True):
+        assert text.get_text().startswith(f"{name}: {line.frequency:.0f} Hz, {abs(line.value):.3g} m/s² peak")
+        (left, *_) = sorted(
+            (axes for axes in figure.axes if axes.get_position().y1 < text.get_position()[1]),
+            key=lambda axes: (-axes.get_position().y0, axes.get_position().x0),
+        )
+        bars = left.patches
+        largest = sorted(line.modes, key=lambda part: -abs(part.value))[:6]
+        assert [bar.get_width() for bar in bars][:6] == pytest.approx([100.0 * part.share for part in largest])
+        low, high = left.get_ylim()
+        assert low > high  # the first bar is the uppermost
+
+
+def test_bearing_forces_over_frequency_are_of_both_directions() -> None:
+    w = 2.0 * np.pi * np.linspace(10.0, 1000.0, 50)
+    load = np.zeros((50, 5), dtype=complex)
+    load[:, 0], load[:, 1] = 3e6, 4e6j
+    error, flat = "transmission error of m", np.ones(50, dtype=complex)
+    response = FrequencyResponse(
+        error, "m", w, np.zeros((50, 1), dtype=complex), {"top": 2e6 * flat}, {"left": load}, {"m": 7e6 * flat}
+    )
+    shown = {axes.get_ylabel(): axes for axes in draw_transmissibility("t", response).axes}
+    assert list(shown) == ["acceleration [m/s²/µm]", "bearing force [N/µm]", "mesh force [N/µm]"]
+    for label, value in zip(shown, (2.0, 5.0, 7.0), strict=True):
+        assert np.asarray(shown[label].get_lines()[0].get_ydata()) == pytest.approx(value)
+    tops = [axes.get_position().y0 for axes in shown.values()]
+    assert tops == sorted(tops)
+
+
+def test_forward_critical_speeds_are_filled_and_backward_ones_open() -> None:
+    speeds = np.linspace(0.0, 400.0, 21)
+    frequencies = np.column_stack([200.0 - 0.1 * speeds, 200.0 + 0.1 * speeds])
+    directions = np.column_stack([-np.ones(21), np.ones(21)])
+    figure = draw_campbell(
+        "t",
+        speeds,
+        frequencies,
+        directions,
+        0.0 * directions,
+        critical_speeds=[180.0, 222.0],
+        critical_directions=[-1, 1],
+    )
+    backward, forward = (line for line in figure.axes[0].get_lines() if line.get_label() == "critical")
+    assert backward.get_markerfacecolor() == "white"
+    assert forward.get_markerfacecolor() == forward.get_color() != "white"
+
+
+def test_the_quietest_torque_and_the_one_of_operation_are_marked() -> None:
+    phases = np.linspace(0.0, 1.0, 50, endpoint=False)
+    sizes = np.array([3.0, 1.0, 2.0, 4.0])
+    forces = np.array([1000.0, 2000.0, 3000.0, 4000.0])
+    harris: Any = SimpleNamespace(
+        forces=forces,
+        phases=phases,
+        transmission_error=1e-6 * sizes[:, None] * np.cos(2.0 * np.pi * phases) / 2.0,
+        peak_to_peak=1e-6 * sizes,
+    )
+    figure = draw_harris_map("h", harris, 0.02, torque=50.0)
+    lower = figure.axes[1]
+    (quiet,) = (line for line in lower.get_lines() if line.get_label() == "_quietest")
+    assert [float(np.ravel(part)[0]) for part in quiet.get_data()] == pytest.approx([40.0, 1.0])
+    assert any("quietest of these torques: 40 N·m with 1.000 µm" in text.get_text() for text in figure.texts)
+    # Halfway between 40 and 60 N·m.
+    assert "1.500 µm" in [text.get_text() for text in lower.texts]
+
+
+def test_bars_with_and_without_load_have_the_curves_colours() -> None:
+    phases = np.linspace(0.0, 1.0, 50, endpoint=False)
+    loaded: Any = SimpleNamespace(phases=phases, transmission_error=1e-6 * np.cos(2 * np.pi * phases), force=100.0)
+    harmonics = {"unloaded": np.array([1e-6, 2e-6]), "loaded": np.array([3e-6, 4e-6])}
+    upper, bars = draw_transmission_error(
+        "t", phases, 0.5e-6 * np.cos(2 * np.pi * phases), harmonics, loaded=loaded
+    ).axes
+    colours = {line.get_label(): line.get_color() for line in upper.get_lines()}
+    assert colours["without load"] == GREY
+    assert colours["under 100 N"] == BLUE
+    for container, colour, values in zip(bars.containers, (GREY, BLUE), ([1.0, 2.0], [3.0, 4.0]), strict=True):
+        assert [bar.get_height() for bar in container] == pytest.approx(values)
+        assert {tuple(bar.get_facecolor()) for bar in container} == {to_rgba(colour)}
+
+
+def test_the_driver_slides_backwards_where_it_begins() -> None:
+    case = load_case("spur-pair").case
+    (pair,) = solve_gears(case)
+    mesh = pair.static
+    pressure = gears.mesh_pressure(pair.geometry, pair.contact, mesh)
+    figure = draw_contact_path("p", pair.geometry, pair.contact, mesh, pressure)
+    _, press, sliding = figure.axes
+    curves = {line.get_label(): np.asarray(line.get_ydata(), dtype=float) for line in sliding.get_lines()}
+    driver, driven = (curve[np.isfinite(curve)] for curve in (curves["driver"], curves["driven gear"]))
+    assert driver[0] < 0.0 < driver[-1]
+    assert driven[0] > 0.0 > driven[-1]
+    # A curve along the path, not from phase to phase of the period.
+    (line,) = (line for line in press.get_lines() if line.get_label() == "_pressure")
+    rolls, values = (np.asarray(data, dtype=float) for data in line.get_data())
+    present = pair.contact.pairs(mesh.phases).present
+    for number in (5, 40, 90):
+        row = int(np.flatnonzero(present[number])[0])
+        roll = np.degrees(pair.geometry.driver_roll_angle(mesh.positions[number, row]))
+        nearest = values[np.abs(rolls - roll) < 1e-9]
+        assert np.nanmin(np.abs(nearest - 1e-6 * pressure[number, row])) < 1e-6
