@@ -13,7 +13,7 @@ from scipy import sparse
 
 from housing.errors import HousingError
 from housing.matrices import Matrices
-from housing.node_blocks import Additions, NodeBlocks
+from housing.node_blocks import NOTHING, Additions, NodeBlocks
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -80,5 +80,8 @@ def port_additions(
             f"{name} ties {nodes} nodes to each other, and at most {MOST_PATCH_NODES} are bearable: take a smaller "
             "patch or larger elements on it, or a support, whose springs are spread and tie nothing"
         )
-    given = {"stiffness": stiffness, "mass": mass, "damping": damping}
-    return Additions(**{key: NodeBlocks.congruent(port, small) for key, small in given.items() if small is not None})
+
+    def blocks(small: FloatArray | None) -> NodeBlocks:
+        return NOTHING if small is None else NodeBlocks.congruent(port, small)
+
+    return Additions(blocks(stiffness), blocks(mass), blocks(damping))

@@ -65,25 +65,22 @@ class EffectiveMass:
         return np.asarray((self.free - self.mass.sum(axis=0)) / self.total)
 
 
-def effective_mass(matrices: Matrices, points: FloatArray, fixed: IntArray | None, modes: ModeSet) -> EffectiveMass:
+def effective_mass(matrices: Matrices, points: FloatArray, modes: ModeSet) -> EffectiveMass:
     """Participation factors and effective masses for the six rigid motions of the ground.
 
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes.
+        Of n_nodes nodes, with what holds them.
     points : ndarray, shape (n_nodes, 3)
         Their places [m].
-    fixed : ndarray of int, optional
-        Degrees of freedom held at zero.
     modes : ModeSet
-        Of these matrices and this support.
+        Of these matrices.
     """
     center = rigid_body(points, matrices).center
     fields = rigid_motions(points, center).reshape(-1, 6)
     total = np.einsum("ij,ij->j", fields, matrices.mass @ fields)
-    if fixed is not None:
-        fields[fixed] = 0.0
+    fields[matrices.fixed] = 0.0
     moved = matrices.mass @ fields
     return EffectiveMass(
         participation=np.asarray(modes.shapes.reshape(len(modes.shapes), -1) @ moved),

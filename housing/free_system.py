@@ -31,9 +31,7 @@ class FreeSystem:
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes.
-    fixed : ndarray of int, optional
-        Degrees of freedom held at zero.
+        Of n_nodes nodes, with what holds them.
     threads : int
         That multiply K and M with vectors; the products are the same to the last bit for any number.
 
@@ -49,10 +47,9 @@ class FreeSystem:
         Where none is left.
     """
 
-    def __init__(self, matrices: Matrices, fixed: IntArray | None = None, *, threads: int = 1) -> None:
+    def __init__(self, matrices: Matrices, *, threads: int = 1) -> None:
         held = np.zeros(3 * matrices.n_nodes, dtype=bool)
-        if fixed is not None:
-            held[fixed] = True
+        held[matrices.fixed] = True
         if held.all():
             raise HousingError("every degree of freedom is fixed")
         self.free = np.flatnonzero(~held)

@@ -1,6 +1,6 @@
 """Stiffness, mass and damping of a housing as sparse matrices of 3 x 3 blocks between pairs of nodes."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -35,6 +35,8 @@ class Matrices:
         Mass beyond m ⊗ I₃ [kg], on pairs of the pattern.
     attached_damping : NodeBlocks
         C [N s/m].
+    fixed : ndarray of int
+        Degrees of freedom that supports hold at zero, ascending.
     """
 
     pointer: IntArray
@@ -43,6 +45,7 @@ class Matrices:
     node_mass: FloatArray
     attached_mass: NodeBlocks = NOTHING
     attached_damping: NodeBlocks = NOTHING
+    fixed: npt.NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
     @property
     def n_nodes(self) -> int:
@@ -129,7 +132,12 @@ class Matrices:
             node_mass=node_mass,
             attached_mass=self.attached_mass + additions.mass,
             attached_damping=self.attached_damping + additions.damping,
+            fixed=np.union1d(self.fixed, additions.fixed),
         )
+
+    def held(self, freedoms: npt.ArrayLike) -> "Matrices":
+        """The matrices with further degrees of freedom held at zero, of 3 n_nodes."""
+        return replace(self, fixed=np.union1d(self.fixed, np.asarray(freedoms, dtype=np.int64)))
 
     @cached_property
     def rows(self) -> IntArray:

@@ -72,7 +72,6 @@ class ModeSet:
 
 def solve_modes(
     matrices: Matrices,
-    fixed: IntArray | None = None,
     *,
     frequency_limit: float | None = None,
     count: int | None = None,
@@ -88,9 +87,7 @@ def solve_modes(
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes, springs included.
-    fixed : ndarray of int, optional
-        Degrees of freedom held at zero.
+        Of n_nodes nodes, with the supports and whatever else is attached to them, see :func:`housing.attach`.
     frequency_limit : float
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
@@ -119,7 +116,7 @@ def solve_modes(
     """
     if (frequency_limit is None) == (count is None):
         raise HousingError("give a frequency limit or a number of modes, one of the two")
-    system = FreeSystem(matrices, fixed, threads=threads)
+    system = FreeSystem(matrices, threads=threads)
     most = min(system.size - 2, MOST_MODES)
     if count is not None and not 1 <= count <= most:
         raise HousingError(f"{count} modes asked of {system.size} degrees of freedom: give 1 to {most}")

@@ -1,6 +1,6 @@
 """Blocks of 3 x 3 between pairs of nodes: what an attachment adds to the matrices of the solid."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -105,11 +105,19 @@ class Additions:
         [kg].
     damping : NodeBlocks
         [N s/m].
+    fixed : ndarray of int
+        Degrees of freedom held at zero, ascending.
     """
 
     stiffness: NodeBlocks = NOTHING
     mass: NodeBlocks = NOTHING
     damping: NodeBlocks = NOTHING
+    fixed: npt.NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
     def __add__(self, other: "Additions") -> "Additions":
-        return Additions(self.stiffness + other.stiffness, self.mass + other.mass, self.damping + other.damping)
+        return Additions(
+            self.stiffness + other.stiffness,
+            self.mass + other.mass,
+            self.damping + other.damping,
+            np.union1d(self.fixed, other.fixed),
+        )

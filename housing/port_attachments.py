@@ -18,7 +18,6 @@ IntArray = npt.NDArray[np.int64]
 
 def attach_ports(
     matrices: Matrices,
-    fixed: IntArray | None,
     modes: ModeSet,
     ports: Sequence[sparse.csr_array] | sparse.csr_array,
     *,
@@ -35,9 +34,7 @@ def attach_ports(
     Parameters
     ----------
     matrices : Matrices
-        Of which the modes are, springs included.
-    fixed : ndarray of int, optional
-        Degrees of freedom held at zero.
+        Of which the modes are, supports included.
     modes : ModeSet
         Complete up to its limit; attachments that it has are replaced.
     ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
@@ -53,7 +50,7 @@ def attach_ports(
     HousingError, ReductionError
         See :func:`housing.reduction.residual_attachments`.
     """
-    system = FreeSystem(matrices, fixed, threads=threads)
+    system = FreeSystem(matrices, threads=threads)
     floor = system.floor(modes.certificate.limit)
     if factor is None or shift is None:
         shift = -floor

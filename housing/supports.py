@@ -55,11 +55,10 @@ class Support:
         return Patch(self.surface, self.box, self.plane).facets(mesh)
 
     def additions(self, mesh: Mesh) -> Additions:
-        """Springs and dashpots spread over the patch; see :class:`housing.attachments.Attachment`."""
-        if not any(self.stiffness) and not any(self.damping):
-            return Additions()
+        """Springs and dashpots spread over the patch, and the freedoms that are fixed."""
         facets = self.facets(mesh)
         return Additions(
+            fixed=fixed_freedoms(mesh, [self]),
             stiffness=spread(mesh, facets, self.stiffness) if any(self.stiffness) else NOTHING,
             damping=spread(mesh, facets, self.damping) if any(self.damping) else NOTHING,
         )

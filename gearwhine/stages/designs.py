@@ -12,7 +12,7 @@ import housing as room
 from gearwhine.case import Case, CaseError
 from gearwhine.case.box_shape import box_geometry
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.attachments import attach_all, build_attachments, build_supports
+from gearwhine.stages.attachments import attach_all, build_attachments
 from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.regions import materials_of
 from gearwhine.stages.update_keys import FittedCase
@@ -95,8 +95,7 @@ class HousingDesigns:
         """The case on a mesh of its housing."""
         parted, material, materials = materials_of(case, mesh)
         matrices = attach_all(case, mesh, room.assemble(parted, material, materials, threads=self.threads))
-        fixed = room.fixed_freedoms(mesh, build_supports(case))
-        solved = room.solve_modes(matrices, fixed, count=self.modes, draft=self.draft, threads=self.threads)
+        solved = room.solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
         given = case.housing
         assert given is not None
         ports = [room.seat_matrix(mesh, room.Seat(seat.name, seat.center)) for seat in given.seat]

@@ -13,7 +13,7 @@ import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.problems import UNSAID
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.attachments import attach_all, build_supports, check_places
+from gearwhine.stages.attachments import attach_all, check_places
 from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.housing_checks import ATTACHMENT_ORDERS, bearing_places, bearing_port, housing_checks
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
@@ -228,7 +228,6 @@ def _solve_modes(
     try:
         modes = room.solve_modes(
             matrices,
-            room.fixed_freedoms(mesh, build_supports(case)),
             frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
             count=given.modes,
             ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,

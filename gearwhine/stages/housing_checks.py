@@ -8,7 +8,7 @@ from scipy import sparse
 
 import housing as room
 from gearwhine.case import Case
-from gearwhine.stages.attachments import build_attachments, build_supports
+from gearwhine.stages.attachments import build_attachments
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -91,7 +91,7 @@ def housing_checks(
         center=None if fastened else center,
     )
     health.require()
-    masses = room.effective_mass(whole, mesh.points, room.fixed_freedoms(mesh, build_supports(case)), modes)
+    masses = room.effective_mass(whole, mesh.points, modes)
     return {
         "health": _health_document(health),
         "effective_mass": _mass_document(masses),

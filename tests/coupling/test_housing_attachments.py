@@ -55,7 +55,7 @@ def ports(solid: tuple[Mesh, Matrices]) -> tuple[sparse.csr_array, sparse.csr_ar
 def modes(
     solid: tuple[Mesh, Matrices], feet: npt.NDArray[np.int64], ports: tuple[sparse.csr_array, sparse.csr_array]
 ) -> ModeSet:
-    return solve_modes(solid[1], feet, frequency_limit=2 * np.pi * 5000.0, ports=ports[0])
+    return solve_modes(solid[1].held(feet), frequency_limit=2 * np.pi * 5000.0, ports=ports[0])
 
 
 def component(modes: ModeSet, ports: tuple[sparse.csr_array, sparse.csr_array]) -> HousingComponent:

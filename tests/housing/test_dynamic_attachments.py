@@ -49,7 +49,7 @@ def port(beam: tuple[Mesh, Matrices]) -> sparse.csr_array:
 def solved(beam: tuple[Mesh, Matrices], clamped: npt.NDArray[np.int64], port: sparse.csr_array) -> dict[int, ModeSet]:
     """By orders of response."""
     return {
-        orders: solve_modes(beam[1], clamped, frequency_limit=LIMIT, ports=port, port_orders=orders)
+        orders: solve_modes(beam[1].held(clamped), frequency_limit=LIMIT, ports=port, port_orders=orders)
         for orders in (1, 2, 3)
     }
 

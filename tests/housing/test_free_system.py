@@ -39,7 +39,7 @@ def test_any_degrees_of_freedom_may_be_fixed(matrices: Matrices, data: st.DataOb
     free = np.setdiff1d(np.arange(order), fixed)
     if not len(free):
         return
-    system = FreeSystem(matrices, fixed)
+    system = FreeSystem(matrices.held(fixed))
     by_threads = FreeMass(matrices, free, data.draw(st.integers(2, 3)), least=1)
     np.testing.assert_array_equal(system.free, free)
     stiffness, mass = (whole.toarray()[np.ix_(free, free)] for whole in (matrices.stiffness, matrices.mass))
@@ -67,7 +67,7 @@ def test_the_floor_is_clear_of_rounding_and_small_beside_the_limit(matrices: Mat
 
 def test_nothing_left_free_is_refused(matrices: Matrices) -> None:
     with pytest.raises(HousingError, match="every degree of freedom is fixed"):
-        FreeSystem(matrices, np.arange(3 * matrices.n_nodes))
+        FreeSystem(matrices.held(np.arange(3 * matrices.n_nodes)))
 
 
 def test_a_symmetric_matrix_is_its_lower_triangle() -> None:

@@ -94,11 +94,11 @@ def test_frequency_slopes_are_those_of_solved_modes(
         mesh = replace(box, points=box.points + wall * velocity)
         held = [Support("spring", surface="foot-3", stiffness=tuple((1.0 + springs) * k for k in spring))]  # type: ignore[arg-type]
         own = replace(steel, density=(1.0 + density) * steel.density)
-        return solve_modes(attach(assemble(mesh, own), mesh, held), fixed, count=6).frequencies
+        return solve_modes(attach(assemble(mesh, own), mesh, held).held(fixed), count=6).frequencies
 
     held = Support("spring", surface="foot-3", stiffness=spring)
     matrices = attach(assemble(box, steel), box, [held])
-    modes = solve_modes(matrices, fixed, count=6)
+    modes = solve_modes(matrices.held(fixed), count=6)
     n = len(box.points)
     fastened = held.additions(box).stiffness.matrix(n)
     shares = [

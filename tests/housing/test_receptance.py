@@ -50,7 +50,7 @@ def ports(beam: tuple[Mesh, Matrices]) -> tuple[sparse.csr_array, sparse.csr_arr
 def modes(beam: tuple[Mesh, Matrices], ports: tuple[sparse.csr_array, sparse.csr_array]) -> ModeSet:
     fixed = fixed_freedoms(beam[0], [Support("root", surface="bottom", fixed=(True, True, True))])
     both = sparse.csr_array(sparse.vstack(list(ports), format="csr"))
-    return solve_modes(beam[1], fixed, frequency_limit=LIMIT, ports=both)
+    return solve_modes(beam[1].held(fixed), frequency_limit=LIMIT, ports=both)
 
 
 def direct(beam: tuple[Mesh, Matrices], port_a: sparse.csr_array, port_b: sparse.csr_array, w: float) -> FloatArray:

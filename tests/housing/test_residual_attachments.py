@@ -58,7 +58,7 @@ def port(beam: tuple[Mesh, Matrices]) -> sparse.csr_array:
 
 @pytest.fixture(scope="module")
 def grounded(beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array) -> ModeSet:
-    return solve_modes(beam[1], clamped, frequency_limit=LIMIT, ports=port)
+    return solve_modes(beam[1].held(clamped), frequency_limit=LIMIT, ports=port)
 
 
 def static(matrices: Matrices, fixed: IntArray, port: sparse.csr_array) -> FloatArray:
@@ -172,7 +172,7 @@ def test_soft_mounts_do_not_hide_the_local_compliance(
 def test_a_port_given_twice_brings_nothing_new(
     beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, grounded: ModeSet
 ) -> None:
-    twice = attach_ports(beam[1], clamped, grounded, [port, port[:2]])
+    twice = attach_ports(beam[1].held(clamped), grounded, [port, port[:2]])
     assert twice.attachments is not None
     assert grounded.attachments is not None
     np.testing.assert_allclose(twice.attachments.frequencies, grounded.attachments.frequencies, rtol=1e-6)
@@ -183,7 +183,7 @@ def test_a_port_on_the_fixed_patch_does_not_move(
     beam: tuple[Mesh, Matrices], clamped: IntArray, grounded: ModeSet
 ) -> None:
     held = seat_matrix(beam[0], Seat("bottom", (0.025, 0.03, 0.0)))
-    modes = attach_ports(beam[1], clamped, grounded, held)
+    modes = attach_ports(beam[1].held(clamped), grounded, held)
     assert modes.attachments is not None
     assert modes.attachments.shapes.shape == (0, len(beam[0].points), 3)
     assert not modes.attachments.proof.compliance.any()
@@ -324,11 +324,11 @@ def test_modes_that_are_not_the_housings_fail_the_proof(
 ) -> None:
     wrong = replace(grounded, frequencies=grounded.frequencies * (1.0 + 1e-7))
     with pytest.raises(ReductionError, match="miss the static compliance at the ports by"):
-        attach_ports(beam[1], clamped, wrong, port)
+        attach_ports(beam[1].held(clamped), wrong, port)
     bent = grounded.shapes.copy()
     bent[0] += 1e-3 * bent[1]
     with pytest.raises(ReductionError, match=r"overlap by|not its own"):
-        attach_ports(beam[1], clamped, replace(grounded, shapes=bent), port)
+        attach_ports(beam[1].held(clamped), replace(grounded, shapes=bent), port)
 
 
 def test_arrays_that_do_not_fit_are_refused(

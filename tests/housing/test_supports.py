@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from housing import HousingError, Material, Matrices, Support, assemble, attach, fixed_freedoms
+from housing import HousingError, Material, Matrices, Support, assemble, attach, fixed_freedoms, solve_modes
 from meshes import GeometryError, Mesh, facet_nodes
 
 STIFFNESS = (5e8, 9e9, 3e8)
@@ -92,3 +92,17 @@ def test_supports_that_hold_nothing_are_refused(box: Mesh) -> None:
         Support("a", box=((1, 1, 1), (2, 2, 2)), fixed=(True, True, True)).facets(box)
     with pytest.raises(GeometryError, match=r"no surface 'foot-5'.*foot-4"):
         fixed_freedoms(box, [Support("a", surface="foot-5", fixed=(True, True, True))])
+
+
+def test_a_clamped_housing_does_not_come_out_free(block: Callable[..., Mesh], steel: Material) -> None:
+    """What is attached goes with the matrices: there is no second place where it could be forgotten."""
+    mesh = block((0.10, 0.07, 0.05), (2, 1, 1))
+    free = assemble(mesh, steel)
+    clamp = Support("base", surface="bottom", fixed=(True, True, True))
+    held = attach(free, mesh, [clamp, Support("cover", surface="top", stiffness=STIFFNESS)])
+    assert np.array_equal(held.fixed, fixed_freedoms(mesh, [clamp]))
+    assert free.fixed.size == 0
+    assert np.count_nonzero(solve_modes(free, count=8).frequencies == 0.0) == 6
+    assert solve_modes(held, count=2).frequencies[0] > 1000.0
+    again = attach(held, mesh, [Support("side", surface="top", fixed=(True, False, False))])
+    assert set(held.fixed) < set(again.fixed)

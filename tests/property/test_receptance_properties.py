@@ -143,7 +143,7 @@ def _solve(mesh: Mesh, frame: Frame, fastened: list[Attachment], supports: list[
     ports.append(sensor_port(moved, slanted).matrix)
     whole = sparse.csr_array(sparse.vstack(ports, format="csr"))
     fixed = fixed_freedoms(moved, supports)
-    return Solved(mesh, matrices, fixed, whole, solve_modes(matrices, fixed, frequency_limit=LIMIT, ports=whole))
+    return Solved(mesh, matrices, fixed, whole, solve_modes(matrices.held(fixed), frequency_limit=LIMIT, ports=whole))
 
 
 def _asymmetry(values: ComplexArray) -> float:
