@@ -45,7 +45,8 @@ from coupling.free_speed import free_speed
 from coupling.histories import Histories, Recorded, histories, nothing_recorded, transient_outputs
 from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
 from coupling.machine import Machine, couple
-from coupling.marching import Block, Checkpoint, march_blocks, march_key, sample_times
+from coupling.march_run import Checkpoint, sample_times
+from coupling.marching import Block, march_blocks, march_key
 from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_rows, with_modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
 from coupling.mounted import GearMesh, MountedBearing, MountedGear

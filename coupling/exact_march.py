@@ -30,7 +30,7 @@ from coupling.condensation import condensed
 from coupling.errors import PeriodicError, TransientError
 from coupling.exact_record import Record
 from coupling.kernel_arrays import Samples
-from coupling.marching import Checkpoint, MarchRun, sample_times
+from coupling.march_run import Checkpoint, MarchRun, sample_times
 from coupling.periodic.arrays import Steps, Trace, empty_trace, first_elements
 from coupling.periodic.collocation import ORDER
 from coupling.periodic.element_work import element_work

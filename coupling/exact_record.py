@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.kernel_arrays import Contacts, Samples
-from coupling.marching import Checkpoint
+from coupling.march_run import Checkpoint
 from coupling.periodic.arrays import FreeMotion, Powers, Steps, Trace, powers_room
 from coupling.periodic.collocation import ORDER
 from coupling.periodic.element_work import element_work

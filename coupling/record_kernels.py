@@ -100,7 +100,7 @@ def add_powers(
 ) -> None:
     """Add what the loads give and what damping without the teeth's takes [J], and keep the largest kinetic energy.
 
-    ``excess`` (e, s c) is the trace's, ``totals`` (5,) are those of :class:`coupling.marching.Checkpoint`. Rates of a
+    ``excess`` (e, s c) is the trace's, ``totals`` (5,) are those of :class:`coupling.march_run.Checkpoint`. Rates of a
     batch of elements are one product, for their rows do not fit the innermost cache beside an element's matrices.
     """
     for first in range(0, trace.start.size, room.weights.shape[0]):

@@ -7,7 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import TransientError
-from coupling.marching import Block, Checkpoint, march_blocks
+from coupling.march_run import Checkpoint
+from coupling.marching import Block, march_blocks
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.system import CoupledSystem
 from coupling.turning import Turning

@@ -18,8 +18,9 @@ import numpy.typing as npt
 from .bearing import Bearing
 from .branches import Branch, characters, followed
 from .campbell_roots import limits_behind, proved_at, roots_at_speeds
+from .certificate import ACCEPTED
 from .errors import IncompleteModesError, require, require_finite
-from .exact_roots import ACCEPTED, refine_each
+from .exact_roots import refine_each
 from .harmonic import finite_values
 from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from .certificate import ACCEPTED
 from .coalesced_roots import refine_roots
-from .exact_roots import ACCEPTED, NEAR, ExactRoots, Speed, apart, constant_speed, distinct, refine_each
+from .exact_roots import NEAR, ExactRoots, Speed, apart, constant_speed, distinct, refine_each
 from .spatial_chain import SpatialChain
 from .whirl_certificate import certified_roots, oscillating
 from .whirl_count import negative_count

@@ -11,6 +11,10 @@ FloatArray = npt.NDArray[np.float64]
 
 ENERGY_TOLERANCE = 1e-8
 ORTHONORMALITY_TOLERANCE = 1e-8
+# Of a root refined on the exact equations: its relative residual, and how far it still moves when it is done.
+ACCEPTED = 1e-11
+SETTLED = 2e-14
+MOST_STEPS = 14  # of Newton's method
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from .certificate import ACCEPTED
 from .exact_roots import (
-    ACCEPTED,
     ExactRoots,
     Speed,
     apart,

@@ -8,8 +8,9 @@ import numpy.typing as npt
 
 from .bearing import Bearing, undamped
 from .campbell import campbell
+from .certificate import ACCEPTED
 from .errors import require
-from .exact_roots import ACCEPTED, SYNCHRONOUS
+from .exact_roots import SYNCHRONOUS
 from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
 from .projection import Projection, basis_for

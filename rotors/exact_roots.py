@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from .certificate import ACCEPTED, MOST_STEPS, SETTLED
 from .spatial_chain import SpatialChain
 
 FloatArray = npt.NDArray[np.float64]
@@ -33,9 +34,6 @@ TIED = 1e-7
 # Refined roots nearer than this with parallel vectors are one root found twice.
 SAME = 1e-9
 PARALLEL = 1e-3
-SETTLED = 2e-14
-ACCEPTED = 1e-11
-MOST_STEPS = 14
 # Relative step of the central difference that gives slopes of the entries: good to about 1e-10, which costs
 # the refined roots nothing, as their residual is exact.
 SLOPE_STEP = 1e-5

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
+from .certificate import ACCEPTED, MOST_STEPS, SETTLED
 from .compiled import FUSED, counted, inner
 from .entry_kernels import Pattern, Table, force_unit, put_entries, scratch
-from .exact_roots import ACCEPTED, MOST_STEPS, SETTLED
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

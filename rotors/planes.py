@@ -15,7 +15,7 @@ from .lines import Line, cut_together
 from .planar_basis import DEFAULT_COUNT
 from .projection import slowest
 from .root_count import counts_below, isolate
-from .rotor_lines import bending_lines
+from .rotor_lines import FreeLines, bending_lines
 from .search import chain_that_holds, limit_above, proved_modes
 from .shaft import Rotor
 from .whirl import solve_whirl
@@ -94,7 +94,7 @@ def rest_frequencies(
         expected = counts_below(chains, limit)
         found = [isolate(chain, number, limit) for chain, number in zip(chains, expected, strict=True)]
     else:
-        chains, shares = _shares(rotor.free_lines.bending, lines, wanted or DEFAULT_COUNT)
+        chains, shares = _shares(rotor.once(FreeLines).bending, lines, wanted or DEFAULT_COUNT)
         if alike:
             chains, shares = chains[:1], shares[:1]
         found = [isolate(chain, share, chain.highest) for chain, share in zip(chains, shares, strict=True)]

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -14,10 +14,7 @@ from .chain import Chain
 from .lines import Line
 from .lumped import station_inertias
 from .profile import AXIAL, BENDING, TORSION
-from .shaft import merged_positions
-
-if TYPE_CHECKING:
-    from .shaft import Rotor
+from .shaft import Rotor, merged_positions
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -46,7 +43,7 @@ class Spans:
     inertias: FloatArray
 
 
-def spans_of(rotor: "Rotor") -> Spans:
+def spans_of(rotor: Rotor) -> Spans:
     """Spans of a rotor; neighbours of one uniform kind with nothing between them are one.
 
     A file that gives a plain shaft in sixty elements so costs what the shaft costs. The transfer matrix of a uniform
@@ -81,7 +78,7 @@ def spans_of(rotor: "Rotor") -> Spans:
 class FreeLines:
     """Lines of a rotor without supports, each made when first asked for; a rotor holds its own."""
 
-    rotor: "Rotor"
+    rotor: Rotor
 
     @cached_property
     def bending(self) -> Line:
@@ -169,43 +166,43 @@ class FreeLines:
         )
 
 
-def bending_line(rotor: "Rotor", supports: Sequence[RadialSupport] = ()) -> Line:
+def bending_line(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> Line:
     """A rotor's bending in one plane on springs."""
     return bending_lines(rotor, [supports])[0]
 
 
-def bending_lines(rotor: "Rotor", planes: Sequence[Sequence[RadialSupport]]) -> list[Line]:
+def bending_lines(rotor: Rotor, planes: Sequence[Sequence[RadialSupport]]) -> list[Line]:
     """A rotor's bending in several planes, whose springs stand at the same places."""
     places = [support.at for support in planes[0]]
     for place in places:
         rotor.require_on_shaft(f"rotor {rotor.name!r} support", place)
-    free = rotor.free_lines.bending
+    free = rotor.once(FreeLines).bending
     # A displacement unit squared is the reciprocal of a unit of stiffness.
     shift, tilt = (free.displacement_unit**2).tolist()
     springs = [[(one.stiffness * shift, one.tilt_stiffness * tilt) for one in supports] for supports in planes]
     return free.held(places, *springs)
 
 
-def bending_chain(rotor: "Rotor", supports: Sequence[RadialSupport], highest: float) -> Chain:
+def bending_chain(rotor: Rotor, supports: Sequence[RadialSupport], highest: float) -> Chain:
     """Chain of a rotor's bending in one plane, good up to ``highest`` rad/s."""
     return bending_line(rotor, supports).cut(highest)
 
 
-def rod_line(rotor: "Rotor", springs: Sequence[AxisSpring], motion: RodMotion) -> Line:
+def rod_line(rotor: Rotor, springs: Sequence[AxisSpring], motion: RodMotion) -> Line:
     """A rotor's torsion, or its axial motion, on springs."""
     for spring in springs:
         rotor.require_on_shaft(f"rotor {rotor.name!r} spring", spring.at)
-    free = rotor.free_lines.torsion if motion == "torsion" else rotor.free_lines.axial
+    free = rotor.once(FreeLines).torsion if motion == "torsion" else rotor.once(FreeLines).axial
     unit = float(free.displacement_unit[0]) ** 2
     return free.held([spring.at for spring in springs], [(spring.stiffness * unit,) for spring in springs])[0]
 
 
-def axial_chain_on(rotor: "Rotor", bending: Chain) -> Chain:
+def axial_chain_on(rotor: Rotor, bending: Chain) -> Chain:
     """Chain of a rotor's axial motion with the nodes, and the units of length and force, of a chain of its bending.
 
     It has no springs, and no other mass at its nodes than the bending chain has.
     """
-    free = rotor.free_lines.axial.with_nodes(bending.nodes)
+    free = rotor.once(FreeLines).axial.with_nodes(bending.nodes)
     # A displacement unit squared is the reciprocal of a unit of stiffness, by which compliance and inertia are scaled.
     ratio = float(free.displacement_unit[0] / bending.displacement_unit[0]) ** 2
     line = replace(

@@ -5,7 +5,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, TypeVar, cast
+from typing import Literal, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -15,9 +15,6 @@ from .material import ShaftMaterial
 from .profile import Profile, profile_of
 from .segment import Segment
 from .shaft_coupling import Coupling
-
-if TYPE_CHECKING:
-    from .rotor_lines import FreeLines
 
 FloatArray = npt.NDArray[np.float64]
 MassModel = Literal["distributed", "lumped"]
@@ -120,13 +117,6 @@ class Rotor:
     def profile(self) -> Profile:
         """Stiffness and inertia along the shaft, as its transfer matrices take them."""
         return profile_of(self.segments, self.joints)
-
-    @cached_property
-    def free_lines(self) -> "FreeLines":
-        """The shaft without supports, as solvers cut it; made once, for solving again on other supports."""
-        from .rotor_lines import FreeLines
-
-        return FreeLines(self)
 
     def once(self, make: Callable[..., Made], *given: Hashable) -> Made:
         """``make(rotor, *given)``, made the first time and held: for what does not change with speed or frequency.

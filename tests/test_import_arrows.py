@@ -55,3 +55,63 @@ def test_help_imports_nothing_that_takes_long() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert "Usage" in done.stdout
     assert not {name.split(".")[0] for name in done.stderr.split()} & heavy
+
+
+def module_of(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def imported_modules(path: Path, known: set[str]) -> set[str]:
+    """Modules of ours that a file imports anywhere in it, also late or for types alone; its own packages left out."""
+    own = module_of(path)
+    package = own if path.name == "__init__.py" else own.rpartition(".")[0]
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = package.rsplit(".", node.level - 1)[0] if node.level > 1 else package
+            module = node.module or "" if node.level == 0 else ".".join(filter(None, (base, node.module)))
+            inner = {f"{module}.{alias.name}" for alias in node.names}
+            found |= {one if one in known else module for one in inner}
+    # A package's own face re-exports what its modules have: only modules can be in a circle with each other.
+    return {one for one in found & known if not (own == one or own.startswith(f"{one}."))}
+
+
+def circles(arrows: dict[str, set[str]]) -> list[list[str]]:
+    """Sets of modules that import each other, by Tarjan's strongly connected components."""
+    order: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(one: str) -> None:
+        order[one] = low[one] = len(order)
+        stack.append(one)
+        for other in sorted(arrows[one]):
+            if other not in order:
+                visit(other)
+                low[one] = min(low[one], low[other])
+            elif other in stack:
+                low[one] = min(low[one], order[other])
+        if low[one] == order[one]:
+            at = stack.index(one)
+            if len(stack) - at > 1:
+                found.append(sorted(stack[at:]))
+            del stack[at:]
+
+    for one in sorted(arrows):
+        if one not in order:
+            visit(one)
+    return found
+
+
+def test_no_module_imports_itself_by_way_of_others() -> None:
+    """Neither between rooms nor inside one, whether at the top of a file, in a function or for types."""
+    files = [path for room in ALLOWED for path in sorted((ROOT / room).rglob("*.py")) if path.name != "__init__.py"]
+    known = {module_of(path) for path in files}
+    arrows = {module_of(path): imported_modules(path, known) for path in files}
+    assert sum(map(len, arrows.values())) > 1000
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}}) == [["b", "c"]]
+    assert circles(arrows) == []

@@ -42,13 +42,12 @@ from coupling.gears.errors import (
     UndercutError,
 )
 from coupling.gears.face_slices import FaceSlices, face_slices
-from coupling.gears.faults import Fault, MissingTooth, Spall, Wear
+from coupling.gears.faults import MissingTooth, Spall, Wear
 from coupling.gears.flank_errors import HelixDeviation, ProfileDeviation
 from coupling.gears.foundation import RootSection, foundation_compliance, within_fitted_range
 from coupling.gears.friction import MeshFriction, mesh_friction
-from coupling.gears.gear_checks import require_tip_thickness
 from coupling.gears.gear_contact import tooth_contact
-from coupling.gears.geometry import Gear
+from coupling.gears.geometry import Fault, Gear, require_tip_thickness
 from coupling.gears.harris_map import HarrisMap, harris_map, transmission_error_harmonics
 from coupling.gears.hertz import LineContact, hertz_compliance, line_contact
 from coupling.gears.hunting import hunting_mesh

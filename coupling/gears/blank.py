@@ -6,13 +6,8 @@ rim, and a web of its own thickness in the middle of the face from there to the 
 alone, and what carries it is given as a disc of the rotor.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple
-
-if TYPE_CHECKING:
-    from coupling.gears.geometry import Gear
+from typing import NamedTuple
 
 
 class Inertia(NamedTuple):
@@ -28,15 +23,3 @@ def hollow_disc(density: float, width: float, outer_radius: float, inner_radius:
     mass = density * width * math.pi * (outer_radius**2 - inner_radius**2)
     polar = 0.5 * mass * (outer_radius**2 + inner_radius**2)
     return Inertia(mass, polar, 0.5 * polar + mass * width**2 / 12.0)
-
-
-def blank_inertia(gear: Gear) -> Inertia:
-    """Inertia of a gear by its geometry."""
-    bore_radius, inside = 0.5 * gear.bore, gear.rim_inner_radius
-    if inside is None:
-        return hollow_disc(gear.density, gear.face_width, gear.pitch_radius, bore_radius)
-    rim = hollow_disc(gear.density, gear.face_width, gear.pitch_radius, inside)
-    if gear.web_thickness is None:
-        return rim
-    web = hollow_disc(gear.density, gear.web_thickness, inside, bore_radius)
-    return Inertia(*(of_rim + of_web for of_rim, of_web in zip(rim, web, strict=True)))

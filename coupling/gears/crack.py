@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from coupling.gears.beam_compliance import shear_modulus
 from coupling.gears.errors import GearError, require_finite
-from coupling.gears.faults import check_tooth_number
+from coupling.gears.faults import check_tooth_number, require_tooth
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import fillet_points, flank_points, load_angle
 
@@ -58,6 +58,10 @@ class ToothCrack:
         require_finite("crack depth", self.depth, minimum=0.0)
         if not 0.0 < self.angle <= math.pi / 2.0:
             raise GearError(f"crack angle must be above 0 and at most 90 degrees in rad, got {self.angle!r} rad")
+
+    def require_fit(self, gear: Gear) -> None:
+        """See `coupling.gears.geometry.Fault`."""
+        require_tooth(gear, self.tooth)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
         """None: the flank stays where it is until it is loaded."""

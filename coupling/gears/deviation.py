@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from coupling.gears import piecewise
 from coupling.gears.corner_contact import flank_places
-from coupling.gears.faults import Fault
-from coupling.gears.geometry import Gear
+from coupling.gears.geometry import Fault, Gear
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
 

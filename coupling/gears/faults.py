@@ -4,19 +4,15 @@ A fault changes the pairs that its tooth belongs to: it takes material off the f
 both. All are given on the gear, by the number of the tooth in the order in which teeth come into mesh.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import GearError, require_finite
-
-if TYPE_CHECKING:
-    from coupling.gears.geometry import Gear
+from coupling.gears.geometry import Gear
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -24,27 +20,6 @@ NEVER = 1.0
 """Gap of a tooth that is not there [m]: nothing ever closes it."""
 _EDGE = 0.1
 """Part of a spall's length over which its edges rise, as a contact of finite width rides over them."""
-
-
-class Fault(Protocol):
-    """What a damaged tooth changes."""
-
-    @property
-    def tooth(self) -> int | None:
-        """Number of the tooth; None for all of them."""
-        ...
-
-    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
-        """Material off the flank [m] at roll angles [rad]; `pitch_roll_angle` is the working pitch point's."""
-        ...
-
-    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """What the tooth yields more than a sound one [m/N], for loads at roll angles [rad]."""
-        ...
-
-    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
-        """Roll angles where either has a corner [rad]."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -72,8 +47,12 @@ class Wear:
         if self.shape not in ("sliding", "uniform"):
             raise GearError(f"wear shape must be 'sliding' or 'uniform', got {self.shape!r}")
 
+    def require_fit(self, gear: Gear) -> None:
+        """See `coupling.gears.geometry.Fault`."""
+        require_tooth(gear, self.tooth)
+
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
-        """See `Fault`."""
+        """See `coupling.gears.geometry.Fault`."""
         if self.shape == "uniform":
             return np.full_like(roll_angle, self.depth)
         ends = gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius)
@@ -126,8 +105,19 @@ class Spall:
         if self.width is not None:
             require_finite("spall width", self.width, minimum=0.0)
 
+    def require_fit(self, gear: Gear) -> None:
+        """See `coupling.gears.geometry.Fault`; it must lie on the flank."""
+        require_tooth(gear, self.tooth)
+        tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
+        if not (self.start_roll_angle < tip and self.end_roll_angle > form):
+            raise GearError(
+                f"gear {gear.name!r}: a spall must lie on the flank, between the roll angles of the form circle and "
+                f"the tip, {math.degrees(form):.4g} and {math.degrees(tip):.4g} degrees, got "
+                f"{math.degrees(self.start_roll_angle):.4g} to {math.degrees(self.end_roll_angle):.4g} degrees"
+            )
+
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
-        """See `Fault`."""
+        """See `coupling.gears.geometry.Fault`."""
         return self.depth * self._inside(roll_angle) if self.across_face(gear) else np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
@@ -167,6 +157,10 @@ class MissingTooth:
     def __post_init__(self) -> None:
         check_tooth_number("missing tooth", self.tooth)
 
+    def require_fit(self, gear: Gear) -> None:
+        """See `coupling.gears.geometry.Fault`."""
+        require_tooth(gear, self.tooth)
+
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
         """A gap that no mesh closes."""
         return np.full_like(roll_angle, NEVER)
@@ -184,3 +178,11 @@ def check_tooth_number(name: str, tooth: int | None) -> None:
     """Raise `GearError` unless a fault's tooth is a whole number from 0, or none."""
     if tooth is not None and (type(tooth) is not int or tooth < 0):
         raise GearError(f"{name}: tooth must be a whole number from 0, got {tooth!r}")
+
+
+def require_tooth(gear: Gear, tooth: int | None) -> None:
+    """Raise `GearError` where a gear has no tooth of a fault's number."""
+    if tooth is not None and tooth >= gear.teeth:
+        raise GearError(
+            f"gear {gear.name!r}: a fault is on tooth {tooth}; the teeth are numbered 0 to {gear.teeth - 1}"
+        )

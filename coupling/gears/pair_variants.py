@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coupling.gears.faults import Fault
-from coupling.gears.geometry import Gear
+from coupling.gears.geometry import Fault, Gear
 from coupling.gears.pair_geometry import GearPairGeometry, IntArray
 from coupling.gears.pitch_gaps import hunting_numbers
 

@@ -244,6 +244,12 @@ def _solve_modes(
     return modes, matrices.total_mass, damping, checks, seconds
 
 
+def keep_modes(place: Path, solved: SolvedHousing) -> None:
+    """Write a solved housing's modes, unless the file that they were read from holds them, sensors and all."""
+    if not solved.source_holds:
+        room.write_modes(place / MODES_FILE, solved.record)
+
+
 def base_participation(case: Case, mesh: Mesh, modes: room.ModeSet) -> FloatArray:
     """Participation of modes and attachments in the motions of the ground, about the origin, shape (n, 6) [√kg, √kg m].
 

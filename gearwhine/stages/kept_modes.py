@@ -8,7 +8,7 @@ A new key of the housing therefore counts until somebody says that it does not.
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import gearwhine
 import housing as room
@@ -16,9 +16,6 @@ import meshes
 from gearwhine.case import Case
 from gearwhine.stages.contents import file_contents, installed, source_digest, texts_in, with_contents
 from gearwhine.stages.housing_checks import ATTACHMENT_ORDERS, bearing_places
-
-if TYPE_CHECKING:
-    from gearwhine.stages.housing import SolvedHousing
 
 MODES_FILE = "modes.nc"
 
@@ -66,9 +63,3 @@ def find_modes(folder: Path, inputs: Mapping[str, Any]) -> tuple[room.ModeRecord
     except room.ModeFileError as error:
         return None, f"{error}; the modes are solved again"
     return (record if record.key == room.content_key(inputs) else None), None
-
-
-def keep_modes(place: Path, solved: "SolvedHousing") -> None:
-    """Write a solved housing's modes, unless the file that they were read from holds them, sensors and all."""
-    if not solved.source_holds:
-        room.write_modes(place / MODES_FILE, solved.record)

@@ -12,8 +12,7 @@ from gearwhine.failures import WorkersError
 from gearwhine.interruption import aside, each_aside
 from gearwhine.output import staging
 from gearwhine.progress import Progress
-from gearwhine.stages.housing import SolvedHousing, solve_housing
-from gearwhine.stages.kept_modes import keep_modes
+from gearwhine.stages.housing import SolvedHousing, keep_modes, solve_housing
 from gearwhine.stages.machine import HousingInMachine, housing_in_machine
 from gearwhine.sweep.point_files import read_point, stale_points, write_point
 from gearwhine.sweep.points import Point, code_digest

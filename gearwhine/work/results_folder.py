@@ -15,8 +15,8 @@ from gearwhine.case import Case, dump_case
 from gearwhine.doubtful import add_warnings
 from gearwhine.output import COMMANDS, SUMMARY, finite, json_text, listed_files, read_summary, staging
 from gearwhine.stages.contents import file_contents
-from gearwhine.stages.housing import SolvedHousing
-from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
+from gearwhine.stages.housing import SolvedHousing, keep_modes
+from gearwhine.stages.kept_modes import MODES_FILE
 
 _FOREMOST = "run"
 _ADDING = "render"  # draws what it is asked for, beside what it drew before

@@ -26,8 +26,9 @@ from gearwhine.stages import signature as signature_stage
 from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.bearing_loads import bearing_load_warnings
+from gearwhine.stages.housing import keep_modes
 from gearwhine.stages.instability import unstable_modes_warnings
-from gearwhine.stages.kept_modes import MODES_FILE, keep_modes
+from gearwhine.stages.kept_modes import MODES_FILE
 from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.thrust import require_carried_thrust
 from gearwhine.stages.uncertainty import add_uncertainty

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from meshes.box import layout
 from meshes.box.fit_cover import cover_misfits
 from meshes.box.layout import Block
 from meshes.box.misfit import Misfit, mm
-from meshes.box.parts import FACES, Bore, Rib
-
-if TYPE_CHECKING:
-    from meshes.box.geometry import BoxGeometry
+from meshes.box.parts import FACES, Bore, Box, Rib
 
 __all__ = ["Misfit", "misfits"]
 
@@ -21,7 +17,7 @@ _SLACK = 1e-9
 _LEAST_CORNER = 0.25  # of the thinner wall must be left where an edge is rounded
 
 
-def misfits(box: BoxGeometry) -> Iterator[Misfit]:
+def misfits(box: Box) -> Iterator[Misfit]:
     """Yield everything that does not fit; where a part has no sound size, what follows from it is left out."""
     sound = True
     for group in (_feet_misfits(box), _fillet_sizes(box), *(_rib_misfits(box, i) for i in range(len(box.ribs)))):
@@ -39,7 +35,7 @@ def misfits(box: BoxGeometry) -> Iterator[Misfit]:
             yield from _bore_clashes(box, index, bore)
 
 
-def _feet_misfits(box: BoxGeometry) -> Iterator[Misfit]:
+def _feet_misfits(box: Box) -> Iterator[Misfit]:
     if box.feet is None:
         return
     width, _, depth = box.feet.size
@@ -50,7 +46,7 @@ def _feet_misfits(box: BoxGeometry) -> Iterator[Misfit]:
         yield Misfit(("feet", "size"), f"feet larger than the rounding above them, {mm(box.fillets.outside)}")
 
 
-def _fillet_sizes(box: BoxGeometry) -> Iterator[Misfit]:
+def _fillet_sizes(box: Box) -> Iterator[Misfit]:
     """Radii that a box's own edges do not leave room for."""
     for key, radius, block in (
         ("inside", box.fillets.inside, layout.cavity_block(box)),
@@ -61,7 +57,7 @@ def _fillet_sizes(box: BoxGeometry) -> Iterator[Misfit]:
             yield Misfit(("fillets", key), f"a radius from 0 to less than half the {where}, {mm(min(block.size) / 2)}")
 
 
-def _corner_misfits(box: BoxGeometry) -> Iterator[Misfit]:
+def _corner_misfits(box: Box) -> Iterator[Misfit]:
     """A rounding outside that leaves too little of a sharper corner inside."""
     if box.fillets.outside == 0.0:
         return
@@ -90,7 +86,7 @@ def _corner_thickness(walls: tuple[float, float], outside: float, inside: float)
     return least
 
 
-def _rib_misfits(box: BoxGeometry, index: int) -> Iterator[Misfit]:
+def _rib_misfits(box: Box, index: int) -> Iterator[Misfit]:
     """A rib whose numbers make no rib on its wall."""
     rib, location = box.ribs[index], ("ribs", index)
     normal, _ = FACES[rib.face]
@@ -127,7 +123,7 @@ def _rib_ends(rib: Rib, limits: Block, location: tuple[str | int, ...]) -> Itera
         yield Misfit((*location, "end" if rib.end is not None else "start"), f"an end beyond the start at {mm(start)}")
 
 
-def _rib_clashes(box: BoxGeometry) -> Iterator[Misfit]:
+def _rib_clashes(box: Box) -> Iterator[Misfit]:
     """Ribs that run into what they must not become one with: feet, and ribs across the joint of the cover."""
     feet = layout.foot_blocks(box)
     blocks = [layout.rib_block(box, rib) for rib in box.ribs]
@@ -141,7 +137,7 @@ def _rib_clashes(box: BoxGeometry) -> Iterator[Misfit]:
                 yield Misfit(("ribs", index), f"a rib of the cover clear of the body's, ribs[{other}]")
 
 
-def _bore_clashes(box: BoxGeometry, index: int, bore: Bore) -> Iterator[Misfit]:
+def _bore_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
     """A bore that something stands in, or that crosses the joint of the cover."""
     start, end = box.bore_span(bore)
     radius = bore.diameter / 2
@@ -170,7 +166,7 @@ def _bore_clashes(box: BoxGeometry, index: int, bore: Bore) -> Iterator[Misfit]:
             yield Misfit(location, f"a bore clear of the cavity's edges, rounded by {mm(box.fillets.inside)}")
 
 
-def _joint_clashes(box: BoxGeometry, index: int, bore: Bore) -> Iterator[Misfit]:
+def _joint_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
     assert box.cover is not None
     normal, way = FACES[box.cover.face]
     radius = (bore.boss.diameter if bore.boss else bore.diameter) / 2

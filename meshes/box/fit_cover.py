@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from meshes.box import layout
 from meshes.box.misfit import Misfit, mm
-from meshes.box.parts import FACES, Bolt, Cover, Flange, plane_axes
-
-if TYPE_CHECKING:
-    from meshes.box.geometry import BoxGeometry
+from meshes.box.parts import FACES, Bolt, Box, Cover, Flange, plane_axes
 
 _SLACK = 1e-9
 _MOST_PER_EDGE = 200
 
 
-def cover_misfits(box: BoxGeometry, cover: Cover) -> Iterator[Misfit]:
+def cover_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
     """Yield what does not fit of a cover; of bolts only where the rim they stand on is sound."""
     sound = True
     for misfit in (*_flange_misfits(box, cover), *_bolt_sizes(cover)):
@@ -30,7 +26,7 @@ def cover_misfits(box: BoxGeometry, cover: Cover) -> Iterator[Misfit]:
         yield from _patch_misfits(box, cover)
 
 
-def _flange_misfits(box: BoxGeometry, cover: Cover) -> Iterator[Misfit]:
+def _flange_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
     if cover.flange is None:
         return
     flange, normal = cover.flange, FACES[cover.face][0]
@@ -42,7 +38,7 @@ def _flange_misfits(box: BoxGeometry, cover: Cover) -> Iterator[Misfit]:
         yield Misfit(("cover", "flange", "width"), f"a width above 0 and below {mm(most)}")
 
 
-def _widest_flange(box: BoxGeometry, cover: Cover, flange: Flange) -> float:
+def _widest_flange(box: Box, cover: Cover, flange: Flange) -> float:
     """Inside, half of the opening; outside, what stays above the undersides of the feet."""
     axes = plane_axes(cover.face)
     if flange.side == "inside":
@@ -71,7 +67,7 @@ def _bolt_sizes(cover: Cover) -> Iterator[Misfit]:
         yield Misfit((*location, "grip"), "a length above 0")
 
 
-def _patch_misfits(box: BoxGeometry, cover: Cover) -> Iterator[Misfit]:
+def _patch_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
     """Bolts whose circles leave the rim or meet each other."""
     assert cover.bolts is not None
     bolts = layout.cover_bolts(box)
@@ -99,7 +95,7 @@ def _patch_misfits(box: BoxGeometry, cover: Cover) -> Iterator[Misfit]:
                 return
 
 
-def _on_rim(box: BoxGeometry, cover: Cover, bolt: Bolt) -> bool:
+def _on_rim(box: Box, cover: Cover, bolt: Bolt) -> bool:
     """Whether a bolt's circle lies between the edge of the cover and the opening below it."""
     outer, opening = layout.plate_block(box, cover), layout.opening_block(box, cover)
     radius, axes = bolt.patch_diameter / 2, plane_axes(cover.face)

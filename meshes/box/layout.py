@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from meshes.box.parts import FACES, Bolt, Cover, Face, Point, Rib, plane_axes
-
-if TYPE_CHECKING:
-    from meshes.box.geometry import BoxGeometry
+from meshes.box.parts import FACES, Bolt, Box, Cover, Face, Point, Rib, plane_axes
 
 SUNK = 0.5
 """Ribs reach into the walls they meet by this part of the thickness, so that rounded edges leave no gap below."""
@@ -51,13 +47,13 @@ class Block:
         return block
 
 
-def outer_block(box: BoxGeometry) -> Block:
+def outer_block(box: Box) -> Block:
     """The outside of the walls."""
     width, _, depth = box.size
     return Block((-width / 2, 0.0, -depth / 2), box.size)
 
 
-def cavity_block(box: BoxGeometry) -> Block:
+def cavity_block(box: Box) -> Block:
     """The inside of the walls."""
     (x, y, z), (width, height, depth), wall = outer_block(box).low, box.size, box.wall
     return Block(
@@ -66,12 +62,12 @@ def cavity_block(box: BoxGeometry) -> Block:
     )
 
 
-def body_block(box: BoxGeometry) -> Block:
+def body_block(box: Box) -> Block:
     """The outside of the walls without the cover."""
     return outer_block(box) if box.cover is None else _beside(box, outer_block(box), box.cover, plate=False)
 
 
-def plate_block(box: BoxGeometry, cover: Cover) -> Block:
+def plate_block(box: Box, cover: Cover) -> Block:
     """The cover's plate, with what it covers of an outside flange."""
     plate = _beside(box, outer_block(box), cover, plate=True)
     if cover.flange is not None and cover.flange.side == "outside":
@@ -79,21 +75,21 @@ def plate_block(box: BoxGeometry, cover: Cover) -> Block:
     return plate
 
 
-def parting_plane(box: BoxGeometry, face: Face) -> float:
+def parting_plane(box: Box, face: Face) -> float:
     """Where cover and body meet, along the normal of the cover's face [m]."""
     normal, way = FACES[face]
     outer = outer_block(box)
     return (outer.high if way > 0 else outer.low)[normal] - way * box.wall.of(face)
 
 
-def _beside(box: BoxGeometry, block: Block, cover: Cover, *, plate: bool) -> Block:
+def _beside(box: Box, block: Block, cover: Cover, *, plate: bool) -> Block:
     """The part of a block on the cover's side of the parting plane, or on the body's."""
     normal, way = FACES[cover.face]
     plane = parting_plane(box, cover.face)
     return block.replaced(normal, low=plane) if (way > 0) == plate else block.replaced(normal, high=plane)
 
 
-def opening_block(box: BoxGeometry, cover: Cover) -> Block:
+def opening_block(box: Box, cover: Cover) -> Block:
     """What is open below the cover: the cavity as far as its rim, an inside flange left out."""
     cavity = cavity_block(box)
     if cover.flange is not None and cover.flange.side == "inside":
@@ -101,7 +97,7 @@ def opening_block(box: BoxGeometry, cover: Cover) -> Block:
     return cavity
 
 
-def flange_block(box: BoxGeometry, cover: Cover) -> Block | None:
+def flange_block(box: Box, cover: Cover) -> Block | None:
     """The layer in which the flange lies, as far as it reaches outward; None where there is none."""
     if cover.flange is None:
         return None
@@ -112,7 +108,7 @@ def flange_block(box: BoxGeometry, cover: Cover) -> Block | None:
     )
 
 
-def flange_sides(box: BoxGeometry, cover: Cover) -> tuple[Block, ...]:
+def flange_sides(box: Box, cover: Cover) -> tuple[Block, ...]:
     """The four sides of the flange beyond the walls, outward or inward; they overlap in the corners."""
     layer = flange_block(box, cover)
     if layer is None or cover.flange is None:
@@ -133,7 +129,7 @@ def _within(block: Block, limits: Block, axes: tuple[int, int]) -> Block:
     return block
 
 
-def foot_blocks(box: BoxGeometry) -> tuple[Block, ...]:
+def foot_blocks(box: Box) -> tuple[Block, ...]:
     """The feet in the order foot-1 (−x −z), foot-2 (+x −z), foot-3 (+x +z), foot-4 (−x +z)."""
     if box.feet is None:
         return ()
@@ -144,12 +140,12 @@ def foot_blocks(box: BoxGeometry) -> tuple[Block, ...]:
     return tuple(Block((x, base - fy, z), box.feet.size) for x, z in corners)
 
 
-def on_cover(box: BoxGeometry, rib: Rib) -> bool:
+def on_cover(box: Box, rib: Rib) -> bool:
     """Whether a rib stands on the cover's plate."""
     return box.cover is not None and box.cover.face == rib.face
 
 
-def rib_range(box: BoxGeometry, rib: Rib) -> Block:
+def rib_range(box: Box, rib: Rib) -> Block:
     """What a rib may fill on its wall: along its axis by default the whole of it."""
     if on_cover(box, rib):
         assert box.cover is not None
@@ -157,7 +153,7 @@ def rib_range(box: BoxGeometry, rib: Rib) -> Block:
     return body_block(box) if rib.side == "outside" else cavity_block(box)
 
 
-def rib_block(box: BoxGeometry, rib: Rib) -> Block:
+def rib_block(box: Box, rib: Rib) -> Block:
     """A rib from the wall it stands on to its top."""
     normal, way = FACES[rib.face]
     along = "xyz".index(rib.along)
@@ -174,7 +170,7 @@ def rib_block(box: BoxGeometry, rib: Rib) -> Block:
     )
 
 
-def sunk_rib_block(box: BoxGeometry, rib: Rib) -> Block:
+def sunk_rib_block(box: Box, rib: Rib) -> Block:
     """A rib with its roots: reaching into its own wall and, inside, into every wall at which it ends."""
     block, cavity = rib_block(box, rib), cavity_block(box)
     if rib.side == "outside" or on_cover(box, rib):
@@ -194,13 +190,13 @@ def _lengthened(block: Block, axis: int, way: int, by: float) -> Block:
     return block.replaced(axis, low=block.low[axis] - by)
 
 
-def rim_width(box: BoxGeometry, cover: Cover) -> float:
+def rim_width(box: Box, cover: Cover) -> float:
     """Width of the rim under the cover where it is narrowest [m]."""
     walls = [box.wall.of(face) for face, (normal, _) in FACES.items() if normal != FACES[cover.face][0]]
     return min(walls) + (cover.flange.width if cover.flange is not None else 0.0)
 
 
-def cover_bolts(box: BoxGeometry) -> tuple[Bolt, ...]:
+def cover_bolts(box: Box) -> tuple[Bolt, ...]:
     """The bolts of the cover in order: rows go round the rim from its lowest corner; none where it is bonded."""
     cover = box.cover
     if cover is None or cover.bonded or cover.bolts is None:
@@ -227,7 +223,7 @@ def cover_bolts(box: BoxGeometry) -> tuple[Bolt, ...]:
     return tuple(bolts)
 
 
-def _rows(box: BoxGeometry, cover: Cover) -> list[tuple[float, float]]:
+def _rows(box: Box, cover: Cover) -> list[tuple[float, float]]:
     """Even rows on the middle line of the rim, once round from its lowest corner."""
     assert cover.bolts is not None
     outer, opening = plate_block(box, cover), opening_block(box, cover)

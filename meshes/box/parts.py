@@ -4,7 +4,7 @@ Faces: left/right are x min/max, bottom/top y, back/front z.
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 Face = Literal["left", "right", "bottom", "top", "back", "front"]
 Axis = Literal["x", "y", "z"]
@@ -227,3 +227,55 @@ class Bolt:
     def body_surface(self) -> str:
         """Name of its patch on the body's rim."""
         return f"{self.name}-body"
+
+
+class Box(Protocol):
+    """A box by its parts, as `meshes.BoxGeometry` has them: what their layout and their fit are found from."""
+
+    @property
+    def size(self) -> Point:
+        """Outside lengths along x, y, z [m]."""
+        ...
+
+    @property
+    def wall(self) -> WallThickness:
+        """Of every wall [m]."""
+        ...
+
+    @property
+    def bores(self) -> tuple[Bore, ...]:
+        """Through the end walls."""
+        ...
+
+    @property
+    def feet(self) -> Feet | None:
+        """Under the base."""
+        ...
+
+    @property
+    def ribs(self) -> tuple[Rib, ...]:
+        """On the walls."""
+        ...
+
+    @property
+    def cover(self) -> Cover | None:
+        """Of one face."""
+        ...
+
+    @property
+    def fillets(self) -> Fillets:
+        """Of the edges."""
+        ...
+
+    @property
+    def bolts(self) -> tuple[Bolt, ...]:
+        """Of the cover."""
+        ...
+
+    def end_wall(self, bore: Bore) -> Literal["back", "front"]:
+        """The wall that a bore goes through."""
+        ...
+
+    def bore_span(self, bore: Bore) -> tuple[float, float]:
+        """Where along z the bore's surface lies, boss included [m]."""
+        ...
