@@ -11,8 +11,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 import pytest
+from hypothesis import settings
 
 from meshes import KINDS, ElementBlock, ElementKind, Mesh
+
+# The same examples in every run, however slow the machine; `--hypothesis-profile=explore` looks for new ones.
+settings.register_profile("fixed", deadline=None, derandomize=True)
+settings.register_profile("explore", deadline=None)
+settings.load_profile("fixed")
 
 Published = Callable[..., None]
 BlockOf = Callable[..., Mesh]
