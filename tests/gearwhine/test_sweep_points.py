@@ -16,6 +16,7 @@ from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.machine import build_machine, housing_in_machine
 from gearwhine.stages.transient import solve_transient
 from gearwhine.sweep import PointFailure, PointResult, SweptPoint, gathered, sweep_document, sweep_points
+from gearwhine.sweep.conduct import conduct_sweep
 from gearwhine.sweep.point_files import read_point, stale_points, write_point
 from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.solution import solve_point
@@ -255,3 +256,13 @@ def test_points_of_other_code_are_not_taken_up(monkeypatch: pytest.MonkeyPatch) 
     before = points_of()[0].key
     monkeypatch.setattr("gearwhine.sweep.points.code_digest", lambda: "another")
     assert points_of()[0].key != before
+
+
+def test_points_of_the_case_as_it_was_are_cleared_away(tmp_path: Path) -> None:
+    """What is on file is taken up, without workers; a point that the sweep no longer has goes."""
+    slow, fast = points_of()
+    for number, point in enumerate((slow, fast)):
+        write_point(tmp_path, tmp_path, point, made_up(number))
+    (taken,) = conduct_sweep([slow], tmp_path, lambda message, fraction=None: None, workers=1)
+    assert taken.resumed
+    assert [path.name for path in (tmp_path / "points").iterdir()] == [slow.file]

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from housing import Material, Matrices, assemble, mass_properties
+from housing import LumpedMass, Material, Matrices, Patch, assemble, attach, mass_properties
+from housing.rigid import rigid_body
 from meshes import Mesh
 from meshes.elements import SOLIDS
 
@@ -51,3 +52,25 @@ def test_the_housing_with_everything(box: Mesh, steel: Material, box_matrices: M
     found = mass_properties(box, steel)
     assert found.mass == pytest.approx(box_matrices.total_mass, rel=1e-6)
     assert found.mass == pytest.approx(steel.density * box.element_volumes.sum(), rel=1e-12)
+
+
+def test_inertia_is_about_the_centre_of_gravity_wherever_the_nodes_lie(
+    block: Callable[..., Mesh], steel: Material
+) -> None:
+    """A block and a heavy mass beside it, by the parallel axes."""
+    mesh = block((0.10, 0.07, 0.05), (2, 1, 1))
+    own = rigid_body(mesh.points, assemble(mesh, steel))
+    tip = LumpedMass("tip", 5.0, Patch(surface="top"), offset=(0.03, -0.01, 0.2))
+    whole = rigid_body(mesh.points, attach(assemble(mesh, steel), mesh, [tip]))
+    facets = mesh.points[np.unique(np.concatenate([part.nodes.ravel() for part in mesh.surface("top")]))]
+    place = facets.mean(axis=0)
+    place[:2] = mesh.points[:, :2].mean(axis=0)
+    place = place + [0.03, -0.01, 0.2]
+    mass = own.mass + 5.0
+    center = (own.mass * own.center + 5.0 * place) / mass
+    assert whole.center == pytest.approx(center, abs=1e-9)
+    expected = own.inertia.copy()
+    for size, at in ((own.mass, own.center), (5.0, place)):
+        arm = at - center
+        expected += size * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    np.testing.assert_allclose(whole.inertia, expected, atol=1e-9 * expected.max())
