@@ -123,3 +123,11 @@ def test_meshes_without_common_period_have_a_motion_each(tmp_path: Path) -> None
                     order = round(line["frequency_hz"] * period)
                     assert line["frequency_hz"] * period == pytest.approx(order)
                     assert line["amplitude_n"] == pytest.approx(lines[order], rel=1e-6)
+
+
+def test_contacts_are_named_without_a_branch_too(tmp_path: Path) -> None:
+    changes = [part for change in (*FEW, BACKLASH) for part in ("--set", change)]
+    data, _ = solved(tmp_path, "spur-pair", *changes)
+    peak = {name: float(data.steady_mesh_force.sel(contact=name).max()) for name in data.contact.values.tolist()}
+    assert peak["pinion -> wheel"] > MESH_FORCE
+    assert peak["pinion -> wheel, back"] == 0.0
