@@ -22,7 +22,9 @@ LIMITS = (2400.0, 3200.0)
 MARKED = 0.03  # told errors above this are marked
 
 
-def machine_of(mesh_size: str, limit: float, *, told: bool) -> tuple[coupling.Machine, coupling.BasisError | None]:
+def machine_of(
+    mesh_size: str, limit: float, *, told: bool
+) -> tuple[coupling.CoupledMachine, coupling.BasisError | None]:
     """The rig's machine on a mesh with a limit [Hz], and where asked its told error."""
     changes = [f'housing.box.mesh_size="{mesh_size} mm"', f"housing.frequency_limit={limit}"]
     case = load_case("nasa-gear-noise-rig", changes).case

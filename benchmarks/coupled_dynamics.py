@@ -29,10 +29,10 @@ from scipy.integrate import solve_ivp
 from timing import arguments, machine, timed
 
 from coupling import (
+    CoupledMachine,
     CoupledSystem,
     GearMesh,
     HarmonicLoad,
-    Machine,
     MountedBearing,
     MountedGear,
     Torque,
@@ -66,7 +66,7 @@ LONGEST = 15.0  # s: a method is asked for no more once it takes so long
 TURNS, COMPARED = 3, 3
 
 
-def two_shafts(modes: int, *, corners: bool, friction: float = 0.0) -> Machine:
+def two_shafts(modes: int, *, corners: bool, friction: float = 0.0) -> CoupledMachine:
     """Two shafts of so many planar and torsional modes each on the ground, in mesh."""
     gears = [Gear(name, TEETH, MODULE, PRESSURE_ANGLE, WIDTH, bore=BORE) for name in ("pinion", "wheel")]
     pair = GearPairGeometry(*gears)
@@ -99,7 +99,7 @@ def no_rows(system: CoupledSystem) -> TransientOutputs:
     return TransientOutputs(none, none, none)
 
 
-def steps_a_second(machine: Machine, periods: int, tolerance: float = 1e-4) -> tuple[float, int]:
+def steps_a_second(machine: CoupledMachine, periods: int, tolerance: float = 1e-4) -> tuple[float, int]:
     """Of the march alone, its samples (a hundred each mesh period) included; the best of five runs."""
     settings = TransientSettings(periods * MESH_PERIOD, 0.0, MESH_PERIOD / 100, MESH_PERIOD / 8, tolerance)
     best, steps = 0.0, 0
@@ -187,7 +187,7 @@ def ratio(theirs: Run, own: Run) -> float:
     return statistics.median(found)
 
 
-def against_scipy(machine: Machine, periods: int) -> list[tuple[Run, list[tuple[Run, float]]]]:
+def against_scipy(machine: CoupledMachine, periods: int) -> list[tuple[Run, list[tuple[Run, float]]]]:
     """Ours, and beside each the runs of every scipy method that err no more, by their time, with its ratio."""
     system = machine.system
     end = periods * MESH_PERIOD

@@ -4,7 +4,7 @@ What the room offers:
 
 - :func:`housing_component`, :func:`rotor_component` -- components in mass-normalised coordinates.
 - :func:`couple` with :class:`MountedBearing`, :class:`GearMesh` and the loads of :mod:`coupling.loads` -- the
-  :class:`Machine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
+  :class:`CoupledMachine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
 - :class:`RollingLaw`, :class:`GapLaw` -- bearings with laws of their own, beside the linear ones of their tangents.
 - :func:`coupled_modes` -- complex natural modes about the mean contact, or that of an instant (:func:`contact_at`),
   with energies by component, bearing and gear mesh; :func:`stability` -- which grow, and what feeds them.
@@ -38,13 +38,15 @@ from coupling.contact_state import (
     unloaded_contact,
 )
 from coupling.decimation import Decimation, decimation
+from coupling.description import Driving, Machine, Shaft, ShaftGear
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
 from coupling.exact_march import march_method
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.free_speed import free_speed
+from coupling.gear_train import Output
 from coupling.histories import Histories, Recorded, histories, nothing_recorded, transient_outputs
 from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
-from coupling.machine import Machine, couple
+from coupling.machine import CoupledMachine, couple
 from coupling.march_run import Checkpoint, sample_times
 from coupling.marching import Block, march_blocks, march_key
 from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_rows, with_modal_rows
@@ -113,11 +115,13 @@ __all__ = [
     "Component",
     "ContactConnector",
     "ContactState",
+    "CoupledMachine",
     "CoupledModes",
     "CoupledSystem",
     "CouplingError",
     "Decimation",
     "Drive",
+    "Driving",
     "EnergyBalance",
     "ExcitationGroup",
     "ExcitationLine",
@@ -139,6 +143,7 @@ __all__ = [
     "MountedBearing",
     "MountedGear",
     "NonlinearConnector",
+    "Output",
     "Part",
     "Peak",
     "PeriodicError",
@@ -147,7 +152,9 @@ __all__ = [
     "ResponseCurve",
     "RollingLaw",
     "RotorComponent",
+    "Shaft",
     "ShaftDashpots",
+    "ShaftGear",
     "SignalParts",
     "Sliding",
     "Spectrum",

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.contact_state import mean_contact
-from coupling.machine import Machine
+from coupling.machine import CoupledMachine
 from coupling.receptance import response
 from coupling.transmissibility import sensor_rows
 
@@ -38,14 +38,14 @@ class BasisError:
 
     Attributes
     ----------
-    machine : Machine
+    machine : CoupledMachine
         On the basis whose error is asked for.
-    other : Machine
+    other : CoupledMachine
         The same machine on another basis, its sensors, meshes and bearings in the same order.
     """
 
-    machine: Machine
-    other: Machine
+    machine: CoupledMachine
+    other: CoupledMachine
 
     def at(self, frequencies: Sequence[float] | FloatArray) -> dict[str, FloatArray]:
         """Relative error of each sensor's motion at these frequencies.
@@ -81,7 +81,7 @@ class BasisError:
         return found
 
 
-def _sensor_responses(machine: Machine, frequencies: FloatArray) -> dict[str, ComplexArray]:
+def _sensor_responses(machine: CoupledMachine, frequencies: FloatArray) -> dict[str, ComplexArray]:
     """Motion along each sensor by each excitation, shape (f, e)."""
     state = mean_contact(machine.system)
     loads = np.broadcast_to(_excitations(machine), (len(frequencies), *_excitations(machine).shape))
@@ -89,7 +89,7 @@ def _sensor_responses(machine: Machine, frequencies: FloatArray) -> dict[str, Co
     return {name: moved @ row for name, row in sensor_rows(machine).items()}
 
 
-def _excitations(machine: Machine) -> FloatArray:
+def _excitations(machine: CoupledMachine) -> FloatArray:
     """Loads that make lines, shape (e, n): along each line of action; without gears, of each shaft on its bearings."""
     drives = [contact.direction for contact in machine.system.contacts if contact.drives]
     if drives:

@@ -12,7 +12,7 @@ from coupling.contact_state import ContactState, linear_matrices, mean_contact
 from coupling.crossings import refined_crossing
 from coupling.errors import CouplingError
 from coupling.excitation import ExcitationLine, excitation_lines
-from coupling.machine import Machine
+from coupling.machine import CoupledMachine
 from coupling.modes import coupled_modes
 
 FloatArray = npt.NDArray[np.float64]
@@ -102,7 +102,7 @@ class SystemCampbell:
 
 
 def system_campbell(
-    machine: Machine,
+    machine: CoupledMachine,
     speeds: Sequence[float] | FloatArray,
     *,
     frequency_limit: float,
@@ -114,7 +114,7 @@ def system_campbell(
 
     Parameters
     ----------
-    machine : Machine
+    machine : CoupledMachine
         That turns; its rotors keep their ratios.
     speeds : sequence of float
         Signed speeds of the leading rotor [rad/s], two or more of one sense, ascending in size; zero may begin them.
@@ -214,7 +214,7 @@ class _Described:
     teeth: FloatArray
 
 
-def _described(machine: Machine, speed: float, limit: float, contact: ContactState) -> _Described:
+def _described(machine: CoupledMachine, speed: float, limit: float, contact: ContactState) -> _Described:
     """The oscillating modes below a limit at a speed."""
     system = machine.at_speed(speed).system
     modes = coupled_modes(system, contact)

@@ -7,7 +7,7 @@ import numpy as np
 from coupling.branches import ModesAtSpeed
 from coupling.contact_state import ContactState, linear_matrices
 from coupling.eigenpairs import refine_pair
-from coupling.machine import Machine
+from coupling.machine import CoupledMachine
 
 _CROSSING = 1e-10  # of a frequency, to which a crossing is found
 _STEPS = 40
@@ -15,7 +15,7 @@ _RESIDUAL = 1e-9
 
 
 def refined_crossing(
-    machine: Machine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]], contact: ContactState
+    machine: CoupledMachine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]], contact: ContactState
 ) -> tuple[float, complex] | None:
     """Speed and eigenvalue where a branch has the frequency of an order, between two neighbours on it.
 
@@ -24,7 +24,7 @@ def refined_crossing(
 
     Parameters
     ----------
-    machine : Machine
+    machine : CoupledMachine
     order : float
         Frequency over the speed of the leading rotor.
     ends : two of (ModesAtSpeed, int)

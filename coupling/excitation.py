@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from coupling.errors import CouplingError
-from coupling.machine import Machine
+from coupling.machine import CoupledMachine
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class ExcitationLine:
 
 
 def excitation_lines(
-    machine: Machine,
+    machine: CoupledMachine,
     *,
     shaft_orders: Sequence[float] = (1.0, 2.0),
     mesh_harmonics: Sequence[int] = (1, 2, 3),
@@ -38,7 +38,7 @@ def excitation_lines(
 
     Parameters
     ----------
-    machine : Machine
+    machine : CoupledMachine
         That turns.
     shaft_orders : sequence of float
         Multiples of each shaft's speed: 1 is its unbalance.

@@ -1,11 +1,13 @@
-"""Checks of a gear train: speed ratios, senses of rotation, centre distances, planes and the balance of torques.
+"""Gear train: speed ratios, senses of rotation, power flow through the pairs; and the trains that cannot exist.
 
 External gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂; their shafts are as far apart as the geometry
 of the pair says, and their faces overlap along the shafts. A train at constant speed takes as much power as it gives,
-Σ T ω = 0 over its rotors.
+Σ T ω = 0 over its shafts.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
 from math import hypot
 
 from coupling.errors import CouplingError
@@ -19,6 +21,244 @@ LARGEST_IMBALANCE = 0.01
 """Part of the power of a train that its torques may leave over."""
 
 _RATIO_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class GearedShafts:
+    """Two shafts that a gear pair connects.
+
+    Attributes
+    ----------
+    driver, driven : str
+        Names of the shafts.
+    teeth : tuple of int
+        Of the driver's gear and of the driven one.
+    """
+
+    driver: str
+    driven: str
+    teeth: tuple[int, int]
+
+    @property
+    def ratio(self) -> Fraction:
+        """Speed of the driven shaft over that of the driver, negative: external gears turn opposite ways."""
+        return Fraction(-self.teeth[0], self.teeth[1])
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """A gear pair that closes a loop in which the shafts cannot turn.
+
+    Attributes
+    ----------
+    pair : int
+        Place among the pairs.
+    shaft : str
+        That would have to turn at two speeds.
+    ratio, other : Fraction
+        Its speed over that of the first driver by the other pairs, and by this one.
+    """
+
+    pair: int
+    shaft: str
+    ratio: Fraction
+    other: Fraction
+
+
+@dataclass(frozen=True)
+class GearTrain:
+    """Gear pairs followed from the first driver on; see :func:`gear_train`.
+
+    Attributes
+    ----------
+    pairs : tuple of GearedShafts
+    ratios : mapping of str to Fraction
+        Signed speed of each shaft over that of the first driver; shafts that no pair leads to are absent.
+    contradictions : tuple of Contradiction
+        Empty in a train that can turn.
+    """
+
+    pairs: tuple[GearedShafts, ...]
+    ratios: Mapping[str, Fraction]
+    contradictions: tuple[Contradiction, ...]
+
+    @property
+    def output_shafts(self) -> tuple[str, ...]:
+        """Shafts that drive no other, where the power leaves unless outputs are named."""
+        drivers = {pair.driver for pair in self.pairs}
+        return tuple(shaft for shaft in self.ratios if shaft not in drivers)
+
+    def require_turning(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
+        """The ratios, where every shaft can turn.
+
+        Parameters
+        ----------
+        shafts : sequence of str
+            Names of all shafts.
+        labels : sequence of str
+            What messages call the pairs.
+
+        Raises
+        ------
+        CouplingError
+            Where a shaft is in no gear pair that the first driver turns, or a loop of pairs cannot turn.
+        """
+        for wrong in self.contradictions:
+            raise CouplingError(
+                f"{labels[wrong.pair]} closes a loop that cannot turn: shaft {wrong.shaft!r} would turn at "
+                f"{float(wrong.ratio):.6g} of the first driver's speed by the other pairs, and at "
+                f"{float(wrong.other):.6g} by this one"
+            )
+        idle = [name for name in shafts if name not in self.ratios]
+        if idle:
+            raise CouplingError(
+                f"no gear pair leads from shaft {self.pairs[0].driver!r}, the first driver, to "
+                f"{', '.join(map(repr, idle))}; expected a pair that turns each shaft"
+            )
+        return self.ratios
+
+    def pair_torques(self, torques: Mapping[str, float]) -> tuple[float, ...]:
+        """Mean torque that each pair takes off its driver [N m].
+
+        Parameters
+        ----------
+        torques : mapping of str to float
+            Acting on the shafts from outside [N m], each positive in the sense in which its shaft turns.
+
+        Returns
+        -------
+        tuple of float
+            Positive where power flows from driver to driven.
+
+        Notes
+        -----
+        Speeds fix the power through every pair of a tree. Where pairs form a loop, the smallest flows that balance are
+        taken, which is what equal contacts carry: f = Bᵀ p with B Bᵀ p = P, B the incidence matrix of the train's
+        graph and P the power that enters each shaft over the speed of the first driver.
+        """
+        entering = {shaft: torques.get(shaft, 0.0) * abs(float(ratio)) for shaft, ratio in self.ratios.items()}
+        potential = _potentials(self.pairs, entering)
+        return tuple(
+            (potential[pair.driver] - potential[pair.driven]) / abs(float(self.ratios[pair.driver]))
+            for pair in self.pairs
+        )
+
+
+def gear_train(pairs: Iterable[GearedShafts]) -> GearTrain:
+    """Follow tooth ratios from the driver of the first pair through all pairs."""
+    pairs = tuple(pairs)
+    ratios = {pairs[0].driver: Fraction(1)} if pairs else {}
+    found: dict[int, Contradiction] = {}
+    waiting = list(enumerate(pairs))
+    while waiting:
+        left = []
+        for place, pair in waiting:
+            first, second = ratios.get(pair.driver), ratios.get(pair.driven)
+            if first is not None and second is not None:
+                if second != first * pair.ratio:
+                    found[place] = Contradiction(place, pair.driven, second, first * pair.ratio)
+            elif first is not None:
+                ratios[pair.driven] = first * pair.ratio
+            elif second is not None:
+                ratios[pair.driver] = second / pair.ratio
+            else:
+                left.append((place, pair))
+        if len(left) == len(waiting):
+            break
+        waiting = left
+    return GearTrain(pairs, ratios, tuple(found[place] for place in sorted(found)))
+
+
+def _potentials(pairs: Sequence[GearedShafts], entering: Mapping[str, float]) -> dict[str, float]:
+    """Solve L p = P on the graph of a connected train, p of its first shaft zero.
+
+    The Laplacian L = B Bᵀ is positive definite without the first shaft, so elimination needs no pivoting.
+    """
+    shafts = list(entering)
+    place = {shaft: index for index, shaft in enumerate(shafts)}
+    size = len(shafts)
+    rows = [[0.0] * size + [entering[shaft]] for shaft in shafts]
+    for pair in pairs:
+        i, j = place[pair.driver], place[pair.driven]
+        rows[i][i] += 1.0
+        rows[j][j] += 1.0
+        rows[i][j] -= 1.0
+        rows[j][i] -= 1.0
+    for pivot in range(size - 1, 0, -1):
+        for row in range(pivot):
+            factor = rows[row][pivot] / rows[pivot][pivot]
+            if factor != 0.0:
+                rows[row] = [a - factor * b for a, b in zip(rows[row], rows[pivot], strict=True)]
+    solution = [0.0] * size
+    for row in range(1, size):
+        known = sum(rows[row][column] * solution[column] for column in range(row))
+        solution[row] = (rows[row][size] - known) / rows[row][row]
+    return dict(zip(shafts, solution, strict=True))
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where torque leaves a train.
+
+    Attributes
+    ----------
+    shaft : str
+    torque : float, optional
+        Against the turning of the shaft [N m]; None: what is left, with the power shared equally.
+    at : float, optional
+        Distance from the shaft's left end [m]; None: the right end.
+    """
+
+    shaft: str
+    torque: float | None = None
+    at: float | None = None
+
+
+def shared_torques(
+    train: GearTrain, ratios: Mapping[str, float], torque: float, outputs: Sequence[Output]
+) -> list[tuple[Output, float]]:
+    """What each output takes of the torque that comes in [N m], against the turning of its shaft.
+
+    Without outputs, the shafts that drive no other take equal power. Given torques are proportions: they are scaled to
+    balance the input exactly.
+
+    Parameters
+    ----------
+    train : GearTrain
+    ratios : mapping of str to float
+        Signed speed of each shaft over that of the first driver.
+    torque : float
+        At the first driver, in the sense in which it turns [N m].
+    outputs : sequence of Output
+    """
+    outputs = list(outputs) or [Output(shaft) for shaft in train.output_shafts]
+    if not any(output.torque for output in outputs):
+        outputs = [
+            Output(output.shaft, torque / len(outputs) / abs(ratios[output.shaft]), output.at) for output in outputs
+        ]
+    power = sum((output.torque or 0.0) * abs(ratios[output.shaft]) for output in outputs)
+    return [(output, (output.torque or 0.0) * torque / power) for output in outputs]
+
+
+def require_balanced_outputs(ratios: Mapping[str, float], torque: float, outputs: Sequence[Output]) -> None:
+    """Refuse outputs that, through the gears, take another power than comes in; see :func:`shared_torques`.
+
+    Raises
+    ------
+    CouplingError
+        Where only some outputs have torques, or their power is off by more than one in a hundred.
+    """
+    given = [output for output in outputs if output.torque is not None]
+    if not given:
+        return
+    if len(given) < len(outputs):
+        raise CouplingError("outputs of which some have a torque and some have none; expected all or none")
+    power = sum((output.torque or 0.0) * abs(ratios[output.shaft]) for output in outputs)
+    if abs(power - torque) > LARGEST_IMBALANCE * max(abs(torque), abs(power)):
+        raise CouplingError(
+            f"outputs that amount to {power:g} N m at the first driver; expected outputs that balance the input torque "
+            f"of {torque:g} N m through the tooth ratios"
+        )
 
 
 def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], speeds: Mapping[str, float]) -> None:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from coupling.bearing_arrays import bearing_arrays
 from coupling.connector import LinearConnector, NonlinearConnector
-from coupling.machine import Machine
+from coupling.machine import CoupledMachine
 from coupling.mounted import MountedGear
 from coupling.settings import TransientOutputs
 from coupling.sliding import friction_of
@@ -112,7 +112,7 @@ class Histories:
 _GROUPS = tuple(one.name for one in fields(Histories) if one.name not in ("times", "tie_axes"))
 
 
-def transient_outputs(machine: Machine) -> TransientOutputs:
+def transient_outputs(machine: CoupledMachine) -> TransientOutputs:
     """The rows to record so that :func:`histories` can name them."""
     system = machine.system
     numbers = {component.name: i for i, component in enumerate(system.components)}
@@ -143,14 +143,14 @@ class _Nothing(NamedTuple):
     force: FloatArray
 
 
-def nothing_recorded(machine: Machine, outputs: TransientOutputs) -> Recorded:
+def nothing_recorded(machine: CoupledMachine, outputs: TransientOutputs) -> Recorded:
     """What a transient with these outputs records before its first sample: names what comes, and how wide it is."""
     contacts = len(machine.system.contacts)
     widths = *(len(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)), contacts, contacts
     return _Nothing(np.zeros(0), *(np.zeros((0, width)) for width in widths))
 
 
-def histories(machine: Machine, result: Recorded, turning: Turning | None = None) -> Histories:
+def histories(machine: CoupledMachine, result: Recorded, turning: Turning | None = None) -> Histories:
     """Name what a transient or a periodic response with :func:`transient_outputs` recorded.
 
     At its speeds over time, or the nominal ones.
@@ -187,13 +187,13 @@ def histories(machine: Machine, result: Recorded, turning: Turning | None = None
     )
 
 
-def _gears(machine: Machine) -> list[MountedGear]:
+def _gears(machine: CoupledMachine) -> list[MountedGear]:
     """Every gear of the meshes, once, in order."""
     gears = [gear for mesh in machine.meshes for gear in (mesh.driver, mesh.driven)]
     return list({gear.name: gear for gear in gears}.values())
 
 
-def _bearings(machine: Machine) -> tuple[LinearConnector, ...]:
+def _bearings(machine: CoupledMachine) -> tuple[LinearConnector, ...]:
     return machine.system.linear[: len(machine.bearings)]
 
 

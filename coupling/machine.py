@@ -36,7 +36,7 @@ _PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two sp
 
 
 @dataclass(frozen=True)
-class Machine:
+class CoupledMachine:
     """The parts, and the coupled system that they make.
 
     Attributes
@@ -87,7 +87,7 @@ class Machine:
             back += has_back
         return tuple(found)
 
-    def at_speed(self, speed: float) -> "Machine":
+    def at_speed(self, speed: float) -> "CoupledMachine":
         """The machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
 
         Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; the components
@@ -134,7 +134,7 @@ def couple(
     gravity: Sequence[float] | None = None,
     rates: tuple[float, float] = (1.0, 1.0),
     dashpots: Sequence[ShaftDashpots] = (),
-) -> Machine:
+) -> CoupledMachine:
     """Tie rotors and housing together and put the loads on.
 
     Parameters
@@ -328,7 +328,7 @@ def couple(
     sides = [(mesh, sense) for mesh, sense in zip(meshes, senses, strict=True)]
     sides += [(mesh, -sense) for mesh, sense in sides if mesh.backlash is not None]
     system = _with_shuttling(system, parts, sides)
-    return Machine(
+    return CoupledMachine(
         tuple(rotors),
         housing,
         tuple(bearings),

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError
 from coupling.histories import Recorded
-from coupling.machine import Machine
+from coupling.machine import CoupledMachine
 from coupling.settings import TransientOutputs
 from coupling.system import embed
 
@@ -43,7 +43,7 @@ class ModalRows:
     torsion: FloatArray
 
 
-def modal_rows(machine: Machine, rotor: str) -> ModalRows:
+def modal_rows(machine: CoupledMachine, rotor: str) -> ModalRows:
     """The rows of one rotor; stacked into ``TransientOutputs.displacement`` they are recorded as time passes.
 
     Raises
@@ -98,13 +98,13 @@ class ModalRecord:
 
 
 def with_modal_rows(
-    machine: Machine, outputs: TransientOutputs, count: int = 0, *, housing: bool = True
+    machine: CoupledMachine, outputs: TransientOutputs, count: int = 0, *, housing: bool = True
 ) -> TransientOutputs:
     """Outputs and, after them, the accelerations of the housing's modes, and the first modal coordinates of each part.
 
     Parameters
     ----------
-    machine : Machine
+    machine : CoupledMachine
     outputs : TransientOutputs
     count : int
         How many of each kind of a rotor's modes, and of the housing's, are to have their displacement recorded.
@@ -120,7 +120,7 @@ def with_modal_rows(
     )
 
 
-def modal_record(machine: Machine, result: Recorded, count: int = 0, *, housing: bool = True) -> ModalRecord:
+def modal_record(machine: CoupledMachine, result: Recorded, count: int = 0, *, housing: bool = True) -> ModalRecord:
     """Name what a transient with :func:`with_modal_rows` recorded after its other outputs."""
     names = list(_coordinate_rows(machine, count))
     moved = result.displacement[:, result.displacement.shape[1] - len(names) :]
@@ -128,7 +128,7 @@ def modal_record(machine: Machine, result: Recorded, count: int = 0, *, housing:
     return ModalRecord({name: moved[:, i] for i, name in enumerate(names)}, result.acceleration[:, first:])
 
 
-def _coordinate_rows(machine: Machine, count: int) -> dict[str, FloatArray]:
+def _coordinate_rows(machine: CoupledMachine, count: int) -> dict[str, FloatArray]:
     """The first rows of each kind of each part, by name."""
     if count == 0:
         return {}
@@ -146,7 +146,7 @@ def _coordinate_rows(machine: Machine, count: int) -> dict[str, FloatArray]:
     return named
 
 
-def _housing_rows(machine: Machine) -> FloatArray:
+def _housing_rows(machine: CoupledMachine) -> FloatArray:
     """Rows of the housing's modes, without its residual attachments, shape (m, n)."""
     if machine.housing is None:
         return np.zeros((0, machine.system.size))

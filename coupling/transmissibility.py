@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from coupling.contact_state import ContactState, mean_contact
 from coupling.errors import CouplingError
-from coupling.machine import Machine
+from coupling.machine import CoupledMachine
 from coupling.modes import CoupledModes
 from coupling.receptance import response
 from coupling.system import CoupledSystem, embed
@@ -59,7 +59,7 @@ class FrequencyResponse:
 
 
 def mesh_error_response(
-    machine: Machine,
+    machine: CoupledMachine,
     frequencies: FloatArray,
     *,
     mesh: int = 0,
@@ -70,7 +70,7 @@ def mesh_error_response(
 
     Parameters
     ----------
-    machine : Machine
+    machine : CoupledMachine
     frequencies : ndarray, shape (f,)
         w > 0 [rad/s].
     mesh : int
@@ -100,7 +100,7 @@ def mesh_error_response(
 
 
 def sensor_force_response(
-    machine: Machine,
+    machine: CoupledMachine,
     frequencies: FloatArray,
     *,
     sensor: str,
@@ -126,7 +126,7 @@ def sensor_force_response(
 
 
 def unbalance_response(
-    machine: Machine,
+    machine: CoupledMachine,
     speeds: Sequence[float] | FloatArray,
     *,
     rotor: str,
@@ -138,7 +138,7 @@ def unbalance_response(
 
     Parameters
     ----------
-    machine : Machine
+    machine : CoupledMachine
     speeds : sequence of float
         Of the leading rotor [rad/s], none 0.
     rotor : str
@@ -186,7 +186,7 @@ def unbalance_response(
     )
 
 
-def sensor_rows(machine: Machine) -> dict[str, FloatArray]:
+def sensor_rows(machine: CoupledMachine) -> dict[str, FloatArray]:
     """Motion along each sensor by the coordinates of the whole system, shape (n,) each."""
     if machine.housing is None:
         return {}
@@ -205,7 +205,7 @@ def _joined(each: list[dict[str, ComplexArray]]) -> dict[str, ComplexArray]:
 
 
 def _named(
-    machine: Machine,
+    machine: CoupledMachine,
     state: ContactState,
     frequencies: FloatArray,
     moved: ComplexArray,

@@ -13,7 +13,7 @@ import numpy as np
 
 from coupling.errors import CouplingError
 from coupling.excitation import excitation_lines
-from coupling.machine import Machine
+from coupling.machine import CoupledMachine
 from coupling.modes import CoupledModes
 
 LineKind = Literal["mean", "mesh", "shaft", "sideband", "mode", "other"]
@@ -46,13 +46,13 @@ class LineName:
 
 
 def line_names(
-    machine: Machine, frequencies: Sequence[float], tolerance: float, modes: CoupledModes | None = None
+    machine: CoupledMachine, frequencies: Sequence[float], tolerance: float, modes: CoupledModes | None = None
 ) -> list[LineName]:
     """Name lines of a machine that turns at its nominal speeds.
 
     Parameters
     ----------
-    machine : Machine
+    machine : CoupledMachine
     frequencies : sequence of float
         [Hz].
     tolerance : float
@@ -129,7 +129,7 @@ def _nearest(names: list[str]) -> list[str]:
     return [name for name, step in zip(names, steps, strict=True) if step == min(steps)]
 
 
-def _whole_order(machine: Machine, frequency: float, tolerance: float) -> str | None:
+def _whole_order(machine: CoupledMachine, frequency: float, tolerance: float) -> str | None:
     """A multiple of a shaft's speed, the slowest multiple first."""
     found = []
     for name, speed in machine.speeds.items():

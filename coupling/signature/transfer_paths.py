@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from coupling.component import HousingComponent
 from coupling.errors import CouplingError
-from coupling.machine import Machine
+from coupling.machine import CoupledMachine
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -114,12 +114,12 @@ def mode_parts(housing: HousingComponent, sensor: str, modal: ComplexArray, line
     return np.concatenate([parts, (lines - parts.sum(axis=1))[:, None]], axis=1)
 
 
-def housing_paths(machine: Machine, frequencies: FloatArray, forces: Mapping[str, ComplexArray]) -> HousingPaths:
+def housing_paths(machine: CoupledMachine, frequencies: FloatArray, forces: Mapping[str, ComplexArray]) -> HousingPaths:
     """Follow the bearings' forces through the housing.
 
     Parameters
     ----------
-    machine : Machine
+    machine : CoupledMachine
         With a housing.
     frequencies : ndarray, shape (l,)
         w [rad/s], above 0.

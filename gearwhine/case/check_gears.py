@@ -9,7 +9,7 @@ from gearwhine.case.check_shafts import LARGEST_OFFSET, millimetres
 from gearwhine.case.draft import Draft
 from gearwhine.case.gears import Gear, GearPair
 from gearwhine.case.problems import NOTHING, UNSAID, Finding
-from gearwhine.case.train import gear_train, shaft_of
+from gearwhine.case.train import known_pairs, shaft_of, train_of_pairs
 
 _LARGEST_WORKING_ANGLE = math.radians(45.0)
 
@@ -33,13 +33,13 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
             yield from _check_place(draft, index, pair, driver, driven)
         else:
             yield from _unequal_teeth(index, driver, driven)
-    train = gear_train([gear for _, gear in draft.gears], draft.gear_pairs)
-    for clash in train.clashes:
+    known = known_pairs([gear for _, gear in draft.gears], draft.gear_pairs)
+    for wrong in train_of_pairs(known).contradictions if known else ():
         expected = (
-            f'pairs in a loop that can turn; "{clash.driven}" would turn at {float(clash.ratio):.6g} of the first '
-            f"driver's speed by the other pairs, and at {float(clash.other):.6g} by this one"
+            f'pairs in a loop that can turn; "{wrong.shaft}" would turn at {float(wrong.ratio):.6g} of the first '
+            f"driver's speed by the other pairs, and at {float(wrong.other):.6g} by this one"
         )
-        yield Finding(("gear_pair", clash.pair), expected, UNSAID)
+        yield Finding(("gear_pair", known[wrong.pair][0]), expected, UNSAID)
 
 
 def _same_teeth(driver: Gear, driven: Gear) -> bool:

@@ -12,7 +12,7 @@ from gearwhine.case.model import Case
 from gearwhine.case.motion import pair_torques
 from gearwhine.case.problems import NOTHING, UNSAID, Finding
 from gearwhine.case.running import Operation
-from gearwhine.case.train import gear_train, shaft_of
+from gearwhine.case.train import known_pairs, shaft_of, train_of_pairs
 
 LARGEST_IMBALANCE = 0.01
 """How far given outputs may be from the input, as a part of it."""
@@ -90,12 +90,15 @@ def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:
 def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield shafts that nothing turns, and outputs that do not balance the input."""
     shafts = draft.names("rotor") or draft.names("gear")
-    train = gear_train([gear for _, gear in draft.gears], draft.gear_pairs)
+    known = known_pairs([gear for _, gear in draft.gears], draft.gear_pairs)
+    train = train_of_pairs(known) if known else None
     if any(shaft_of(gear) not in shafts for _, gear in draft.gears) or any(
         draft.gear(name) is None for _, pair in draft.gear_pairs for name in (pair.driver, pair.driven)
     ):
         return  # names that lead nowhere are findings of their own
-    ratios = dict(train.ratios) if draft.gear_pairs else dict.fromkeys(shafts, Fraction(1))
+    ratios = dict.fromkeys(shafts, Fraction(1))
+    if draft.gear_pairs:
+        ratios = {} if train is None else dict(train.ratios)
     first = next(iter(ratios), None)
     for index, shaft in enumerate(shafts):
         if shaft not in ratios:
@@ -106,7 +109,7 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
         expected = f"pairs that gear no shaft up or down more than {LARGEST_RATIO:g} times in all"
         yield Finding(("gear_pair",), expected, UNSAID)
         return
-    if train.clashes:
+    if train is not None and train.contradictions:
         return
     rotor = draft.rotor(first) if draft.gear_pairs else None
     if rotor is not None and operation.at is not None:

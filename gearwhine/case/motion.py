@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from gearwhine.case.gears import Gear
 from gearwhine.case.model import Case
 from gearwhine.case.require import require
-from gearwhine.case.train import Train, gear_train, shaft_of
+from gearwhine.case.train import known_pairs, shaft_of, train_of_pairs
+
+if TYPE_CHECKING:
+    from coupling.gear_train import GearTrain
 
 
 @dataclass(frozen=True)
@@ -31,9 +35,9 @@ class AppliedTorque:
     torque: float
 
 
-def train_of(case: Case) -> Train:
+def train_of(case: Case) -> GearTrain:
     """Return the gear train of a case."""
-    return gear_train(case.gear, enumerate(case.gear_pair))
+    return train_of_pairs(known_pairs(case.gear, enumerate(case.gear_pair)))
 
 
 def speed_ratios(case: Case) -> dict[str, Fraction]:
@@ -102,19 +106,17 @@ def applied_torques(case: Case, torque: float | None = None) -> tuple[AppliedTor
     entering = operation.torque if torque is None else torque
     if entering == 0.0 or not ratios or not (case.gear_pair or operation.output):
         return ()
+    from coupling.gear_train import GearTrain, Output, shared_torques
+
     first = next(iter(ratios)) if case.gear_pair else operation.output[0].rotor
     turning = math.copysign(1.0, operation.speed)
     applied = [AppliedTorque(first, _station(case, first, operation.at, 0.0), turning * entering)]
-    taken = [(output.rotor, output.torque, output.at) for output in operation.output]
-    if not any(share for _, share, _ in taken):
-        last = [(output.rotor, output.at) for output in operation.output]
-        last = last or [(shaft, None) for shaft in train_of(case).last]
-        taken = [(shaft, entering / len(last) / abs(float(ratios[shaft])), at) for shaft, at in last]
-    power = sum(share * abs(float(ratios[shaft])) for shaft, share, _ in taken)
-    for shaft, share, at in taken:
-        against = -turning * math.copysign(1.0, ratios[shaft])
-        balanced = share * entering / power
-        applied.append(AppliedTorque(shaft, _station(case, shaft, at, 1.0), against * balanced))
+    train = train_of(case) if case.gear_pair else GearTrain((), ratios, ())
+    outputs = [Output(output.rotor, output.torque, output.at) for output in operation.output]
+    speeds = {shaft: float(ratio) for shaft, ratio in ratios.items()}
+    for output, taken in shared_torques(train, speeds, entering, outputs):
+        against = -turning * math.copysign(1.0, ratios[output.shaft])
+        applied.append(AppliedTorque(output.shaft, _station(case, output.shaft, output.at, 1.0), against * taken))
     return tuple(applied)
 
 
@@ -129,42 +131,12 @@ def pair_torques(case: Case) -> tuple[float, ...]:
     CaseError
         When the case has no `[operation]`.
     """
-    ratios = speed_ratios(case)
-    ends = [(shaft_of(case.gear_named(pair.driver)), shaft_of(case.gear_named(pair.driven))) for pair in case.gear_pair]
-    entering = dict.fromkeys(ratios, 0.0)  # power over the first driver's speed, hence torques on one shaft
+    train = train_of(case)
+    turning = 1.0 if case.operation is None else math.copysign(1.0, case.operation.speed)
+    torques = dict.fromkeys(train.ratios, 0.0)
     for applied in applied_torques(case):
-        turning = 1.0 if case.operation is None else math.copysign(1.0, case.operation.speed)
-        entering[applied.shaft] += applied.torque * turning * float(ratios[applied.shaft])
-    potential = _potentials(list(ratios), ends, entering)
-    flows = [potential[driver] - potential[driven] for driver, driven in ends]
-    return tuple(flow / abs(float(ratios[driver])) for flow, (driver, _) in zip(flows, ends, strict=True))
-
-
-def _potentials(shafts: list[str], ends: list[tuple[str, str]], entering: dict[str, float]) -> dict[str, float]:
-    """Solve the flow network of a connected train: L p = entering, the first shaft's potential zero.
-
-    The least-norm flow f with B f = entering is f = Bᵀ p, L = B Bᵀ the graph's Laplacian. It is positive definite
-    without the first shaft, so elimination needs no pivoting.
-    """
-    place = {shaft: index for index, shaft in enumerate(shafts)}
-    size = len(shafts)
-    rows = [[0.0] * size + [entering[shaft]] for shaft in shafts]
-    for driver, driven in ends:
-        i, j = place[driver], place[driven]
-        rows[i][i] += 1.0
-        rows[j][j] += 1.0
-        rows[i][j] -= 1.0
-        rows[j][i] -= 1.0
-    for pivot in range(size - 1, 0, -1):
-        for row in range(pivot):
-            factor = rows[row][pivot] / rows[pivot][pivot]
-            if factor != 0.0:
-                rows[row] = [a - factor * b for a, b in zip(rows[row], rows[pivot], strict=True)]
-    solution = [0.0] * size
-    for row in range(1, size):
-        known = sum(rows[row][column] * solution[column] for column in range(row))
-        solution[row] = (rows[row][size] - known) / rows[row][row]
-    return dict(zip(shafts, solution, strict=True))
+        torques[applied.shaft] += applied.torque * turning * math.copysign(1.0, train.ratios[applied.shaft])
+    return train.pair_torques(torques)
 
 
 def _shafts(case: Case) -> list[str]:

@@ -37,7 +37,7 @@ def draw_gear_pairs(folder: Path, pairs: Sequence[PairAnalysis], progress: Progr
         The files' names.
     """
     files = []
-    stems = file_stems([f"{pair.solved.given.driver}-{pair.solved.given.driven}" for pair in pairs], "gears-")
+    stems = file_stems([f"{pair.solved.pair.driver}-{pair.solved.pair.driven}" for pair in pairs], "gears-")
     for stem, pair in zip(stems, pairs, strict=True):
         progress(f"drawing gear pair {pair.label}")
         files += [save(figure, folder / f"{stem}-{kind}.png") for kind, figure in _figures(pair)]
@@ -46,7 +46,7 @@ def draw_gear_pairs(folder: Path, pairs: Sequence[PairAnalysis], progress: Progr
 
 def _figures(pair: PairAnalysis) -> Iterator[tuple[str, Figure]]:
     solved, geometry = pair.solved, pair.solved.geometry
-    name = f"{shortened(solved.given.driver, 16)} → {shortened(solved.given.driven, 16)}"
+    name = f"{shortened(solved.pair.driver, 16)} → {shortened(solved.pair.driven, 16)}"
     loaded = solved.static.force > 0.0
     yield "teeth", draw_tooth_pair(geometry)
     yield (

@@ -100,12 +100,19 @@ def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
 
 def build_rotor(case: Case, given: GivenRotor) -> rotor_room.Rotor:
     """A rotor of the case, its gears on it as discs."""
-    discs = build_discs(case, given)
+    bare = build_shaft(case, given)
+    discs = list(bare.discs)
     for gear in case.gear:
         if gear.rotor == given.name and gear.at is not None:
             mass, polar, diametral = gear_inertia(case, gear)
             if mass or polar or diametral:
                 discs.append(rotor_room.Disc(gear.at, mass, polar, diametral))
+    return rotor_room.Rotor(bare.name, bare.segments, discs, bare.mass_model)
+
+
+def build_shaft(case: Case, given: GivenRotor) -> rotor_room.Rotor:
+    """A rotor of the case without its gears."""
+    discs = build_discs(case, given)
     if given.saved is not None:
         of_file = given.saved.rotor
         return rotor_room.Rotor(given.name, of_file.segments, [*of_file.discs, *discs], given.mass)

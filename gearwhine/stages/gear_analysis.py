@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 import coupling.gears as room
+from coupling.gears.gear_pair import LoadedGearPair
 from gearwhine.case import Case
-from gearwhine.stages.gears import SolvedPair
+from gearwhine.case import GearPair as GivenPair
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -21,7 +22,9 @@ class PairAnalysis:
 
     Attributes
     ----------
-    solved : SolvedPair
+    given : GearPair
+        As in the case.
+    solved : LoadedGearPair
     widths_given : tuple of bool
         Whether the case gives the face width of the driver and of the driven gear; one that only stands in for it says
         nothing of a pressure.
@@ -40,7 +43,8 @@ class PairAnalysis:
         single pairs.
     """
 
-    solved: SolvedPair
+    given: GivenPair
+    solved: LoadedGearPair
     widths_given: tuple[bool, bool]
     unloaded: FloatArray
     pressure: FloatArray | None
@@ -51,7 +55,7 @@ class PairAnalysis:
     @property
     def label(self) -> str:
         """The pair's gears."""
-        return f"{self.solved.given.driver} → {self.solved.given.driven}"
+        return f"{self.solved.pair.driver} → {self.solved.pair.driven}"
 
     @property
     def harmonics(self) -> FloatArray:
@@ -106,9 +110,9 @@ class PairAnalysis:
         return float(carried.sum(axis=-1).max(initial=0.0)) * faces.width
 
 
-def analyse_pairs(case: Case, solved: Sequence[SolvedPair]) -> tuple[PairAnalysis, ...]:
+def analyse_pairs(case: Case, solved: Sequence[LoadedGearPair]) -> tuple[PairAnalysis, ...]:
     """Look at each solved pair under the case's torque and without."""
-    return tuple(_analysis(case, pair) for pair in solved)
+    return tuple(_analysis(case, given, pair) for given, pair in zip(case.gear_pair, solved, strict=True))
 
 
 def first_touch(contact: room.ToothContact, phases: FloatArray) -> FloatArray:
@@ -116,17 +120,17 @@ def first_touch(contact: room.ToothContact, phases: FloatArray) -> FloatArray:
     return np.asarray(contact.pairs(phases).deviation.min(axis=1), dtype=np.float64)
 
 
-def _analysis(case: Case, pair: SolvedPair) -> PairAnalysis:
+def _analysis(case: Case, entry: GivenPair, pair: LoadedGearPair) -> PairAnalysis:
     unloaded = first_touch(pair.contact, pair.static.phases)
-    driver, driven = case.gear_named(pair.given.driver), case.gear_named(pair.given.driven)
+    driver, driven = case.gear_named(pair.pair.driver), case.gear_named(pair.pair.driven)
     given = driver.face_width is not None, driven.face_width is not None
     if pair.static.force == 0.0 or not pair.has_single_pairs or not all(given):
-        return PairAnalysis(pair, given, unloaded, None, None)
+        return PairAnalysis(entry, pair, given, unloaded, None, None)
     pressure = room.mesh_pressure(pair.geometry, pair.contact, pair.static)
-    return PairAnalysis(pair, given, unloaded, pressure, _pitch_pressure(pair))
+    return PairAnalysis(entry, pair, given, unloaded, pressure, _pitch_pressure(pair))
 
 
-def _pitch_pressure(pair: SolvedPair) -> float | None:
+def _pitch_pressure(pair: LoadedGearPair) -> float | None:
     """The largest pressure while a pair, or a slice of its face, passes the pitch point [Pa]; None off the path."""
     pitch, faces = pair.geometry.pitch_point_position, pair.contact.faces
     if not 0.0 <= pitch < pair.geometry.contact_ratio:

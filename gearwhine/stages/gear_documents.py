@@ -6,9 +6,10 @@ import numpy as np
 import numpy.typing as npt
 
 import coupling.gears as room
+from coupling.gears.gear_pair import LoadedGearPair
 from gearwhine.stages.gear_analysis import PairAnalysis
 from gearwhine.stages.gear_shapes import doubts, gear_document, path_document, relief_document
-from gearwhine.stages.gears import SolvedPair, backlash_doubts
+from gearwhine.stages.gears import backlash_doubts
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -24,7 +25,7 @@ def gears_document(pairs: tuple[PairAnalysis, ...]) -> dict[str, Any]:
 
 def _all_doubts(pair: PairAnalysis) -> list[dict[str, str]]:
     geometry = pair.solved.geometry
-    return [*doubts(geometry), *backlash_doubts(pair.solved.given, geometry), *_left_out(pair)]
+    return [*doubts(geometry), *backlash_doubts(pair.given, geometry), *_left_out(pair)]
 
 
 def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
@@ -32,9 +33,9 @@ def _pair_document(pair: PairAnalysis) -> dict[str, Any]:
     phases = solved.static.phases
     stiffness = room.mesh_stiffness(solved.contact, phases)
     return {
-        "driver": solved.given.driver,
-        "driven": solved.given.driven,
-        "model": solved.given.stiffness.model,
+        "driver": solved.pair.driver,
+        "driven": solved.pair.driven,
+        "model": pair.given.stiffness.model,
         "contact_ratio": geometry.contact_ratio,
         "overlap_ratio": geometry.overlap_ratio,
         "total_contact_ratio": geometry.total_contact_ratio,
@@ -95,7 +96,7 @@ def _left_out(pair: PairAnalysis) -> list[dict[str, str]]:
     return found
 
 
-def _over_hunting_period(solved: SolvedPair) -> dict[str, float] | None:
+def _over_hunting_period(solved: LoadedGearPair) -> dict[str, float] | None:
     if solved.hunting is None:
         return None
     return {
@@ -152,7 +153,7 @@ def _harris_map(geometry: room.GearPairGeometry, harris: room.HarrisMap) -> dict
 def _optimum(pair: PairAnalysis, optimum: room.ReliefOptimum) -> dict[str, Any]:
     """The relief that suits the torque, beside that of the case and none at all."""
     gears = pair.solved.geometry.driver, pair.solved.geometry.driven
-    relief, given = optimum.relief, pair.solved.given.relief_aim
+    relief, given = optimum.relief, pair.given.relief_aim
     starts = (None if relief is None else relief_document(gear, relief)["start_roll_angle_rad"] for gear in gears)
     kind = "peak-to-peak" if given is None else "harmonics" if given.sensor is None else "sensor"
     unit = "m/s^2" if kind == "sensor" else "m"

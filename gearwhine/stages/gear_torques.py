@@ -7,9 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 import coupling.gears as room
+from coupling.gears.gear_pair import LoadedGearPair
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.gear_analysis import PairAnalysis
-from gearwhine.stages.gears import SolvedPair
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,7 +36,7 @@ def over_torques(
     return tuple(found)
 
 
-def _harris_map(pair: SolvedPair) -> room.HarrisMap:
+def _harris_map(pair: LoadedGearPair) -> room.HarrisMap:
     contact = pair.contact
     if contact.hunting_period > 1:
         contact = room.tooth_contact(
@@ -45,7 +45,7 @@ def _harris_map(pair: SolvedPair) -> room.HarrisMap:
     return room.harris_map(contact, pair.static.force * np.linspace(_LEAST, _MOST, _TORQUES))
 
 
-def _best_relief(pair: SolvedPair, aim: room.ReliefAim) -> room.ReliefOptimum:
+def _best_relief(pair: LoadedGearPair, aim: room.ReliefAim) -> room.ReliefOptimum:
     given = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
     geometry, force, faces = _alike(pair.geometry), pair.static.force, pair.contact.faces
     corners = pair.contact.has_corners

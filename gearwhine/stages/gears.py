@@ -1,23 +1,13 @@
 """The gear pairs of a case: geometry, contact law, and the mesh at rest under its load."""
 
-import math
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 import coupling.gears as room
-from gearwhine.case import (
-    Case,
-    CaseError,
-    Problem,
-    mesh_frequencies,
-    pair_torques,
-    require,
-    rotor_speeds,
-    shaft_of,
-)
+from coupling.gears.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from gearwhine.case import Case, CaseError, Problem, pair_torques, require, rotor_speeds, shaft_of
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.progress import Progress, silent
@@ -25,60 +15,13 @@ from gearwhine.stages.build import build_discs, build_gear, build_rotor, gear_in
 
 FloatArray = npt.NDArray[np.float64]
 
-# The mesh's damping is all there from this part of the mean compression on.
-_FADING = 0.1
 # In modules: backlash below it is the rounding of printed sizes.
 _ROUNDED = 1e-3
 # Part of the geometry's backlash by which a given one may differ without a word.
 _DIFFERS = 0.1
 
 
-@dataclass(frozen=True)
-class SolvedPair:
-    """One gear pair at rest under its mean load.
-
-    Attributes
-    ----------
-    given : GearPair
-        As in the case.
-    geometry : coupling.gears.GearPairGeometry
-    model : coupling.gears.StiffnessModel
-        Of its teeth.
-    contact : coupling.gears.ToothContact
-        With its damping.
-    static : coupling.gears.StaticMesh
-        Over one mesh period, the first.
-    hunting : coupling.gears.StaticMesh or None
-        Over the whole hunting period, where pitch deviations or damaged teeth make the mesh periods differ.
-    mesh_frequency : float or None
-        [Hz]; None where the case gives no speed.
-    """
-
-    given: GivenPair
-    geometry: room.GearPairGeometry
-    model: room.StiffnessModel
-    contact: room.ToothContact
-    static: room.StaticMesh
-    hunting: room.StaticMesh | None
-    mesh_frequency: float | None
-
-    @property
-    def torque(self) -> float:
-        """On the driver, that the mesh carries [N m]."""
-        return self.static.force * self.geometry.driver.base_radius
-
-    @property
-    def backlash(self) -> float | None:
-        """Gap of the back flanks along their line of action [m]; None where they never meet."""
-        return pair_backlash(self.given, self.geometry)
-
-    @property
-    def has_single_pairs(self) -> bool:
-        """Whether the model is of pairs of teeth, which share the load, or of the mesh as one spring."""
-        return math.isclose(self.contact.contact_ratio, self.geometry.contact_ratio, rel_tol=1e-9)
-
-
-def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ...]:
+def solve_gears(case: Case, progress: Progress = silent) -> tuple[LoadedGearPair, ...]:
     """Every gear pair of the case.
 
     Raises
@@ -88,79 +31,41 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[SolvedPair, ..
     """
     require(case, "gear_pair", command="gears")
     torques = pair_torques(case) if case.operation else (0.0,) * len(case.gear_pair)
-    frequencies = mesh_frequencies(case) if case.operation else (None,) * len(case.gear_pair)
+    speeds = rotor_speeds(case) if case.operation else {}
     solved = []
-    for number, (pair, torque, frequency) in enumerate(zip(case.gear_pair, torques, frequencies, strict=True)):
-        progress(f"gear pair {pair.driver} -> {pair.driven}")
-        geometry = pair_geometry(case, pair)
-        force = abs(torque) / geometry.driver.base_radius
-        model = _model(pair, number, geometry, force)
-        contact = room.tooth_contact(
-            geometry,
-            model,
-            corner_contact=meets_with_corners(pair),
-            faces=uneven_faces(case, pair, geometry),
+    for number, (given, torque) in enumerate(zip(case.gear_pair, torques, strict=True)):
+        progress(f"gear pair {given.driver} -> {given.driven}")
+        driver, driven = case.gear_named(given.driver), case.gear_named(given.driven)
+        loaded = load_gear_pair(
+            build_pair(given, number),
+            pair_geometry(case, given),
+            torque=torque,
+            inertias=(_inertia_at(case, driver), _inertia_at(case, driven)),
+            speed=speeds.get(shaft_of(driver)),
         )
-        static = room.static_transmission_error(contact, force)
-        # The ratio is of the mesh as it vibrates about its mean load, as linear analyses take it.
-        mean_stiffness = static.mean_stiffness if force > 0.0 else contact.mean_stiffness
-        contact = contact.with_damping(_damping(case, pair, mean_stiffness), _FADING * force / contact.mean_stiffness)
-        hunting = room.hunting_mesh(contact, force) if contact.hunting_period > 1 else None
-        solved.append(SolvedPair(pair, geometry, model, contact, static, hunting, frequency))
+        solved.append(loaded)
     return tuple(solved)
 
 
-def require_sound_faults(pair: GivenPair, geometry: room.GearPairGeometry) -> None:
-    """Refuse damaged teeth with which nothing can be solved, without solving anything.
-
-    Raises
-    ------
-    coupling.gears.GearError
-        For a crack through the foot of a tooth, or so many missing teeth that at some phase none meet.
-    """
-    for gear in (geometry.driver, geometry.driven):
-        for fault in gear.faults:
-            if isinstance(fault, room.ToothCrack):
-                fault.extra_compliance(gear, np.array([math.tan(geometry.working_pressure_angle)]))
-    if any(
-        isinstance(fault, room.MissingTooth) for gear in (geometry.driver, geometry.driven) for fault in gear.faults
-    ):
-        whole = [replace(gear, faults=_missing(gear)) for gear in (geometry.driver, geometry.driven)]
-        sparse = replace(geometry, driver=whole[0], driven=whole[1])
-        contact = room.tooth_contact(sparse, room.SquareStiffness(1e8), corner_contact=meets_with_corners(pair))
-        room.hunting_mesh(contact, 1.0, points=4)
-
-
-def _missing(gear: room.Gear) -> tuple[room.MissingTooth, ...]:
-    return tuple(fault for fault in gear.faults if isinstance(fault, room.MissingTooth))
-
-
-def meets_with_corners(pair: GivenPair) -> bool:
-    """Whether teeth meet beyond their path of contact: as the case says, or where the pair's model is one of teeth."""
-    if pair.corner_contact is not None:
-        return pair.corner_contact
-    return pair.stiffness.model not in ("constant", "square", "table")
-
-
-def uneven_faces(case: Case, pair: GivenPair, geometry: room.GearPairGeometry) -> room.FaceSlices | None:
-    """The slices of a pair's face where the load spreads unevenly over it."""
-    bent = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
-    straight = all(deviation is None or deviation.is_straight for deviation in bent)
-    if geometry.driver.helix_angle == 0.0 and pair.misalignment == 0.0 and straight:
-        return None
-    speed = rotor_speeds(case)[shaft_of(case.gear_named(pair.driver))] if case.operation else 1.0
-    return room.face_slices(geometry, sense=1 if speed >= 0.0 else -1, misalignment=pair.misalignment)
-
-
-def pair_backlash(pair: GivenPair, geometry: room.GearPairGeometry) -> float | None:
-    """The backlash of the case, else that of the teeth's thickness and the shafts' distance; None where there is none.
-
-    Less than the rounding of printed sizes is none: nominal gears at their nominal distance have teeth as thick as the
-    spaces, and no allowance from which a backlash would follow.
-    """
-    if pair.backlash is not None:
-        return pair.backlash
-    return geometry.backlash if geometry.backlash > _ROUNDED * geometry.driver.module else None
+def build_pair(given: GivenPair, number: int = 0) -> GearPair:
+    """A gear pair of the case as the gear room's; ``number`` is its place in the list, for messages."""
+    stiffness: room.StiffnessModel | str = given.stiffness.model
+    if given.stiffness.file is not None:
+        position, values = _table(given.stiffness.file, f"gear_pair[{number}].stiffness.file")
+        stiffness = room.stiffness_model("table", position=position, stiffness=values)
+    elif given.stiffness.value is not None:
+        stiffness = room.stiffness_model(given.stiffness.model, value=given.stiffness.value)
+    return GearPair(
+        driver=given.driver,
+        driven=given.driven,
+        stiffness=stiffness,
+        damping_ratio=given.damping_ratio,
+        damping=given.damping,
+        backlash=given.backlash,
+        friction=given.friction,
+        misalignment=given.misalignment,
+        corner_contact=given.corner_contact,
+    )
 
 
 def backlash_doubts(pair: GivenPair, geometry: room.GearPairGeometry) -> list[dict[str, str]]:
@@ -193,23 +98,6 @@ def pair_geometry(case: Case, pair: GivenPair) -> room.GearPairGeometry:
     return room.GearPairGeometry(build_gear(case, driver), build_gear(case, driven), distance)
 
 
-def _model(pair: GivenPair, number: int, geometry: room.GearPairGeometry, force: float) -> room.StiffnessModel:
-    stiffness = pair.stiffness
-    if stiffness.file is not None:
-        position, values = _table(stiffness.file, f"gear_pair[{number}].stiffness.file")
-        return room.stiffness_model("table", position=position, stiffness=values)
-    if stiffness.value is not None:
-        return room.stiffness_model(stiffness.model, value=stiffness.value)
-    if stiffness.model == "iso6336" and force > 0.0:
-        # F_t / b: tangential force at the reference circle over the common width, as the norm's load per width.
-        tangential = force * geometry.driver.base_radius / geometry.driver.pitch_radius
-        return room.stiffness_model("iso6336", specific_load=tangential / geometry.face_width)
-    if stiffness.model in ("elastic-ring", "cornell", "weber-banaschek") and force > 0.0:
-        # Their contact stiffens with the load; it is frozen where one pair carries all of it.
-        return room.stiffness_model(stiffness.model, force=force)
-    return room.stiffness_model(stiffness.model)
-
-
 def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
     """Two columns of a CSV file: position in base pitches, stiffness [N/m]; a first line of names may stand."""
     rows = []
@@ -232,22 +120,6 @@ def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
         raise CaseError([Problem(key, str(path), "at least two rows: position in base pitches, stiffness in N/m")])
     columns = np.array(rows, dtype=np.float64).T
     return columns[0], columns[1]
-
-
-def _damping(case: Case, pair: GivenPair, mean_stiffness: float) -> float:
-    """The mesh's damping coefficient [N s/m] from the ratio, with the inertia that sits where the gears do."""
-    if pair.damping is not None:
-        return pair.damping
-    if pair.damping_ratio == 0.0:
-        return 0.0
-    driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
-    mass = room.equivalent_mass(
-        _inertia_at(case, driver),
-        _inertia_at(case, driven),
-        build_gear(case, driver).base_radius,
-        build_gear(case, driven).base_radius,
-    )
-    return room.mesh_damping(pair.damping_ratio, mean_stiffness, mass)
 
 
 def _inertia_at(case: Case, given: GivenGear) -> float:

@@ -36,7 +36,7 @@ def unstable_modes_warnings(stability: room.Stability) -> list[dict[str, Any]]:
     return found
 
 
-def machine_warnings(machine: room.Machine) -> list[dict[str, Any]]:
+def machine_warnings(machine: room.CoupledMachine) -> list[dict[str, Any]]:
     """Warnings of the growing modes of a machine about its mean contact.
 
     Raises

@@ -11,16 +11,16 @@ from scipy import linalg, sparse
 
 import coupling as room
 import rotors as rotor_room
-from gearwhine.case import Case, require, rotor_speeds
+from coupling.gears.gear_pair import LoadedGearPair
+from gearwhine.case import Case, Rotor, require
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.bearings import bearing_law, build_bearings
-from gearwhine.stages.build import build_rotor
+from gearwhine.stages.build import build_gear, build_shaft, gear_inertia
 from gearwhine.stages.driving import driving
-from gearwhine.stages.gears import SolvedPair, solve_gears
+from gearwhine.stages.gears import build_pair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, base_participation, solve_housing
 from gearwhine.stages.housing_checks import ATTACHMENT_ORDERS
 from gearwhine.stages.rotor_loads import given_bow
-from gearwhine.stages.thrust import require_carried_thrust
 from housing import ModeSet, leading_attachments
 
 FloatArray = npt.NDArray[np.float64]
@@ -84,11 +84,11 @@ def housing_in_machine(case: Case, solved: SolvedHousing, progress: Progress = s
 def build_machine(
     case: Case,
     housing: SolvedHousing | HousingInMachine | None,
-    pairs: tuple[SolvedPair, ...],
+    pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
     *,
     reach: float = 1.0,
-) -> room.Machine:
+) -> room.CoupledMachine:
     """Couple the parts of a case at its speed of operation.
 
     ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are kept.
@@ -100,96 +100,100 @@ def build_machine(
     coupling.TransientError
         Where a free speed cannot start or stalls.
     """
-    require(case, "rotor", "operation", command="system")
-    assert case.operation is not None
-    speeds = rotor_speeds(case)
-    components, bows, dashpots = [], [], list[room.ShaftDashpots]()
-    bearings: list[room.MountedBearing] = []
-    for given in case.rotor:
-        progress(f"modes of rotor {given.name}")
-        rotor, held = build_rotor(case, given), build_bearings(case, given.name)
-        limit, count = _kept(case, given.name)
-        if given.mass == "distributed":
-            # A lumped rotor has no more modes than its masses allow.
-            limit, count = None if limit is None else reach * limit, None if count is None else round(reach * count)
-        bow = given_bow(given)
-        laws = {entry.name: bearing_law(case, n) for n, entry in enumerate(case.bearing) if entry.rotor == given.name}
-        # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
-        rolling_at = [bearing.at for bearing in held if isinstance(laws.get(bearing.name), room.RollingLaw)]
-        gears = [gear for gear in case.gear if gear.rotor == given.name and gear.at is not None]
-        helical_at = [gear.at for gear in gears if gear.at is not None and gear.helix_angle != 0.0]
-        components.append(
-            room.rotor_component(
-                given.name,
-                rotor_room.modal_rotor(
-                    rotor,
-                    [bearing.at_speed(speeds[given.name]) for bearing in held],
-                    frequency_limit=limit,
-                    count=count,
-                    gears_at=[gear.at for gear in gears if gear.at is not None],
-                    forces_at=() if bow is None else bow.at.tolist(),
-                    moments_at=helical_at + rolling_at,
-                    thrusts_at=helical_at + rolling_at,
-                ),
-                start=given.start,
-                damping_ratio=given.damping_ratio,
-                axis=given.axis,
-            )
-        )
-        dashpots += _coupling_dashpots(given.name, rotor)
-        if bow is not None:
-            bows.append(room.BowReactions(given.name, bow.at, rotor_room.bow_shape(rotor, bow).reactions))
-        # Those of the rotor's own file stand on the ground.
-        seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
-        bearings += [
-            room.MountedBearing(bearing, given.name, seats.get(bearing.name), laws.get(bearing.name))
-            for bearing in held
-        ]
-    driven = driving(case, components)
     if isinstance(housing, SolvedHousing):
         housing = housing_in_machine(case, housing, progress)
-    return room.couple(
+    machine = describe_machine(case, None if housing is None else housing.component)
+    components = machine.rotor_components(reach=reach, progress=progress)
+    driven = driving(case, components)
+    assert case.operation is not None
+    return machine.assemble(
+        pairs,
         components,
-        None if housing is None else housing.component,
-        speeds=speeds,
-        bearings=bearings,
-        meshes=[_mesh(case, pair) for pair in pairs],
-        unbalances=[
-            room.Unbalance(rotor.name, entry.at, entry.moment, entry.phase)
-            for rotor in case.rotor
-            for entry in rotor.unbalance
-        ],
-        bows=bows,
-        torques=driven.torques,
-        drives=driven.drives,
-        rates=driven.rates,
-        base=base_motion(case),
-        gravity=case.operation.gravity,
-        dashpots=dashpots,
+        room.Driving(driven.torques, driven.drives, driven.rates, base_motion(case), case.operation.gravity),
     )
 
 
-def _coupling_dashpots(name: str, rotor: rotor_room.Rotor) -> list[room.ShaftDashpots]:
-    """Dashpots of a rotor's couplings."""
-    found, left = list[room.ShaftDashpots](), 0.0
-    for part in rotor.segments:
-        if isinstance(part, rotor_room.Coupling) and part.is_damped:
-            label = f"coupling {sum(one.rotor == name for one in found) + 1} of {name}"
-            values = (part.lateral_damping, part.tilt_damping, part.torsional_damping, part.axial_damping)
-            found.append(room.ShaftDashpots(label, name, left, left + part.length, *values))
-        left += part.length
-    return found
+def require_machine(case: Case) -> None:
+    """Refuse a case whose parts do not make a machine, before anything is solved.
+
+    Raises
+    ------
+    CaseError, rotors.RotorError, coupling.CouplingError, coupling.gears.GearError
+        As :func:`describe_machine`; thrust that nothing carries is among the reasons.
+    """
+    if case.gear_pair and case.rotor and case.operation is not None:
+        describe_machine(case, None, grounded=True)
+
+
+def describe_machine(
+    case: Case, housing: room.HousingComponent | None = None, *, grounded: bool = False
+) -> room.Machine:
+    """The shafts, gears, bearings and gear pairs of a case as the library's description of a machine.
+
+    ``grounded`` puts every bearing on the ground: the machine is looked at before its housing is solved.
+
+    Raises
+    ------
+    CaseError, rotors.RotorError, coupling.CouplingError, coupling.gears.GearError
+        Where the parts do not make a machine.
+    """
+    require(case, "rotor", "operation", command="system")
+    operation = case.operation
+    assert operation is not None
+    bearings = []
+    for given in case.rotor:
+        laws = {entry.name: bearing_law(case, n) for n, entry in enumerate(case.bearing) if entry.rotor == given.name}
+        # Those of the rotor's own file stand on the ground.
+        seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
+        bearings += [
+            room.MountedBearing(
+                bearing,
+                given.name,
+                None if grounded else seats.get(bearing.name),
+                laws.get(bearing.name),
+            )
+            for bearing in build_bearings(case, given.name)
+        ]
+    return room.Machine(
+        shafts=[_shaft(case, given) for given in case.rotor],
+        bearings=bearings,
+        gears=[
+            room.ShaftGear(build_gear(case, gear), gear.rotor, gear.at, gear_inertia(case, gear))
+            for gear in case.gear
+            if gear.rotor is not None and gear.at is not None
+        ],
+        gear_pairs=[build_pair(given, number) for number, given in enumerate(case.gear_pair)],
+        speed=operation.speed,
+        torque=operation.torque,
+        outputs=[room.Output(output.rotor, output.torque, output.at) for output in operation.output],
+        housing=housing,
+        torque_at=operation.at or 0.0,
+    )
+
+
+def _shaft(case: Case, given: Rotor) -> room.Shaft:
+    limit, count = _kept(case, given.name)
+    return room.Shaft(
+        build_shaft(case, given),
+        given.axis,
+        given.start,
+        given.damping_ratio,
+        [rotor_room.Unbalance(entry.at, entry.moment, entry.phase) for entry in given.unbalance],
+        given_bow(given),
+        limit,
+        count,
+    )
 
 
 def solve_machine(
     case: Case, progress: Progress = silent, *, folder: Path | None = None, fresh: bool = False
-) -> tuple[SolvedHousing | None, tuple[SolvedPair, ...], room.Machine]:
+) -> tuple[SolvedHousing | None, tuple[LoadedGearPair, ...], room.CoupledMachine]:
     """Solve the housing and the gears that the case has, and couple everything.
 
     ``folder`` and ``fresh`` are those of :func:`gearwhine.stages.housing.solve_housing`.
     """
     require(case, "rotor", "operation", command="system")
-    require_carried_thrust(case)
+    require_machine(case)
     pairs = solve_gears(case, progress) if case.gear_pair else ()
     housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
     return housing, pairs, build_machine(case, housing, pairs, progress)
@@ -222,9 +226,9 @@ def base_motion(case: Case) -> room.BaseMotion | None:
 
 def basis_error(
     case: Case,
-    machine: room.Machine,
+    machine: room.CoupledMachine,
     housing: SolvedHousing | HousingInMachine | None,
-    pairs: tuple[SolvedPair, ...],
+    pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
 ) -> room.BasisError | None:
     """The machine beside one with less of what the housing's limit leaves out and with more modes of its shafts.
@@ -278,14 +282,3 @@ def _housing_component(
         sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
         participation=participation,
     )
-
-
-def _mesh(case: Case, pair: SolvedPair) -> room.GearMesh:
-    mounted = []
-    for name in (pair.given.driver, pair.given.driven):
-        gear = case.gear_named(name)
-        assert gear.rotor is not None
-        assert gear.at is not None
-        mounted.append(room.MountedGear(name, gear.rotor, gear.at, case.rotor_named(gear.rotor).axis))
-    given = pair.given
-    return room.GearMesh(mounted[0], mounted[1], pair.geometry, pair.contact, pair.backlash, given.friction)

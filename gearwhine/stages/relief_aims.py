@@ -7,10 +7,11 @@ import numpy as np
 
 import coupling
 import coupling.gears as room
+from coupling.gears.gear_pair import LoadedGearPair
 from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.gears import ReliefAim
 from gearwhine.case.problems import NOTHING
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.gears import SolvedPair
 from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.machine import build_machine
 
@@ -18,7 +19,7 @@ _HARMONICS = 8  # of the mesh frequency, where the case does not name them
 
 
 def relief_aims(
-    case: Case, pairs: tuple[SolvedPair, ...], progress: Progress = silent, *, folder: Path | None = None
+    case: Case, pairs: tuple[LoadedGearPair, ...], progress: Progress = silent, *, folder: Path | None = None
 ) -> tuple[room.ReliefAim, ...]:
     """What each pair's relief is sought for.
 
@@ -31,17 +32,17 @@ def relief_aims(
     CaseError
         Where a sensor is aimed at and the pair does not turn, or no multiple lies below the model's limit.
     """
-    if all(pair.given.relief_aim is None or pair.given.relief_aim.sensor is None for pair in pairs):
-        return tuple(_without_sensor(pair) for pair in pairs)
+    aims = [given.relief_aim for given in case.gear_pair]
+    if all(aim is None or aim.sensor is None for aim in aims):
+        return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
     housing = solve_housing(case, progress, folder=folder)
     machine = build_machine(case, housing, pairs, progress)
     limit = housing.trusted_limit_hz
     found = []
-    for number, pair in enumerate(pairs):
-        aim = pair.given.relief_aim
+    for number, (pair, aim) in enumerate(zip(pairs, aims, strict=True)):
         if aim is None or aim.sensor is None:
-            found.append(_without_sensor(pair))
+            found.append(_without_sensor(aim))
             continue
         key = f"gear_pair[{number}].relief_aim"
         if not pair.mesh_frequency:
@@ -58,6 +59,5 @@ def relief_aims(
     return tuple(found)
 
 
-def _without_sensor(pair: SolvedPair) -> room.ReliefAim:
-    aim = pair.given.relief_aim
+def _without_sensor(aim: ReliefAim | None) -> room.ReliefAim:
     return room.PeakToPeak() if aim is None else room.WeightedHarmonics(aim.weights)

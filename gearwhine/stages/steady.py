@@ -70,7 +70,7 @@ class SolvedSteady:
 
     Attributes
     ----------
-    machine : coupling.Machine
+    machine : coupling.CoupledMachine
         At the speed of operation.
     motions : tuple of SteadyMotion
         At the speed of operation: one, or all that a branch has there; where they are superposed, one of each group
@@ -83,7 +83,7 @@ class SolvedSteady:
         Of each sensor's acceleration up to the trusted limit at every point of the branch [m/s²].
     """
 
-    machine: room.Machine
+    machine: room.CoupledMachine
     motions: tuple[SteadyMotion, ...]
     curve: room.ResponseCurve | None = None
     branch_rms: dict[str, FloatArray] = field(default_factory=dict)
@@ -92,7 +92,7 @@ class SolvedSteady:
 
 def solve_steady(
     case: Case,
-    machine: room.Machine,
+    machine: room.CoupledMachine,
     housing: SolvedHousing | None,
     progress: Progress = silent,
     *,
@@ -185,7 +185,7 @@ def _period_in_words(cycles: float) -> str:
 
 def _superposed(
     case: Case,
-    machine: room.Machine,
+    machine: room.CoupledMachine,
     housing: SolvedHousing | None,
     speed: float,
     groups: tuple[room.ExcitationGroup, ...],
@@ -214,7 +214,11 @@ def _speed_range(case: Case) -> tuple[float, float]:
 
 
 def _motion(
-    case: Case, machine: room.Machine, housing: SolvedHousing | None, speed: float, response: room.PeriodicResponse
+    case: Case,
+    machine: room.CoupledMachine,
+    housing: SolvedHousing | None,
+    speed: float,
+    response: room.PeriodicResponse,
 ) -> SteadyMotion:
     assert case.operation is not None
     ratio = abs(speed / case.operation.speed)
@@ -246,7 +250,7 @@ def steady_document(case: Case, solved: SolvedSteady) -> dict[str, Any]:
     return document
 
 
-def _motion_document(machine: room.Machine, motion: SteadyMotion) -> dict[str, Any]:
+def _motion_document(machine: room.CoupledMachine, motion: SteadyMotion) -> dict[str, Any]:
     return _proof_document(motion.response) | {
         "gear_pairs": [
             _pair_figures(mesh, motion.response, number)
@@ -334,7 +338,7 @@ def _lines_of_all(motions: tuple[SteadyMotion, ...], signals: list[FloatArray], 
     return sorted(lines, key=lambda line: -float(line[key]))[:_LINES]
 
 
-def _superposition_warnings(machine: room.Machine, sum_: room.SuperposedResponse) -> list[dict[str, Any]]:
+def _superposition_warnings(machine: room.CoupledMachine, sum_: room.SuperposedResponse) -> list[dict[str, Any]]:
     """Where the sum of the groups' motions is no longer near the motion under all of them."""
     found = []
     for number, contact in enumerate(machine.system.contacts):
@@ -386,7 +390,7 @@ def _curve_document(solved: SolvedSteady, curve: room.ResponseCurve) -> dict[str
     }
 
 
-def _pressed(machine: room.Machine) -> list[tuple[int, str, room.GearMesh]]:
+def _pressed(machine: room.CoupledMachine) -> list[tuple[int, str, room.GearMesh]]:
     """Each mesh with the number and the name of the contact that its mean load presses."""
     numbers = machine.pressed_contacts
     return [

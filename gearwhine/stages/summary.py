@@ -23,10 +23,10 @@ from gearwhine.stages import mesh_health
 from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
 from gearwhine.stages.gear_shapes import doubts, geometry_document, pairs_document
-from gearwhine.stages.gears import backlash_doubts, pair_geometries, require_sound_faults
+from gearwhine.stages.gears import backlash_doubts, build_pair, pair_geometries
 from gearwhine.stages.geometry import material_of
+from gearwhine.stages.machine import require_machine
 from gearwhine.stages.measured import measured_document
-from gearwhine.stages.thrust import require_carried_thrust
 from gearwhine.stages.update_keys import fitted_case
 
 _RPM = 60.0 / (2.0 * np.pi)
@@ -34,7 +34,7 @@ _RPM = 60.0 / (2.0 * np.pi)
 
 def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
     """Everything that follows from the case by arithmetic alone, and what the file of its geometry holds."""
-    require_carried_thrust(case)
+    require_machine(case)
     for rotor in case.rotor:
         # A load that a rolling bearing cannot carry is refused here as by the commands that solve it.
         build_bearings(case, rotor.name)
@@ -218,7 +218,7 @@ def _add_gears(case: Case, document: dict[str, Any]) -> None:
     """Add the gear pairs, and warnings of their teeth to those there are."""
     document["gear_pairs"] = pairs_document(case)
     for pair, geometry, row in zip(case.gear_pair, pair_geometries(case), document["gear_pairs"], strict=True):
-        require_sound_faults(pair, geometry)
+        build_pair(pair).require_sound_faults(geometry)
         row["stiffness_model"] = row.pop("model")
         row["geometry"] = geometry_document(geometry)
         if found := [*doubts(geometry), *backlash_doubts(pair, geometry)]:

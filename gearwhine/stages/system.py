@@ -30,7 +30,7 @@ class SolvedSystem:
 
     Attributes
     ----------
-    machine : coupling.Machine
+    machine : coupling.CoupledMachine
     mesh_phase : float or None
         Phase of the first mesh at which the contact stands; None for the mean contact.
     contact : coupling.ContactState
@@ -49,7 +49,7 @@ class SolvedSystem:
         Of the leading rotor [rad/s].
     """
 
-    machine: room.Machine
+    machine: room.CoupledMachine
     mesh_phase: float | None
     contact: room.ContactState
     modes: room.CoupledModes
@@ -63,7 +63,7 @@ class SolvedSystem:
 
 def solve_system(
     case: Case,
-    machine: room.Machine,
+    machine: room.CoupledMachine,
     housing: SolvedHousing | None,
     progress: Progress = silent,
     *,
@@ -132,7 +132,7 @@ def diagram_speeds(case: Case) -> tuple[float, ...]:
     return tuple(math.copysign(speed, operation) for speed in np.linspace(low, high, CAMPBELL_STEPS + 1).tolist())
 
 
-def _instant(case: Case, machine: room.Machine, phase: float) -> room.ContactState:
+def _instant(case: Case, machine: room.CoupledMachine, phase: float) -> room.ContactState:
     """The contact when the first pair's teeth stand at a phase."""
     require(case, "gear_pair", command="system --mesh-phase")
     if not 0.0 <= phase <= 1.0:
@@ -144,7 +144,7 @@ def _instant(case: Case, machine: room.Machine, phase: float) -> room.ContactSta
 
 def _mesh_responses(
     case: Case,
-    machine: room.Machine,
+    machine: room.CoupledMachine,
     housing: SolvedHousing | None,
     modes: room.CoupledModes,
     contact: room.ContactState,

@@ -33,7 +33,7 @@ class SolvedTransient:
 
     Attributes
     ----------
-    machine : coupling.Machine
+    machine : coupling.CoupledMachine
     method : str
         By which it was marched, "newmark" or "exact".
     turning : coupling.Turning or None
@@ -51,7 +51,7 @@ class SolvedTransient:
         Highest frequency that the housing's modes carry [Hz].
     """
 
-    machine: room.Machine
+    machine: room.CoupledMachine
     method: str
     turning: room.Turning | None
     result: room.TransientFigures
@@ -84,7 +84,7 @@ def is_traced(case: Case) -> bool:
 
 def solve_transient(
     case: Case,
-    machine: room.Machine,
+    machine: room.CoupledMachine,
     mesh_frequencies: tuple[float, ...],
     progress: Progress = silent,
     *,
@@ -187,7 +187,7 @@ class _InMemory(list[Arrays]):
     """Blocks that nobody keeps."""
 
 
-def starting_state(case: Case, machine: room.Machine) -> tuple[FloatArray, FloatArray] | None:
+def starting_state(case: Case, machine: room.CoupledMachine) -> tuple[FloatArray, FloatArray] | None:
     """Coordinates and rates that the case starts from; None: static equilibrium under its load.
 
     A train that turns unloaded has straight, untwisted shafts and teeth that just touch: all coordinates are zero.

@@ -29,8 +29,8 @@ from gearwhine.stages.bearing_loads import bearing_load_warnings
 from gearwhine.stages.housing import keep_modes
 from gearwhine.stages.instability import unstable_modes_warnings
 from gearwhine.stages.kept_modes import MODES_FILE
+from gearwhine.stages.machine import require_machine
 from gearwhine.stages.system_documents import system_document
-from gearwhine.stages.thrust import require_carried_thrust
 from gearwhine.stages.uncertainty import add_uncertainty
 from gearwhine.work.results_folder import kept_in
 
@@ -66,7 +66,7 @@ def _run_case(
 
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
-    require_carried_thrust(case)
+    require_machine(case)
     if case.housing is not None and pictures:
         # Found out before the work, not after it.
         try:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from coupling import GearMesh, Machine, MountedBearing, MountedGear, Torque, couple, rotor_component
+from coupling import CoupledMachine, GearMesh, MountedBearing, MountedGear, Torque, couple, rotor_component
 from coupling.gears import Gear, GearPairGeometry, SquareStiffness, face_slices, tooth_contact
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
 
@@ -19,7 +19,9 @@ def helical(hand: float) -> GearPairGeometry:
     )
 
 
-def couple_pairs(*hands: float, thrust_stiffness: float = 0.0, speed: float = 300.0, sliced: bool = False) -> Machine:
+def couple_pairs(
+    *hands: float, thrust_stiffness: float = 0.0, speed: float = 300.0, sliced: bool = False
+) -> CoupledMachine:
     """Two shafts on radial bearings, or on those with an axial stiffness, and gear pairs of these hands.
 
     Where `sliced`, the load spreads over the slices of their faces.

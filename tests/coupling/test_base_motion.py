@@ -9,8 +9,8 @@ from coupling import (
     BaseHarmonic,
     BaseHistory,
     BaseMotion,
+    CoupledMachine,
     CouplingError,
-    Machine,
     MountedBearing,
     TransientOutputs,
     TransientSettings,
@@ -72,7 +72,7 @@ def test_thrust_bearings_let_the_shaft_be_shaken_along_its_axis() -> None:
     np.testing.assert_allclose(held[:, 3] * x, -held[:, 4] * y, rtol=1e-12)
 
 
-def machine(bearings: list[Bearing], *, count: int = 6, speed: float = 0.0, **loads: object) -> Machine:
+def machine(bearings: list[Bearing], *, count: int = 6, speed: float = 0.0, **loads: object) -> CoupledMachine:
     mounted = [MountedBearing(bearing, "shaft", None) for bearing in bearings]
     rotor = component(bearings, count)
     return couple([rotor], None, speeds={"shaft": speed}, bearings=mounted, **loads)  # type: ignore[arg-type]

@@ -9,10 +9,10 @@ import pytest
 from scipy import linalg
 
 from coupling import (
+    CoupledMachine,
     CouplingError,
     GearMesh,
     HousingComponent,
-    Machine,
     MountedBearing,
     MountedGear,
     RotorComponent,
@@ -112,7 +112,7 @@ def machine(
     housing: bool = False,
     backlash: float | None = None,
     unbalances: tuple[Unbalance, ...] = (),
-) -> Machine:
+) -> CoupledMachine:
     """Two rotors; the line of centres from driver to driven at an angle psi, the torque with the rotation."""
     matrix = 5e7 * np.eye(2) if stiffness is None else stiffness
     rotors = both_rotors(along=matrix.shape != (2, 2))
@@ -138,7 +138,7 @@ def machine(
     )
 
 
-def rigid_motion(parts: Machine, translation: FloatArray, rotation: FloatArray) -> FloatArray:
+def rigid_motion(parts: CoupledMachine, translation: FloatArray, rotation: FloatArray) -> FloatArray:
     """Coordinates that move everything as one body: u = t + r × (x, y, z)."""
     coordinates = []
     axes = {gear.rotor: gear.axis for gear in (parts.meshes[0].driver, parts.meshes[0].driven)}
@@ -194,7 +194,7 @@ def test_free_machine_has_its_rigid_motions(matrix: FloatArray | None) -> None:
     assert values[~zero].min() > 0.0
 
 
-def rolling(parts: Machine) -> FloatArray:
+def rolling(parts: CoupledMachine) -> FloatArray:
     """The two shafts turning with their tooth ratio."""
     driver, driven = both_rotors()
     rows = np.zeros((2, parts.system.size))
@@ -244,12 +244,12 @@ def test_mirror() -> None:
     np.testing.assert_allclose(two.eigenvalues[1:25], one.eigenvalues[1:25], rtol=1e-6)
 
 
-def compression(parts: Machine, q: FloatArray) -> FloatArray:
+def compression(parts: CoupledMachine, q: FloatArray) -> FloatArray:
     """Of the drive flanks and, where they are, of the back flanks [m]."""
     return np.array([contact.direction @ q - contact.clearance for contact in parts.system.contacts])
 
 
-def shaft_forces(parts: Machine, q: FloatArray) -> dict[str, FloatArray]:
+def shaft_forces(parts: CoupledMachine, q: FloatArray) -> dict[str, FloatArray]:
     """Resultant of each shaft's forces on its bearings, x and y [N]."""
     total = {rotor.name: np.zeros(2) for rotor in parts.rotors}
     for mounted, connector in zip(parts.bearings, parts.system.linear, strict=True):

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coupling import (
+    CoupledMachine,
     CouplingError,
     GearMesh,
-    Machine,
     MountedBearing,
     MountedGear,
     Torque,
@@ -36,7 +36,7 @@ def shaft() -> tuple[ModalRotor, list[Bearing]]:
     return modal_rotor(Rotor("", [Segment(0.25, 0.03, 0.0, STEEL)], []), held, count=3, gears_at=[0.125]), held
 
 
-def built(shaft: tuple[ModalRotor, list[Bearing]], **changes: Any) -> Machine:
+def built(shaft: tuple[ModalRotor, list[Bearing]], **changes: Any) -> CoupledMachine:
     """Two shafts with gears half way; a change to the speeds, the second axis, the second start or the torques."""
     pair = changes.get("pair", RIG)
     axis = changes.get("axis", (pair.working_centre_distance, 0.0))

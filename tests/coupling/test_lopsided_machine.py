@@ -16,10 +16,10 @@ from coupling import (
     BaseHistory,
     BaseMotion,
     BowReactions,
+    CoupledMachine,
     Drive,
     GearMesh,
     HousingComponent,
-    Machine,
     MountedBearing,
     MountedGear,
     ShaftDashpots,
@@ -106,7 +106,7 @@ def parts() -> tuple[tuple[object, ...], HousingComponent]:
     return tuple(found), plate
 
 
-def machine(speed: float = SPEED, unbalanced: tuple[str, ...] = SHAFTS) -> Machine:
+def machine(speed: float = SPEED, unbalanced: tuple[str, ...] = SHAFTS) -> CoupledMachine:
     """Coupled at a speed of the first shaft."""
     rotors, plate = parts()
     wheels = {

@@ -3,21 +3,21 @@
 import numpy as np
 import pytest
 
-from coupling import CouplingError, Machine, modal_rows
+from coupling import CoupledMachine, CouplingError, modal_rows
 from gearwhine.case import load_case
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
 
 
 @pytest.fixture(scope="module")
-def machine() -> Machine:
+def machine() -> CoupledMachine:
     """Two rotors on isotropic bearings, whose averaged stiffness is their own."""
     case = load_case("spur-pair").case
     return build_machine(case, None, solve_gears(case))
 
 
 @pytest.mark.parametrize("name", ["input", "output"])
-def test_rows_diagonalise_the_rotor_on_its_supports(machine: Machine, name: str) -> None:
+def test_rows_diagonalise_the_rotor_on_its_supports(machine: CoupledMachine, name: str) -> None:
     """In a plane, rotor and bearings have the stiffness diag(ω²) by these coordinates: they are its modes, in order."""
     rotor = next(part for part in machine.rotors if part.name == name)
     rows = modal_rows(machine, name)
@@ -30,7 +30,7 @@ def test_rows_diagonalise_the_rotor_on_its_supports(machine: Machine, name: str)
     assert rows.torsion @ machine.system.stiffness @ rows.torsion.T == pytest.approx(torsional, abs=1e-9)
 
 
-def test_unit_coordinates_move_the_shaft_by_the_mode_shapes(machine: Machine) -> None:
+def test_unit_coordinates_move_the_shaft_by_the_mode_shapes(machine: CoupledMachine) -> None:
     rotor = machine.rotors[0]
     rows = modal_rows(machine, rotor.name)
     shapes = rotor.modal.lateral.evaluate([0.03, 0.17])[0][: len(rows.x)]
@@ -43,6 +43,6 @@ def test_unit_coordinates_move_the_shaft_by_the_mode_shapes(machine: Machine) ->
     assert rows.torsion[:, own] @ rotor.rotation(0.17) == pytest.approx(turned)
 
 
-def test_an_unknown_rotor_is_named_with_those_there_are(machine: Machine) -> None:
+def test_an_unknown_rotor_is_named_with_those_there_are(machine: CoupledMachine) -> None:
     with pytest.raises(CouplingError, match=r"'outptu'; there are: input, output"):
         modal_rows(machine, "outptu")

@@ -9,11 +9,11 @@ import pytest
 
 from coupling import (
     Component,
+    CoupledMachine,
     CoupledSystem,
     CouplingError,
     GapLaw,
     LinearConnector,
-    Machine,
     MountedBearing,
     NonlinearConnector,
     PeriodicError,
@@ -221,7 +221,7 @@ STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 LOAD, SPEED = 500.0, 2.0 * math.pi * 25.0
 
 
-def machine(speed: float = SPEED) -> Machine:
+def machine(speed: float = SPEED) -> CoupledMachine:
     """A shaft with a disc, its weight on two deep-groove ball bearings with play."""
     state = rolling_equilibrium(DEEP, [0.0, -LOAD, 0.0, 0.0, 0.0], held={"z": 0.0, "rx": 0.0, "ry": 0.0})
     shaft = Rotor("shaft", [Segment(0.1, 0.04, 0.0, STEEL)] * 4, [Disc(0.2, 50.0, 0.5, 0.3)])

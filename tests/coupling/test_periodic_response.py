@@ -14,11 +14,11 @@ from scipy.linalg import expm
 from coupling import (
     Component,
     ContactConnector,
+    CoupledMachine,
     CoupledSystem,
     CouplingError,
     GearMesh,
     HarmonicLoad,
-    Machine,
     MountedBearing,
     MountedGear,
     Torque,
@@ -297,7 +297,7 @@ PAIR = GearPairGeometry(
 )
 
 
-def geared(torque: float, *, unbalance: float = 0.0, backlash: float | None = None) -> Machine:
+def geared(torque: float, *, unbalance: float = 0.0, backlash: float | None = None) -> CoupledMachine:
     """Two shafts on four bearings to ground, with teeth of rectangular stiffness."""
     rotors, bearings, gears = [], [], []
     for name, disc, x in (("input", 2.0, 0.0), ("output", 5.0, PAIR.working_centre_distance)):

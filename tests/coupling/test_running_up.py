@@ -7,10 +7,10 @@ import numpy.typing as npt
 import pytest
 
 from coupling import (
+    CoupledMachine,
     CouplingError,
     Drive,
     GearMesh,
-    Machine,
     MountedBearing,
     MountedGear,
     Torque,
@@ -45,7 +45,7 @@ SHAFTS = {
 STIFF = 3e8 * np.eye(2)
 
 
-def machine(speed: float, *, ends: tuple[float, float] = (0.0, LENGTH), **loads: object) -> Machine:
+def machine(speed: float, *, ends: tuple[float, float] = (0.0, LENGTH), **loads: object) -> CoupledMachine:
     """24 on 36 teeth of constant stiffness, on stiff bearings."""
     rotors, mounted = [], []
     for name, shaft in SHAFTS.items():
@@ -72,7 +72,9 @@ def balanced(torque: float) -> tuple[Torque, Torque]:
     return Torque("input", 0.0, torque), Torque("output", LENGTH, torque / RATIO)
 
 
-def marched(parts: Machine, turning: Turning | None, duration: float, record_from: float = 0.0) -> TransientResult:
+def marched(
+    parts: CoupledMachine, turning: Turning | None, duration: float, record_from: float = 0.0
+) -> TransientResult:
     settings = TransientSettings(duration, record_from, 1e-5, 2e-5, tolerance=1e-4)
     return simulate(parts.system, settings, transient_outputs(parts), turning=turning)
 
@@ -118,7 +120,7 @@ TABLE = np.array([50.0, 150.0, 400.0])
 BY_SPEED = np.array([1.0, 1.6, 1.9])[:, None, None] * 1e7 * np.eye(2)
 
 
-def on_tables(speed: float, rates: tuple[float, float]) -> Machine:
+def on_tables(speed: float, rates: tuple[float, float]) -> CoupledMachine:
     shaft = SHAFTS["input"]
     bearings = [Bearing(str(at), at, BY_SPEED, 1e-4 * BY_SPEED, TABLE) for at in (0.0, LENGTH)]
     modal = modal_rotor(shaft, [one.at_speed(speed) for one in bearings], count=2)

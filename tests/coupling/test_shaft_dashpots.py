@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from coupling import Machine, MountedBearing, ShaftDashpots, couple, coupled_modes, rotor_component
+from coupling import CoupledMachine, MountedBearing, ShaftDashpots, couple, coupled_modes, rotor_component
 from coupling.shaft_dashpots import shaft_dashpots
 from rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
@@ -14,7 +14,7 @@ TORSIONAL, AXIAL, LATERAL = 2e4, 1e7, 4e6
 INERTIA = (0.05, 0.03)
 
 
-def machine(speed: float = 0.0, polar: tuple[float, float] = INERTIA, **damping: float) -> Machine:
+def machine(speed: float = 0.0, polar: tuple[float, float] = INERTIA, **damping: float) -> CoupledMachine:
     """Two short thick shafts with a disc each and a soft coupling between them, on a bearing at either end."""
     shaft = Segment(0.1, 0.08, 0.0, STEEL)
     soft = Coupling(0.02, LATERAL, 1e5, TORSIONAL, AXIAL)

@@ -7,10 +7,10 @@ import numpy.typing as npt
 import pytest
 
 from coupling import (
+    CoupledMachine,
     CouplingError,
     ExcitationLine,
     GearMesh,
-    Machine,
     MountedBearing,
     MountedGear,
     couple,
@@ -54,7 +54,7 @@ TABLED = [
 ]
 
 
-def machine(bearings: list[Bearing], speed: float) -> Machine:
+def machine(bearings: list[Bearing], speed: float) -> CoupledMachine:
     held = [bearing.at_speed(abs(speed)) for bearing in bearings]
     lateral = solve_lateral_modes(SHAFT, [bearing.mean_support for bearing in held], count=12)
     lateral = attach_loads(lateral, forces_at=[0.0, 1.5], moments_at=(0.5, 1.0))
@@ -124,7 +124,7 @@ def test_likeness_is_one_and_nought_within_a_system() -> None:
     np.testing.assert_allclose(likeness(two(0.3, 0.2), two(0.3, 0.2)), np.eye(2), atol=1e-12)
 
 
-def geared(speed: float) -> Machine:
+def geared(speed: float) -> CoupledMachine:
     """Two short shafts on stiff bearings, 20 teeth driving 50."""
     wheels = [Gear("pinion", 20, 0.003, np.radians(20.0), face_width=0.02)]
     wheels.append(Gear("wheel", 50, 0.003, np.radians(20.0), face_width=0.02))

@@ -15,9 +15,9 @@ from scipy.integrate import solve_ivp
 from coupling import (
     Component,
     ContactConnector,
+    CoupledMachine,
     CoupledSystem,
     GearMesh,
-    Machine,
     MountedBearing,
     MountedGear,
     PeriodicError,
@@ -66,7 +66,7 @@ CONTACT = tooth_contact(PAIR, PotentialEnergyStiffness(), 1000.0)
 TORQUE, COEFFICIENT, SPEED = 80.0, 0.08, 300.0
 
 
-def machine(friction: float, *, sense: int = 1, psi: float = 0.4, backlash: float | None = None) -> Machine:
+def machine(friction: float, *, sense: int = 1, psi: float = 0.4, backlash: float | None = None) -> CoupledMachine:
     """Two short shafts on the ground, the driver turning in a sense, the line of centres at an angle psi."""
     axes = {"input": np.zeros(2), "output": PAIR.working_centre_distance * np.array([np.cos(psi), np.sin(psi)])}
     rotors, bearings, gears = [], [], []
@@ -276,7 +276,7 @@ def test_steps_are_of_second_order_through_the_pitch_points(damping: float) -> N
 # ------------------------------------------------------------------------------------------------- the whole machine
 
 
-def settled(parts: Machine, periods: int = 12) -> TransientResult:
+def settled(parts: CoupledMachine, periods: int = 12) -> TransientResult:
     period = 1.0 / parts.system.contacts[0].rate
     chosen = TransientSettings(periods * period, 0.0, period / 64, period / 16, tolerance=1e-3)
     return simulate(parts.system, chosen, transient_outputs(parts))

@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coupling import (
+    CoupledMachine,
     CouplingError,
     HousingComponent,
-    Machine,
     MountedBearing,
     Torque,
     couple,
@@ -44,12 +44,12 @@ def housing(seed: int = 2) -> HousingComponent:
 
 
 @pytest.fixture(scope="module")
-def grounded() -> Machine:
+def grounded() -> CoupledMachine:
     case = load_case("spur-pair").case
     return build_machine(case, None, solve_gears(case))
 
 
-def on_housing(machine: Machine, seed: int = 2) -> Machine:
+def on_housing(machine: CoupledMachine, seed: int = 2) -> CoupledMachine:
     """The machine with its bearings in seats of the housing."""
     seats = ("one", "two", "three", "four")
     return couple(
@@ -67,7 +67,7 @@ def on_housing(machine: Machine, seed: int = 2) -> Machine:
 
 @settings(max_examples=10, deadline=None)
 @given(st.integers(0, 1000), st.lists(st.floats(20.0, 4000.0), min_size=1, max_size=4))
-def test_bearings_and_modes_add_up_to_the_line(grounded: Machine, seed: int, hertz: list[float]) -> None:
+def test_bearings_and_modes_add_up_to_the_line(grounded: CoupledMachine, seed: int, hertz: list[float]) -> None:
     """The machine's response to a transmission error is solved whole; the paths know its bearing forces alone."""
     machine = on_housing(grounded, seed)
     w = 2.0 * np.pi * np.array(hertz)
@@ -91,7 +91,7 @@ def test_bearings_and_modes_add_up_to_the_line(grounded: Machine, seed: int, her
         np.testing.assert_allclose(paths.by_mode, recorded, rtol=1e-7, atol=1e-9 * np.abs(recorded).max())
 
 
-def test_paths_that_cannot_be_followed(grounded: Machine) -> None:
+def test_paths_that_cannot_be_followed(grounded: CoupledMachine) -> None:
     machine = on_housing(grounded)
     w = np.array([1000.0])
     with pytest.raises(CouplingError, match="no housing"):
@@ -105,7 +105,7 @@ def test_paths_that_cannot_be_followed(grounded: Machine) -> None:
         housing_paths(machine, w, forces).at("side")
 
 
-def test_modal_rows_are_recorded_after_the_others(grounded: Machine) -> None:
+def test_modal_rows_are_recorded_after_the_others(grounded: CoupledMachine) -> None:
     """Rows times a motion, by hand: the housing's coordinates themselves, and names of every rotor's modes."""
     machine = on_housing(grounded)
     plain = transient_outputs(machine)
@@ -133,7 +133,7 @@ def test_modal_rows_are_recorded_after_the_others(grounded: Machine) -> None:
     assert not modal_record(grounded, Record(), 0).coordinates
 
 
-def test_lines_are_named_after_what_excites_them(grounded: Machine) -> None:
+def test_lines_are_named_after_what_excites_them(grounded: CoupledMachine) -> None:
     machine = on_housing(grounded)
     modes = coupled_modes(machine.system)
     shafts = {name: abs(speed) / (2.0 * np.pi) for name, speed in machine.speeds.items()}

@@ -9,11 +9,11 @@ import pytest
 from coupling import (
     Component,
     ContactConnector,
+    CoupledMachine,
     CoupledSystem,
     CouplingError,
     GearMesh,
     HousingComponent,
-    Machine,
     MountedBearing,
     MountedGear,
     Unbalance,
@@ -48,7 +48,7 @@ STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 NO_ERRORS = np.empty((0, 3))
 
 
-def geared(speed: float, *, housing: bool = True, cross: float = 0.0) -> Machine:
+def geared(speed: float, *, housing: bool = True, cross: float = 0.0) -> CoupledMachine:
     """Two shafts with discs and gears; on a plate of four modes with two sensors, or on the ground."""
     wheels = [Gear(name, teeth, 0.003, np.radians(20.0), face_width=0.02) for name, teeth in (("p", 20), ("w", 50))]
     pair = GearPairGeometry(wheels[0], wheels[1])
@@ -100,7 +100,7 @@ def test_gear_pair_in_closed_form() -> None:
     parts = tuple(Component(name, ("torsion",), *np.zeros((3, 1, 1))) for name in ("a", "b"))
     system = CoupledSystem(parts, (0.0, 0.0), contacts=(ContactConnector("m", direction, law, 0.0, 0.0, NO_ERRORS),))
     pair = geared(1.0).meshes
-    bare = Machine((), None, (), pair, system)
+    bare = CoupledMachine((), None, (), pair, system)
     mass = 1.0 / np.sum(direction**2)
     modes = coupled_modes(system)
     w = resonance_grid(modes, 100.0, 1e5)

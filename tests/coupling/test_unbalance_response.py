@@ -5,7 +5,7 @@ import numpy.typing as npt
 import pytest
 
 from coupling import (
-    Machine,
+    CoupledMachine,
     MountedBearing,
     TransientError,
     TransientOutputs,
@@ -44,7 +44,9 @@ SPEED = 4000.0 * 2.0 * np.pi / 60.0
 UNBALANCE = Unbalance("shaft", 1.0, 1e-4, 0.6)
 
 
-def machine(stiffness: FloatArray, damping: FloatArray, speed: float, *, count: int = 4, free: bool = False) -> Machine:
+def machine(
+    stiffness: FloatArray, damping: FloatArray, speed: float, *, count: int = 4, free: bool = False
+) -> CoupledMachine:
     """The shaft on two equal grounded bearings, on a small basis."""
     bearings = [Bearing(name, at, stiffness, damping) for name, at in (("left", 0.0), ("right", LENGTH))]
     supports = [] if free else [bearing.mean_support for bearing in bearings]
@@ -56,12 +58,12 @@ def machine(stiffness: FloatArray, damping: FloatArray, speed: float, *, count: 
     return couple([rotor], None, speeds={"shaft": speed}, bearings=mounted, unbalances=[UNBALANCE])
 
 
-def disc_rows(parts: Machine) -> FloatArray:
+def disc_rows(parts: CoupledMachine) -> FloatArray:
     """x and y of the second disc."""
     return np.array([parts.rotors[0].direction(1.0, axis) for axis in (0, 1)])
 
 
-def oscillating(parts: Machine, count: int) -> FloatArray:
+def oscillating(parts: CoupledMachine, count: int) -> FloatArray:
     modes = coupled_modes(parts.system)
     return np.asarray(np.abs(modes.eigenvalues[np.abs(modes.eigenvalues) > 1.0])[:count])
 
@@ -154,7 +156,7 @@ def test_unbalance_in_the_steady_state(speed: float) -> None:
 CROSS = 1e5
 
 
-def rigid_on_cross_coupling(cross: float) -> Machine:
+def rigid_on_cross_coupling(cross: float) -> CoupledMachine:
     """A stiff symmetric rotor: λ² = -(k ∓ i k_c) 2/m in translation."""
     stiffness = np.array([[1e6, cross], [-cross, 1e6]])
     shaft = Rotor("stiff", [Segment(0.1, 0.1, 0.0, STEEL)] * 2)

@@ -27,7 +27,7 @@ def case_with(change: Change = lambda document: None, **keys: Any) -> Case:
     return parse_case(document)
 
 
-def machine_of(change: Change = lambda document: None) -> room.Machine:
+def machine_of(change: Change = lambda document: None) -> room.CoupledMachine:
     case = case_with(change)
     return build_machine(case, None, solve_gears(case))
 

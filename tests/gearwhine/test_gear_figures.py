@@ -237,10 +237,9 @@ def test_every_pair_has_its_files(tmp_path: Path) -> None:
     (solved,) = solve_gears(case)
     idle = replace(solved, static=room.static_transmission_error(solved.contact, 0.0))
     pairs = [
-        replace(
-            pair, solved=replace(pair.solved, given=solved.given.model_copy(update={"driver": name, "driven": "ö ö"}))
-        )
-        for name, pair in zip(("a/$b$", "A/$B$"), analyse_pairs(case, (solved, idle)), strict=True)
+        replace(pair, solved=replace(one, pair=replace(one.pair, driver=name, driven="ö ö")))
+        for name, one in (("a/$b$", solved), ("A/$B$", idle))
+        for pair in analyse_pairs(case, (one,))
     ]
     said: list[str] = []
 

@@ -22,7 +22,7 @@ from gearwhine.stages.steady import solve_steady, steady_document
 SHORT = (21, 30, 19, 56)  # 30 cycles of the first mesh are 19 of the second
 
 
-def machine_of(folder: Path, text: str) -> room.Machine:
+def machine_of(folder: Path, text: str) -> room.CoupledMachine:
     place = folder / "reducer.toml"
     place.write_text(text, encoding="utf-8")
     case = load_case(str(place), []).case
@@ -30,23 +30,23 @@ def machine_of(folder: Path, text: str) -> room.Machine:
 
 
 @pytest.fixture(scope="module")
-def machine(tmp_path_factory: pytest.TempPathFactory) -> room.Machine:
+def machine(tmp_path_factory: pytest.TempPathFactory) -> room.CoupledMachine:
     return machine_of(tmp_path_factory.mktemp("reducer"), reducer(SHORT))
 
 
 @pytest.fixture(scope="module")
-def whole(machine: room.Machine) -> room.PeriodicResponse:
+def whole(machine: room.CoupledMachine) -> room.PeriodicResponse:
     """The motion under both meshes over their common period."""
     return periodic_response(machine.system, tolerance=1e-5)
 
 
 @pytest.fixture(scope="module")
-def superposed(machine: room.Machine) -> room.SuperposedResponse:
+def superposed(machine: room.CoupledMachine) -> room.SuperposedResponse:
     return superposed_response(machine.system, room.excitation_groups(machine.system, longest=1.0), tolerance=1e-5)
 
 
 def test_lines_at_both_mesh_frequencies(
-    machine: room.Machine, whole: room.PeriodicResponse, superposed: room.SuperposedResponse
+    machine: room.CoupledMachine, whole: room.PeriodicResponse, superposed: room.SuperposedResponse
 ) -> None:
     """Three harmonics within 3 % of the motion over the common period, in the own mesh and in the other one.
 
@@ -73,7 +73,7 @@ def test_lines_at_both_mesh_frequencies(
 
 
 def test_what_is_neglected_is_the_difference_of_the_forces(
-    machine: room.Machine, whole: room.PeriodicResponse, superposed: room.SuperposedResponse
+    machine: room.CoupledMachine, whole: room.PeriodicResponse, superposed: room.SuperposedResponse
 ) -> None:
     """Its size is that by which the mesh forces of both motions differ: the machine's answer to it comes on top."""
     outputs, samples = room.transient_outputs(machine), 2**14
@@ -88,7 +88,7 @@ def test_what_is_neglected_is_the_difference_of_the_forces(
     assert different.max() > 0.3 * superposed.neglected_force[:2].max()
 
 
-def test_a_linear_machine_is_superposed_without_error(machine: room.Machine) -> None:
+def test_a_linear_machine_is_superposed_without_error(machine: room.CoupledMachine) -> None:
     """Constant mesh stiffness, runout in both meshes: the sum leaves nothing out."""
     law = ToothContact(1.0, piecewise.constant(2e8, 1.0), piecewise.constant(0.0, 1.0), damping=500.0)
     contacts = tuple(
@@ -117,7 +117,7 @@ def test_groups_of_hunting_teeth(tmp_path: Path) -> None:
     assert together.meshes == (0, 1)
 
 
-def test_a_mesh_without_torque_is_refused(machine: room.Machine) -> None:
+def test_a_mesh_without_torque_is_refused(machine: room.CoupledMachine) -> None:
     idle = replace(machine.system, load=np.zeros(machine.system.size))
     with pytest.raises(room.PeriodicError, match="carries no mean force"):
         superposed_response(idle)
@@ -154,7 +154,7 @@ def test_a_branch_of_superposed_motions_is_refused_at_once(tmp_path: Path) -> No
         solve_steady(case, machine, None, over_speed=True)
 
 
-def test_many_changes_of_contact_are_no_fault(machine: room.Machine) -> None:
+def test_many_changes_of_contact_are_no_fault(machine: room.CoupledMachine) -> None:
     """The march is made again with more room, whatever it began with."""
     ready = shooting.problem(machine.system)
     elements = ready.elements(0)

@@ -12,10 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coupling import (
+    CoupledMachine,
     GearMesh,
     Histories,
     HousingComponent,
-    Machine,
     MountedBearing,
     MountedGear,
     RotorComponent,
@@ -89,7 +89,7 @@ def plane_turn(angle: float) -> FloatArray:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-def machine(seed: int, sense: int, psi: float, *, turned: float = 0.0, unbalanced: bool = True) -> Machine:
+def machine(seed: int, sense: int, psi: float, *, turned: float = 0.0, unbalanced: bool = True) -> CoupledMachine:
     """The line of centres at an angle psi; everything turned about z by another."""
     rng, turn, geometry = np.random.default_rng(seed), plane_turn(turned), pair(turned)
     centre = rng.normal(0.0, 0.1, 2)
@@ -125,12 +125,12 @@ def settings_of(duration: float, tolerance: float) -> TransientSettings:
     return TransientSettings(duration, 0.0, 2e-5, 1e-4, tolerance=tolerance)
 
 
-def from_rest(of: Machine) -> tuple[FloatArray, FloatArray]:
+def from_rest(of: CoupledMachine) -> tuple[FloatArray, FloatArray]:
     """A free machine has no equilibrium: straight shafts and teeth that just touch, and the torque comes on at once."""
     return np.zeros(of.system.size), np.zeros(of.system.size)
 
 
-def whole_motions(of: Machine) -> FloatArray:
+def whole_motions(of: CoupledMachine) -> FloatArray:
     """Coordinates that move everything as one body along x, along y and about z, shape (3, n)."""
     axes = {gear.rotor: gear.axis for gear in (of.meshes[0].driver, of.meshes[0].driven)}
     coordinates = []
@@ -166,7 +166,7 @@ def test_momentum_of_a_free_machine(seed: int, sense: int, psi: float) -> None:
     np.testing.assert_allclose(momenta, expected, atol=1e-8 * np.abs(rows).max() * np.abs(rates).max())
 
 
-def moved(of: Machine) -> Histories:
+def moved(of: CoupledMachine) -> Histories:
     result = simulate(of.system, settings_of(0.005, 1e-5), transient_outputs(of), initial=from_rest(of))
     return histories(of, result)
 

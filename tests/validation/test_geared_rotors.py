@@ -19,9 +19,9 @@ import pytest
 from coupling import (
     Component,
     ContactConnector,
+    CoupledMachine,
     CoupledSystem,
     GearMesh,
-    Machine,
     MountedBearing,
     MountedGear,
     contact_at,
@@ -71,7 +71,9 @@ EIGHT_ELEMENTS = [
 ]
 
 
-def turbo_generator(sense: int = 1, centre_line: float = 0.0, lateral: float = 3e3, torsion: float = 2e4) -> Machine:
+def turbo_generator(
+    sense: int = 1, centre_line: float = 0.0, lateral: float = 3e3, torsion: float = 2e4
+) -> CoupledMachine:
     """The machine, its first shaft turning in a sense, with bases up to frequency limits [rad/s]."""
     spans = ([(0.1, 0.3), (4.24, 0.3), (1.16, 0.22), (0.3, 0.22)], [(0.3, 0.15), (5.0, 0.15), (0.1, 0.15)])
     discs = (
@@ -110,7 +112,7 @@ def turbo_generator(sense: int = 1, centre_line: float = 0.0, lateral: float = 3
     return couple(components, None, speeds=speeds, bearings=bearings, meshes=[mesh])
 
 
-def oscillating(machine: Machine) -> FloatArray:
+def oscillating(machine: CoupledMachine) -> FloatArray:
     """Frequencies [Hz] of all but the train's rotation, the lowest 13."""
     modes = coupled_modes(machine.system)
     assert modes.kinds.count("rigid") == 1

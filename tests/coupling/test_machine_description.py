@@ -1,0 +1,176 @@
+"""Machines described in Python: what follows from the parts, and the parts that make no machine."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
+from coupling.gear_train import GearedShafts, gear_train
+from coupling.gears import ConstantStiffness, Gear, GearError
+from coupling.gears.gear_pair import GearPair
+from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial
+
+STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
+MODULE, LENGTH = 3e-3, 0.25
+
+
+def gear(name: str, teeth: int, **more: Any) -> Gear:
+    return Gear(name, teeth, MODULE, math.radians(20.0), 12e-3, **more)
+
+
+def shaft(name: str, x: float, **more: Any) -> Shaft:
+    return Shaft(Rotor(name, [Segment(LENGTH, 0.03, 0.0, STEEL)]), (x, 0.0), mode_count=3, **more)
+
+
+def two_stages(**changes: Any) -> Machine:
+    """Teeth 20:40 and 25:30, so that three shafts turn at 1 : -1/2 : 5/12."""
+    distances = MODULE * 30.0, MODULE * 27.5
+    shafts = [shaft("fast", 0.0), shaft("middle", distances[0]), shaft("slow", sum(distances))]
+    held = [
+        MountedBearing(Bearing(f"{one.name} {at}", at, np.diag([1e8, 2e8]), np.zeros((2, 2))), one.name, None)
+        for one in shafts
+        for at in (0.0, LENGTH)
+    ]
+    parts: dict[str, Any] = {
+        "shafts": shafts,
+        "bearings": held,
+        "gears": [
+            ShaftGear(gear("a", 20), "fast", 0.1),
+            ShaftGear(gear("b", 40), "middle", 0.1),
+            ShaftGear(gear("c", 25), "middle", 0.16),
+            ShaftGear(gear("d", 30), "slow", 0.16),
+        ],
+        "gear_pairs": [
+            GearPair("a", "b", ConstantStiffness(2e8)),
+            GearPair("c", "d", ConstantStiffness(3e8), damping_ratio=0.02),
+        ],
+        "speed": 300.0,
+        "torque": 40.0,
+    }
+    return Machine(**parts | changes)
+
+
+def test_speeds_torques_and_mesh_frequencies_follow_from_the_teeth() -> None:
+    machine = two_stages()
+    assert machine.speeds == pytest.approx({"fast": 300.0, "middle": -150.0, "slow": 125.0}, rel=1e-15)
+    assert machine.mesh_frequencies == pytest.approx((20 * 300 / (2 * math.pi), 25 * 150 / (2 * math.pi)), rel=1e-15)
+    assert machine.pair_torques == pytest.approx((40.0, 80.0), rel=1e-12)
+    entering, leaving = machine.constant_torques
+    assert (entering.rotor, entering.at, entering.value) == ("fast", 0.0, 40.0)
+    assert (leaving.rotor, leaving.at) == ("slow", LENGTH)
+    assert leaving.value == pytest.approx(-40.0 * 12 / 5, rel=1e-12)  # against its turning, which is positive
+
+
+def test_the_assembled_machine_turns_and_loads_its_teeth_so() -> None:
+    machine = two_stages()
+    coupled = machine.assemble()
+    assert coupled.speeds == machine.speeds
+    assert [mesh.contact.damping > 0.0 for mesh in coupled.meshes] == [True, True]
+    # F R_b = T on each driver.
+    forces = [loaded.static.force for loaded in machine.loaded_pairs()]
+    radii = [MODULE * teeth / 2 * math.cos(math.radians(20.0)) for teeth in (20, 25)]
+    assert forces == pytest.approx([40.0 / radii[0], 80.0 / radii[1]], rel=1e-12)
+    assert (coupled_modes(coupled.system).frequencies_hz > 0.0).any()
+
+
+def test_the_mass_of_gears_is_on_their_shafts_once() -> None:
+    machine = two_stages()
+    bare = machine.shaft("middle").rotor
+    carried = sum(one.gear.mass for one in machine.gears if one.shaft == "middle")
+    assert machine.rotor("middle").mass == pytest.approx(bare.mass + carried, rel=1e-12)
+    on_a_disc = replace(machine.shafts[0], rotor=replace(machine.shafts[0].rotor, discs=[Disc(0.1, 5.0, 0.02, 0.01)]))
+    gears = [replace(machine.gears[0], inertia=(0.0, 0.0, 0.0)), *machine.gears[1:]]
+    other = two_stages(shafts=[on_a_disc, *machine.shafts[1:]], gears=gears)
+    assert other.rotor("fast").mass == pytest.approx(bare.mass + 5.0, rel=1e-12)
+
+
+def test_outputs_share_the_torque_as_they_say() -> None:
+    machine = two_stages(outputs=[Output("middle", 20.0, 0.2), Output("slow", 72.0)])
+    at_middle, at_slow = machine.constant_torques[1:]
+    assert (at_middle.rotor, at_middle.at) == ("middle", 0.2)
+    assert at_middle.value == pytest.approx(20.0, rel=1e-12)  # the shaft turns clockwise
+    assert at_slow.value == pytest.approx(-72.0, rel=1e-12)
+    assert machine.pair_torques == pytest.approx((40.0, 60.0), rel=1e-12)
+
+
+CHANGES: list[tuple[str, dict[str, Any], str]] = [
+    ("axes", {"shafts": [shaft("fast", 0.0), shaft("middle", 0.2), shaft("slow", 0.2825)]}, "lose contact|too far|200"),
+    ("idle shaft", {"gear_pairs": [GearPair("a", "b")]}, "no gear pair leads from shaft 'fast'.*'slow'"),
+    ("one shaft", {"gear_pairs": [GearPair("a", "b"), GearPair("b", "c")]}, "both gears are on shaft 'middle'"),
+    ("unknown gear", {"gear_pairs": [GearPair("a", "x")]}, "no gear 'x'; expected one of 'a', 'b', 'c', 'd'"),
+    ("output", {"outputs": [Output("slow", 10.0)]}, "expected outputs that balance the input torque of 40 N m"),
+    ("some torques", {"outputs": [Output("slow", 96.0), Output("middle")]}, "expected all or none"),
+    ("nowhere", {"outputs": [Output("x", 96.0)]}, "an output: no shaft 'x'"),
+    ("no shafts", {"shafts": []}, "a machine without shafts"),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), [case[1:] for case in CHANGES], ids=[case[0] for case in CHANGES])
+def test_what_cannot_be_a_machine_is_refused(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises((CouplingError, GearError), match=words):
+        two_stages(**changes)
+
+
+def test_gears_that_do_not_fit_each_other_are_refused() -> None:
+    machine = two_stages()
+    other = replace(machine.gears[1].gear, module=3.5e-3)
+    with pytest.raises(GearError, match="module"):
+        two_stages(gears=[machine.gears[0], replace(machine.gears[1], gear=other), *machine.gears[2:]])
+    with pytest.raises(CouplingError, match="60 mm apart along z; expected them in one plane"):
+        two_stages(gears=[machine.gears[0], replace(machine.gears[1], at=0.16), *machine.gears[2:]])
+
+
+def test_a_seat_without_a_housing_is_refused() -> None:
+    machine = two_stages()
+    seated = replace(machine.bearings[0], seat="front")
+    with pytest.raises(CouplingError, match="no seat 'front' in the housing; expected one of none, or None"):
+        two_stages(bearings=[seated, *machine.bearings[1:]])
+
+
+def test_a_loop_of_pairs_that_locks_is_refused() -> None:
+    third = GearPair("e", "f", ConstantStiffness(1e8))
+    machine = two_stages()
+    locking = [ShaftGear(gear("e", 20), "slow", 0.22), ShaftGear(gear("f", 35), "fast", 0.22)]
+    with pytest.raises(
+        CouplingError, match=r"'e' -> 'f' closes a loop that cannot turn: shaft 'fast' would turn at 1 "
+    ):
+        two_stages(gears=[*machine.gears, *locking], gear_pairs=[*machine.gear_pairs, third])
+
+
+def test_helical_thrust_needs_a_bearing_that_carries_it() -> None:
+    angle = math.radians(15.0)
+    distance = 30.0 * MODULE / math.cos(angle)
+    parts: dict[str, Any] = {
+        "shafts": [shaft("fast", 0.0), shaft("slow", distance)],
+        "gears": [
+            ShaftGear(gear("a", 20, helix_angle=angle), "fast", 0.1),
+            ShaftGear(gear("b", 40, helix_angle=-angle), "slow", 0.1),
+        ],
+        "gear_pairs": [GearPair("a", "b", ConstantStiffness(2e8))],
+        "speed": 300.0,
+        "torque": 40.0,
+    }
+    with pytest.raises(CouplingError, match="push it along its axis"):
+        Machine(**parts)
+    held = np.diag([1e8, 1e8, 5e7, 0.0, 0.0])
+    bearings = [
+        MountedBearing(Bearing(f"{name} {at}", at, held, np.zeros((5, 5))), name, None)
+        for name in ("fast", "slow")
+        for at in (0.0, LENGTH)
+    ]
+    assert Machine(**parts, bearings=bearings).pair_torques == pytest.approx((40.0,), rel=1e-12)
+
+
+@given(st.lists(st.tuples(st.integers(5, 200), st.integers(5, 200)), min_size=1, max_size=6), st.floats(-50.0, 50.0))
+def test_power_in_is_power_through_every_pair_of_a_chain(teeth: list[tuple[int, int]], torque: float) -> None:
+    train = gear_train(GearedShafts(str(i), str(i + 1), pair) for i, pair in enumerate(teeth))
+    last = train.output_shafts[0]
+    leaving = -torque / abs(float(train.ratios[last]))
+    carried = train.pair_torques({"0": torque, last: leaving})
+    powers = [one * abs(float(train.ratios[str(i)])) for i, one in enumerate(carried)]
+    assert powers == pytest.approx([torque] * len(teeth), rel=1e-9, abs=1e-9)
