@@ -9,14 +9,14 @@ its ports; by virtual work a force F along it adds F d to f.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError
-from housing import ModeSet
+from housing import HousingModes, ModeSet
 from rotors import ModalRotor, Pedestal
 
 FloatArray = npt.NDArray[np.float64]
@@ -70,12 +70,15 @@ class HousingComponent(Component):
     participation : ndarray, shape (n, 6), or None
         φᵀ M R of the rigid motions along and about x, y, z through the origin [√kg, √kg m]; needed where the base moves
         or there is weight.
+    seat_axes : mapping of str to tuple of float
+        x and y of each seat's centre [m], where they are known.
     """
 
     seats: Mapping[str, FloatArray]
     seat_z: Mapping[str, float]
     sensors: Mapping[str, FloatArray]
     participation: FloatArray | None = None
+    seat_axes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def seat_motions(self, seat: str, z: float) -> FloatArray:
         """A seat's rigid motion, taken at height z of the shaft [m]: x, y, z, rotations about x and y, shape (5, n)."""
@@ -160,6 +163,7 @@ def housing_component(
     sensors: Mapping[str, FloatArray],
     damping_matrix: FloatArray | None = None,
     participation: FloatArray | None = None,
+    seat_axes: Mapping[str, tuple[float, float]] | None = None,
     name: str = "housing",
 ) -> HousingComponent:
     """The housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
@@ -170,7 +174,7 @@ def housing_component(
         With m modes and, where it has attachments, k of them: n = m + k coordinates.
     damping_ratios : ndarray, shape (m,)
         Parts of critical. Attachments take the highest of them.
-    seats, seat_z, sensors, participation
+    seats, seat_z, sensors, participation, seat_axes
         See :class:`HousingComponent`; by :meth:`housing.ModeSet.project_all`.
     damping_matrix : ndarray, shape (n, n), optional
         Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
@@ -206,6 +210,23 @@ def housing_component(
         seat_z=seat_z,
         sensors=sensors,
         participation=participation,
+        seat_axes=seat_axes or {},
+    )
+
+
+def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingComponent:
+    """The housing from its natural modes, see :meth:`housing.Housing.modes`."""
+    seats = {seat.name: seat.center for seat in modes.housing.seats}
+    return housing_component(
+        modes.mode_set,
+        np.full(len(modes.mode_set.frequencies), modes.housing.damping_ratio),
+        seats=modes.seats,
+        seat_z={seat: center[2] for seat, center in seats.items()},
+        seat_axes={seat: center[:2] for seat, center in seats.items()},
+        sensors=modes.sensors,
+        damping_matrix=modes.damping_matrix,
+        participation=modes.participation,
+        name=name,
     )
 
 

@@ -14,9 +14,17 @@ import numpy.typing as npt
 
 from coupling.base_motion import BaseMotion
 from coupling.bearing_law import RollingLaw
-from coupling.component import HousingComponent, RotorComponent, rotor_component
+from coupling.component import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.errors import CouplingError
-from coupling.gear_train import GearedShafts, GearTrain, Output, gear_train, require_balanced_outputs, shared_torques
+from coupling.gear_train import (
+    LARGEST_OFFSET,
+    GearedShafts,
+    GearTrain,
+    Output,
+    gear_train,
+    require_balanced_outputs,
+    shared_torques,
+)
 from coupling.gears import Gear, GearPairGeometry
 from coupling.gears.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.loads import AnyTorque, BowReactions, Drive, Torque, Unbalance
@@ -24,6 +32,7 @@ from coupling.machine import CoupledMachine, couple
 from coupling.mounted import GearMesh, MountedBearing, MountedGear
 from coupling.shaft_dashpots import ShaftDashpots
 from coupling.thrust import ThrustPair, axial_forces, require_thrust_carried
+from housing import HousingModes
 from rotors import Bow, Coupling, Disc, Rotor, bow_shape, modal_rotor
 from rotors import Unbalance as ShaftUnbalance
 
@@ -150,7 +159,7 @@ class Machine:
         That drives the first driver's shaft [N m]; negative where it brakes.
     outputs : sequence of Output
         Shafts where the torque leaves; by default the shafts that drive no other, with equal power.
-    housing : HousingComponent, optional
+    housing : housing.HousingModes or HousingComponent, optional
     torque_at : float
         Where the torque comes in, from the left end of its shaft [m].
 
@@ -171,14 +180,19 @@ class Machine:
     speed: float = 0.0
     torque: float = 0.0
     outputs: Sequence[Output] = ()
-    housing: HousingComponent | None = None
+    housing: HousingComponent | HousingModes | None = None
     torque_at: float = 0.0
 
     def __post_init__(self) -> None:
-        _require_names(self)
+        _require_names(self, self.housing_component)
         _ = self.speeds, self.pair_geometries, self.constant_torques
         self._require_planes()
         self._require_thrust_carried()
+
+    @cached_property
+    def housing_component(self) -> HousingComponent | None:
+        """The housing as a component of the coupled system."""
+        return component_of_housing(self.housing) if isinstance(self.housing, HousingModes) else self.housing
 
     @cached_property
     def train(self) -> GearTrain:
@@ -319,7 +333,7 @@ class Machine:
         ]
         return couple(
             components,
-            self.housing,
+            self.housing_component,
             speeds=self.speeds,
             bearings=self.bearings,
             meshes=[self._mesh(pair) for pair in pairs],
@@ -371,7 +385,7 @@ class Machine:
             driver, driven = gears[pair.driver], gears[pair.driven]
             places = [self.shaft(one.shaft).start + one.at for one in (driver, driven)]
             apart, reach = abs(places[0] - places[1]), 0.5 * geometry.face_width
-            if apart > reach + 1e-6:
+            if apart > reach + LARGEST_OFFSET:
                 raise CouplingError(
                     f"{_label(pair)}: the gears are {1e3 * apart:.6g} mm apart along z; expected them in one plane, "
                     f"within half a face width, {1e3 * reach:.6g} mm"
@@ -426,7 +440,7 @@ def _label(pair: GearPair) -> str:
     return f"gear pair {pair.driver!r} -> {pair.driven!r}"
 
 
-def _require_names(machine: Machine) -> None:
+def _require_names(machine: Machine, housing: HousingComponent | None) -> None:
     """Refuse names given twice, and names of nothing."""
     kinds: Mapping[str, Sequence[str]] = {
         "shaft": [shaft.name for shaft in machine.shafts],
@@ -456,13 +470,22 @@ def _require_names(machine: Machine) -> None:
                 f"{_label(pair)}: both gears are on shaft {gear_shafts[pair.driver]!r}; expected the driven one on "
                 "another"
             )
-    seats = () if machine.housing is None else tuple(machine.housing.seats)
+    seats = () if housing is None else tuple(housing.seats)
     for mounted in machine.bearings:
         if mounted.seat is not None and mounted.seat not in seats:
             known = ", ".join(map(repr, seats)) or "none"
             raise CouplingError(
                 f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing; expected one of {known}, "
                 "or None for the ground"
+            )
+        if mounted.seat is None or housing is None or mounted.seat not in housing.seat_axes:
+            continue
+        centre, axis = housing.seat_axes[mounted.seat], machine.shaft(mounted.rotor).axis
+        offset = hypot(axis[0] - centre[0], axis[1] - centre[1])
+        if offset > LARGEST_OFFSET:
+            raise CouplingError(
+                f"bearing {mounted.bearing.name!r}: seat {mounted.seat!r} is {1e3 * offset:.6g} mm off the axis of "
+                f"shaft {mounted.rotor!r}; expected a seat on it"
             )
 
 

@@ -59,6 +59,7 @@ from housing.matrices import Matrices
 from housing.mesh_arrays import mesh_digest
 from housing.mode_file import read_modes, write_modes
 from housing.mode_record import ModeRecord, with_sensors
+from housing.model import RESPONSE_ORDERS, Housing, HousingModes, bearing_port, cover_joints
 from housing.modes import ModeSet, solve_modes
 from housing.node_blocks import Additions, NodeBlocks
 from housing.patches import Patch, patch_center, patch_matrix, point_matrix
@@ -74,6 +75,7 @@ from housing.survey import SURVEY_COUNTS, Survey, survey_grid
 __all__ = [
     "GLOBAL_AXES",
     "NO_INERTIA",
+    "RESPONSE_ORDERS",
     "SURVEY_COUNTS",
     "Additions",
     "Attachment",
@@ -92,7 +94,9 @@ __all__ = [
     "HealthError",
     "HealthLine",
     "HealthReport",
+    "Housing",
     "HousingError",
+    "HousingModes",
     "IncompleteModesError",
     "Joint",
     "LabelledArray",
@@ -124,10 +128,12 @@ __all__ = [
     "attach",
     "attach_ports",
     "axes_along",
+    "bearing_port",
     "bolted_joint",
     "compare_by_dominance",
     "compare_by_shapes",
     "content_key",
+    "cover_joints",
     "damping_ratios",
     "dominance",
     "effective_mass",

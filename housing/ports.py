@@ -29,10 +29,13 @@ class Seat:
         Its surface in the mesh.
     center : tuple of float
         The point whose translations x, y, z come first, followed by the rotations about x, y, z [m].
+    diameter : float, optional
+        Of the bore [m], by which the seat is found in a solid or a mesh that does not name its surface.
     """
 
     name: str
     center: tuple[float, float, float]
+    diameter: float | None = None
 
 
 @dataclass(frozen=True)

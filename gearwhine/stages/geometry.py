@@ -11,7 +11,7 @@ import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.box_shape import box_geometry
 from gearwhine.case.problems import UNSAID
-from meshes import UNITS, Bolt, GeometryError, Mesh, MeshSizeError, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
+from meshes import UNITS, GeometryError, Mesh, MeshSizeError, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
 
 
 def unheard(warning: str) -> None:
@@ -110,7 +110,7 @@ def cover_joints(case: Case) -> list[room.Joint]:
     box = box_geometry(given.box, given.seat)
     parts = material_of(case, given.material)
     own = material_of(case, given.box.cover.bolts.material or given.material)
-    return [_joint(bolt, parts, own, box.rim_width) for bolt in box.bolts]
+    return room.cover_joints(box, parts, own)
 
 
 def material_of(case: Case, name: str) -> room.Material:
@@ -127,13 +127,6 @@ def material_of(case: Case, name: str) -> room.Material:
         shown = f"{steel.shear_modulus:.5g} Pa"
         raise CaseError([Problem(f"material.{name}.shear_modulus", shown, f"{expected}, whose solids are isotropic")])
     return room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
-
-
-def _joint(bolt: Bolt, parts: room.Material, own: room.Material, rim: float) -> room.Joint:
-    outer = max(rim, bolt.patch_diameter)  # a narrow rim leaves the cone of pressure no more than its width
-    springs = room.bolted_joint(bolt.diameter, bolt.grip, parts, own, outer=outer).stiffness
-    first, second = room.Patch(bolt.body_surface), room.Patch(bolt.cover_surface)
-    return room.Joint(bolt.name, first, second, room.Bushing.along(bolt.axis, springs), bolt.position)
 
 
 def bolts_document(case: Case) -> list[dict[str, Any]]:

@@ -13,9 +13,9 @@ import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.problems import UNSAID
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.attachments import attach_all, check_places
+from gearwhine.stages.attachments import attach_all, build_attachments, check_places
 from gearwhine.stages.geometry import build_mesh
-from gearwhine.stages.housing_checks import ATTACHMENT_ORDERS, bearing_places, bearing_port, housing_checks
+from gearwhine.stages.housing_checks import bearing_places, housing_checks
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
 from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, told_on_failure, warnings_document
 from gearwhine.stages.regions import materials_of
@@ -51,8 +51,8 @@ class SolvedHousing:
     seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
         The seats' motions from the nodes'.
     loaded : dict of str to sparse array, shape (5, 3 n_nodes)
-        Motions of each place where the machine bears on the housing, see :func:`bearing_port`: the modes' attachments
-        are for these.
+        Motions of each place where the machine bears on the housing, see :func:`housing.bearing_port`: the modes'
+        attachments are for these.
     sensors : dict of str to housing.SensorPort
     survey : housing.Survey
     strengths : housing.Dominance or None
@@ -152,9 +152,9 @@ def solve_housing(
     with told_on_failure(warnings):
         # Places and ports before modes: what is wrong with them is found out before the long work.
         check_places(case, mesh)
-        seats = tuple(room.Seat(seat.name, seat.center) for seat in given.seat)
+        seats = _seats(case)
         seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
-        loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
+        loaded = {name: room.bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
         sensors = {
             entry.name: room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
             for entry in given.sensor
@@ -220,8 +220,8 @@ def _solve_modes(
     assert given is not None
     begin = time.perf_counter()
     progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
-    parted, material, materials = materials_of(case, mesh)
-    free = room.assemble(parted, material, materials)
+    described = describe_housing(case, mesh)
+    free = described.free_matrices()
     matrices = attach_all(case, mesh, free)
     assembled = time.perf_counter() - begin
     wanted = "modes" if given.frequency_limit is None else "frequency_limit"
@@ -231,7 +231,7 @@ def _solve_modes(
             frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
             count=given.modes,
             ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
-            port_orders=ATTACHMENT_ORDERS,
+            port_orders=room.RESPONSE_ORDERS,
             progress=progress,
         )
     except room.HousingError as error:
@@ -239,9 +239,31 @@ def _solve_modes(
     damping = room.modal_damping(modes, matrices) if matrices.damping.nnz else None
     progress("checking the housing against its geometry")
     begin = time.perf_counter()
-    checks = housing_checks(case, mesh, free, matrices, modes, room.mass_properties(parted, material, materials))
+    health = described.health(free, matrices, modes)
+    health.require()
+    checks = housing_checks(described, health, room.effective_mass(matrices, mesh.points, modes))
     seconds = {"assembly": assembled, **modes.seconds, "checks": time.perf_counter() - begin}
     return modes, matrices.total_mass, damping, checks, seconds
+
+
+def describe_housing(case: Case, mesh: Mesh) -> room.Housing:
+    """The housing of a case on its mesh as the library's description.
+
+    Raises
+    ------
+    CaseError
+        Where a region has no elements of its own.
+    housing.HousingError
+        As :class:`housing.Housing`.
+    """
+    parted, material, materials = materials_of(case, mesh)
+    fixtures = [fixture for _, _, fixture in build_attachments(case)]
+    return room.Housing(parted, material, materials, fixtures, _seats(case))
+
+
+def _seats(case: Case) -> tuple[room.Seat, ...]:
+    assert case.housing is not None
+    return tuple(room.Seat(seat.name, seat.center) for seat in case.housing.seat)
 
 
 def keep_modes(place: Path, solved: SolvedHousing) -> None:
@@ -255,8 +277,7 @@ def base_participation(case: Case, mesh: Mesh, modes: room.ModeSet) -> FloatArra
 
     φᵀ M R over every degree of freedom: what is fixed moves with the ground, and pulls by the consistent mass.
     """
-    parted, material, materials = materials_of(case, mesh)
-    mass = attach_all(case, mesh, room.assemble(parted, material, materials)).mass
+    mass = describe_housing(case, mesh).matrices().mass
     moved = mass @ room.rigid_motions(mesh.points, np.zeros(3)).reshape(-1, 6)
     return modes.project_all(sparse.csr_array(moved.T))
 

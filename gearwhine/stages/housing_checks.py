@@ -8,14 +8,10 @@ from scipy import sparse
 
 import housing as room
 from gearwhine.case import Case
-from gearwhine.stages.attachments import build_attachments
-from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
 DIRECTIONS = ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")
-# Responses of the discarded modes at each motion that a bearing loads: at rest, at the limit, and its derivative there.
-ATTACHMENT_ORDERS = 3
 SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
 
 _HERTZ = 2.0 * np.pi
@@ -36,62 +32,9 @@ def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
     return places or {name: (name, 0.0) for name in centers}
 
 
-def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
-    """A seat's motions x, y, z and rotations about x and y at a distance from its centre [m], shape (5, 3 n_nodes).
-
-    Any bearing can load these; none loads the rotation about z, in which the shaft turns.
-    """
-    # A rotation about y moves a point above the centre towards +x, one about x towards -y.
-    turned = sparse.diags_array([arm, -arm], dtype=np.float64) @ seat[[4, 3]]
-    return sparse.csr_array(sparse.vstack([seat[[0, 1]] + turned, seat[[2, 3, 4]]]))
-
-
-def housing_checks(
-    case: Case,
-    mesh: Mesh,
-    bare: room.Matrices,
-    whole: room.Matrices,
-    modes: room.ModeSet,
-    solid: room.MassProperties,
-) -> dict[str, Any]:
-    """Health report, effective masses and the solid's mass, for the documents and for whatever keeps the modes.
-
-    Parameters
-    ----------
-    case : Case
-    mesh : Mesh
-    bare, whole : housing.Matrices
-        Of the solid alone, and with all that is fastened to it.
-    modes : housing.ModeSet
-        Of the latter.
-    solid : housing.MassProperties
-        Of the solid, from its elements.
-
-    Raises
-    ------
-    housing.HealthError
-        Where the model fails a check without which its numbers are wrong.
-    """
-    assert case.housing is not None
-    mass, center = solid.mass, solid.center
-    if not case.housing.region:
-        # Of one material, what its boundary encloses says the same without any of the elements inside.
-        volume, center = room.enclosed(mesh)
-        mass = case.material[case.housing.material].density * volume
-    fastened = sum(entry.mass for entry in case.housing.mass)
-    grounds = [one for _, _, one in build_attachments(case) if isinstance(one, room.Support | room.Mount)]
-    health = room.health_report(
-        mesh,
-        bare,
-        whole,
-        grounds,
-        modes,
-        mass=mass + fastened,
-        # The centre of what is fastened is not the geometry's to know.
-        center=None if fastened else center,
-    )
-    health.require()
-    masses = room.effective_mass(whole, mesh.points, modes)
+def housing_checks(given: room.Housing, health: room.HealthReport, masses: room.EffectiveMass) -> dict[str, Any]:
+    """Health report, effective masses and the solid's mass, for the documents and for whatever keeps the modes."""
+    solid = room.mass_properties(given.mesh, given.material, given.materials)
     return {
         "health": _health_document(health),
         "effective_mass": _mass_document(masses),

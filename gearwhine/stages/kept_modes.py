@@ -15,7 +15,7 @@ import housing as room
 import meshes
 from gearwhine.case import Case
 from gearwhine.stages.contents import file_contents, installed, source_digest, texts_in, with_contents
-from gearwhine.stages.housing_checks import ATTACHMENT_ORDERS, bearing_places
+from gearwhine.stages.housing_checks import bearing_places
 
 MODES_FILE = "modes.nc"
 
@@ -46,7 +46,7 @@ def solution_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, An
     return {
         "housing": with_contents(written, files),
         "bearings": bearings,
-        "attachment_orders": ATTACHMENT_ORDERS,
+        "attachment_orders": room.RESPONSE_ORDERS,
         "material": {name: one.model_dump(mode="json") for name, one in case.material.items() if name in named},
         "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
         "source": source_digest(meshes, room, gearwhine),

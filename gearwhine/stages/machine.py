@@ -19,9 +19,8 @@ from gearwhine.stages.build import build_gear, build_shaft, gear_inertia
 from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import build_pair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, base_participation, solve_housing
-from gearwhine.stages.housing_checks import ATTACHMENT_ORDERS
 from gearwhine.stages.rotor_loads import given_bow
-from housing import ModeSet, leading_attachments
+from housing import RESPONSE_ORDERS, ModeSet, leading_attachments
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -258,7 +257,7 @@ def _housing_components(
     if attached is None or not solved.loaded:
         return component, None
     ports = sparse.csr_array(sparse.vstack(list(solved.loaded.values()), format="csr"))
-    fewer, mixture = leading_attachments(attached, ports, solved.modes.certificate.limit**2, ATTACHMENT_ORDERS - 1)
+    fewer, mixture = leading_attachments(attached, ports, solved.modes.certificate.limit**2, RESPONSE_ORDERS - 1)
     taken = linalg.block_diag(np.eye(len(solved.modes.frequencies)), mixture)
     return component, _housing_component(
         case,
@@ -278,6 +277,7 @@ def _housing_component(
         solved.damping_ratios,
         seats={name: modes.project_all(port) for name, port in solved.seat_ports.items()},
         seat_z={seat.name: seat.center[2] for seat in case.housing.seat},
+        seat_axes={seat.name: seat.center[:2] for seat in case.housing.seat},
         damping_matrix=damping,
         sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
         participation=participation,

@@ -1,0 +1,101 @@
+"""A housing described whole: its supports cannot be left out, and a mesh that is none is refused."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from housing import Housing, HousingError, Joint, LumpedMass, Material, Patch, Seat, Sensor, Support
+from housing.bushings import Bushing
+from meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
+from meshes.box import Bore, WallThickness
+
+STEEL = Material(207e9, 0.3, 7850.0)
+FOOT = Support("floor", surface="bottom", fixed=(True, True, True))
+BOX = BoxGeometry(
+    (0.2, 0.15, 0.18),
+    WallThickness(0.02, 0.02, 0.02, 0.02, 0.02, 0.02),
+    (Bore("front bearing", (0.0, 0.075, 0.09), 0.05), Bore("back bearing", (0.0, 0.075, -0.09), 0.05)),
+)
+
+
+@pytest.fixture(scope="module")
+def box() -> Housing:
+    sensors = [Sensor("top", (0.0, 0.15, 0.0))]
+    return Housing.from_box(BOX, 0.04, STEEL, fixtures=[FOOT], sensors=sensors, damping_ratio=0.02)
+
+
+def test_a_clamped_housing_cannot_come_out_free(box: Housing) -> None:
+    """Without its support the same solid has six rigid modes; described with it, none is lost on the way."""
+    free = replace(box, fixtures=()).modes(count=8)
+    assert (free.frequencies_hz[:6] == 0.0).all()
+    assert free.frequencies_hz[6] > 100.0
+    held = box.modes(count=2)
+    assert (held.frequencies_hz > 100.0).all()
+    assert held.mode_set.certificate.complete
+    assert held.health.ok
+
+
+def test_modes_carry_what_a_machine_takes_of_them(box: Housing) -> None:
+    found = box.modes(count=3, bearings={"near the front": ("front bearing", 0.01)})
+    n = len(found.frequencies_hz) + len(found.mode_set.attachments.frequencies if found.mode_set.attachments else ())
+    assert set(found.seats) == {"front bearing", "back bearing"}
+    assert found.seats["front bearing"].shape == (n, 6)
+    assert found.sensors["top"].shape == (n,)
+    assert found.damping_ratios == pytest.approx([0.02] * 3)
+    # What is fixed moves with the ground: Σ (φᵀ M R)² → the whole mass from below, as modes are added.
+    mass = box.matrices().total_mass
+    captured = float((found.participation[:3, 0] ** 2).sum())
+    assert 0.0 < captured < mass
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"seats": [Seat("a", (0, 0, 0)), Seat("a", (0, 0, 0))]}, "seat 'a' is given 2 times"),
+        ({"fixtures": [FOOT, FOOT]}, "fixture 'floor' is given 2 times"),
+        ({"sensors": [Sensor("s", (0, 0, 0))] * 3}, "sensor 's' is given 3 times"),
+        ({"materials": {"rib": STEEL}}, "no volume 'rib' in the mesh; expected one of 'housing'"),
+        ({"damping_ratio": 1.5}, "a damping ratio of 1.5"),
+    ],
+)
+def test_what_is_no_housing_is_refused(box: Housing, changes: dict[str, Sequence[object]], words: str) -> None:
+    with pytest.raises(HousingError, match=words):
+        replace(box, **changes)
+
+
+def test_a_fixture_without_a_place_is_refused_before_the_eigensolver(box: Housing) -> None:
+    lost = Support("nowhere", box=((1.0, 1.0, 1.0), (2.0, 2.0, 2.0)), fixed=(True, True, True))
+    with pytest.raises(ValueError, match=r"no surface|no facet"):
+        replace(box, fixtures=[lost]).modes(count=1)
+    with pytest.raises(HousingError, match="bearing 'x': no seat 'y' in the housing; expected one of 'front bearing'"):
+        box.modes(count=1, bearings={"x": ("y", 0.0)})
+
+
+def two_bodies() -> Mesh:
+    one = mesh_box(BoxGeometry((0.1, 0.1, 0.1), WallThickness(*[0.02] * 6)), 0.05, order=1)
+    shift = np.array([0.2, 0.0, 0.0])
+    blocks = [ElementBlock(block.kind, np.vstack([block.nodes, block.nodes + len(one.points)])) for block in one.blocks]
+    return Mesh(np.vstack([one.points, one.points + shift]), tuple(blocks))
+
+
+def test_loose_bodies_are_refused_unless_a_joint_connects_them() -> None:
+    mesh = two_bodies()
+    with pytest.raises(HousingError, match="disconnected: the mesh falls into 2 bodies"):
+        Housing(mesh, STEEL).modes(count=1)
+    ends = (
+        Patch(circle=((0.05, 0.05, 0.0), (1.0, 0.0, 0.0), 0.08)),
+        Patch(circle=((0.15, 0.05, 0.0), (-1.0, 0.0, 0.0), 0.08)),
+    )
+    stiff = Bushing((1e9,) * 3 + (1e6,) * 3, (0.0,) * 6)
+    joined = Housing(mesh, STEEL, fixtures=[Joint("bolt", *ends, stiff)])
+    found = joined.modes(count=7)
+    assert (found.frequencies_hz[:6] == 0.0).all()  # one free body, not two
+    assert found.frequencies_hz[6] > 0.0
+
+
+def test_lumped_masses_count_once(box: Housing) -> None:
+    heavier = replace(box, fixtures=[FOOT, LumpedMass("motor", 5.0, position=(0.0, 0.15, 0.0))])
+    assert heavier.matrices().total_mass == pytest.approx(box.matrices().total_mass + 5.0, rel=1e-9)
+    assert heavier.modes(count=1).frequencies_hz[0] < box.modes(count=1).frequencies_hz[0]
