@@ -324,9 +324,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="a folder for all files; otherwise only names of faults are told")
     given = parser.parse_args()
-    import gearwhine.work.machine  # what children share
+    import gearwhine.analyses.machine  # what children share
 
-    assert gearwhine.work.machine
+    assert gearwhine.analyses.machine
     faults, ends, slowest = 0, Counter[tuple[str, int]](), 0.0
     with tempfile.TemporaryDirectory(prefix="gearwhine-fuzz-") as name:
         folder = given.keep or Path(name)

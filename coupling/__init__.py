@@ -51,6 +51,7 @@ from coupling.march_run import Checkpoint, sample_times
 from coupling.marching import Block, march_blocks, march_key
 from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_rows, with_modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
+from coupling.motion import Motion
 from coupling.mounted import GearMesh, MountedBearing, MountedGear
 from coupling.periodic import (
     LONGEST_COMMON_PERIOD,
@@ -140,6 +141,7 @@ __all__ = [
     "ModeShares",
     "ModesCertificate",
     "ModesError",
+    "Motion",
     "MountedBearing",
     "MountedGear",
     "NonlinearConnector",

@@ -27,11 +27,15 @@ from coupling.gear_train import (
 )
 from coupling.gears import Gear, GearPairGeometry
 from coupling.gears.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from coupling.histories import histories, transient_outputs
 from coupling.loads import AnyTorque, BowReactions, Drive, Torque, Unbalance
 from coupling.machine import CoupledMachine, couple
+from coupling.motion import Motion
 from coupling.mounted import GearMesh, MountedBearing, MountedGear
+from coupling.settings import TransientSettings
 from coupling.shaft_dashpots import ShaftDashpots
 from coupling.thrust import ThrustPair, axial_forces, require_thrust_carried
+from coupling.transient import simulate
 from housing import HousingModes
 from rotors import Bow, Coupling, Disc, Rotor, bow_shape, modal_rotor
 from rotors import Unbalance as ShaftUnbalance
@@ -350,6 +354,51 @@ class Machine:
             gravity=driving.gravity,
             dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
         )
+
+    def simulate(
+        self,
+        revolutions: int,
+        discard: int,
+        *,
+        points_per_revolution: int = 1024,
+        tolerance: float = 5e-4,
+        driving: Driving = CONSTANT,
+    ) -> Motion:
+        """March the machine from its static equilibrium, by Newmark's method with steps that adapt.
+
+        Parameters
+        ----------
+        revolutions : int
+            Of the first driver.
+        discard : int
+            Revolutions before the record begins.
+        points_per_revolution : int
+            Samples of the record, and the largest step.
+        tolerance : float
+            Of the local error of a step, see :class:`coupling.TransientSettings`.
+        driving : Driving
+            Torques that vary, motion of the base, gravity.
+
+        Raises
+        ------
+        CouplingError
+            Where the machine stands still.
+        TransientError
+            Where the motion cannot be followed or its energies do not balance.
+        """
+        if self.speed == 0.0:
+            raise CouplingError("a machine that stands still has no revolutions; expected a speed")
+        period = 2.0 * np.pi / abs(self.speed)
+        coupled = self.assemble(driving=driving)
+        settings = TransientSettings(
+            duration=revolutions * period,
+            record_from=discard * period,
+            sample_interval=period / points_per_revolution,
+            largest_step=period / points_per_revolution,
+            tolerance=tolerance,
+        )
+        result = simulate(coupled.system, settings, transient_outputs(coupled))
+        return Motion(coupled, result, histories(coupled, result))
 
     def _require_thrust_carried(self) -> None:
         """Refuse helical gears that push a shaft which no bearing holds along its axis.

@@ -1,6 +1,7 @@
 """What a transient or a periodic response tells, under the names of sensors, gears, bearings and gear pairs."""
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple, Protocol
 
@@ -110,6 +111,114 @@ class Histories:
 
 
 _GROUPS = tuple(one.name for one in fields(Histories) if one.name not in ("times", "tie_axes"))
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One quantity of a record, declared once: every file, table and figure reads this.
+
+    Attributes
+    ----------
+    name : str
+        Of the variable.
+    dimensions : tuple of str
+        The signals' own first, then ``time``.
+    of : callable
+        Takes the values of each signal by its name out of a record, time along their first axis.
+    unit : str
+    what : str
+        Long name.
+    """
+
+    name: str
+    dimensions: tuple[str, ...]
+    of: Callable[[Any], Mapping[str, FloatArray]]
+    unit: str
+    what: str
+
+    def coordinates(self, signals: Sequence[str]) -> dict[str, tuple[Any, Any, dict[str, Any]]]:
+        """Labels along the dimensions: the names of the signals, and x and y."""
+        found: dict[str, tuple[Any, Any, dict[str, Any]]] = {
+            self.dimensions[0]: (self.dimensions[0], list(signals), {})
+        }
+        for axis in ("axis", "moment_axis"):
+            if axis in self.dimensions:
+                found[axis] = (axis, ["x", "y"], {})
+        return found
+
+
+HISTORY_QUANTITIES = (
+    Quantity(
+        "sensor_acceleration",
+        ("sensor", "time"),
+        lambda found: found.sensor_acceleration,
+        "m/s2",
+        "acceleration along the sensor",
+    ),
+    Quantity(
+        "bearing_force",
+        ("bearing", "time", "axis"),
+        lambda found: found.bearing_force,
+        "N",
+        "force of the shaft on its bearing",
+    ),
+    Quantity(
+        "bearing_axial_force",
+        ("bearing", "time"),
+        lambda found: {name: load[:, 2] for name, load in found.bearing_load.items()},
+        "N",
+        "force of the shaft on its bearing along z",
+    ),
+    Quantity(
+        "bearing_moment",
+        ("bearing", "time", "moment_axis"),
+        lambda found: {name: load[:, 3:] for name, load in found.bearing_load.items()},
+        "N m",
+        "moment of the shaft on its bearing about x and y",
+    ),
+    Quantity(
+        "mesh_force",
+        ("contact", "time"),
+        lambda found: found.mesh_force,
+        "N",
+        "gear-mesh force along the line of action",
+    ),
+    Quantity(
+        "mesh_compression",
+        ("contact", "time"),
+        lambda found: found.mesh_compression,
+        "m",
+        "compression of the mesh along the line of action",
+    ),
+    Quantity(
+        "friction_force",
+        ("friction_contact", "time"),
+        lambda found: {name: friction[:, 0] for name, friction in found.mesh_friction.items()},
+        "N",
+        "friction between the teeth, across the line of action",
+    ),
+    Quantity(
+        "friction_power",
+        ("friction_contact", "time"),
+        lambda found: {name: friction[:, 1] for name, friction in found.mesh_friction.items()},
+        "W",
+        "power that friction between the teeth takes from the nominal rotation",
+    ),
+    Quantity(
+        "gear_displacement",
+        ("gear", "time", "axis"),
+        lambda found: {name: motion[:, :2] for name, motion in found.gear_motion.items()},
+        "m",
+        "motion of the gear's centre",
+    ),
+    Quantity(
+        "gear_rotation",
+        ("gear", "time"),
+        lambda found: {name: motion[:, 2] for name, motion in found.gear_motion.items()},
+        "rad",
+        "rotation of the gear beside the steady one",
+    ),
+)
 
 
 def transient_outputs(machine: CoupledMachine) -> TransientOutputs:

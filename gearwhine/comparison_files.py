@@ -1,15 +1,22 @@
 """What a comparison of modes leaves in the output folder: tables as CSV, and its pictures."""
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.case import Case
+from gearwhine.results import LabelledArrays, file_attributes
 from gearwhine.stages.response_comparison import ResponseLikeness
 from housing import Comparison, ShapeCorrelation
 from housing.measured import MeasuredGeometry
+from housing.netcdf import Variables
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -41,39 +48,77 @@ def write_comparison(folder: Path, comparison: Comparison, geometry: MeasuredGeo
     return files
 
 
-def draw_comparison_pictures(
-    folder: Path,
+def comparison_arrays(case: Case, comparison: Comparison) -> LabelledArrays:
+    """Pairs of measured and model modes as labelled arrays; with shapes also the MAC matrix and COMAC."""
+    pairs, shapes = comparison.pairs, comparison.shapes
+    variables: Variables = {
+        "measured_frequency": ("pair", [pair.measured / _HERTZ for pair in pairs], _unit("Hz", "measured frequency")),
+        "model_frequency": ("pair", [pair.model / _HERTZ for pair in pairs], _unit("Hz", "frequency of the model")),
+        "frequency_error": (
+            "pair",
+            [pair.error_percent for pair in pairs],
+            _unit("percent", "error of the model's frequency"),
+        ),
+        "measured_mode": ("pair", [pair.measured_mode for pair in pairs], _unit("1", "number of the measured mode")),
+        "model_mode": ("pair", [pair.mode for pair in pairs], _unit("1", "number of the housing mode")),
+    }
+    coordinates: Variables = {}
+    if shapes is not None:
+        coordinates["measured"] = (
+            "measured",
+            np.arange(1, 1 + len(shapes.measured_frequencies)),
+            _unit("1", "number of the measured mode"),
+        )
+        coordinates["housing_mode"] = (
+            "housing_mode",
+            np.arange(1, 1 + len(shapes.model_frequencies)),
+            _unit("1", "number of the housing mode"),
+        )
+        variables["mac"] = (("housing_mode", "measured"), shapes.mac, _unit("1", "modal assurance criterion"))
+        if shapes.comac is not None:
+            variables["comac"] = (
+                "degree_of_freedom",
+                shapes.comac,
+                _unit("1", "coordinate modal assurance criterion"),
+            )
+    return LabelledArrays(variables, coordinates, file_attributes(case))
+
+
+def _unit(unit: str, what: str) -> dict[str, str]:
+    return {"units": unit, "long_name": what}
+
+
+def draw_comparison_figures(
     title: str,
     comparison: Comparison,
     model_frequencies: FloatArray,
     geometry: MeasuredGeometry | None = None,
-) -> list[str]:
-    """Draw ``comparison.png``; with shapes also the matrices, and COMAC at each point.
+) -> "Iterator[tuple[str, Figure]]":
+    """Draw measured and model modes beside each other; with shapes also the matrices, and COMAC at each point.
 
     Parameters
     ----------
-    folder, comparison, geometry
-        See :func:`write_comparison`.
     title : str
         Of the case.
+    comparison, geometry
+        See :func:`write_comparison`.
     model_frequencies : ndarray, shape (n,)
         Of all the model's modes [rad/s].
 
-    Returns
-    -------
-    list of str
-        The files' names: ``mac.png`` with shapes, ``auto-mac.png`` of the measured ones, ``cross-orthogonality.png``
-        where the survey allows it, ``comac.png`` where there are pairs.
+    Yields
+    ------
+    str
+        Name of the figure: ``comparison``; ``mac`` with shapes, ``auto-mac`` of the measured ones,
+        ``cross-orthogonality`` where the survey allows it, ``comac`` where there are pairs.
+    matplotlib.figure.Figure
     """
-    from gearwhine.figures import draw_comparison, save
+    from gearwhine.figures import draw_comparison
 
-    figure = draw_comparison(f"Measured and model modes: {title}", comparison, model_frequencies)
-    files, shapes = [save(figure, folder / "comparison.png")], comparison.shapes
-    if shapes is not None:
-        files += _draw_matrices(folder, title, comparison, shapes)
-        if shapes.comac is not None:
-            files.append(_draw_coordinates(folder, title, shapes, geometry))
-    return files
+    yield "comparison", draw_comparison(f"Measured and model modes: {title}", comparison, model_frequencies)
+    if comparison.shapes is not None:
+        yield from _draw_matrices(title, comparison, comparison.shapes)
+        if comparison.shapes.comac is not None:
+            yield "comac", _draw_coordinates(title, comparison.shapes, geometry)
 
 
 def write_likeness(folder: Path, likeness: ResponseLikeness) -> str:
@@ -132,28 +177,27 @@ def _write_mac(folder: Path, shapes: ShapeCorrelation) -> str:
     return "mac.csv"
 
 
-def _draw_matrices(folder: Path, title: str, comparison: Comparison, shapes: ShapeCorrelation) -> list[str]:
-    from gearwhine.figures import draw_mac_matrix, save
+def _draw_matrices(title: str, comparison: Comparison, shapes: ShapeCorrelation) -> "Iterator[tuple[str, Figure]]":
+    from gearwhine.figures import draw_mac_matrix
 
     model, measured = shapes.model_frequencies / _HERTZ, shapes.measured_frequencies / _HERTZ
     paired = {pair.mode - 1: pair.measured_mode - 1 for pair in comparison.pairs}
     near = (model >= 0.9 * measured[0]) & (model <= 1.1 * measured[-1])
     shown = [int(mode) for mode in range(len(model)) if near[mode] or mode in paired]
     columns = _names(range(len(measured)), measured)
-    files = []
     if shown:
         outlined = [(row, paired[mode]) for row, mode in enumerate(shown) if mode in paired]
         note = "pairs outlined; close modes are paired by their span, not by the single values"
         figure = draw_mac_matrix(
             f"MAC: {title}", shapes.mac[shown], _names(shown, model), columns, outlined=outlined, note=note
         )
-        files.append(save(figure, folder / "mac.png"))
+        yield "mac", figure
     note = "large values off the diagonal: modes found twice, or that the survey cannot tell apart"
     named = ("measured mode", "measured mode")
     figure = draw_mac_matrix(
         f"Auto-MAC of the test: {title}", shapes.measured_auto_mac, columns, columns, axes_named=named, note=note
     )
-    files.append(save(figure, folder / "auto-mac.png"))
+    yield "auto-mac", figure
     if shapes.cross_orthogonality is not None:
         modes = [number - 1 for number in shapes.orthogonality_modes]
         note = "in the model's mass, reduced to the survey by SEREP; squares of a column add up to 1"
@@ -167,8 +211,7 @@ def _draw_matrices(folder: Path, title: str, comparison: Comparison, shapes: Sha
             named="cross-orthogonality",
             note=note,
         )
-        files.append(save(figure, folder / "cross-orthogonality.png"))
-    return files
+        yield "cross-orthogonality", figure
 
 
 def _write_coordinates(folder: Path, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None) -> str:
@@ -183,14 +226,13 @@ def _write_coordinates(folder: Path, shapes: ShapeCorrelation, geometry: Measure
     return "comac.csv"
 
 
-def _draw_coordinates(folder: Path, title: str, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None) -> str:
-    from gearwhine.figures import draw_coordinate_criteria, save
+def _draw_coordinates(title: str, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None) -> "Figure":
+    from gearwhine.figures import draw_coordinate_criteria
 
     assert shapes.comac is not None
     assert shapes.enhanced_comac is not None
     names = _coordinate_names(len(shapes.comac), geometry)
-    figure = draw_coordinate_criteria(f"Where shapes differ: {title}", shapes.comac, shapes.enhanced_comac, names)
-    return save(figure, folder / "comac.png")
+    return draw_coordinate_criteria(f"Where shapes differ: {title}", shapes.comac, shapes.enhanced_comac, names)
 
 
 def _coordinate_names(count: int, geometry: MeasuredGeometry | None) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,8 @@ from gearwhine.case import Case, dump_case
 from housing.netcdf import Variables, write_netcdf
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from gearwhine.stages.gear_analysis import PairAnalysis
     from gearwhine.stages.housing import SolvedHousing
     from gearwhine.stages.rotors import SolvedRotor
@@ -27,19 +30,57 @@ FloatArray = npt.NDArray[np.float64]
 _HERTZ = 2.0 * np.pi
 
 
-def write(
-    path: Path,
+@dataclass(frozen=True)
+class LabelledArrays:
+    """What an analysis found, as arrays with dimensions, units and long names.
+
+    Attributes
+    ----------
+    variables, coordinates : mapping of str to (dimensions, values, attributes)
+    attributes : mapping of str to str
+        Of the whole.
+    transient : SolvedTransient or None
+        Whose histories belong to it; they are written piece by piece.
+    """
+
+    variables: Variables
+    coordinates: Variables
+    attributes: dict[str, str]
+    transient: SolvedTransient | None = None
+
+    def write(self, path: Path) -> None:
+        """Write a NetCDF4 file that any tool opens."""
+        write_netcdf(path, self.variables, self.attributes, coordinates=self.coordinates)
+        if self.transient is not None:
+            from gearwhine.transient_results import append_histories
+
+            append_histories(path, self.transient)
+
+    def dataset(self) -> xr.Dataset:
+        """The same as an xarray dataset."""
+        import xarray as xr
+
+        variables, coordinates = dict(self.variables), dict(self.coordinates)
+        if self.transient is not None:
+            from gearwhine.transient_results import add_histories
+
+            add_histories(self.transient, variables, coordinates)
+        return xr.Dataset(variables, coordinates, self.attributes)
+
+
+def labelled(
     case: Case,
-    housing: SolvedHousing | None,
-    rotors: tuple[SolvedRotor, ...],
-    pairs: tuple[PairAnalysis, ...],
-    system: SolvedSystem | None,
-    transient: SolvedTransient | None,
+    *,
+    housing: SolvedHousing | None = None,
+    rotors: tuple[SolvedRotor, ...] = (),
+    pairs: tuple[PairAnalysis, ...] = (),
+    system: SolvedSystem | None = None,
+    transient: SolvedTransient | None = None,
     signature: SolvedSignature | None = None,
     steady: SolvedSteady | None = None,
     run: RunSignature | None = None,
-) -> None:
-    """Write what was solved; the rest is left out, and what would write it is not read."""
+) -> LabelledArrays:
+    """What was solved as labelled arrays; the rest is left out, and what would label it is not imported."""
     variables: Variables = {}
     coordinates: Variables = {}
     if housing is not None:
@@ -74,17 +115,17 @@ def write(
         write_steady(steady, variables, coordinates)
     if case.operation is not None:
         coordinates["speed"] = ((), case.operation.speed * 60.0 / _HERTZ, _unit("rpm", "speed of the first driver"))
-    attributes = {
+    return LabelledArrays(variables, coordinates, file_attributes(case), transient)
+
+
+def file_attributes(case: Case) -> dict[str, str]:
+    """What every file of results says of itself."""
+    return {
         "title": case.title,
         "source": f"gearwhine {__version__}",
         "case": dump_case(case),
         "amplitude_convention": "peak: the amplitude of a sine a sin(2 pi f t) is a",
     }
-    write_netcdf(path, variables, attributes, coordinates=coordinates)
-    if transient is not None:
-        from gearwhine.transient_results import append_histories
-
-        append_histories(path, transient)
 
 
 def write_shapes(path: Path, housing: SolvedHousing) -> None:

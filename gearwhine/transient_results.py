@@ -1,7 +1,6 @@
 """The transient's part of the results file: histories, written piece by piece, and spectra."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +8,7 @@ import h5netcdf
 import numpy as np
 import numpy.typing as npt
 
+from coupling.histories import HISTORY_QUANTITIES, Quantity
 from gearwhine.stages.march_record import Signals
 from gearwhine.stages.transient import SolvedTransient
 from housing.netcdf import Variables
@@ -18,111 +18,22 @@ FloatArray = npt.NDArray[np.float64]
 MODAL_COORDINATE = "modal coordinate by unit modal mass; of torsion by unit modal inertia [rad kg0.5 m]"
 
 
-@dataclass(frozen=True)
-class _Quantity:
-    """What is written of some histories: values per sample of each signal, all in one variable."""
-
-    name: str
-    dimensions: tuple[str, ...]
-    of: Callable[[Signals], Mapping[str, FloatArray]]
-    unit: str
-    what: str
-
-
-def _displacement(signals: Signals) -> dict[str, FloatArray]:
-    return {name: motion[:, :2] for name, motion in signals.histories.gear_motion.items()}
-
-
-def _rotation(signals: Signals) -> dict[str, FloatArray]:
-    return {name: motion[:, 2] for name, motion in signals.histories.gear_motion.items()}
-
-
-def _friction_force(signals: Signals) -> dict[str, FloatArray]:
-    return {name: friction[:, 0] for name, friction in signals.histories.mesh_friction.items()}
-
-
-def _friction_power(signals: Signals) -> dict[str, FloatArray]:
-    return {name: friction[:, 1] for name, friction in signals.histories.mesh_friction.items()}
-
-
-_QUANTITIES = (
-    _Quantity(
-        "sensor_acceleration",
-        ("sensor", "time"),
-        lambda signals: signals.histories.sensor_acceleration,
-        "m/s2",
-        "acceleration along the sensor",
-    ),
-    _Quantity(
-        "bearing_force",
-        ("bearing", "time", "axis"),
-        lambda signals: signals.histories.bearing_force,
-        "N",
-        "force of the shaft on its bearing",
-    ),
-    _Quantity(
-        "bearing_axial_force",
-        ("bearing", "time"),
-        lambda signals: {name: load[:, 2] for name, load in signals.histories.bearing_load.items()},
-        "N",
-        "force of the shaft on its bearing along z",
-    ),
-    _Quantity(
-        "bearing_moment",
-        ("bearing", "time", "moment_axis"),
-        lambda signals: {name: load[:, 3:] for name, load in signals.histories.bearing_load.items()},
-        "N m",
-        "moment of the shaft on its bearing about x and y",
-    ),
-    _Quantity(
-        "mesh_force",
-        ("contact", "time"),
-        lambda signals: signals.histories.mesh_force,
-        "N",
-        "gear-mesh force along the line of action",
-    ),
-    _Quantity(
-        "mesh_compression",
-        ("contact", "time"),
-        lambda signals: signals.histories.mesh_compression,
-        "m",
-        "compression of the mesh along the line of action",
-    ),
-    _Quantity(
-        "friction_force",
-        ("friction_contact", "time"),
-        _friction_force,
-        "N",
-        "friction between the teeth, across the line of action",
-    ),
-    _Quantity(
-        "friction_power",
-        ("friction_contact", "time"),
-        _friction_power,
-        "W",
-        "power that friction between the teeth takes from the nominal rotation",
-    ),
-    _Quantity("gear_displacement", ("gear", "time", "axis"), _displacement, "m", "motion of the gear's centre"),
-    _Quantity("gear_rotation", ("gear", "time"), _rotation, "rad", "rotation of the gear beside the steady one"),
-    _Quantity(
-        "modal_displacement",
-        ("modal_coordinate", "time"),
-        lambda signals: signals.modal.coordinates,
-        "m kg0.5",
-        MODAL_COORDINATE,
-    ),
+_MODAL = Quantity(
+    "modal_displacement", ("modal_coordinate", "time"), lambda coordinates: coordinates, "m kg0.5", MODAL_COORDINATE
 )
+
+
+def _recorded(signals: Signals) -> list[tuple[Quantity, Mapping[str, FloatArray]]]:
+    """Every quantity that was recorded, with the values of each of its signals."""
+    found = [(quantity, quantity.of(signals.histories)) for quantity in HISTORY_QUANTITIES]
+    found.append((_MODAL, signals.modal.coordinates))
+    return [(quantity, values) for quantity, values in found if values]
 
 
 def write_transient(solved: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
     """Add the names of the signals and the spectra; the histories follow by :func:`append_histories`."""
-    for quantity in _QUANTITIES:
-        if names := list(quantity.of(solved.signals)):
-            coordinates[quantity.dimensions[0]] = (quantity.dimensions[0], names, {})
-            if "axis" in quantity.dimensions:
-                coordinates["axis"] = ("axis", ["x", "y"], {})
-            if "moment_axis" in quantity.dimensions:
-                coordinates["moment_axis"] = ("moment_axis", ["x", "y"], {})
+    for quantity, values in _recorded(solved.signals):
+        coordinates |= quantity.coordinates(list(values))
     for name, spectra, dimension, unit, what in (
         ("sensor_spectrum", solved.sensor_spectra, "sensor", "m/s2", "peak amplitude of acceleration"),
         ("mesh_force_spectrum", solved.force_spectra, "contact", "N", "peak amplitude of the gear-mesh force"),
@@ -156,17 +67,30 @@ def append_histories(path: Path, solved: SolvedTransient) -> None:
         file.dimensions["time"] = record.samples
         times = file.create_variable("time", ("time",), "f8", fillvalue=np.nan)
         times.attrs.update(_unit("s", "time from static equilibrium"))
-        written = [quantity for quantity in _QUANTITIES if quantity.of(solved.signals)]
-        for quantity in written:
+        for quantity, _ in _recorded(solved.signals):
             variable = file.create_variable(quantity.name, quantity.dimensions, "f4", fillvalue=np.float32(np.nan))
             variable.attrs.update(_unit(quantity.unit, quantity.what) | beside | _sampled(solved))
         done = 0
         for piece in record.pieces():
             span = slice(done, done + len(piece.times))
             times[span] = piece.times
-            for quantity in written:
-                file.variables[quantity.name][:, span] = np.array(list(quantity.of(piece).values()), dtype=np.float32)
+            for quantity, values in _recorded(piece):
+                file.variables[quantity.name][:, span] = np.array(list(values.values()), dtype=np.float32)
             done = span.stop
+
+
+def add_histories(solved: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
+    """Add the histories in memory, as :func:`append_histories` writes them."""
+    times: list[FloatArray] = []
+    found: dict[str, list[npt.NDArray[np.float32]]] = {}
+    for piece in solved.record.pieces():
+        times.append(piece.times)
+        for quantity, values in _recorded(piece):
+            found.setdefault(quantity.name, []).append(np.array(list(values.values()), dtype=np.float32))
+    coordinates["time"] = ("time", np.concatenate(times), _unit("s", "time from static equilibrium"))
+    for quantity, _ in _recorded(solved.signals):
+        labels = _unit(quantity.unit, quantity.what) | _sampled(solved)
+        variables[quantity.name] = (quantity.dimensions, np.concatenate(found[quantity.name], axis=1), labels)
 
 
 def _sampled(solved: SolvedTransient) -> dict[str, Any]:

@@ -26,11 +26,12 @@ def run(
 
     A run that was interrupted or killed goes on from its last checkpoint when the same case is run into OUT again.
     """
+    from gearwhine.analyses.run import run_into
     from gearwhine.screen import show_run
-    from gearwhine.work.run import run_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return run_case(given, results_folder(case, common), progress, fresh=fresh, pictures=pictures)
+        folder = results_folder(case, common)
+        return run_into(given, folder, fresh=fresh, pictures=pictures, progress=progress).document
 
     on_case(case, common, work, show_run)
 
@@ -50,8 +51,8 @@ def examples(
     common: Common = NONE_GIVEN,
 ) -> None:
     """List the bundled cases, or copy one here (or to OUT) to change it: examples copy NAME."""
+    from gearwhine.analyses.case import copy_example, list_examples
     from gearwhine.screen import show_examples, show_files
-    from gearwhine.work.case import copy_example, list_examples
 
     if action == "list":
         hand_over(list_examples(), common, show_examples)
@@ -61,7 +62,7 @@ def examples(
 
 def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     """All results in the folder OUT (default: ./<case>-results) as one HTML page, report.html in it."""
+    from gearwhine.analyses.case import report_case
     from gearwhine.screen import show_files
-    from gearwhine.work.case import report_case
 
     on_case(case, common, lambda given, progress: report_case(given, results_folder(case, common)), show_files)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from gearwhine.cli.on_case import on_case, results_folder
+from gearwhine.cli.on_case import on_case, results_folder, written
 from gearwhine.cli.options import NONE_GIVEN, CaseName, Common, Fresh
 
 if TYPE_CHECKING:
@@ -22,11 +22,12 @@ def mesh(
     common: Common = NONE_GIVEN,
 ) -> None:
     """Mesh the housing and write the mesh file to OUT (default: ./<case>-results)."""
+    from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_mesh
-    from gearwhine.work.housing import mesh_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return mesh_case(given, results_folder(case, common), format, progress)
+        folder = results_folder(case, common)
+        return written(analyses.mesh(given, suffix=format, progress=progress), folder, progress)
 
     on_case(case, common, work, show_mesh)
 
@@ -46,22 +47,24 @@ def modes(
     common: Common = NONE_GIVEN,
 ) -> None:
     """Housing modes, proved complete, with a report on the model's health."""
+    from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_modes, show_modes_in_detail
-    from gearwhine.work.housing import modes_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return modes_case(given, common.output, progress, detail=detail, fresh=fresh)
+        found = analyses.modes(given, detail=detail, folder=common.output, fresh=fresh, progress=progress)
+        return written(found, common.output, progress)
 
     on_case(case, common, work, show_modes_in_detail if detail else show_modes)
 
 
 def compare(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN) -> None:
     """Model modes of the housing against measured ones."""
+    from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_comparison
-    from gearwhine.work.housing import compare_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return compare_case(given, common.output, progress, fresh=fresh)
+        found = analyses.compare(given, folder=common.output, fresh=fresh, progress=progress)
+        return written(found, common.output, progress)
 
     on_case(case, common, work, show_comparison)
 
@@ -79,11 +82,13 @@ def survey(
     common: Common = NONE_GIVEN,
 ) -> None:
     """Where to put sensors and the hammer for a modal survey, as files in OUT (default: ./<case>-results)."""
+    from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_survey
-    from gearwhine.work.housing import survey_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return survey_case(given, sensors, modes, results_folder(case, common), progress, fresh=fresh)
+        folder = results_folder(case, common)
+        found = analyses.survey(given, sensors=sensors, modes=modes, folder=folder, fresh=fresh, progress=progress)
+        return written(found, folder, progress)
 
     on_case(case, common, work, show_survey)
 
@@ -107,11 +112,12 @@ def update(
     common: Common = NONE_GIVEN,
 ) -> None:
     """Fit the numbers of [update] to the measured modes; writes updated.toml to OUT (default: ./<case>-results)."""
+    from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_update
-    from gearwhine.work.housing import update_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return update_case(given, results_folder(case, common), progress, null=null, held_back=held_back)
+        folder = results_folder(case, common)
+        return written(analyses.update(given, null=null, held_back=held_back, progress=progress), folder, progress)
 
     on_case(case, common, work, show_update)
 
@@ -148,20 +154,22 @@ def render(
     common: Common = NONE_GIVEN,
 ) -> None:
     """Shapes of modes, of a run's lines, or measured: pictures, films, models in OUT (default: ./<case>-results)."""
+    from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_files
-    from gearwhine.work.housing import render_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return render_case(
+        folder = results_folder(case, common)
+        found = analyses.render(
             given,
-            results_folder(case, common),
             modes,
-            view,
-            progress,
+            view=view,
             mode_format=format,
             lines=line,
             measured=measured,
+            folder=folder,
             fresh=fresh,
+            progress=progress,
         )
+        return written(found, folder, progress)
 
     on_case(case, common, work, show_files)

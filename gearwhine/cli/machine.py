@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from gearwhine.cli.on_case import on_case, results_folder
+from gearwhine.cli.on_case import on_case, results_folder, written
 from gearwhine.cli.options import NONE_GIVEN, CaseName, Common, Fresh
 
 if TYPE_CHECKING:
@@ -27,22 +27,25 @@ def rotors(
     common: Common = NONE_GIVEN,
 ) -> None:
     """Each rotor's lateral and torsional modes, whirl and critical speeds; of a case, or of a rotor saved by ROSS."""
+    from gearwhine.analyses import machine as analyses
     from gearwhine.screen import show_rotors
-    from gearwhine.work.machine import rotors_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common) if write_ross else common.output
-        return rotors_case(given, folder, progress, write_ross=write_ross)
+        return written(analyses.rotors(given, write_ross=write_ross, progress=progress), folder, progress)
 
     on_case(case, common, work, show_rotors)
 
 
 def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     """Each gear pair: geometry, stiffness, transmission error, load sharing, pressure, Harris map, best tip relief."""
+    from gearwhine.analyses import machine as analyses
     from gearwhine.screen import show_gears
-    from gearwhine.work.machine import gears_case
 
-    on_case(case, common, lambda given, progress: gears_case(given, common.output, progress), show_gears)
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return written(analyses.gears(given, folder=common.output, progress=progress), common.output, progress)
+
+    on_case(case, common, work, show_gears)
 
 
 def system(
@@ -71,19 +74,20 @@ def system(
     common: Common = NONE_GIVEN,
 ) -> None:
     """Complex natural modes of the whole coupled system, who moves and damps; what reaches bearings and sensors."""
+    from gearwhine.analyses import machine as analyses
     from gearwhine.screen import show_system
-    from gearwhine.work.machine import system_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return system_case(
+        found = analyses.system(
             given,
-            common.output,
-            progress,
             mesh_phase=mesh_phase,
-            over_speed=campbell or sidebands > 0,
+            over_speed=campbell,
             sidebands=sidebands,
+            folder=common.output,
             fresh=fresh,
+            progress=progress,
         )
+        return written(found, common.output, progress)
 
     on_case(case, common, work, show_system)
 
@@ -119,21 +123,21 @@ def steady(
     common: Common = NONE_GIVEN,
 ) -> None:
     """The motion that repeats with the excitation, without marching to it; whether it is stable, and over speed."""
+    from gearwhine.analyses import machine as analyses
     from gearwhine.screen import show_steady
-    from gearwhine.work.machine import steady_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        over_speed = curve or down
-        return steady_case(
+        found = analyses.steady(
             given,
-            common.output,
-            progress,
-            over_speed=over_speed,
+            over_speed=curve,
             downwards=down,
             points=points,
             exact=exact,
+            folder=common.output,
             fresh=fresh,
+            progress=progress,
         )
+        return written(found, common.output, progress)
 
     on_case(case, common, work, show_steady)
 
@@ -163,14 +167,17 @@ def sweep(
     common: Common = NONE_GIVEN,
 ) -> None:
     """The transient over the speeds of [sweep] or any keys, in parallel; resumes in OUT (default: ./<case>-results)."""
+    from gearwhine.analyses import machine as analyses
     from gearwhine.failures import PartlyFailedError
     from gearwhine.screen import show_sweep
-    from gearwhine.work.machine import sweep_case
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
         source = (case, tuple(common.settings))
-        return sweep_case(given, source, over, folder, progress, workers=workers, scheduler=scheduler, fresh=fresh)
+        found = analyses.sweep(
+            given, source, over, folder, workers=workers, scheduler=scheduler, fresh=fresh, progress=progress
+        )
+        return written(found, folder, progress)
 
     document = on_case(case, common, work, show_sweep)
     if document["failed"]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gearwhine.cli.options import Common
 
 if TYPE_CHECKING:
+    from gearwhine.analyses.result import Result
     from gearwhine.case import Case
     from gearwhine.progress import Progress
 
@@ -41,6 +42,13 @@ def on_case(
         sys.stderr.write(f"warning: {warning['message']}\n")
     hand_over(document, common, show)
     return document
+
+
+def written(result: "Result[Any]", folder: Path | None, progress: "Progress") -> dict[str, Any]:
+    """Write a result where a folder is given, and return its document."""
+    if folder is not None:
+        result.write(folder, progress=progress)
+    return result.document
 
 
 def results_folder(case: str, common: Common) -> Path:

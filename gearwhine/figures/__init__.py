@@ -1,8 +1,8 @@
 """Figures by matplotlib, made without a screen: plain arrays and the rooms' own results in, a `Figure` or a file out.
 
-``draw_transient``, ``draw_gear_pairs``, ``draw_tooth_pair``, ``draw_system``,
-``draw_steady`` and ``draw_rotors`` write what a command
-shows into a folder; the others return a figure for print, 160 mm wide, that :func:`save` writes::
+``draw_transient``, ``draw_run``, ``draw_gear_pairs``, ``draw_system``, ``draw_steady``, ``draw_sweep`` and
+``draw_rotors`` yield the figures of an analysis with their names, which :func:`save_all` writes; the others return a
+figure for print, 160 mm wide, that :func:`save` writes::
 
     assembly = RotorAssembly(rotor, bearings)
     save(draw_shaft(assembly), Path("shaft.png"))
@@ -28,7 +28,7 @@ from .run_up import draw_order_slices, draw_run, draw_run_up_waterfall
 from .shaft import draw_shaft
 from .static_deflection import draw_static_deflection
 from .steady import draw_response_curve, draw_steady
-from .style import save
+from .style import save, save_all
 from .sweep import draw_sweep
 from .system import draw_system
 from .system_campbell import draw_system_campbell
@@ -81,4 +81,5 @@ __all__ = [
     "draw_unbalance_response",
     "draw_whirl_modes",
     "save",
+    "save_all",
 ]

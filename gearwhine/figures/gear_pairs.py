@@ -1,7 +1,6 @@
 """The pictures of a case's gear pairs: which there are, and the files they go to."""
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -11,7 +10,7 @@ from gearwhine.figures.contact_pattern import draw_contact_pattern
 from gearwhine.figures.flank_charts import draw_flank_charts, has_charts
 from gearwhine.figures.harris_map import draw_harris_map
 from gearwhine.figures.mesh_stiffness import draw_mesh_stiffness
-from gearwhine.figures.style import save, shortened
+from gearwhine.figures.style import shortened
 from gearwhine.figures.tooth_pair import draw_tooth_pair
 from gearwhine.figures.transmission_error import draw_transmission_error
 from gearwhine.output import file_stems
@@ -19,29 +18,27 @@ from gearwhine.progress import Progress, silent
 from gearwhine.stages.gear_analysis import PairAnalysis
 
 
-def draw_gear_pairs(folder: Path, pairs: Sequence[PairAnalysis], progress: Progress = silent) -> list[str]:
+def draw_gear_pairs(pairs: Sequence[PairAnalysis], progress: Progress = silent) -> Iterator[tuple[str, Figure]]:
     """Draw each pair: its teeth, stiffness, transmission error and flanks, and what it does under load and over torque.
 
     Parameters
     ----------
-    folder : path
-        Where the files go, as ``gears-DRIVER-DRIVEN-teeth.png`` and so on.
     pairs : sequence of PairAnalysis
         What one was not asked for, or has not, is not drawn.
     progress : callable
         Told which pair is drawn.
 
-    Returns
-    -------
-    list of str
-        The files' names.
+    Yields
+    ------
+    str
+        Name of the figure: ``gears-DRIVER-DRIVEN-teeth`` and so on.
+    matplotlib.figure.Figure
     """
-    files = []
     stems = file_stems([f"{pair.solved.pair.driver}-{pair.solved.pair.driven}" for pair in pairs], "gears-")
     for stem, pair in zip(stems, pairs, strict=True):
         progress(f"drawing gear pair {pair.label}")
-        files += [save(figure, folder / f"{stem}-{kind}.png") for kind, figure in _figures(pair)]
-    return files
+        for kind, figure in _figures(pair):
+            yield f"{stem}-{kind}", figure
 
 
 def _figures(pair: PairAnalysis) -> Iterator[tuple[str, Figure]]:

@@ -1,7 +1,6 @@
 """The pictures of a case's rotors: which there are, and the files they go to."""
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +14,7 @@ from gearwhine.figures.critical_map import draw_critical_map
 from gearwhine.figures.mode_shapes import draw_lateral_modes, draw_torsional_modes
 from gearwhine.figures.shaft import draw_shaft
 from gearwhine.figures.static_deflection import draw_static_deflection
-from gearwhine.figures.style import save, shortened
+from gearwhine.figures.style import shortened
 from gearwhine.figures.torsional_response import TorsionalReading, draw_torsional_response
 from gearwhine.figures.unbalance import ProbeResponse, draw_unbalance_response
 from gearwhine.figures.whirl_shapes import draw_whirl_modes
@@ -31,7 +30,7 @@ _MODES = 6  # drawn of each kind
 _WIDTH = 10.0  # of a gear without a face width, in modules
 
 
-def draw_rotors(folder: Path, case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> list[str]:
+def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> Iterator[tuple[str, Figure]]:
     """Draw each rotor: the shaft, its modes, its whirl at speed, and what its analyses gave.
 
     These are the Campbell diagram, the critical-speed map, the response to unbalance and bow, and the static
@@ -39,25 +38,23 @@ def draw_rotors(folder: Path, case: Case, solved: Sequence[SolvedRotor], progres
 
     Parameters
     ----------
-    folder : path
-        Where the files go, as ``rotor-NAME-shaft.png`` and so on.
     case : Case
     solved : sequence of SolvedRotor
         Of the case.
     progress : callable
         Told which rotor is drawn.
 
-    Returns
-    -------
-    list of str
-        The files' names.
+    Yields
+    ------
+    str
+        Name of the figure: ``rotor-NAME-shaft`` and so on.
+    matplotlib.figure.Figure
     """
-    files = []
     stems = file_stems([one.rotor.name for one in solved], "rotor-")
     for stem, one in zip(stems, solved, strict=True):
         progress(f"drawing rotor {one.rotor.name}")
-        files += [save(figure, folder / f"{stem}-{kind}.png") for kind, figure in _figures(case, one)]
-    return files
+        for kind, figure in _figures(case, one):
+            yield f"{stem}-{kind}", figure
 
 
 def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:

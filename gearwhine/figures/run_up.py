@@ -1,7 +1,6 @@
 """A run-up or run-down: the waterfall over speed, and orders over speed."""
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -9,7 +8,7 @@ from matplotlib.figure import Figure
 
 from coupling.signature import OrderMap, Spectrogram
 from gearwhine.case import Case, mesh_frequencies
-from gearwhine.figures.style import SERIES, save, tidy
+from gearwhine.figures.style import SERIES, tidy
 from gearwhine.figures.waterfall import draw_waterfall
 from gearwhine.output import file_stems
 from gearwhine.stages.housing import SolvedHousing
@@ -18,17 +17,16 @@ from gearwhine.stages.run_up import RunSignature
 FloatArray = npt.NDArray[np.float64]
 
 
-def draw_run(folder: Path, case: Case, found: RunSignature, housing: SolvedHousing | None) -> list[str]:
-    """Draw the waterfall and the orders of every signal of a run, as ``run-up-waterfall-`` and ``run-up-orders-``.
+def draw_run(case: Case, found: RunSignature, housing: SolvedHousing | None) -> Iterator[tuple[str, Figure]]:
+    """Draw the waterfall and the orders of every signal of a run.
 
-    Returns the files' names.
+    Yields ``run-up-waterfall-SIGNAL`` and ``run-up-orders-SIGNAL``, each with its figure.
     """
     assert case.operation is not None
     turns_per_second = abs(case.operation.speed) / (2.0 * np.pi)
     mesh_orders = [frequency / turns_per_second for frequency in mesh_frequencies(case)]
     modes = None if housing is None else housing.modes.frequencies_hz
     names = [name.replace(" -> ", "-") for name in found.spectra]
-    files = []
     for stem, (name, spectra) in zip(file_stems(names), found.spectra.items(), strict=True):
         unit, title = found.units[name], f"{case.title}: {name}"
         waterfall = draw_run_up_waterfall(
@@ -40,10 +38,9 @@ def draw_run(folder: Path, case: Case, found: RunSignature, housing: SolvedHousi
             mesh_orders=mesh_orders,
             housing_frequencies=modes,
         )
-        files.append(save(waterfall, folder / f"run-up-waterfall-{stem}.png"))
+        yield f"run-up-waterfall-{stem}", waterfall
         slices = draw_order_slices(title, found.orders[name], found.named, unit=unit)
-        files.append(save(slices, folder / f"run-up-orders-{stem}.png"))
-    return files
+        yield f"run-up-orders-{stem}", slices
 
 
 def draw_run_up_waterfall(

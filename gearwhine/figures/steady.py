@@ -1,6 +1,6 @@
 """The steady state: one period of the mesh forces with their lines, and the branch of motions over speed."""
 
-from pathlib import Path
+from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +24,6 @@ from gearwhine.figures.style import (
     SERIES,
     name_in_legend,
     panel,
-    save,
     sheet,
     tidy,
 )
@@ -43,16 +42,12 @@ _MARKS = {  # marker, colour of its edge, and within: folds, where a machine jum
 }
 
 
-def draw_steady(folder: Path, case: Case, solved: SolvedSteady) -> list[str]:
-    """Draw what was found; returns the files' names."""
-    files = []
+def draw_steady(case: Case, solved: SolvedSteady) -> Iterator[tuple[str, Figure]]:
+    """Draw what was found: yields ``steady-motion`` and, over speed, ``steady-curve``, each with its figure."""
     if solved.machine.meshes:
-        motion = _motion_sheet(case, solved)
-        files.append(save(motion, folder / "steady-motion.png"))
+        yield "steady-motion", _motion_sheet(case, solved)
     if solved.curve is not None:
-        curve = draw_response_curve(f"Steady motions over speed: {case.title}", solved, solved.curve)
-        files.append(save(curve, folder / "steady-curve.png"))
-    return files
+        yield "steady-curve", draw_response_curve(f"Steady motions over speed: {case.title}", solved, solved.curve)
 
 
 def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve) -> Figure:

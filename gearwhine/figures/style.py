@@ -1,7 +1,7 @@
 """How every figure looks: colours, sizes on paper, axes, and the file it goes to."""
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from textwrap import wrap
@@ -115,3 +115,8 @@ def save(figure: Figure, path: Path) -> str:
     with unknown_letters_drawn_as_boxes():
         figure.savefig(path, dpi=max(_SCREEN_DPI, int(figure.dpi)))
     return path.name
+
+
+def save_all(figures: Iterable[tuple[str, Figure]], folder: Path) -> list[str]:
+    """Write named figures into a folder, each as NAME.png, and return the files' names."""
+    return [save(figure, folder / f"{name}.png") for name, figure in figures]

@@ -1,14 +1,14 @@
 """Figures of a sweep: levels over what is swept, and a waterfall for each sensor."""
 
+from collections.abc import Iterator
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from gearwhine.figures.style import GREY, SERIES, save, tidy
+from gearwhine.figures.style import GREY, SERIES, tidy
 from gearwhine.figures.waterfall import draw_waterfall
 from gearwhine.output import file_stems
 
@@ -16,25 +16,23 @@ _MOST_WATERFALLS = 12  # of a grid over several keys
 _MARKS = 30  # points up to which each is marked
 
 
-def draw_sweep(folder: Path, title: str, dataset: xr.Dataset) -> list[str]:
-    """Draw a gathered sweep; returns the files' names.
+def draw_sweep(title: str, dataset: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Draw a gathered sweep: yields the name of each figure, such as ``sweep-rms``, and the figure.
 
     Levels stand over the speed, or over the first key where the speed is not swept; of other keys each combination has
     a line of its own in them, and a waterfall of its own up to twelve pictures in all.
     """
     if not bool(dataset["done"].any()):
-        return []
+        return
     swept = [str(name) for name in dataset["done"].dims]
     along = "speed" if "speed" in swept else swept[0]
     others = [name for name in swept if name != along]
     places = [dict(zip(others, place, strict=True)) for place in product(*(range(dataset.sizes[n]) for n in others))]
-    files = []
     if "sensor_rms" in dataset:
-        files.append(save(_sensor_levels(title, dataset, along, places), folder / "sweep-rms.png"))
-        files += _waterfalls(folder, title, dataset, along, places)
+        yield "sweep-rms", _sensor_levels(title, dataset, along, places)
+        yield from _waterfalls(title, dataset, along, places)
     if "mesh_force_mean" in dataset:
-        files.append(save(_mesh_forces(title, dataset, along, places), folder / "sweep-mesh-force.png"))
-    return files
+        yield "sweep-mesh-force", _mesh_forces(title, dataset, along, places)
 
 
 def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
@@ -68,7 +66,9 @@ def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[
     return figure
 
 
-def _waterfalls(folder: Path, title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> list[str]:
+def _waterfalls(
+    title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]
+) -> Iterator[tuple[str, Figure]]:
     """A waterfall for each sensor and each combination of the other keys that has a spectrum."""
     pictures = []
     for sensor, place in product([str(name) for name in dataset["sensor"].values], places):
@@ -78,7 +78,6 @@ def _waterfalls(folder: Path, title: str, dataset: xr.Dataset, along: str, place
             pictures.append((sensor, place, data, spectra))
     pictures = pictures[:_MOST_WATERFALLS]
     names = [" ".join([sensor, *_described(dataset, place)]) for sensor, place, *_ in pictures]
-    files = []
     for stem, name, (_, _, data, spectra) in zip(file_stems(names, "waterfall-"), names, pictures, strict=True):
         figure = draw_waterfall(
             f"{title}: {name}",
@@ -93,8 +92,7 @@ def _waterfalls(folder: Path, title: str, dataset: xr.Dataset, along: str, place
             ),
         )
         _name_values(figure.axes[0].yaxis, data, along)
-        files.append(save(figure, folder / f"{stem}.png"))
-    return files
+        yield stem, figure
 
 
 def _draw_lines(

@@ -1,6 +1,6 @@
 """Figures of a transient: spectra, mesh forces, orbits."""
 
-from pathlib import Path
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from gearwhine.figures.modal_coordinates import draw_modal_coordinates
 from gearwhine.figures.orbits import draw_orbits
 from gearwhine.figures.sensor_spectra import draw_sensor_spectra
 from gearwhine.figures.spectrum_lines import draw_lines
-from gearwhine.figures.style import BLUE, RED, save, tidy
+from gearwhine.figures.style import BLUE, RED, tidy
 from gearwhine.stages.housing import SolvedHousing
 from gearwhine.stages.signature import SolvedSignature, TracedLine
 from gearwhine.stages.transient import SolvedTransient
@@ -26,15 +26,13 @@ _ORBIT_SAMPLES = 1 << 14  # of a long record: a path of hundreds of thousands ta
 
 
 def draw_transient(
-    folder: Path,
     case: Case,
     solved: SolvedTransient,
     signature: SolvedSignature | None,
     housing: SolvedHousing | None,
     comparison: Comparison | None,
-) -> list[str]:
-    """Draw what a transient shows; returns the files' names."""
-    files = []
+) -> Iterator[tuple[str, Figure]]:
+    """Draw what a transient shows: yields the name of each figure, such as ``spectrum``, and the figure."""
     lines: dict[str, tuple[TracedLine, ...]] = dict.fromkeys(solved.sensor_spectra, ())
     if signature is not None:
         lines = signature.lines
@@ -48,29 +46,28 @@ def draw_transient(
         legend = "housing modes" if comparison is None else f"{found} housing modes"
         heading = f"{case.title}, {speed}"
         spectra = draw_sensor_spectra(heading, solved, lines, mesh_frequencies=marks, marked=marked, marked_as=legend)
-        files.append(save(spectra, folder / "spectrum.png"))
+        yield "spectrum", spectra
     if any(lines.values()):
         parts = draw_contributions(f"{case.title}, {speed}", lines)
-        files.append(save(parts, folder / "contributions.png"))
+        yield "contributions", parts
     if solved.force_spectra:
-        files.append(save(_mesh_force(case, solved, meshes), folder / "mesh-force.png"))
+        yield "mesh-force", _mesh_force(case, solved, meshes)
     carrying = [contact for contact in solved.machine.system.contacts if contact.name in solved.histories.mesh_friction]
     if rates := {contact.name: abs(contact.rate) for contact in carrying if contact.drives and contact.rate}:
         heading = f"{case.title}\nfriction between the teeth at {speed}"
-        files.append(save(draw_friction(heading, solved.histories, rates), folder / "friction.png"))
+        yield "friction", draw_friction(heading, solved.histories, rates)
     if solved.histories.gear_motion:
         motions = solved.histories.gear_motion
         if solved.record.sampling.is_long:
             motions = {name: motion[-_ORBIT_SAMPLES:] for name, motion in motions.items()}
         orbits = draw_orbits(f"{case.title}: orbits of the gears", motions)
-        files.append(save(orbits, folder / "orbits.png"))
+        yield "orbits", orbits
     if solved.modal.coordinates:
         window = next(iter(solved.force_spectra.values())).window if solved.force_spectra else "hann"
         limit = min(solved.trusted_limit, 1.2 * max(meshes)) if meshes else solved.trusted_limit
         heading = f"{case.title}: modal coordinates"
         modal = draw_modal_coordinates(heading, solved.histories.times, solved.modal.coordinates, limit, window)
-        files.append(save(modal, folder / "modal-coordinates.png"))
-    return files
+        yield "modal-coordinates", modal
 
 
 def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) -> Figure:

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine import __version__
+from gearwhine.analyses.results_folder import results_in
 from gearwhine.case import Case, CaseError, Problem, dump_case
 from gearwhine.output import SUMMARY
 from gearwhine.report.sections import Section, sections_of
 from gearwhine.report.tables import Table
 from gearwhine.stages.contents import file_contents
-from gearwhine.work.results_folder import results_in
 
 _DIFFERENCES = 6  # keys of the case that are named
 _REMARKS = "provenance."  # says where a value is from, and changes none

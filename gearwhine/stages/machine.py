@@ -185,16 +185,23 @@ def _shaft(case: Case, given: Rotor) -> room.Shaft:
 
 
 def solve_machine(
-    case: Case, progress: Progress = silent, *, folder: Path | None = None, fresh: bool = False
+    case: Case,
+    progress: Progress = silent,
+    *,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
 ) -> tuple[SolvedHousing | None, tuple[LoadedGearPair, ...], room.CoupledMachine]:
     """Solve the housing and the gears that the case has, and couple everything.
 
-    ``folder`` and ``fresh`` are those of :func:`gearwhine.stages.housing.solve_housing`.
+    ``housing`` is one that is solved already; ``folder`` and ``fresh`` are those of
+    :func:`gearwhine.stages.housing.solve_housing`.
     """
     require(case, "rotor", "operation", command="system")
     require_machine(case)
     pairs = solve_gears(case, progress) if case.gear_pair else ()
-    housing = solve_housing(case, progress, folder=folder, fresh=fresh) if case.housing else None
+    if housing is None and case.housing is not None:
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
     return housing, pairs, build_machine(case, housing, pairs, progress)
 
 

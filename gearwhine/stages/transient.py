@@ -89,7 +89,7 @@ def solve_transient(
     progress: Progress = silent,
     *,
     housing: SolvedHousing | HousingInMachine | None = None,
-    keep: Callable[[str], Blocks] = lambda key: _InMemory(),
+    keep: Callable[[str], Blocks] | None = None,
     record_bytes: int = RECORD_BYTES,
     samples_per_block: int | None = None,
 ) -> SolvedTransient:
@@ -102,7 +102,7 @@ def solve_transient(
 
     Parameters
     ----------
-    keep : callable
+    keep : callable, optional
         Gives the blocks kept under a key of all that the march depends on; the march goes on behind them. By default
         none are kept, and all are held in memory.
     record_bytes, samples_per_block : int
@@ -134,7 +134,9 @@ def solve_transient(
     march = (machine.system, chosen.settings, outputs)
     start = starting_state(case, machine)
     key = room.march_key(*march, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
-    blocks = keep(_with_code(fingerprint(key, base_motion(case)), chosen))
+    blocks: Blocks = _InMemory()
+    if keep is not None:
+        blocks = keep(_with_code(fingerprint(key, base_motion(case)), chosen))
     last = blocks[len(blocks) - 1] if len(blocks) else None
     held = nothing.columns if last is None else last["held"]
     marched = room.march_blocks(

@@ -3,15 +3,20 @@
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import tomli_w
 
 from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.check_provenance import without_changed
 from gearwhine.case.problems import Location, key_of
+from gearwhine.results import LabelledArrays, file_attributes
 from gearwhine.stages.update_keys import FittedNumber, unit_in_si, with_entry
 from gearwhine.stages.update_worth import NullTest
 from gearwhine.stages.updating import SolvedUpdate
+from housing.netcdf import Variables
 from housing.updating import UNPAIRED, HeldBack, Misfit, NullFit
+
+FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 _AT_END = 1e-3  # part of a range that counts as its end
@@ -76,6 +81,35 @@ def _choice(misfit: Misfit) -> dict[str, Any]:
     if misfit.mac is not None:
         return {"gap": None, "measures_agree": None}
     return {"gap": misfit.gap, "measures_agree": misfit.measures_agree}
+
+
+def update_arrays(case: Case, solved: SolvedUpdate) -> LabelledArrays:
+    """Fitted parameters and the pairs of modes before and after as labelled arrays."""
+    rows, pairs = _parameters(solved), _pairs(solved)
+
+    def column(table: list[dict[str, Any]], key: str) -> FloatArray:
+        return np.array([np.nan if row[key] is None else row[key] for row in table], dtype=np.float64)
+
+    variables: Variables = {}
+    for name, key, what in (
+        ("value_before", "before", "value before the fit, in the unit of the parameter"),
+        ("value_after", "after", "value after the fit, in the unit of the parameter"),
+        ("value_deviation", "standard_deviation", "standard deviation of the value, in the unit of the parameter"),
+    ):
+        variables[name] = ("parameter", column(rows, key), {"long_name": what})
+    for name, key, unit, what in (
+        ("measured_frequency", "measured_hz", "Hz", "measured frequency"),
+        ("frequency_before", "before_hz", "Hz", "frequency of the model before the fit"),
+        ("frequency_after", "model_hz", "Hz", "frequency of the model after the fit"),
+        ("error_before", "before_error_percent", "percent", "error of the frequency before the fit"),
+        ("error_after", "error_percent", "percent", "error of the frequency after the fit"),
+    ):
+        variables[name] = ("pair", column(pairs, key), {"units": unit, "long_name": what})
+    coordinates: Variables = {
+        "parameter": ("parameter", [row["name"] for row in rows], {"long_name": "name of the parameter"}),
+        "unit": ("parameter", [row["unit"] or "1" for row in rows], {"long_name": "unit of the parameter"}),
+    }
+    return LabelledArrays(variables, coordinates, file_attributes(case))
 
 
 def _parameters(solved: SolvedUpdate) -> list[dict[str, Any]]:

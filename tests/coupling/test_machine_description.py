@@ -174,3 +174,20 @@ def test_power_in_is_power_through_every_pair_of_a_chain(teeth: list[tuple[int, 
     carried = train.pair_torques({"0": torque, last: leaving})
     powers = [one * abs(float(train.ratios[str(i)])) for i, one in enumerate(carried)]
     assert powers == pytest.approx([torque] * len(teeth), rel=1e-9, abs=1e-9)
+
+
+def test_motion_is_labelled_and_carries_the_mean_torque() -> None:
+    machine = two_stages()
+    found = machine.simulate(revolutions=12, discard=8, points_per_revolution=512)
+    data = found.dataset
+    assert data["mesh_force"].dims == ("contact", "time")
+    assert data["mesh_force"].attrs == {"units": "N", "long_name": "gear-mesh force along the line of action"}
+    radii = [MODULE * teeth / 2 * math.cos(math.radians(20.0)) for teeth in (20, 25)]
+    means = data["mesh_force"].sel(contact=["a -> b", "c -> d"]).mean("time").values
+    assert means == pytest.approx([40.0 / radii[0], 80.0 / radii[1]], rel=0.02)
+    assert found.energy_error < 1e-3
+    # Four turns of the first driver: its mesh order is line 4 × 20.
+    spectrum = found.spectrum("mesh_force", "a -> b")
+    assert spectrum.frequencies[4 * 20] == pytest.approx(machine.mesh_frequencies[0], rel=1e-9)
+    with pytest.raises(CouplingError, match="stands still"):
+        two_stages(speed=0.0).simulate(2, 1)

@@ -53,7 +53,15 @@ def write_whole(file: Path) -> None:
     system = solve_system(case, machine, housing)
     transient = solve_transient(case, machine, mesh_frequencies(case), housing=housing)
     signature = solve_signature(transient, system.modes, housing.modes.frequencies_hz)
-    results.write(file, case, housing, rotors, analyse_pairs(case, pairs), system, transient, signature)
+    results.labelled(
+        case,
+        housing=housing,
+        rotors=rotors,
+        pairs=analyse_pairs(case, pairs),
+        system=system,
+        transient=transient,
+        signature=signature,
+    ).write(file)
 
 
 @pytest.mark.slow

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gearwhine.analyses.housing import compare
 from gearwhine.case import load_case
 from gearwhine.stages.housing import solve_housing
-from gearwhine.work.housing import compare_case
 from housing.measured import MeasuredGeometry, MeasuredModes
 from housing.measured.survey_data import SurveyData
 from housing.measured.survey_file import write_survey
@@ -27,7 +27,9 @@ def test_a_survey_in_a_file_is_paired_by_shape(tmp_path: Path) -> None:
     write_survey(tmp_path / "survey.uff", SurveyData(geometry=geometry, modes=modes))
     case = load_case("small-gearbox", (*COARSE, f'measured={{file="{tmp_path}/survey.uff"}}')).case
     out = tmp_path / "out"
-    document = compare_case(case, out, lambda message: None)
+    found = compare(case, folder=out)
+    found.write(out)
+    document = found.document
     assert [pair["mode"] for pair in document["pairs"]] == [1, 2, 4, 5]
     assert [pair["mac"] for pair in document["pairs"]] == pytest.approx([1.0] * 4, abs=1e-6)
     assert [pair["error_percent"] for pair in document["pairs"]] == pytest.approx([100.0 / 0.99 - 100.0] * 4, rel=1e-3)

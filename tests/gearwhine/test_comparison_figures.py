@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from matplotlib.patches import Rectangle
 
-from gearwhine.comparison_files import dof_names, draw_comparison_pictures, write_comparison
-from gearwhine.figures import draw_comparison, draw_coordinate_criteria, draw_mac_matrix, save
+from gearwhine.comparison_files import dof_names, draw_comparison_figures, write_comparison
+from gearwhine.figures import draw_comparison, draw_coordinate_criteria, draw_mac_matrix, save, save_all
 from housing import Comparison, ModePair, compare_by_shapes
 from housing.measured import MeasuredGeometry, MeasuredModes
 
@@ -134,7 +134,7 @@ def test_degrees_of_freedom_are_named_by_point_and_direction() -> None:
 
 def test_files_of_a_comparison_by_frequency(tmp_path: Path) -> None:
     assert write_comparison(tmp_path, SOURCE) == ["comparison.csv"]
-    assert draw_comparison_pictures(tmp_path, "Rig", SOURCE, MODEL) == ["comparison.png"]
+    assert save_all(draw_comparison_figures("Rig", SOURCE, MODEL), tmp_path) == ["comparison.png"]
     rows = _read(tmp_path / "comparison.csv")
     assert [(float(row["measured_hz"]), float(row["model_hz"])) for row in rows] == [pair[:2] for pair in TABLE_II]
     assert {row["mac"] for row in rows} == {""}
@@ -143,7 +143,7 @@ def test_files_of_a_comparison_by_frequency(tmp_path: Path) -> None:
 def test_files_of_a_comparison_by_shape(tmp_path: Path) -> None:
     comparison, frequencies = _by_shapes()
     files = write_comparison(tmp_path, comparison, GEOMETRY)
-    files += draw_comparison_pictures(tmp_path, "Beam", comparison, frequencies, GEOMETRY)
+    files += save_all(draw_comparison_figures("Beam", comparison, frequencies, GEOMETRY), tmp_path)
     expected = {"comparison.csv", "comparison.png", "mac.csv", "mac.png", "auto-mac.png", "cross-orthogonality.png"}
     assert set(files) == expected | {"comac.csv", "comac.png"}
     assert all((tmp_path / name).stat().st_size > 0 for name in files)

@@ -1,6 +1,5 @@
 """What figures of a motion and of made-up curves draw: the data, their order and units, names beside their own."""
 
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -51,15 +50,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     solved = solve_transient(case, machine, mesh_frequencies(case), housing=housing)
     modes = solve_system(case, machine, housing).modes
     signature = solve_signature(solved, modes, housing.modes.frequencies_hz)
-    figures: dict[str, Figure] = {}
-
-    def keep(figure: Figure, file: Path) -> str:
-        figures[file.name] = figure
-        return file.name
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("gearwhine.figures.transient.save", keep)
-        draw_transient(folder, case, solved, signature, housing, None)
+    figures = {f"{name}.png": figure for name, figure in draw_transient(case, solved, signature, housing, None)}
     return Drawn(solved, signature, figures)
 
 

@@ -15,7 +15,7 @@ import xarray as xr
 import coupling.gears as room
 from coupling import mesh_error_response
 from gearwhine.case import Case, load_case, parse_case
-from gearwhine.results import write
+from gearwhine.results import labelled
 from gearwhine.screen import show_gears
 from gearwhine.stages.gear_analysis import PairAnalysis, analyse_pairs
 from gearwhine.stages.gear_documents import gears_document
@@ -275,7 +275,7 @@ def test_gears_by_base_radius_have_no_width_to_press_on() -> None:
 def test_the_results_file_has_labelled_curves(tmp_path: Path) -> None:
     pair = analysed(*PITCHED)
     path = tmp_path / "results.nc"
-    write(path, case_of(*PITCHED), None, (), (pair,), None, None)
+    labelled(case_of(*PITCHED), pairs=(pair,)).write(path)
     with xr.open_dataset(path) as data:
         curves = data.isel(gear_pair=0)
         assert all("units" in data[name].attrs for name in data.data_vars)

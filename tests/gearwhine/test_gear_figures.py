@@ -24,6 +24,7 @@ from gearwhine.figures import (
     draw_tooth_pair,
     draw_transmission_error,
     save,
+    save_all,
 )
 from gearwhine.figures.contact_pattern import over_flank
 from gearwhine.figures.flank_charts import has_charts
@@ -246,7 +247,7 @@ def test_every_pair_has_its_files(tmp_path: Path) -> None:
     def progress(message: str, fraction: float | None = None) -> None:
         said.append(message)
 
-    files = draw_gear_pairs(tmp_path, pairs, progress)
+    files = save_all(draw_gear_pairs(pairs, progress), tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(files)
     kinds = [name.rpartition("-")[2] for name in files]
     assert kinds == ["teeth.png", "stiffness.png", "error.png", "path.png", "flanks.png"] + [

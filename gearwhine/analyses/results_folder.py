@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine.case import Case, dump_case
-from gearwhine.doubtful import add_warnings
 from gearwhine.output import COMMANDS, SUMMARY, finite, json_text, listed_files, read_summary, staging
 from gearwhine.stages.contents import file_contents
 from gearwhine.stages.housing import SolvedHousing, keep_modes
@@ -26,11 +25,11 @@ def kept_in(
     command: str,
     document: dict[str, Any],
     case: Case,
-    folder: Path | None,
-    write: Callable[[Path], None] = lambda place: None,
+    folder: Path,
+    write: Callable[[Path], None],
     housing: SolvedHousing | None = None,
-) -> dict[str, Any]:
-    """Keep a command's results in a folder, where one is given, and return its document.
+) -> None:
+    """Keep a command's results in a folder.
 
     Parameters
     ----------
@@ -47,9 +46,6 @@ def kept_in(
     housing
         Whose modes are kept.
     """
-    add_warnings(document)
-    if folder is None:
-        return document
 
     def settle(place: Path) -> Path | None:
         own = _place_of(folder, command)
@@ -72,7 +68,6 @@ def kept_in(
         write(place)
         if housing is not None:
             keep_modes(place, housing)
-    return document
 
 
 def results_in(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:

@@ -1,0 +1,310 @@
+"""Analyses of the housing: its mesh, its natural modes, and these beside measured ones."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gearwhine import results
+from gearwhine.analyses.result import Result
+from gearwhine.case import Case, require
+from gearwhine.comparison_files import (
+    comparison_arrays,
+    draw_comparison_figures,
+    write_comparison,
+    write_likeness,
+)
+from gearwhine.drawings import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
+from gearwhine.progress import Progress, silent
+from gearwhine.stages import comparison as comparison_stage
+from gearwhine.stages import comparison_documents, housing_documents, mesh_health, response_comparison, survey_plan
+from gearwhine.stages import geometry as geometry_stage
+from gearwhine.stages import housing as housing_stage
+from gearwhine.stages import measured as measured_stage
+from gearwhine.stages.housing import SolvedHousing
+from housing import Comparison
+from meshes import Mesh
+
+if TYPE_CHECKING:
+    from gearwhine.stages.survey_plan import PlannedSurvey
+    from gearwhine.stages.updating import SolvedUpdate
+
+
+def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Result[Mesh]:
+    """Mesh the housing.
+
+    Parameters
+    ----------
+    case : Case
+    suffix : {"msh", "vtu", "vtk", "inp", "med", "xdmf"}
+        Format of the mesh file that the result writes.
+    progress : callable
+
+    Raises
+    ------
+    CaseError
+        Where the housing cannot be meshed.
+    """
+    from meshes import mesh_quality, write_mesh
+
+    progress("meshing the housing")
+    remarks: list[str] = []
+    made = geometry_stage.build_mesh(case, remarks.append)
+    doubts = mesh_health.examine(case, made)
+    doubts += mesh_health.doubt_resolution(case, made, case.housing.frequency_limit if case.housing else None)
+    quality = mesh_quality(made)
+    document = {
+        "mesh": {"nodes": len(made.points), "elements": made.n_elements, "dofs": 3 * len(made.points)},
+        "order": made.order,
+        "kinds": made.kinds,
+        "surfaces": {surface: sum(map(len, facets)) for surface, facets in sorted(made.surfaces.items())},
+        "volumes": {volume: len(members) for volume, members in sorted(made.volumes.items())},
+        "volume_m3": quality.volume,
+        "edge_length_m": dict(zip(("min", "median", "max"), quality.edge_length, strict=True)),
+        "shape_number": dict(zip(("min", "median"), quality.shape, strict=True)),
+        "bores": geometry_stage.bores_document(made),
+        "warnings": [mesh_health.doubt("geometry", remark) for remark in remarks]
+        + mesh_health.warnings_document(doubts),
+    }
+
+    def files(place: Path, *, pictures: bool) -> None:
+        write_mesh(made, place / f"mesh.{suffix}")
+
+    return Result("mesh", case, made, document, _files=files)
+
+
+def modes(
+    case: Case,
+    *,
+    detail: bool = False,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[SolvedHousing]:
+    """Find the natural modes of the housing, certified complete.
+
+    Parameters
+    ----------
+    case : Case
+    detail : bool
+        Also effective masses, what each support holds, and which modes carry the bearings' forces.
+    housing : SolvedHousing, optional
+        Where it is solved already.
+    folder : path, optional
+        A results folder, whose modes of the same housing are read in place of solving.
+    fresh : bool
+        Solve also where they are.
+    progress : callable
+
+    Raises
+    ------
+    CaseError, housing.HousingError
+        Where the case cannot be solved as it stands.
+    housing.IncompleteModesError, housing.ReductionError, housing.HealthError
+        Where the modes fail their proofs.
+    """
+    solved = _solved(case, "modes", housing, folder, progress, fresh=fresh)
+
+    def files(place: Path, *, pictures: bool) -> None:
+        results.write_shapes(place / "modes.vtu", solved)
+
+    return Result(
+        "modes",
+        case,
+        solved,
+        housing_documents.modes_document(solved, detail=detail),
+        _arrays=lambda: results.labelled(case, housing=solved),
+        _files=files,
+        _housing=solved,
+    )
+
+
+def compare(
+    case: Case,
+    *,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[Comparison]:
+    """Compare the housing's natural modes with measured ones.
+
+    Parameters
+    ----------
+    case : Case
+        With `[measured]`.
+    housing, folder, fresh, progress
+        As :func:`modes`.
+
+    Raises
+    ------
+    CaseError, housing.HousingError
+        Where the case has nothing measured, or its modes are not known as high as the measured ones.
+    """
+    require(case, "housing", "measured", command="compare")
+    solved = _solved(case, "compare", housing, folder, progress, fresh=fresh)
+    comparison, survey = comparison_stage.compare_with_survey(case, solved, progress)
+    document = comparison_documents.comparison_document(comparison, solved)
+    likeness = None
+    if survey is not None:
+        document["survey"] = measured_stage.survey_document(survey)
+        progress("comparing responses")
+        likeness, told = response_comparison.responses_beside(case, solved, survey)
+        document |= {} if told is None else {"responses": told}
+    geometry = None if survey is None else survey.geometry
+
+    def files(place: Path, *, pictures: bool) -> None:
+        write_comparison(place, comparison, geometry)
+        if likeness is not None:
+            write_likeness(place, likeness)
+
+    return Result(
+        "compare",
+        case,
+        comparison,
+        document | housing_documents.origin_document(solved),
+        _arrays=lambda: comparison_arrays(case, comparison),
+        _figures=lambda progress: draw_comparison_figures(case.title, comparison, solved.modes.frequencies, geometry),
+        _files=files,
+        _housing=solved,
+        _data_file="comparison.nc",
+    )
+
+
+def survey(
+    case: Case,
+    *,
+    sensors: int,
+    modes: int | None = None,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> "Result[PlannedSurvey]":
+    """Choose where to measure the housing's modes.
+
+    Parameters
+    ----------
+    case : Case
+    sensors : int
+        How many, each along the normal of the surface.
+    modes : int, optional
+        For how many of the lowest modes; all that are known by default.
+    housing, folder, fresh, progress
+        As :func:`modes`.
+
+    Raises
+    ------
+    CaseError
+        Where so many sensors cannot tell so many modes apart.
+    """
+    solved = _solved(case, "survey", housing, folder, progress, fresh=fresh)
+    progress(f"choosing {sensors} sensors")
+    planned = survey_plan.plan_housing(case, solved, sensors, modes)
+    document = survey_plan.plan_document(planned, solved) | housing_documents.origin_document(solved)
+
+    def files(place: Path, *, pictures: bool) -> None:
+        survey_plan.write_plan(place, planned)
+
+    return Result("survey", case, planned, document, _files=files, _housing=solved)
+
+
+def update(
+    case: Case, *, null: int = 0, held_back: bool = False, progress: Progress = silent
+) -> "Result[SolvedUpdate]":
+    """Fit the parameters of `[update]` to the measured modes.
+
+    Parameters
+    ----------
+    case : Case
+    null : int
+        Number of random sets of frequencies that are fitted too: how often the fit would be as good of nothing.
+    held_back : bool
+        Whether to fit without each measured mode in turn, and predict that one.
+    progress : callable
+
+    Raises
+    ------
+    CaseError, housing.HousingError
+        Where the case has nothing to fit, or its housing cannot be solved.
+    """
+    from gearwhine.stages import update_documents, updating
+
+    solved = updating.update_housing(case, progress, null=null, held_back=held_back)
+
+    def files(place: Path, *, pictures: bool) -> None:
+        (place / "updated.toml").write_text(update_documents.updated_case(case, solved), encoding="utf-8")
+
+    return Result(
+        "update",
+        case,
+        solved,
+        update_documents.update_document(case, solved),
+        _arrays=lambda: update_documents.update_arrays(case, solved),
+        _files=files,
+        _data_file="update.nc",
+    )
+
+
+def render(
+    case: Case,
+    which: str | None = None,
+    *,
+    view: str = "iso",
+    mode_format: ModeFormat = "png",
+    lines: Sequence[float] = (),
+    measured: bool = False,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[SolvedHousing]:
+    """Draw mode shapes, the housing's motion at lines of a run, or measured shapes beside the model's.
+
+    Parameters
+    ----------
+    case : Case
+    which : str, optional
+        Modes: ``dominant`` (by default, unless something else is asked for), ``all``, or numbers such as ``1,4,9``.
+    view : {"iso", "front", "back", "left", "right", "top"}
+    mode_format : {"png", "glb", "gif", "mp4"}
+        Pictures, models that move, or films; the result writes them.
+    lines : sequence of float
+        Frequencies of the run in ``folder`` [Hz].
+    measured : bool
+        Whether to draw measured shapes.
+    housing, folder, fresh, progress
+        As :func:`modes`.
+
+    Raises
+    ------
+    CaseError
+        Where something is asked for that cannot be drawn.
+    housing.errors.RendererUnavailableError, housing.errors.EncoderUnavailableError
+        Where nothing here draws or encodes.
+    """
+    which = which or (None if lines or measured else "dominant")
+    check_request(case, which, mode_format, lines, measured=measured)
+    solved = _solved(case, "render", housing, folder, progress, fresh=fresh)
+    comparison, survey = None, None
+    if case.measured is not None and (measured or solved.strengths is not None):
+        comparison, survey = comparison_stage.compare_with_survey(case, solved, progress)
+    document = housing_documents.origin_document(solved)
+
+    def files(place: Path, *, pictures: bool) -> None:
+        if which is not None:
+            draw_modes(solved, comparison, which, view, mode_format, place, progress)
+        if lines and folder is not None:
+            document["lines"] = draw_lines(solved, folder, lines, view, mode_format, place, progress)
+        if measured:
+            draw_measured(case, solved, comparison, survey, view, place)
+
+    return Result("render", case, solved, document, _files=files, _housing=solved)
+
+
+def _solved(
+    case: Case, command: str, housing: SolvedHousing | None, folder: Path | None, progress: Progress, *, fresh: bool
+) -> SolvedHousing:
+    if housing is not None:
+        return housing
+    return housing_stage.solve_housing(case, progress, command=command, folder=folder, fresh=fresh)

@@ -1,0 +1,314 @@
+"""Analyses of rotors and gear pairs, and of the machine that they make with the housing."""
+
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gearwhine import results
+from gearwhine.analyses.result import Result
+from gearwhine.case import Case, swept_keys
+from gearwhine.doubtful import add_warnings, joined, warning
+from gearwhine.progress import Progress, silent
+from gearwhine.stages import (
+    gear_analysis,
+    gear_documents,
+    gear_torques,
+    housing_documents,
+    relief_aims,
+    rotor_documents,
+)
+from gearwhine.stages import gears as gear_stage
+from gearwhine.stages import machine as machine_stage
+from gearwhine.stages import rotors as rotor_stage
+from gearwhine.stages import steady as steady_stage
+from gearwhine.stages import system as system_stage
+from gearwhine.stages.gear_analysis import PairAnalysis
+from gearwhine.stages.housing import SolvedHousing
+from gearwhine.stages.instability import machine_warnings, unstable_modes_warnings
+from gearwhine.stages.rotors import SolvedRotor
+from gearwhine.stages.steady import SolvedSteady
+from gearwhine.stages.system import SolvedSystem
+from gearwhine.stages.system_documents import system_document
+from gearwhine.stages.uncertainty import add_uncertainty
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from gearwhine.sweep.conduct import SweptPoint
+
+
+def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent) -> Result[tuple[SolvedRotor, ...]]:
+    """Find lateral and torsional modes, whirl and critical speeds of each rotor.
+
+    Parameters
+    ----------
+    case : Case
+    write_ross : bool
+        Whether the result writes each rotor with its bearings as a file that ROSS loads, too.
+    progress : callable
+
+    Raises
+    ------
+    CaseError, rotors.RotorError
+        Where the case has no rotors, or one cannot be solved as it stands.
+    rotors.IncompleteModesError
+        Where modes fail their certificate.
+    """
+    solved = rotor_stage.solve_rotors(case, progress)
+    document = rotor_documents.rotors_document(solved)
+
+    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
+        from gearwhine.figures import draw_rotors
+
+        return draw_rotors(case, solved, progress)
+
+    def files(place: Path, *, pictures: bool) -> None:
+        if write_ross:
+            remarks = rotor_stage.write_ross_files(place, solved)
+            add_warnings(document, [warning("ross", remark) for remark in remarks])
+
+    return Result(
+        "rotors",
+        case,
+        solved,
+        document,
+        _arrays=lambda: results.labelled(case, rotors=solved),
+        _figures=figures,
+        _files=files,
+    )
+
+
+def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent) -> Result[tuple[PairAnalysis, ...]]:
+    """Analyse each gear pair: geometry, mesh stiffness, transmission error, load sharing, pressure, best tip relief.
+
+    Parameters
+    ----------
+    case : Case
+    folder : path, optional
+        A results folder, whose housing modes are read where a tip relief aims at a sensor.
+    progress : callable
+
+    Raises
+    ------
+    CaseError, coupling.gears.GearError
+        Where the case has no gear pairs, or one cannot be solved as it stands.
+    """
+    loaded = gear_stage.solve_gears(case, progress)
+    aims = relief_aims.relief_aims(case, loaded, progress, folder=folder)
+    pairs = gear_torques.over_torques(gear_analysis.analyse_pairs(case, loaded), progress, aims)
+
+    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
+        from gearwhine.figures import draw_gear_pairs
+
+        return draw_gear_pairs(pairs, progress)
+
+    return Result(
+        "gears",
+        case,
+        pairs,
+        gear_documents.gears_document(pairs),
+        _arrays=lambda: results.labelled(case, pairs=pairs),
+        _figures=figures,
+    )
+
+
+def system(
+    case: Case,
+    *,
+    mesh_phase: float | None = None,
+    over_speed: bool = False,
+    sidebands: int = 0,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[SolvedSystem]:
+    """Find the complex natural modes of the coupled machine, and what reaches bearings and sensors.
+
+    Parameters
+    ----------
+    case : Case
+    mesh_phase : float, optional
+        Part of the mesh period of the first pair about whose stiffness to linearise; the mean by default.
+    over_speed : bool
+        Whether to follow the modes over speed; a case with a `[sweep]` of speeds always does.
+    sidebands : int
+        Number of shaft-order sidebands drawn on each side of every mesh order.
+    housing, folder, fresh, progress
+        As :func:`gearwhine.analyses.housing.modes`.
+
+    Raises
+    ------
+    CaseError, coupling.CouplingError
+        Where the parts do not make a machine.
+    coupling.ModesError
+        Where the modes fail their certificate.
+    """
+    solved_housing, pairs, machine = machine_stage.solve_machine(
+        case, progress, housing=housing, folder=folder, fresh=fresh
+    )
+    swept = case.sweep is not None and len(case.sweep.speeds) > 1
+    solved = system_stage.solve_system(
+        case,
+        machine,
+        solved_housing,
+        progress,
+        mesh_phase=mesh_phase,
+        over_speed=over_speed or swept or sidebands > 0,
+        sidebands=sidebands,
+    )
+    document = system_document(case, solved, solved_housing)
+    add_warnings(document, unstable_modes_warnings(solved.stability))
+    error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
+    add_uncertainty(document, error, document["trusted_below_hz"])
+
+    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
+        from gearwhine.figures import draw_system
+
+        return draw_system(case, solved)
+
+    return Result(
+        "system",
+        case,
+        solved,
+        joined(document, housing_documents.origin_document(solved_housing)),
+        _arrays=lambda: results.labelled(case, housing=solved_housing, system=solved),
+        _figures=figures,
+        _housing=solved_housing,
+    )
+
+
+def steady(
+    case: Case,
+    *,
+    over_speed: bool = False,
+    downwards: bool = False,
+    points: int = 100,
+    exact: bool = False,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[SolvedSteady]:
+    """Find the periodic motion at the speed of operation, its stability, and its branch over speed.
+
+    Parameters
+    ----------
+    case : Case
+    over_speed : bool
+        Whether to follow the motion over speed.
+    downwards : bool
+        Whether to follow it from the highest speed downwards.
+    points : int
+        Of the curve where it runs straight.
+    exact : bool
+        Whether to solve the common period of all excitations however long it is.
+    housing, folder, fresh, progress
+        As :func:`gearwhine.analyses.housing.modes`.
+
+    Raises
+    ------
+    CaseError, coupling.CouplingError
+        Where the parts do not make a machine.
+    coupling.PeriodicError
+        Where no periodic motion is found.
+    """
+    solved_housing, pairs, machine = machine_stage.solve_machine(
+        case, progress, housing=housing, folder=folder, fresh=fresh
+    )
+    solved = steady_stage.solve_steady(
+        case,
+        machine,
+        solved_housing,
+        progress,
+        over_speed=over_speed or downwards,
+        downwards=downwards,
+        points=points,
+        exact=exact,
+    )
+    document = steady_stage.steady_document(case, solved)
+    add_warnings(document, machine_warnings(machine))
+    error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
+    add_uncertainty(document, error, document["trusted_below_hz"])
+
+    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
+        from gearwhine.figures import draw_steady
+
+        return draw_steady(case, solved)
+
+    return Result(
+        "steady",
+        case,
+        solved,
+        joined(document, housing_documents.origin_document(solved_housing)),
+        _arrays=lambda: results.labelled(case, housing=solved_housing, steady=solved),
+        _figures=figures,
+        _housing=solved_housing,
+    )
+
+
+def sweep(
+    case: Case,
+    source: tuple[str, Sequence[str]],
+    over: Sequence[str],
+    folder: Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> "Result[Sequence[SweptPoint]]":
+    """March the transient at every point of a sweep, side by side.
+
+    Parameters
+    ----------
+    case : Case
+    source : (str, sequence of str)
+        What the case was read from: the name, and the changes of its keys.
+    over : sequence of str
+        Values of keys, such as ``operation.torque=10 N*m:100 N*m:10``; beside the speeds of `[sweep]`.
+    folder : path
+        Where the points are kept; those that it holds already are not done again.
+    workers : int, optional
+        Number of processes; as many as cores by default.
+    scheduler : str, optional
+        Address of a running Dask scheduler, whose workers are used instead.
+    fresh : bool
+        Whether to do all points anew.
+    progress : callable
+
+    Raises
+    ------
+    CaseError
+        Where a key cannot be swept.
+    gearwhine.sweep.WorkersError
+        Where the processes do not start.
+    """
+    start = time.perf_counter()
+    keys = swept_keys(case, over)
+    from gearwhine import sweep as sweeping
+
+    points = sweeping.sweep_points(*source, keys)
+    count = workers or sweeping.default_workers()
+    swept = sweeping.conduct_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
+    dataset = sweeping.gathered(case, keys, swept)
+    document = {"title": case.title} | sweeping.sweep_document(keys, swept)
+    document["workers"] = count if scheduler is None else None
+    document["seconds"] = {"total": time.perf_counter() - start}
+
+    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
+        from gearwhine.figures import draw_sweep
+
+        return draw_sweep(case.title, dataset)
+
+    return Result(
+        "sweep",
+        case,
+        swept,
+        document,
+        _arrays=lambda: dataset,
+        _figures=figures,
+        _data_file="sweep.nc",
+        _started=start,
+    )

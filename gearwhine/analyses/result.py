@@ -1,0 +1,202 @@
+"""Result of an analysis: labelled data, proofs, figures, and the folder that it is written to."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from gearwhine.analyses.results_folder import kept_in
+from gearwhine.case import Case
+from gearwhine.doubtful import add_warnings
+from gearwhine.output import COMMANDS, finite, json_text, staging
+from gearwhine.progress import Progress, silent
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from gearwhine.results import LabelledArrays
+    from gearwhine.stages.housing import SolvedHousing
+
+# Lists of parts that are proved one by one; modes and lines of a spectrum have one proof together.
+_LISTED = ("rotors", "pairs", "motions")
+
+Solved = TypeVar("Solved")
+
+_PROOFS = {
+    "certificate",
+    "complete",
+    "energy_error",
+    "health",
+    "max_residual",
+    "residual",
+    "static_error",
+    "trusted_below_hz",
+    "uncertainty",
+}
+
+
+def _no_figures(progress: Progress) -> Iterable[tuple[str, Figure]]:
+    return ()
+
+
+def _no_files(place: Path, *, pictures: bool) -> None:
+    """Write nothing beside the data and the figures."""
+
+
+@dataclass(frozen=True, eq=False)
+class Result(Generic[Solved]):
+    """What an analysis of a case found.
+
+    Attributes
+    ----------
+    command : str
+        Name of the analysis.
+    case : Case
+        That was analysed.
+    solved
+        The library's own objects: solved housing, rotors, gear pairs, coupled modes, motion.
+    document : dict
+        Numbers and texts as the command prints them with ``--json``; units stand in the keys.
+    """
+
+    command: str
+    case: Case
+    solved: Solved
+    document: dict[str, Any]
+    _arrays: Callable[[], LabelledArrays | xr.Dataset] | None = None
+    _figures: Callable[[Progress], Iterable[tuple[str, Figure]]] = _no_figures
+    _files: Callable[..., None] = _no_files
+    _housing: SolvedHousing | None = None
+    _data_file: str = "results.nc"
+    _started: float | None = None
+
+    def __post_init__(self) -> None:
+        add_warnings(self.document)
+
+    def __repr__(self) -> str:
+        return f"<Result of {self.command!r} on {self.case.title!r}: {', '.join(self.document)}>"
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """Every quantity with its dimensions, unit and long name, as in the NetCDF file."""
+        if self._arrays is None:
+            import xarray as xr
+
+            return xr.Dataset(attrs={"title": self.case.title})
+        from gearwhine.results import LabelledArrays
+
+        found = self._arrays()
+        return found.dataset() if isinstance(found, LabelledArrays) else found
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the user should know of the result, a sentence each."""
+        return [str(entry["message"]) for entry in self.document["warnings"]]
+
+    @property
+    def proofs(self) -> dict[str, Any]:
+        """Certificates, residuals and error estimates of the document, by their path in it."""
+        return dict(_proofs(self.document, ""))
+
+    def figures(self, progress: Progress = silent) -> Iterator[tuple[str, Figure]]:
+        """Draw the figures of the analysis, one after the other, each with its name."""
+        yield from self._figures(progress)
+
+    def plot(self, name: str | None = None) -> Figure:
+        """Draw one figure.
+
+        Parameters
+        ----------
+        name : str, optional
+            One of the names that :meth:`figures` yields; the first one by default.
+
+        Raises
+        ------
+        KeyError
+            Where there is no figure of that name; the message lists those there are.
+        """
+        names = []
+        for each, figure in self.figures():
+            if name in (None, each):
+                return figure
+            names.append(each)
+        listed = ", ".join(names) or "none"
+        raise KeyError(f"no figure {name!r} of {self.command!r}; there are: {listed}")
+
+    def json(self) -> str:
+        """The document as JSON, as the command prints it with ``--json``."""
+        return json_text(finite(self.document))
+
+    def write(self, folder: str | Path, *, pictures: bool = True, progress: Progress = silent) -> list[str]:
+        """Write data, document, case and figures into a folder, beside what other analyses left there.
+
+        Parameters
+        ----------
+        folder : path
+            Made where it does not exist.
+        pictures : bool
+            Whether to draw.
+        progress : callable
+            Told in words what happens next.
+
+        Returns
+        -------
+        list of str
+            The files that stand there now, relative to the folder.
+
+        Raises
+        ------
+        OSError
+            Where the folder cannot be written to; what it held stays as it was.
+        """
+        begin = time.perf_counter()
+
+        def write(place: Path) -> None:
+            progress("writing results")
+            self._write_data(place)
+            if pictures:
+                from gearwhine.figures.style import save_all
+
+                save_all(self.figures(progress), place)
+            self._files(place, pictures=pictures)
+            if self._started is not None:
+                now = time.perf_counter()
+                self.document["seconds"] |= {"writing": now - begin, "total": now - self._started}
+
+        if self.command in COMMANDS:
+            kept_in(self.command, self.document, self.case, Path(folder), write, self._housing)
+        else:
+            with staging(Path(folder)) as place:
+                write(place)
+                files = sorted(path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file())
+            self.document.update(folder=str(folder), files=files)
+        return list(self.document["files"])
+
+    def _write_data(self, place: Path) -> None:
+        if self._arrays is None:
+            return
+        from gearwhine.results import LabelledArrays
+
+        found = self._arrays()
+        if isinstance(found, LabelledArrays):
+            found.write(place / self._data_file)
+        else:
+            found.to_netcdf(place / self._data_file, engine="h5netcdf")
+
+
+def _proofs(value: Any, path: str) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            here = f"{path}.{key}" if path else str(key)
+            if key in _PROOFS:
+                yield here, inner
+            else:
+                yield from _proofs(inner, here)
+    elif isinstance(value, list) and path in _LISTED:
+        for number, inner in enumerate(value):
+            yield from _proofs(inner, f"{path}[{number}]")

@@ -1,0 +1,288 @@
+"""The whole run of a case: every analysis that it asks for, and the transient."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gearwhine import results
+from gearwhine.analyses.result import Result
+from gearwhine.case import Case, mesh_frequencies, require
+from gearwhine.comparison_files import draw_comparison_figures, write_comparison
+from gearwhine.doubtful import add_warnings, joined
+from gearwhine.drawings import draw_modes
+from gearwhine.march_files import kept_march
+from gearwhine.output import staging
+from gearwhine.progress import Progress, silent
+from gearwhine.stages import comparison as comparison_stage
+from gearwhine.stages import comparison_documents, gear_analysis, gear_documents, housing_documents, rotor_documents
+from gearwhine.stages import gears as gear_stage
+from gearwhine.stages import housing as housing_stage
+from gearwhine.stages import machine as machine_stage
+from gearwhine.stages import rotors as rotor_stage
+from gearwhine.stages import run_up as run_up_stage
+from gearwhine.stages import signature as signature_stage
+from gearwhine.stages import system as system_stage
+from gearwhine.stages import transient as transient_stage
+from gearwhine.stages.bearing_loads import bearing_load_warnings
+from gearwhine.stages.housing import keep_modes
+from gearwhine.stages.instability import unstable_modes_warnings
+from gearwhine.stages.kept_modes import MODES_FILE
+from gearwhine.stages.machine import require_machine
+from gearwhine.stages.system_documents import system_document
+from gearwhine.stages.uncertainty import add_uncertainty
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from gearwhine.stages.gear_analysis import PairAnalysis
+    from gearwhine.stages.housing import SolvedHousing
+    from gearwhine.stages.rotors import SolvedRotor
+    from gearwhine.stages.run_up import RunSignature
+    from gearwhine.stages.signature import SolvedSignature
+    from gearwhine.stages.system import SolvedSystem
+    from gearwhine.stages.transient import SolvedTransient
+    from housing.correlation import Comparison
+
+
+def run(
+    case: Case,
+    *,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
+    pictures: bool = True,
+    until_written: ExitStack | None = None,
+    progress: Progress = silent,
+) -> Result[RunSolution]:
+    """Do everything that the case asks for: rotors, gears, housing, comparison, coupled modes, transient.
+
+    Parameters
+    ----------
+    case : Case
+    housing : SolvedHousing, optional
+        Where it is solved already.
+    folder : path, optional
+        A results folder: modes of the same housing kept there are read, and what is marched of the transient is kept
+        there, so that a run that dies goes on from there when it is started again.
+    fresh : bool
+        Whether to begin anew where there is such a folder.
+    pictures : bool
+        Whether modes will be drawn: where no renderer is found, that is said before the work.
+    until_written : ExitStack, optional
+        Closed by the caller when the results are written; what is marched is kept until then.
+    progress : callable
+
+    Raises
+    ------
+    CaseError, housing.HousingError, rotors.RotorError, coupling.CouplingError
+        Where the case cannot be solved as it stands.
+    housing.errors.RendererUnavailableError
+        Where modes are to be drawn and nothing here draws.
+    """
+    if case.transient is not None:
+        require(case, "rotor", "operation", command="run")
+    require_machine(case)
+    if case.housing is not None and pictures:
+        _require_renderer()
+    start = time.perf_counter()
+    seconds: dict[str, float] = {}
+    document: dict[str, Any] = {"title": case.title}
+
+    def timed(name: str, begin: float) -> None:
+        seconds[name] = time.perf_counter() - begin
+
+    begin = time.perf_counter()
+    rotors = rotor_stage.solve_rotors(case, progress) if case.rotor else ()
+    pairs = gear_stage.solve_gears(case, progress) if case.gear_pair else ()
+    analysed = gear_analysis.analyse_pairs(case, pairs)
+    timed("rotors_and_gears", begin)
+    begin = time.perf_counter()
+    if housing is None and case.housing is not None:
+        housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
+    timed("housing", begin)
+    if rotors:
+        document = joined(document, rotor_documents.rotors_document(rotors))
+    if pairs:
+        document = joined(document, gear_documents.gears_document(analysed))
+    comparison = None
+    if housing is not None:
+        document["housing"] = housing_documents.modes_document(housing)
+        document = joined(document, housing_documents.origin_document(housing))
+        if case.measured is not None:
+            comparison = comparison_stage.compare_housing(case, housing, progress)
+            document["compare"] = comparison_documents.comparison_document(comparison, housing)
+
+    transient, system, signature, run_signature = None, None, None, None
+    if case.rotor and case.operation:
+        begin = time.perf_counter()
+        part = None if housing is None else machine_stage.housing_in_machine(case, housing, progress)
+        machine = machine_stage.build_machine(case, part, pairs, progress)
+        basis = machine_stage.basis_error(case, machine, part, pairs, progress)
+        system = system_stage.solve_system(case, machine, housing, progress)
+        document["system"] = system_document(case, system, housing)
+        add_warnings(document, unstable_modes_warnings(system.stability))
+        add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
+        timed("system", begin)
+        if case.transient is not None:
+            if folder is not None and housing is not None and not housing.source_holds:
+                # Now, not with the results: who goes on with a long march need not solve them again.
+                with staging(folder) as place:
+                    keep_modes(place, housing)
+                housing = replace(housing, source=folder / MODES_FILE, source_holds=True)
+            begin = time.perf_counter()
+            keep = None
+            if folder is not None and until_written is not None:
+                keep = partial(_kept, folder, until_written, fresh=fresh)
+            transient = transient_stage.solve_transient(
+                case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep
+            )
+            document = joined(document, transient_stage.transient_document(case, transient))
+            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
+            add_uncertainty(document, basis, transient.trusted_limit)
+            if transient_stage.is_traced(case):
+                frequencies = None if housing is None else housing.modes.frequencies_hz
+                signature = signature_stage.solve_signature(transient, system.modes, frequencies)
+                signature_stage.add_signature(document, transient, signature)
+            run_signature = run_up_stage.solve_run_signature(case, transient)
+            add_warnings(document, run_up_stage.run_signature_warnings(case, transient))
+            if run_signature is not None:
+                document["run_signature"] = run_up_stage.run_signature_document(run_signature)
+            timed("transient", begin)
+            seconds["time_stepping"] = transient.result.seconds
+
+    seconds["total"] = time.perf_counter() - start
+    document["seconds"] = seconds
+    solved = RunSolution(rotors, analysed, housing, comparison, system, transient, signature, run_signature)
+
+    def files(place: Path, *, pictures: bool) -> None:
+        if solved.housing is None:
+            return
+        results.write_shapes(place / "modes.vtu", solved.housing)
+        if comparison is not None:
+            write_comparison(place, comparison)
+        if pictures:
+            draw_modes(solved.housing, comparison, "dominant", "iso", "png", place, progress)
+
+    return Result(
+        "run",
+        case,
+        solved,
+        document,
+        _arrays=lambda: results.labelled(
+            case,
+            housing=solved.housing,
+            rotors=rotors,
+            pairs=analysed,
+            system=system,
+            transient=transient,
+            signature=signature,
+            run=run_signature,
+        ),
+        _figures=partial(_figures, case, solved),
+        _files=files,
+        _housing=housing,
+        _started=start,
+    )
+
+
+def simulate(
+    case: Case, *, housing: SolvedHousing | None = None, folder: Path | None = None, progress: Progress = silent
+) -> Result[RunSolution]:
+    """March the machine of a case through its transient.
+
+    Parameters
+    ----------
+    case : Case
+        With `[transient]`.
+    housing, folder, progress
+        As :func:`run`.
+
+    Raises
+    ------
+    CaseError, housing.HousingError, rotors.RotorError, coupling.CouplingError
+        Where the case cannot be solved as it stands.
+    coupling.TransientError
+        Where the motion cannot be followed or its energies do not balance.
+    """
+    require(case, "rotor", "operation", "transient", command="simulate")
+    only = case.model_copy(update={"measured": None})
+    found = run(only, housing=housing, folder=folder, pictures=False, progress=progress)
+    return replace(found, case=case)
+
+
+def run_into(
+    case: Case,
+    folder: Path,
+    *,
+    housing: SolvedHousing | None = None,
+    fresh: bool = False,
+    pictures: bool = True,
+    progress: Progress = silent,
+) -> Result[RunSolution]:
+    """Do everything that the case asks for and write it; what is marched is kept until it is written.
+
+    The parameters are those of :func:`run`.
+    """
+    with ExitStack() as until_written:
+        result = run(
+            case,
+            housing=housing,
+            folder=folder,
+            fresh=fresh,
+            pictures=pictures,
+            until_written=until_written,
+            progress=progress,
+        )
+        result.write(folder, pictures=pictures, progress=progress)
+        return result
+
+
+def _require_renderer() -> None:
+    from housing.errors import RendererUnavailableError
+    from housing.renderer import find_renderer
+
+    try:
+        find_renderer()
+    except RendererUnavailableError as error:
+        raise RendererUnavailableError(f"{error}\nor do without pictures: --no-pictures") from error
+
+
+def _kept(folder: Path, until_written: ExitStack, key: str, *, fresh: bool) -> Any:
+    return until_written.enter_context(kept_march(folder, key, fresh=fresh))
+
+
+@dataclass(frozen=True)
+class RunSolution:
+    """All that a run has found, and None or empty for what the case does not ask for."""
+
+    rotors: tuple[SolvedRotor, ...]
+    pairs: tuple[PairAnalysis, ...]
+    housing: SolvedHousing | None
+    comparison: Comparison | None
+    system: SolvedSystem | None
+    transient: SolvedTransient | None
+    signature: SolvedSignature | None
+    run_signature: RunSignature | None
+
+
+def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tuple[str, Figure]]:
+    """The figures of what there is."""
+    from gearwhine import figures
+
+    if solved.pairs:
+        yield from figures.draw_gear_pairs(solved.pairs, progress)
+    if solved.system is not None:
+        yield from figures.draw_system(case, solved.system)
+    if solved.transient is not None:
+        found = solved.transient, solved.signature, solved.housing, solved.comparison
+        yield from figures.draw_transient(case, *found)
+    if solved.run_signature is not None:
+        yield from figures.draw_run(case, solved.run_signature, solved.housing)
+    if solved.housing is not None and solved.comparison is not None:
+        yield from draw_comparison_figures(case.title, solved.comparison, solved.housing.modes.frequencies)

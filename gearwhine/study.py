@@ -1,0 +1,289 @@
+"""A case and all that can be asked of it, each analysis a call that returns a labelled result."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from gearwhine.case import Case, LoadedCase, load_case, parse_case
+from gearwhine.case.checks import warnings_of
+from gearwhine.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from gearwhine.analyses.result import Result
+    from gearwhine.analyses.run import RunSolution
+    from gearwhine.drawings import ModeFormat
+    from gearwhine.stages.gear_analysis import PairAnalysis
+    from gearwhine.stages.housing import SolvedHousing
+    from gearwhine.stages.rotors import SolvedRotor
+    from gearwhine.stages.steady import SolvedSteady
+    from gearwhine.stages.survey_plan import PlannedSurvey
+    from gearwhine.stages.system import SolvedSystem
+    from gearwhine.stages.updating import SolvedUpdate
+    from gearwhine.sweep.conduct import SweptPoint
+    from housing import Comparison
+    from meshes import Mesh
+
+
+def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequence[str] = ()) -> Study:
+    """Read and check a case.
+
+    Parameters
+    ----------
+    source : str or path
+        A case file (TOML), or the name of a bundled case.
+    changes : mapping or sequence of str
+        Keys and their new values, ``{"housing.box.mesh_size": "20 mm"}``, or texts such as
+        ``"housing.box.mesh_size=20 mm"``.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong.
+    """
+    texts = [f"{key}={_text(value)}" for key, value in changes.items()] if isinstance(changes, Mapping) else changes
+    return Study(load_case(source, tuple(texts)), source=(os.fspath(source), tuple(texts)))
+
+
+def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
+    """Check a case given as Python objects in place of a file.
+
+    Parameters
+    ----------
+    folder : path
+        Where relative file names start.
+    **tables
+        The tables of a case: dictionaries with the keys of a case file, or the classes of :mod:`gearwhine.case`.
+        Quantities are numbers in SI or texts with units.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong, in the words of the case reader.
+
+    Examples
+    --------
+    >>> import gearwhine as gw
+    >>> study = gw.build(
+    ...     material={"steel": {"youngs_modulus": 207e9, "poisson_ratio": 0.3, "density": 7850.0}},
+    ...     rotor=[
+    ...         {
+    ...             "name": "shaft",
+    ...             "material": "steel",
+    ...             "segments": [{"length": "500 mm", "diameter": "30 mm"}],
+    ...         }
+    ...     ],
+    ...     bearing=[
+    ...         {"name": name, "rotor": "shaft", "at": at, "seat": "ground", "stiffness": {"xx": 1e8, "yy": 1e8}}
+    ...         for name, at in (("left", "20 mm"), ("right", "480 mm"))
+    ...     ],
+    ... )
+    >>> round(study.rotors().document["rotors"][0]["mass_kg"], 4)
+    2.7744
+    """
+    case = parse_case({name: _plain(table) for name, table in tables.items()}, folder=folder)
+    return Study(LoadedCase(case, Path(folder), warnings_of(case)))
+
+
+class Study:
+    """A checked case and its analyses.
+
+    The housing is meshed and solved once, by the first analysis that needs its modes, and held by the study.
+
+    Attributes
+    ----------
+    case : Case
+        Checked, in SI.
+    warnings : tuple of str
+        What is allowed in the case but likely not meant.
+    progress : callable
+        Told in words what long work does; silent by default.
+    """
+
+    def __init__(
+        self, loaded: LoadedCase, *, source: tuple[str, tuple[str, ...]] | None = None, progress: Progress = silent
+    ) -> None:
+        self.case: Case = loaded.case
+        self.warnings = loaded.warnings
+        self.progress = progress
+        self._source = source
+        self._housing: SolvedHousing | None = None
+
+    def __repr__(self) -> str:
+        return f"<Study of {self.case.title or 'an untitled case'!r}>"
+
+    @property
+    def housing(self) -> SolvedHousing | None:
+        """The solved housing, which the first call meshes and solves; None in a case without one."""
+        if self._housing is None and self.case.housing is not None:
+            from gearwhine.stages.housing import solve_housing
+
+            self._housing = solve_housing(self.case, self.progress)
+        return self._housing
+
+    def check(self) -> dict[str, Any]:
+        """What the case means: ratios, mesh frequencies, contact ratios, sizes. Nothing is solved."""
+        from gearwhine.stages.summary import check_document
+
+        return check_document(self.case, self.progress)
+
+    def mesh(self, suffix: str = "msh") -> Result[Mesh]:
+        """Mesh the housing; see :func:`gearwhine.analyses.housing.mesh`."""
+        from gearwhine.analyses import housing
+
+        return housing.mesh(self.case, suffix=suffix, progress=self.progress)
+
+    def modes(self, *, detail: bool = False) -> Result[SolvedHousing]:
+        """Find the natural modes of the housing, certified complete; see :func:`gearwhine.analyses.housing.modes`."""
+        from gearwhine.analyses import housing
+
+        return housing.modes(self.case, detail=detail, housing=self.housing, progress=self.progress)
+
+    def compare(self) -> Result[Comparison]:
+        """Compare natural modes with measured ones; see :func:`gearwhine.analyses.housing.compare`."""
+        from gearwhine.analyses import housing
+
+        return housing.compare(self.case, housing=self.housing, progress=self.progress)
+
+    def survey(self, sensors: int, modes: int | None = None) -> Result[PlannedSurvey]:
+        """Choose where to measure the modes; see :func:`gearwhine.analyses.housing.survey`."""
+        from gearwhine.analyses import housing
+
+        return housing.survey(self.case, sensors=sensors, modes=modes, housing=self.housing, progress=self.progress)
+
+    def update(self, *, null: int = 0, held_back: bool = False) -> Result[SolvedUpdate]:
+        """Fit the parameters of `[update]` to the measured modes; see :func:`gearwhine.analyses.housing.update`."""
+        from gearwhine.analyses import housing
+
+        return housing.update(self.case, null=null, held_back=held_back, progress=self.progress)
+
+    def render(
+        self,
+        modes: str | None = None,
+        *,
+        view: Literal["iso", "front", "back", "left", "right", "top"] = "iso",
+        mode_format: ModeFormat = "png",
+        measured: bool = False,
+    ) -> Result[SolvedHousing]:
+        """Draw mode shapes, which the result writes; see :func:`gearwhine.analyses.housing.render`."""
+        from gearwhine.analyses import housing
+
+        return housing.render(
+            self.case,
+            modes,
+            view=view,
+            mode_format=mode_format,
+            measured=measured,
+            housing=self.housing,
+            progress=self.progress,
+        )
+
+    def rotors(self) -> Result[tuple[SolvedRotor, ...]]:
+        """Find modes, whirl and critical speeds of each rotor; see :func:`gearwhine.analyses.machine.rotors`."""
+        from gearwhine.analyses import machine
+
+        return machine.rotors(self.case, progress=self.progress)
+
+    def gears(self) -> Result[tuple[PairAnalysis, ...]]:
+        """Analyse each gear pair; see :func:`gearwhine.analyses.machine.gears`."""
+        from gearwhine.analyses import machine
+
+        return machine.gears(self.case, progress=self.progress)
+
+    def system(
+        self, *, campbell: bool = False, sidebands: int = 0, mesh_phase: float | None = None
+    ) -> Result[SolvedSystem]:
+        """Find the complex modes of the coupled machine; see :func:`gearwhine.analyses.machine.system`."""
+        from gearwhine.analyses import machine
+
+        return machine.system(
+            self.case,
+            over_speed=campbell,
+            sidebands=sidebands,
+            mesh_phase=mesh_phase,
+            housing=self.housing,
+            progress=self.progress,
+        )
+
+    def steady(
+        self, *, curve: bool = False, down: bool = False, points: int = 100, exact: bool = False
+    ) -> Result[SolvedSteady]:
+        """Find the periodic motion, its stability and branch; see :func:`gearwhine.analyses.machine.steady`."""
+        from gearwhine.analyses import machine
+
+        return machine.steady(
+            self.case,
+            over_speed=curve,
+            downwards=down,
+            points=points,
+            exact=exact,
+            housing=self.housing,
+            progress=self.progress,
+        )
+
+    def simulate(self) -> Result[RunSolution]:
+        """March the transient of `[transient]`; see :func:`gearwhine.analyses.run.simulate`."""
+        from gearwhine.analyses import run
+
+        return run.simulate(self.case, housing=self.housing, progress=self.progress)
+
+    def run(self) -> Result[RunSolution]:
+        """Do everything that the case asks for; see :func:`gearwhine.analyses.run.run`."""
+        from gearwhine.analyses import run
+
+        return run.run(self.case, housing=self.housing, pictures=False, progress=self.progress)
+
+    def sweep(
+        self,
+        over: Sequence[str] = (),
+        *,
+        folder: str | os.PathLike[str],
+        workers: int | None = None,
+        fresh: bool = False,
+    ) -> Result[Sequence[SweptPoint]]:
+        """March the transient at every point of a sweep; see :func:`gearwhine.analyses.machine.sweep`.
+
+        Parameters
+        ----------
+        over : sequence of str
+            Values of keys, such as ``"operation.torque=10 N*m:100 N*m:10"``, beside the speeds of `[sweep]`.
+        folder : path
+            Where the points are kept; those that it holds already are not done again.
+        workers : int, optional
+            Number of processes; as many as cores by default.
+        fresh : bool
+            Whether to do all points anew.
+
+        Raises
+        ------
+        CaseError
+            Where a key cannot be swept, or the case was not read from a file or a bundled case.
+        """
+        from gearwhine.analyses import machine
+        from gearwhine.case import CaseError, Problem
+
+        if self._source is None:
+            raise CaseError([Problem("sweep", "a case built in Python", "a case file, which the workers read")])
+        return machine.sweep(
+            self.case, self._source, over, Path(folder), workers=workers, fresh=fresh, progress=self.progress
+        )
+
+
+def _text(value: object) -> str:
+    """A value as it stands behind ``--set KEY=``."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _plain(value: object) -> object:
+    """A table of plain dictionaries and lists, as TOML gives it."""
+    from pydantic import BaseModel
+
+    if isinstance(value, BaseModel):
+        return value.model_dump(exclude_unset=True, by_alias=True)
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return value

@@ -1,0 +1,135 @@
+"""The front door in Python: cases and objects in, labelled results out, the same numbers as the command's."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gearwhine as gw
+from gearwhine.case import Bearing, Material, Rotor
+from gearwhine.cli import run_command
+
+COARSE = {"housing.box.mesh_size": "40 mm", "housing.frequency_limit": "2.5 kHz"}
+SHORT = {"transient.revolutions": 6, "transient.discard": 4, "transient.tolerance": 5e-3}
+
+
+@pytest.fixture(scope="module")
+def study() -> gw.Study:
+    return gw.load("small-gearbox", COARSE | SHORT)
+
+
+def test_every_name_of_the_front_door_is_there_and_none_is_loaded_early() -> None:
+    assert len(gw.__all__) <= 32
+    assert all(getattr(gw, name) is not None for name in gw.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'gear_box'"):
+        gw.gear_box  # noqa: B018 - its absence is the point
+    code = "import gearwhine, sys; print({'numpy', 'scipy', 'pydantic', 'xarray'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
+
+
+def test_modes_are_the_command_s(study: gw.Study, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = study.modes()
+    changes = [part for key, value in (COARSE | SHORT).items() for part in ("--set", f"{key}={value}")]
+    assert run_command(["modes", "small-gearbox", "--json", "-q", *changes]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert [mode["frequency_hz"] for mode in printed["modes"]] == found.dataset["housing_frequency"].values.tolist()
+    assert found.dataset["housing_frequency"].attrs["units"] == "Hz"
+    assert found.proofs["certificate"]["complete"]
+    assert json.loads(found.json())["modes"] == printed["modes"]
+
+
+def test_the_housing_is_solved_once(study: gw.Study) -> None:
+    assert study.modes().solved is study.housing
+    assert study.system().solved.machine.housing is not None
+    assert study.modes().solved is study.housing
+
+
+def test_a_written_result_is_the_dataset(study: gw.Study, tmp_path: Path) -> None:
+    found = study.system(campbell=True)
+    files = found.write(tmp_path)
+    assert {"results.nc", "summary.json", "case.toml", "system-campbell.png"} <= set(files)
+    with xr.open_dataset(tmp_path / "results.nc") as written:
+        xr.testing.assert_allclose(written, found.dataset)
+    names = [name for name, _ in found.figures()]
+    assert names[0] == "system-campbell"
+    assert found.plot("system-campbell").axes
+    with pytest.raises(KeyError, match="no figure 'campbel' of 'system'; there are: system-campbell"):
+        found.plot("campbel")
+
+
+def test_a_run_has_histories_in_memory_as_on_file(study: gw.Study, tmp_path: Path) -> None:
+    found = study.simulate()
+    assert found.command == "run"
+    assert found.proofs["energy_error"] < 1e-2
+    found.write(tmp_path, pictures=False)
+    assert not list(tmp_path.glob("*.png"))
+    with xr.open_dataset(tmp_path / "results.nc") as written:
+        xr.testing.assert_allclose(written, found.dataset)
+        # Two turns of a first driver with 28 teeth: the mesh order stands in line 2 × 28.
+        force = found.dataset["mesh_force"].isel(contact=0).values
+        lines = np.abs(np.fft.rfft(force - force.mean()))
+        assert lines.argmax() % (2 * 28) == 0
+
+
+def test_gears_and_rotors_need_no_housing() -> None:
+    study = gw.load("small-gearbox")
+    gears, rotors = study.gears(), study.rotors()
+    assert study._housing is None
+    assert gears.dataset["transmission_error"].attrs["units"] == "m"
+    assert gears.solved[0].solved.torque == pytest.approx(study.case.operation.torque if study.case.operation else 0.0)
+    assert [one.rotor.name for one in rotors.solved] == [rotor.name for rotor in study.case.rotor]
+    assert "gears-pinion-wheel-stiffness" in [name for name, _ in gears.figures()]
+
+
+def test_a_case_of_python_objects_is_that_of_a_file() -> None:
+    tables = {
+        "material": {"steel": Material(youngs_modulus=207e9, poisson_ratio=0.3, density=7850.0)},
+        "rotor": [
+            Rotor.model_validate(
+                {"name": "shaft", "material": "steel", "segments": [{"length": "500 mm", "diameter": "30 mm"}]}
+            )
+        ],
+        "bearing": [
+            Bearing.model_validate(
+                {"name": name, "rotor": "shaft", "at": at, "seat": "ground", "stiffness": {"xx": 1e8, "yy": 1e8}}
+            )
+            for name, at in (("left", 0.02), ("right", 0.48))
+        ],
+    }
+    found = gw.build(**tables).rotors()
+    mass = 7850.0 * np.pi / 4.0 * 0.03**2 * 0.5
+    assert found.document["rotors"][0]["mass_kg"] == pytest.approx(mass, rel=1e-12)
+    plain = {
+        "material": {"steel": {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}},
+        "rotor": [{"name": "shaft", "material": "steel", "segments": [{"length": 0.5, "diameter": 0.03}]}],
+        "bearing": [
+            {"name": name, "rotor": "shaft", "at": at, "seat": "ground", "stiffness": {"xx": 1e8, "yy": 1e8}}
+            for name, at in (("left", 0.02), ("right", 0.48))
+        ],
+    }
+    assert gw.build(**plain).rotors().document["rotors"] == found.document["rotors"]
+
+
+def test_what_the_case_reader_refuses_objects_refuse_in_the_same_words(tmp_path: Path) -> None:
+    with pytest.raises(gw.CaseError, match=r"rotor\[0\]\.material"):
+        gw.build(rotor=[{"name": "shaft", "material": "stele", "segments": [{"length": 0.5, "diameter": 0.03}]}])
+    with pytest.raises(gw.CaseError, match="a case file, which the workers read"):
+        gw.build(
+            material={"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3, "density": 7850}},
+            rotor=[{"name": "shaft", "material": "steel", "segments": [{"length": 0.5, "diameter": 0.03}]}],
+        ).sweep(folder=tmp_path)
+    with pytest.raises(gw.CaseError, match=r"housing\.box\.mesh_size"):
+        gw.load("small-gearbox", {"housing.box.mesh_size": "-3 mm"})
+
+
+def test_the_examples_of_docstrings_hold() -> None:
+    import doctest
+
+    import gearwhine.study as module
+
+    assert doctest.testmod(module).failed == 0
