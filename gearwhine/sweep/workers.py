@@ -6,6 +6,7 @@ import logging
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
@@ -79,6 +80,7 @@ def connected(
     with (
         dask.config.set(settings),
         _environment_restored(),
+        _main_module_unseen(),
         _quiet(),
         TemporaryDirectory(prefix="dask-", dir=place, ignore_cleanup_errors=True) as scratch,
         _own_processes(workers, scratch, plugins) if scheduler is None else _cluster_at(scheduler) as client,
@@ -195,6 +197,22 @@ def _environment_restored() -> Iterator[None]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
+
+
+@contextmanager
+def _main_module_unseen() -> Iterator[None]:
+    """Start processes that do not import the caller's script, which would sweep again in each of them.
+
+    A spawned process imports the file of the main module, and a script without ``if __name__ == "__main__"`` runs
+    whole. The workers need only this package.
+    """
+    main = sys.modules["__main__"]
+    hidden = {name: main.__dict__[name] for name in ("__file__", "__spec__") if name in main.__dict__}
+    main.__dict__.update(dict.fromkeys(hidden))
+    try:
+        yield
+    finally:
+        main.__dict__.update(hidden)
 
 
 @contextmanager
