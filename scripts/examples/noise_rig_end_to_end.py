@@ -16,7 +16,6 @@ files = run.write(folder, pictures=False)
 spectrum = run.dataset["sensor_spectrum"]
 mesh_frequency = study.case.operation.speed / 6.283185307179586 * study.case.gear[0].teeth
 line = float(spectrum.sel(frequency=mesh_frequency, method="nearest").max())
-print(
-    f"mesh line {mesh_frequency:.0f} Hz: {line:.3g} m/s² at the loudest sensor; energy error {run.proofs['energy_error']:.1e}"
-)
+print(f"mesh line {mesh_frequency:.0f} Hz: {line:.3g} m/s² at the loudest sensor")
+print(f"energy balance closes to {run.proofs['energy_error']:.1e}")
 print(f"{len(files)} files in {folder}")
