@@ -10,11 +10,11 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import FactorizationError
-from housing.solvers import NumericFactor, PardisoSolver, RslabSolver, SuperluSolver, can_import
+from housing.solvers import NumericFactor, RslabSolver, SuperluSolver, can_import
 from housing.symmetric import SymmetricMatrix
 
 FloatArray = npt.NDArray[np.float64]
-Backend = Literal["rslab", "superlu", "pardiso"]
+Backend = Literal["rslab", "superlu"]
 
 _RESIDUAL_BOUND = 1e-8
 _ERROR_BOUND = 1e-2  # of a solution: 1e-8 is usual, and a singular matrix gives 1 and more
@@ -34,7 +34,7 @@ class Factorization:
 
     Attributes
     ----------
-    backend : {"rslab", "superlu", "pardiso"}
+    backend : {"rslab", "superlu"}
     size : int
         Order of the matrix.
     fill : int
@@ -64,9 +64,8 @@ class Factorizer:
 
     Parameters
     ----------
-    backend : {"rslab", "superlu", "pardiso"}, optional
-        rslab where it can be imported, else SuperLU in symmetric mode, about ten times slower. PARDISO of the Math
-        Kernel Library is taken where it is asked for, through the package pypardiso.
+    backend : {"rslab", "superlu"}, optional
+        rslab where it can be imported, else SuperLU in symmetric mode, about ten times slower.
     threads : int
         Workers of the factorisation; SuperLU has one.
 
@@ -81,10 +80,10 @@ class Factorizer:
         self._solver: _Solver
         if self.backend == "superlu":
             self._solver = SuperluSolver()
-        elif not can_import(module := {"rslab": "rslab", "pardiso": "pypardiso"}[self.backend]):
-            raise FactorizationError(f"the backend {self.backend} needs the package {module}, which is not installed")
+        elif not can_import("rslab"):
+            raise FactorizationError("the backend rslab needs the package rslab, which is not installed")
         else:
-            self._solver = RslabSolver(threads) if self.backend == "rslab" else PardisoSolver(threads)
+            self._solver = RslabSolver(threads)
         self._ordering: Future[None] | None = None
 
     def order_ahead(self, matrix: SymmetricMatrix) -> None:

@@ -10,7 +10,7 @@ from scipy import sparse
 from housing.node_blocks import NOTHING, Additions, NodeBlocks
 
 FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int32]
+Int32Array = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class Matrices:
         Degrees of freedom that supports hold at zero, ascending.
     """
 
-    pointer: IntArray
-    neighbors: IntArray
+    pointer: Int32Array
+    neighbors: Int32Array
     blocks: FloatArray
     node_mass: FloatArray
     attached_mass: NodeBlocks = NOTHING
@@ -140,7 +140,7 @@ class Matrices:
         return replace(self, fixed=np.union1d(self.fixed, np.asarray(freedoms, dtype=np.int64)))
 
     @cached_property
-    def rows(self) -> IntArray:
+    def rows(self) -> Int32Array:
         """The row node of each block, shape (n_blocks,)."""
         return np.repeat(np.arange(self.n_nodes, dtype=np.int32), np.diff(self.pointer))
 
@@ -153,7 +153,7 @@ class Matrices:
         return blocks.rows * self.n_nodes + blocks.columns
 
     @cached_property
-    def _whole(self) -> tuple[IntArray, IntArray, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+    def _whole(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
         """The pattern with what lies below the diagonal: its pointer and neighbours, where each block is kept, and
         whether it stands there transposed."""
         upper = np.flatnonzero(self.neighbors != self.rows)

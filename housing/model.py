@@ -17,6 +17,7 @@ from housing.attachments import Attachment, attach
 from housing.bolts import bolted_joint
 from housing.bushings import Bushing, Joint, Mount
 from housing.damping import damping_ratios, modal_damping
+from housing.eigensolver import DEFAULT_SOLVER, Solver
 from housing.enclosure import enclosed
 from housing.errors import HousingError
 from housing.health import HealthReport, health_report
@@ -223,6 +224,7 @@ class Housing:
         below_hz: float | None = None,
         count: int | None = None,
         bearings: Mapping[str, tuple[str, float]] | None = None,
+        solver: Solver = DEFAULT_SOLVER,
         progress: Callable[[str], None] = lambda message: None,
     ) -> "HousingModes":
         """Natural modes, certified complete, with residual modes for the bearings.
@@ -236,6 +238,8 @@ class Housing:
         bearings : mapping of str to (str, float), optional
             Where the machine bears on the housing: by bearing, its seat and its distance along z from the centre of the
             seat [m]. By default each seat stands for one bearing at its centre.
+        solver : {"lanczos", "eigsh"}
+            Eigensolver, see :func:`housing.solve_modes`.
         progress : callable
             Told in words what happens next.
 
@@ -263,6 +267,7 @@ class Housing:
             count=count,
             ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
             port_orders=RESPONSE_ORDERS,
+            solver=solver,
             progress=progress,
         )
         health = self.health(free, whole, found)

@@ -3,12 +3,14 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
 from housing.certificate import Certificate
+from housing.eigensolver import DEFAULT_SOLVER, Solver
 from housing.errors import HousingError
 from housing.factorization import Backend, Factorizer
 from housing.free_system import FreeSystem
@@ -78,6 +80,7 @@ def solve_modes(
     draft: bool = False,
     ports: sparse.csr_array | None = None,
     port_orders: int = 1,
+    solver: Solver = DEFAULT_SOLVER,
     backend: Backend | None = None,
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
@@ -100,6 +103,8 @@ def solve_modes(
     port_orders : int
         Responses for each of these motions: 1, the static one; 2, that at the limit too; see
         :func:`housing.reduction.residual_attachments`.
+    solver : {"lanczos", "eigsh"}
+        Own block Lanczos, or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
     backend, threads
         See :class:`housing.factorization.Factorizer`.
     progress : callable
@@ -108,7 +113,8 @@ def solve_modes(
     Raises
     ------
     HousingError
-        Where neither or both of limit and count are given, or they ask for nothing or for everything.
+        Where neither or both of limit and count are given, they ask for nothing or for everything, or the solver is
+        unknown.
     IncompleteModesError
         Where the certificate cannot be made good after three searches.
     ReductionError
@@ -125,9 +131,11 @@ def solve_modes(
     if frequency_limit is not None and frequency_limit <= 0.0:
         raise HousingError(f"frequency limit {frequency_limit} rad/s must be positive")
 
+    if solver not in get_args(Solver):
+        raise HousingError(f"eigensolver {solver!r}; expected one of {', '.join(map(repr, get_args(Solver)))}")
     factorizer = Factorizer(backend=backend, threads=threads)
     factorizer.order_ahead(system.stiffness)
-    search = Search(system, factorizer, system.floor(frequency_limit or 0.0))
+    search = Search(system, factorizer, system.floor(frequency_limit or 0.0), solver)
     found = (
         search.below(frequency_limit, progress)
         if frequency_limit is not None

@@ -1,6 +1,7 @@
 """Searches for modes, made again, wider, until they can be proved complete.
 
-Block Lanczos on the shifted inverse of K φ = λ M φ (:mod:`housing.lanczos`). The proof is Sylvester's law of inertia:
+The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos (:mod:`housing.lanczos`) or scipy's ``eigsh``
+(:mod:`housing.eigensolver`). The proof is Sylvester's law of inertia:
 the number of negative pivots in K - σM = L D Lᵀ is the number of eigenvalues below σ, however many of them coincide.
 A limit is itself the shift, so that one factor both counts the modes below it and finds them; for a number of modes
 the shift lies just below zero, which keeps the shifted matrix positive definite for a free body too, and a second
@@ -16,6 +17,7 @@ import numpy.typing as npt
 from scipy import linalg
 
 from housing.certificate import NOT_COUNTED, OVERLAP_BOUND, Certificate
+from housing.eigensolver import DEFAULT_SOLVER, Solver, arpack_modes
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Factorization, Factorizer
 from housing.free_system import FreeSystem
@@ -47,11 +49,14 @@ class Found:
 class Search:
     """Searches that are made again, wider, until their certificate is good; the seconds of each step add up."""
 
-    def __init__(self, system: FreeSystem, factorizer: Factorizer, floor: float) -> None:
+    def __init__(
+        self, system: FreeSystem, factorizer: Factorizer, floor: float, solver: Solver = DEFAULT_SOLVER
+    ) -> None:
         self.floor = floor
         self.seconds = {"factorisation": 0.0, "eigensolver": 0.0}
         self._system = system
         self._factorizer = factorizer
+        self._solver = solver
         self._mass = system.mass  # made here, while another thread may be finding the ordering
 
     def below(self, limit: float, progress: Callable[[str], None]) -> Found:
@@ -140,6 +145,11 @@ class Search:
         start = time.perf_counter()
         system = self._system
         try:
+            if self._solver == "eigsh":
+                tolerance = _DRAFT if draft else 0.0
+                return arpack_modes(
+                    factor.solve, self._mass, shift, count, above=above, seed=attempt, tolerance=tolerance
+                )
             return shift_invert(
                 factor.solve,
                 self._mass,

@@ -10,7 +10,7 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 _SHARES = 4  # of the rows
-_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
+_ROWS_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 
 
 class Tall:
@@ -27,7 +27,7 @@ class Tall:
     """
 
     def __init__(self, rows: int, threads: int) -> None:
-        self._threads = min(threads, _SHARES) if rows > _WORTH_A_THREAD else 1
+        self._threads = min(threads, _SHARES) if rows > _ROWS_WORTH_A_THREAD else 1
         self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
 
     def products(self, left: FloatArray, right: FloatArray) -> FloatArray:
