@@ -2,7 +2,8 @@
 
 Shapes are rows, degrees of freedom columns; NaN where not measured; complex where measured so. What there is:
 
-- :func:`mac`, :func:`auto_mac`, :func:`pole_weighted_mac`, :func:`modal_scale_factor` -- likeness of two shapes.
+- :func:`modal_assurance_criterion` (MAC), :func:`auto_mac`, :func:`pole_weighted_mac`, :func:`modal_scale_factor` --
+  likeness of two shapes.
 - :func:`comac`, :func:`enhanced_comac` -- at which degree of freedom paired shapes differ.
 - :func:`cross_orthogonality`, :func:`self_orthogonality`, :func:`modal_coordinates`, :func:`outside_span`,
   :func:`serep_mass` -- likeness weighted by the model's mass, reduced to the survey.
@@ -15,7 +16,13 @@ Shapes are rows, degrees of freedom columns; NaN where not measured; complex whe
   :func:`synthesised_responses` -- likeness of frequency responses.
 """
 
-from housing.correlation.assurance import auto_mac, largest_off_diagonal, mac, modal_scale_factor, pole_weighted_mac
+from housing.correlation.assurance import (
+    auto_mac,
+    largest_off_diagonal,
+    modal_assurance_criterion,
+    modal_scale_factor,
+    pole_weighted_mac,
+)
 from housing.correlation.by_dominance import compare_by_dominance, dominance_band
 from housing.correlation.by_shapes import compare_by_shapes
 from housing.correlation.comparison import Comparison, ModePair
@@ -66,8 +73,8 @@ __all__ = [
     "fdac",
     "frac",
     "largest_off_diagonal",
-    "mac",
     "mean_phase",
+    "modal_assurance_criterion",
     "modal_coordinates",
     "modal_scale_factor",
     "nearest_in_span",

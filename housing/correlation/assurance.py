@@ -16,7 +16,7 @@ from housing.correlation.shape_sets import ComplexArray, FloatArray, ShapeArray,
 from housing.errors import HousingError
 
 
-def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
+def modal_assurance_criterion(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
     """Modal assurance criterion between every shape of one set and every shape of another.
 
     Parameters
@@ -46,7 +46,7 @@ def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
 
 def auto_mac(shapes: npt.ArrayLike) -> FloatArray:
     """MAC of a set with itself, shape (n, n): what is large off its diagonal the survey's points cannot tell apart."""
-    return mac(shapes, shapes)
+    return modal_assurance_criterion(shapes, shapes)
 
 
 def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> ComplexArray:

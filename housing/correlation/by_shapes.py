@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from housing.correlation.assurance import auto_mac, mac
+from housing.correlation.assurance import auto_mac, modal_assurance_criterion
 from housing.correlation.comparison import Comparison, ModePair
 from housing.correlation.complexity import phase_collinearity
 from housing.correlation.coordinates import comac, enhanced_comac
@@ -97,7 +97,7 @@ def _evidence(
     return ShapeCorrelation(
         model_frequencies=model,
         measured_frequencies=measured,
-        mac=mac(phi, psi),
+        mac=modal_assurance_criterion(phi, psi),
         model_auto_mac=auto_model,
         measured_auto_mac=auto_measured,
         unpaired_measured=tuple(j + 1 for j in range(len(psi)) if j not in paired_measured),

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from housing.correlation.assignment import best_assignment, margin
-from housing.correlation.assurance import mac
+from housing.correlation.assurance import modal_assurance_criterion
 from housing.correlation.shape_sets import ShapeArray, two_sets
 from housing.correlation.subspaces import close_modes, span_mac
 from housing.errors import HousingError
@@ -140,7 +140,7 @@ def pair_modes(
         )
     groups = _groups(model_frequencies, rule, len(phi), "model")
     test_groups = _groups(measured_frequencies, rule, len(psi), "measured")
-    own = mac(phi, psi)
+    own = modal_assurance_criterion(phi, psi)
     elastic = tuple(group for group in groups if model_frequencies[group[0]] > 0.0)
     shared = _shared(phi, psi, own, elastic, test_groups)
     scores = (shared * _weight(model_frequencies, measured_frequencies, rule)).T

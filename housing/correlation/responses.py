@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.correlation.assurance import mac
+from housing.correlation.assurance import modal_assurance_criterion
 from housing.correlation.shape_sets import ComplexArray, FloatArray
 from housing.errors import HousingError
 from housing.modes import ModeSet
@@ -144,7 +144,7 @@ def fdac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     HousingError
         Where the degrees of freedom differ.
     """
-    return mac(np.asarray(model).T, np.asarray(measured).T)
+    return modal_assurance_criterion(np.asarray(model).T, np.asarray(measured).T)
 
 
 def _alike(model: npt.ArrayLike, measured: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:

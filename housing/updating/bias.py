@@ -21,7 +21,7 @@ import numpy.typing as npt
 from scipy import linalg
 from scipy.optimize import linear_sum_assignment
 
-from housing.correlation import mac
+from housing.correlation import modal_assurance_criterion
 from housing.updating.search import AnyDesign, Solve
 from housing.updating.surrogate import ModalState, Surrogate, elastic
 
@@ -50,7 +50,7 @@ class MeshBias:
     def between(cls, coarse: ModalState, fine: ModalState) -> "MeshBias":
         """The bias seen at a design that was solved on both meshes; modes without a partner have the others' mean."""
         own, other = _motions(coarse), _motions(fine)
-        table = mac(own, other)
+        table = modal_assurance_criterion(own, other)
         rows, columns = linear_sum_assignment(-table)
         sound = (table[rows, columns] >= _LEAST_MAC) & (coarse.frequencies[rows] > 0.0)
         rows, columns = rows[sound], columns[sound]

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from housing.correlation import mac
+from housing.correlation import modal_assurance_criterion
 from housing.errors import HousingError
 from housing.updating.choice import Lacking, choose, lacking
 from housing.updating.surrogate import ModalState, Neighbour
@@ -257,7 +257,7 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
         raise HousingError(
             f"shapes measured at {target.shapes.shape[1]} degrees of freedom, of which the model has none"
         )
-    table = mac(target.shapes, state.measured)
+    table = modal_assurance_criterion(target.shapes, state.measured)
     rows, columns = linear_sum_assignment(-table)
     pairs, values = np.full(len(table), UNPAIRED), np.zeros(len(table))
     values[rows] = table[rows, columns]
