@@ -1,4 +1,4 @@
-"""A gearbox housing as a welded or cast box: walls, bores for the bearings, bosses, feet, ribs, cover, fillets.
+"""Box geometry of a welded or cast gearbox housing: walls, bores, bosses, feet, ribs, cover, fillets.
 
 The box stands in the global frame with its shafts along z. The origin is the middle of the box in x and z and
 the underside of its base in y; feet reach below y = 0.
@@ -10,7 +10,8 @@ from typing import Literal
 import numpy as np
 
 from meshes.box import layout
-from meshes.box.fit import Misfit, misfits
+from meshes.box.fit import misfits
+from meshes.box.misfit import Misfit
 from meshes.box.parts import FACES, FOOT_NAMES, Bolt, Bore, Cover, Feet, Fillets, Rib, WallThickness
 from meshes.errors import GeometryError
 
@@ -50,7 +51,7 @@ class BoxGeometry:
     GeometryError
         Where the walls meet, a bore leaves its wall, touches another, or lies in neither end wall.
     BoxMisfitError
-        Where ribs, cover, fillets or bolt patches do not fit; it carries all of what does not.
+        Where ribs, cover, fillets or bolt patches do not fit; it carries all the misfits.
     """
 
     size: tuple[float, float, float]
@@ -123,7 +124,7 @@ class BoxGeometry:
         )
 
     def bore_span(self, bore: Bore) -> tuple[float, float]:
-        """Where along z the bore's surface lies, boss included [m]."""
+        """Ends of the bore's surface along z, boss included [m]."""
         half = self.size[2] / 2
         length = bore.boss.length if bore.boss else 0.0
         if self.end_wall(bore) == "back":
@@ -132,7 +133,7 @@ class BoxGeometry:
 
     @property
     def inside_height(self) -> tuple[float, float]:
-        """Where the cavity begins and ends along y [m]."""
+        """Ends of the cavity along y [m]."""
         return (self.wall.bottom, self.size[1] - self.wall.top)
 
     def _check_bore(self, bore: Bore) -> None:
