@@ -1,4 +1,4 @@
-"""Shapes that move, as films: GIF by Pillow, MP4 by ffmpeg where there is one."""
+"""Animations of mode shapes and operating deflection shapes: GIF by Pillow, MP4 by ffmpeg where there is one."""
 
 import os
 import shutil
@@ -17,8 +17,8 @@ from housing.scene import Scene
 FilmFormat = Literal["gif", "mp4"]
 Image = npt.NDArray[np.uint8]
 
-_FRAMES = 24  # of one period; even, so that half of them mirror the others where all moves in one phase
-_FRAME = 80  # how long each is shown [ms]
+_FRAMES = 24  # of one period; even, so that half of them mirror the others where the motion has one phase
+_FRAME = 80  # duration of each [ms]
 _PAPER = 240  # all three colours of a pixel above it: the background and its soft edges
 _PERIODS = 4  # of an MP4, which players show once; a GIF goes round
 
@@ -69,7 +69,7 @@ def animate_shapes(
     size : tuple of int
         Width and height [pixels], both even.
     progress : callable
-        Told what is filmed.
+        Called with a line of text before each shape.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def animate_shapes(
     Raises
     ------
     RendererUnavailableError, EncoderUnavailableError
-        Where nothing here draws without a screen, or encodes MP4.
+        Where no library draws without a screen, or no program encodes MP4.
     """
     encoder = find_encoder() if film == "mp4" else ""
     folder.mkdir(parents=True, exist_ok=True)

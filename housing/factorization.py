@@ -1,4 +1,4 @@
-"""The factorisation of a sparse symmetric matrix as an object: factor once, solve many, know the inertia."""
+"""Sparse LDLᵀ factorisation of a symmetric matrix as an object: factor once, solve many, read the inertia."""
 
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -30,7 +30,7 @@ class _Solver(Protocol):
 
 @dataclass(frozen=True)
 class Factorization:
-    """A = L D Lᵀ.
+    """The factor of a symmetric matrix, A = L D Lᵀ.
 
     Attributes
     ----------
@@ -43,8 +43,7 @@ class Factorization:
         Negative eigenvalues of A. By Sylvester's law of inertia, for A = K - σM this is the number of
         eigenvalues of (K, M) below σ.
     seconds : float
-        Time taken by the factorisation [s]; the first of a :class:`Factorizer` includes finding the ordering, or what
-        was left to wait of it.
+        Time taken by the factorisation [s]; the first of a :class:`Factorizer` includes the rest of the ordering.
     """
 
     backend: Backend
@@ -87,7 +86,7 @@ class Factorizer:
         self._ordering: Future[None] | None = None
 
     def order_ahead(self, matrix: SymmetricMatrix) -> None:
-        """Begin to find the ordering for matrices of this one's pattern in a thread of its own; the caller goes on.
+        """Begin to find the ordering for matrices of this pattern in a background thread.
 
         The first call of :meth:`factor` waits for it.
         """
@@ -103,7 +102,7 @@ class Factorizer:
         FactorizationError
             Where the matrix is singular to working precision, or a solution leaves a relative residual above 1e-8.
         MemoryError
-            Where the factor needs more memory than is available: rslab's is foreseen, before any of it is taken.
+            Where the factor needs more memory than is available; rslab estimates it before it allocates any.
         """
         if not isinstance(matrix, SymmetricMatrix):
             matrix = SymmetricMatrix.of(matrix)

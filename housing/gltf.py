@@ -1,4 +1,4 @@
-"""Mode shapes as models that move: binary glTF 2.0 (GLB), which any viewer of 3D models opens.
+"""Animated 3D models of mode shapes: binary glTF 2.0 (GLB), which any viewer of 3D models opens.
 
 Each file holds one mode: the outer surface at rest, the displacement as a morph target, its amplitude as colours, and
 an animation that swings the target's weight as a sine. The layout follows the glTF 2.0 specification (Khronos Group,
@@ -26,7 +26,7 @@ _FLOAT, _UNSIGNED_INT = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 _TRIANGLES = 4
 _PERIOD = 2.0  # of the animation [s], whatever the mode's own
-_FRAMES = 48  # straight pieces of a sine that no eye tells from it
+_FRAMES = 48  # linear pieces of a sine, visually smooth
 
 
 def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder: Path) -> list[Path]:

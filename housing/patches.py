@@ -1,4 +1,4 @@
-"""Patches: parts of the surface that something is fastened to, and the rigid motion they stand for."""
+"""Patches of the surface, and the rigid motion of each as a port of the nodes' displacements."""
 
 from dataclasses import dataclass
 
@@ -127,9 +127,9 @@ def point_matrix(mesh: Mesh, point: SurfacePoint) -> sparse.csr_array:
 
 
 def spread(mesh: Mesh, facets: Facets, amounts: Point) -> NodeBlocks:
-    """Amounts along x, y, z spread evenly over a patch of area A: blocks (1 / A) ∫ N_a N_b dA diag(amounts).
+    """Spring or dashpot amounts along x, y, z spread evenly over a patch of area A: blocks (1/A) ∫ N_a N_b dA diag.
 
-    A translation of the whole patch meets the amounts, and the energy is that of the field, not of single nodes.
+    A translation of the whole patch meets the whole amounts; the energy is that of the field, not of single nodes.
     """
     parts, area = _quadrature(mesh, facets)
     blocks = NOTHING

@@ -1,4 +1,4 @@
-"""Pictures of mode shapes and of other motions, drawn off-screen with PyVista: one each, or many on a sheet."""
+"""Pictures of mode shapes and operating deflection shapes, drawn off-screen with PyVista: single or on a sheet."""
 
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -46,7 +46,7 @@ def render_modes(
     size : tuple of int
         Width and height of a picture [pixels].
     progress : callable
-        Told which mode is drawn.
+        Called with a line of text before each mode.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def render_modes(
     HousingError
         Where there is no mode of that number, or no view of that name.
     RendererUnavailableError
-        Where nothing here draws without a screen.
+        Where no library draws without a screen.
     """
     check_view(view)
     housing = drawn_housing(mesh)
