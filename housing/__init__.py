@@ -1,23 +1,23 @@
-"""The housing: from a mesh to modes that are proved complete, ports, comparison with measured modes, pictures.
+"""Housing: finite-element model, natural modes proved complete, correlation with measured modes, pictures.
 
 What the room offers:
 
 - :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid;
   :func:`mass_properties` -- its mass and centre of mass, from the geometry alone.
-- :class:`Support`, :func:`fixed_freedoms` -- what holds it; :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, each
-  on a :class:`Patch` -- what else is fastened to it; :func:`attach` -- the matrices with all of these.
-- :func:`bolted_joint` -- the springs that a preloaded bolt and the parts under its head stand for.
+- :class:`Support`, :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, each on a :class:`Patch` -- fixtures of the
+  solid; :func:`attach` -- the matrices with all of these.
+- :func:`bolted_joint` -- stiffness of a preloaded bolt and of the parts under its head.
 - :func:`rigid_body` -- mass, centre of gravity and inertia of the whole (:class:`RigidBody`).
-- :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` -- what
-  dashpots do to them.
-- :class:`Seat`, :func:`seat_matrix`, :class:`Sensor`, :func:`sensor_port` -- where the rest of the machine meets it.
-- :func:`attach_ports` -- residual :class:`Attachments`, which make the static compliance at ports exact.
-- :func:`receptance`, :func:`select_modes`, :func:`effective_mass` -- what each mode carries between ports, and of mass.
+- :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` --
+  their damping by dashpots.
+- :class:`Seat`, :class:`Sensor` -- the ports at which the rest of the machine meets it.
+- :func:`attach_ports` -- residual attachment modes, which make the static compliance at ports exact.
+- :func:`receptance`, :func:`effective_mass` -- frequency response between ports, and effective modal masses.
 - :func:`health_report` -- mass, rigid motions, grounding, orthogonality, static error: each with its bound.
-- :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
-- :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance`, :func:`compare_by_shapes` -- model against
-  measured modes; ``housing.correlation`` has the criteria.
-- ``housing.measured`` -- files of measured modes and responses, and where on the model they were measured.
+- :func:`write_modes`, :func:`read_modes` -- a solved housing on file.
+- :func:`compare_by_dominance`, :func:`compare_by_shapes` -- correlation of model and measured modes;
+  ``housing.correlation`` has the criteria.
+- ``housing.measured`` -- files of measured modes and responses, and their measuring points on the model.
 - ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
 - ``housing.pictures``, ``housing.animations`` -- shapes drawn off-screen; not imported here, since they bring VTK.
 """

@@ -1,4 +1,4 @@
-"""Block Lanczos on the shifted inverse: the lowest modes of K φ = λ M φ from few sweeps over a factor.
+"""Block Lanczos eigensolver on the shifted inverse: the lowest modes of K φ = λ M φ from few sweeps over a factor.
 
 With A = (K - σM)⁻¹ M, self-adjoint in the product of M, A φ = ν φ and λ = σ + 1/ν. From an M-orthonormal block V₁ the
 recurrence
@@ -60,13 +60,13 @@ def shift_invert(
     shift : float
         σ [rad²/s²].
     count : int
-        How many.
+        Number of modes.
     above : bool
-        Whether the shift lies above the modes wanted, which are then all there are below it, rather than below them.
+        Whether the shift lies above the modes wanted, which are then all modes below it, rather than below them.
     seed : int
         Of the random starting block; each also doubles its width.
     threads : int
-        That orthogonalise; the modes are the same to the last bit for any number.
+        Number of threads that orthogonalise; the modes are the same to the last bit for any number.
     tolerance : float
         Of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of that.
 
@@ -127,7 +127,7 @@ def shift_invert(
 
 @dataclass(frozen=True)
 class _Addition:
-    """What a block adds to a basis of m vectors.
+    """Extension of a basis of m vectors by a block.
 
     Attributes
     ----------
@@ -147,10 +147,10 @@ class _Addition:
 def _orthonormal(
     basis: FloatArray, inertia_of_basis: FloatArray, recent: int, block: FloatArray, mass: Operator, tall: Tall
 ) -> _Addition:
-    """What a block adds to a basis V, given M V.
+    """Orthonormalise a block against a basis V, given M V.
 
-    First its last vectors are taken off, so many as are recent: in exact arithmetic that is everything. Then, once
-    more, all of it.
+    First the ``recent`` last vectors of the basis are projected out, which in exact arithmetic is everything; then all
+    of them.
     """
     within = np.zeros((basis.shape[1], block.shape[1]))
     last = slice(basis.shape[1] - recent, None)

@@ -18,8 +18,7 @@ class Matrices:
     """Stiffness and mass on one sparsity pattern of 3 x 3 blocks, rows in order (block compressed sparse rows).
 
     Both are symmetric, and only the blocks on and above the diagonal are kept. The solid's own mass is scalar,
-    m ⊗ I₃, and it has no damping; what is attached to it (a rigid body, a dashpot) has neither of these forms and
-    stands beside.
+    m ⊗ I₃, and it has no damping; the mass and damping of fixtures (a rigid body, a dashpot) are kept separately.
 
     Attributes
     ----------
@@ -28,11 +27,11 @@ class Matrices:
     neighbors : ndarray of int, shape (n_blocks,)
         The column node of each block, ascending within a row from the node itself.
     blocks : ndarray, shape (n_blocks, 3, 3)
-        Stiffness K [N/m], attachments included.
+        Stiffness K [N/m], fixtures included.
     node_mass : ndarray, shape (n_blocks,)
         Scalar mass m of the solid [kg].
     attached_mass : NodeBlocks
-        Mass beyond m ⊗ I₃ [kg], on pairs of the pattern.
+        Mass of fixtures beyond m ⊗ I₃ [kg], on pairs of the pattern.
     attached_damping : NodeBlocks
         C [N s/m].
     fixed : ndarray of int
@@ -79,7 +78,7 @@ class Matrices:
 
     @cached_property
     def damping(self) -> sparse.csr_array:
-        """C [N s/m] of what is attached, shape (3 n_nodes, 3 n_nodes), symmetric; empty where nothing damps."""
+        """C [N s/m] of the fixtures, shape (3 n_nodes, 3 n_nodes), symmetric; empty where nothing damps."""
         return self.attached_damping.matrix(self.n_nodes)
 
     def shifted(self, shift: float) -> sparse.csr_array:
@@ -105,9 +104,9 @@ class Matrices:
         return diagonal
 
     def plus(self, additions: Additions) -> "Matrices":
-        """The matrices with something attached.
+        """The matrices with a fixture added.
 
-        Pairs of nodes that share no element and are now tied, by stiffness or by mass, join the pattern.
+        Pairs of nodes that share no element and are now coupled, by stiffness or by mass, join the pattern.
         """
         stiffness, mass = additions.stiffness.upper, additions.mass.upper
         own = self._keys

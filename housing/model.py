@@ -53,7 +53,7 @@ class Housing:
     materials : mapping of str to Material
         By the name of a volume of the mesh.
     fixtures : sequence of Support, Mount, Joint or LumpedMass
-        What holds the housing, what joins its parts, and what is fastened to it.
+        Supports, mounts, joints between parts, and masses.
     seats : sequence of Seat
     sensors : sequence of Sensor
     damping_ratio : float
@@ -241,7 +241,7 @@ class Housing:
         solver : {"lanczos", "eigsh"}
             Eigensolver, see :func:`housing.solve_modes`.
         progress : callable
-            Told in words what happens next.
+            Called with a line of text before each step.
 
         Raises
         ------
@@ -332,7 +332,7 @@ class Housing:
 
 @dataclass(frozen=True)
 class HousingModes:
-    """Natural modes of a housing, with everything that a machine takes of them.
+    """Natural modes of a housing, with their motions at seats and sensors, damping and participation.
 
     Attributes
     ----------

@@ -127,7 +127,7 @@ def point_matrix(mesh: Mesh, point: SurfacePoint) -> sparse.csr_array:
 
 
 def spread(mesh: Mesh, facets: Facets, amounts: Point) -> NodeBlocks:
-    """Spring or dashpot amounts along x, y, z spread evenly over a patch of area A: blocks (1/A) ∫ N_a N_b dA diag.
+    """Spread amounts along x, y, z evenly over a patch of area A: blocks (1 / A) ∫ N_a N_b dA diag(amounts).
 
     A translation of the whole patch meets the whole amounts; the energy is that of the field, not of single nodes.
     """

@@ -1,11 +1,11 @@
-"""Searches for modes, made again, wider, until they can be proved complete.
+"""Inertia certificate (Sylvester): search for modes, repeated more widely until the count proves it complete.
 
 The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos (:mod:`housing.lanczos`) or scipy's ``eigsh``
-(:mod:`housing.eigensolver`). The proof is Sylvester's law of inertia:
-the number of negative pivots in K - σM = L D Lᵀ is the number of eigenvalues below σ, however many of them coincide.
-A limit is itself the shift, so that one factor both counts the modes below it and finds them; for a number of modes
-the shift lies just below zero, which keeps the shifted matrix positive definite for a free body too, and a second
-factor counts up to the gap behind the last.
+(:mod:`housing.eigensolver`). The proof is Sylvester's law of inertia: the number of negative pivots in
+K - σM = L D Lᵀ is the number of eigenvalues below σ, multiple ones counted by their multiplicity. A frequency limit is
+itself the shift, so that one factor both counts the modes below it and finds them. For a number of modes the shift lies
+just below zero, which keeps the shifted matrix positive definite for a free body too, and a second factor counts up to
+the gap behind the last.
 """
 
 import time
@@ -29,7 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 _ATTEMPTS = 3
 _ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away from a mode beside it
 MOST_MODES = 2000
-"""More at a time would take a basis that no memory holds."""
+"""Largest number of modes of one search: the basis of more would exceed any memory."""
 _DRAFT = 1e-4  # residual of the last modes of a draft; those of half their frequency have all digits by then
 _BELOW = 0.1  # part of the lowest elastic eigenvalue
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
@@ -37,7 +37,10 @@ _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a
 
 @dataclass(frozen=True)
 class Found:
-    """Certified modes, the shift of their search, and the factor of K - limit² M that counted them, or the search's."""
+    """Certified modes, the shift of their search, and the factor of K - limit² M that counted them.
+
+    In a draft, which is not counted, the factor is that of the search.
+    """
 
     values: FloatArray
     vectors: FloatArray
@@ -47,7 +50,7 @@ class Found:
 
 
 class Search:
-    """Searches that are made again, wider, until their certificate is good; the seconds of each step add up."""
+    """Search for modes, repeated more widely until the certificate is complete; the seconds of each step add up."""
 
     def __init__(
         self, system: FreeSystem, factorizer: Factorizer, floor: float, solver: Solver = DEFAULT_SOLVER
@@ -89,9 +92,9 @@ class Search:
         raise _incomplete(certificate)
 
     def _beside(self, factor: Factorization, shift: float) -> tuple[Factorization, float]:
-        """A factor at a little distance from a shift that sits all but upon a mode, with as many modes below.
+        """Factor at a small distance from a shift that nearly coincides with a mode, with as many modes below.
 
-        The inverse is so large along that mode that the others' images drown in its rounding.
+        At the shift itself the inverse is so large along that mode that rounding hides the others.
         """
         for part in _ASIDE:
             aside = shift * (1.0 + part)
@@ -101,9 +104,9 @@ class Search:
         return factor, shift
 
     def lowest(self, count: int, progress: Callable[[str], None], *, draft: bool = False) -> Found:
-        """The lowest modes by number, with the rest of the multiple mode that the last may be part of.
+        """The lowest modes by number; a multiple mode at the end is completed.
 
-        A draft is not counted, and its last modes are rough.
+        A draft is not counted, and its last modes are less accurate.
         """
         shift = -self.floor
         certificate = Certificate(0.0, count, 0, 0.0, 0.0)
@@ -141,7 +144,7 @@ class Search:
     def _modes(
         self, factor: Factorization, shift: float, count: int, *, above: bool, attempt: int, draft: bool = False
     ) -> tuple[FloatArray, FloatArray]:
-        """Modes without a proof; of an attempt that does not converge, none, but for the last one's."""
+        """Uncertified modes; none where an attempt before the last does not converge."""
         start = time.perf_counter()
         system = self._system
         try:
@@ -163,7 +166,7 @@ class Search:
         except IncompleteModesError:
             if attempt + 1 == _ATTEMPTS:
                 raise
-            # The next one has a wider block, as modes of high multiplicity want it.
+            # The next attempt has a wider block, which modes of high multiplicity need.
             return np.empty(0), np.empty((system.size, 0))
         finally:
             self.seconds["eigensolver"] += time.perf_counter() - start
@@ -171,7 +174,7 @@ class Search:
     def _certify(
         self, values: FloatArray, vectors: FloatArray, limit: float, below: int
     ) -> tuple[Certificate, FloatArray, FloatArray]:
-        """The certificate of the modes below a limit, of which so many are; and these, the most their space gives."""
+        """Refine the modes below ``limit`` by Rayleigh-Ritz and certify them against the inertia count ``below``."""
         start = time.perf_counter()
         values, vectors, residuals, overlap = _refined(self._system, values, vectors, limit**2 + self.floor)
         keep = values < limit**2
@@ -194,18 +197,18 @@ def _incomplete(certificate: Certificate) -> IncompleteModesError:
 
 
 def not_a_stiffness(what: str) -> FactorizationError:
-    """What to say of a stiffness with negative energies."""
+    """Error for a stiffness with negative energies."""
     return FactorizationError(f"{what}; the stiffness is not positive semidefinite")
 
 
 def _refined(
     system: FreeSystem, values: FloatArray, vectors: FloatArray, scale: float
 ) -> tuple[FloatArray, FloatArray, FloatArray, float]:
-    """Modes by the quotients of K and M in the space of those found, their residuals and their largest overlap.
+    """Rayleigh-Ritz modes of K and M in the space of those found, their residuals and their largest overlap.
 
-    The inverse's own eigenvalues would not do: about a shift hard beside rigid modes it is huge along these, and its
-    rounding there, by λ / |σ| larger beside an elastic mode's own, stands in that mode. Vectors that overlap already
-    are left as they are, to fail their certificate.
+    The eigenvalues of the inverse are not accurate enough: with a shift close to rigid modes the inverse is huge along
+    these, and its rounding contaminates each elastic mode by a factor of λ / |σ|. Vectors that overlap already are left
+    as they are, so that they fail their certificate.
     """
     tall = Tall(system.size, system.threads)
     inertia, force = system.mass @ vectors, system.stiffness @ vectors

@@ -1,4 +1,4 @@
-"""What pictures and models of modes share: the outer surface as triangles, the scale, the names of files."""
+"""Outer skin of a mesh as triangles for pictures and 3D models; scale and file names of drawn modes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

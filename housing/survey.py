@@ -1,4 +1,4 @@
-"""The modal survey's grid: points over the outer faces, measured along the outward normal."""
+"""Survey grid: measuring points over the outer faces of a box, along the outward normal."""
 
 from dataclasses import dataclass
 
