@@ -1,16 +1,16 @@
-"""Model against measured modes: criteria of likeness, the pairing of modes, and the comparison that follows.
+"""Correlation of model and measured modes: assurance criteria, orthogonality, pairing of modes, comparison.
 
-Shapes are rows, degrees of freedom columns; NaN where not measured; complex where measured so. What there is:
+Shapes are rows, degrees of freedom columns; NaN where not measured; complex where measured so.
 
 - :func:`modal_assurance_criterion` (MAC), :func:`auto_mac`, :func:`pole_weighted_mac`, :func:`modal_scale_factor` --
   likeness of two shapes.
-- :func:`comac`, :func:`enhanced_comac` -- at which degree of freedom paired shapes differ.
+- :func:`comac`, :func:`enhanced_comac` -- coordinate criteria: difference of paired shapes at each degree of freedom.
 - :func:`cross_orthogonality`, :func:`self_orthogonality`, :func:`modal_coordinates`, :func:`outside_span`,
   :func:`serep_mass` -- likeness weighted by the model's mass, reduced to the survey.
 - :func:`phase_collinearity`, :func:`complexity_factor`, :func:`mean_phase`, :func:`phase_deviation`,
-  :func:`real_shapes` -- how complex a shape is, and the real one nearest to it.
+  :func:`real_shapes` -- complexity of a shape, and the real shape nearest to it.
 - :func:`close_modes`, :func:`span_mac`, :func:`nearest_in_span`, :func:`principal_angles` -- close modes as spaces.
-- :func:`pair_modes` by a :class:`PairingRule` -- which measured mode is which.
+- :func:`pair_modes` by a :class:`PairingRule` -- pairs of measured and model modes.
 - :func:`compare_by_shapes`, :func:`compare_by_dominance` -- a :class:`Comparison` of model and measured modes.
 - :func:`frac`, :func:`fdac`, :func:`response_vector_assurance`, :func:`amplitude_correlation`,
   :func:`synthesised_responses` -- likeness of frequency responses.

@@ -1,4 +1,4 @@
-"""Measured shapes paired with the model's, and all that the shapes say."""
+"""Comparison by shapes: pairing of measured and model shapes, with all correlation criteria."""
 
 from collections.abc import Sequence
 
@@ -128,7 +128,7 @@ def _look_alikes(
 
 
 def _close(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tuple[CloseModes, ...]:
-    """Each group of close modes, of the model or of the test, with its partners: how far apart the two spaces are."""
+    """Each group of close modes, of the model or of the test, with its partners, and the angle between both spaces."""
     found: dict[tuple[tuple[int, ...], tuple[int, ...]], CloseModes] = {}
     for pair in pairs:
         mates = [mate for mate in pairs if _together(pair, mate)]

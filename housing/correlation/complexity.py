@@ -1,4 +1,4 @@
-"""Complex mode shapes: how far from real they are, and the real shapes nearest to them.
+"""Complexity of mode shapes: modal phase collinearity, mean phase, and the nearest real shapes.
 
 All points of a lightly damped structure's mode move in phase or against it, so that φ = c ψ with ψ real. In the complex
 plane its entries then lie on a line through zero; measured ones scatter about one. With s = Σ φ² (not |φ|²)

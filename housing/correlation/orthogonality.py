@@ -7,8 +7,8 @@ survey's degrees of freedom, T = Φ_full Φ⁺ expands them, and
     M_s = Tᵀ M T = (Φ⁺)ᵀ Φ⁺,    Φᵀ M_s Φ = I.
 
 So the cross-orthogonality of a measured shape is Φᵀ M_s ψ = Φ⁺ ψ: its coordinates in the model's modes by least
-squares, the same whether the matrix is formed or not. Here it is not. Those modes alone are known to it: what of a
-measured shape lies outside their span has no mass, so :func:`outside_span` stands beside.
+squares, the same whether the matrix is formed or not. Here it is not. The reduced mass knows these modes alone: the
+part of a measured shape outside their span has no mass; :func:`outside_span` gives its size.
 """
 
 import numpy as np
@@ -39,7 +39,7 @@ def serep_mass(model: npt.ArrayLike) -> FloatArray:
 
 
 def modal_coordinates(model: npt.ArrayLike, measured: npt.ArrayLike) -> ComplexArray:
-    """Coordinates of measured shapes in the model's modes: Φ⁺ ψ, the cross-orthogonality as it stands.
+    """Coordinates of measured shapes in the model's modes: Φ⁺ ψ, the cross-orthogonality before normalisation.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def self_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatAr
 def outside_span(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     """The part of each measured shape's square that no combination of the model's modes gives, shape (n_measured,).
 
-    What is large here is noise, an error of geometry, or a mode that the model lacks. Raises as
+    A large part points to noise, an error of geometry, or a mode that the model lacks. Raises as
     :func:`modal_coordinates`.
     """
     phi, psi = two_sets(model, measured, ("the model's", "the measured"))

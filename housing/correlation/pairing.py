@@ -1,4 +1,4 @@
-"""Which measured mode is which of the model's, by shape and frequency together.
+"""Mode pairing: the best assignment of measured modes to model modes by shape and frequency.
 
 A measured mode j and a model mode i score
 
@@ -6,13 +6,13 @@ A measured mode j and a model mode i score
 
 nothing where ω_i / ω_j is beyond exp(±2σ) or the MAC below its least. The pairs are those with the largest sum of
 scores, each mode in one pair at most: choosing the largest MAC row by row would give one model mode to two measured
-ones. The frequency has a light weight (σ = 0.2: 5 % off costs 3 % of the score), for shapes decide and frequencies
-are what is in question.
+ones. The frequency has a light weight (σ = 0.2: 5 % off costs 3 % of the score), because shapes are to decide and
+frequencies to be judged.
 
 Close modes, of the model or of the test, mix. Each is then scored by the part of a shape that lies in the span of the
 other's group (:func:`housing.correlation.subspaces.span_mac`), which is the same however a group is mixed. Within a
-group the members' own MACs decide where each is most of that; where not, there is no saying which is which, and the
-order of frequency is kept.
+group the members' own MACs decide where each is most of that score; where not, the members cannot be distinguished and
+the order of frequency is kept.
 """
 
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ _WINDOW = 2.0  # spreads of frequency within which pairs are made
 
 @dataclass(frozen=True)
 class PairingRule:
-    """What makes a pair; fixed before the pairs are looked at.
+    """Criteria of a pair, fixed before the pairs are known.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class ShapePair:
         Of the two shapes; among close modes, of one with the span of the other's, which is the same however these are
         mixed.
     confidence : float
-        By how much the best assignment with this pair beats the best without it, as a part of the pair's score, from 0
+        Margin of the best assignment with this pair over the best without it, as a part of the pair's score, from 0
         (another is as good) to 1; see :func:`housing.correlation.assignment.margin`. Not a probability.
     close_model, close_measured : tuple of int
         The modes close to each other that the pair's are among; empty where one stands apart.
@@ -209,7 +209,7 @@ def _weight(model: FloatArray, measured: FloatArray, rule: PairingRule) -> Float
 def _blocks(
     chosen: list[tuple[int, int]], groups: tuple[IntArray, ...], test_groups: tuple[IntArray, ...]
 ) -> list[tuple[IntArray, IntArray]]:
-    """Measured modes that share a group of close modes, each such set with all model modes that are in question."""
+    """Sets of measured modes that share a group of close modes, each with all its possible model modes."""
     model = {int(i): number for number, group in enumerate(groups) for i in group}
     test = {int(j): number for number, group in enumerate(test_groups) for j in group}
     blocks: list[tuple[set[int], set[int]]] = []

@@ -1,4 +1,4 @@
-"""Measured frequency responses against the model's: at each point over frequency, at each frequency over points.
+"""Frequency response assurance criteria: FRAC at each point over frequency, RVAC and FDAC at each frequency.
 
 Responses need no modes to be identified, and no pairing; but a resonance a few per cent off costs all that these
 criteria can show, so they follow once frequencies are right. Those that are squared cosines see shape and not size:
@@ -30,7 +30,7 @@ def synthesised_responses(
     frequencies: FloatArray,
     quantity: Quantity = "acceleration",
 ) -> ComplexArray:
-    """The model's responses at the measured degrees of freedom to unit forces, residual attachments included.
+    """The model's responses at the measured degrees of freedom to unit forces, residual modes included.
 
     (iw)^n times the receptance (:func:`housing.receptance.receptance`), n = 0, 1, 2.
 

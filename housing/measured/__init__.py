@@ -1,11 +1,11 @@
-"""What was measured: the survey's geometry, its modes and responses; files in and out.
+"""Measured data of a modal test: geometry, modes and responses; files; alignment, identification, planning.
 
 - :class:`MeasuredGeometry`, :class:`MeasuredModes`, :class:`MeasuredResponses`, together :class:`SurveyData`.
 - :func:`read_survey`, :func:`write_survey` -- universal files (through pyuff) and tables (CSV).
 - :func:`align_landmarks`, :func:`align_to_surface` -- the survey's frame in the model's, as an :class:`Alignment`.
 - :func:`identify_modes` -- modes from responses, by a :class:`StabilityRule`.
 - :func:`map_survey` -- the survey on the model's surface, as a :class:`MappedSurvey`.
-- :func:`candidate_points`, :func:`plan_survey`, :func:`planned_geometry` -- where to measure, as a :class:`SurveyPlan`.
+- :func:`candidate_points`, :func:`plan_survey`, :func:`planned_geometry` -- sensor placement, as a :class:`SurveyPlan`.
 """
 
 from housing.measured.alignment import Alignment, align_landmarks, align_to_surface

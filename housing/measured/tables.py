@@ -1,14 +1,15 @@
-"""Measured modes as plain tables (CSV), which any spreadsheet writes.
+"""CSV tables of measured modes.
 
-Two forms, told apart by the first cell of the header:
+Two forms, distinguished by the first cell of the header:
 
 - ``frequency_hz[,damping_ratio]``: a mode a row.
 - ``point,x,y,z,direction,NAME,…``: a degree of freedom a row, a mode a column. `direction` is an axis (``x``, ``-y``)
   or three numbers parted by blanks. A column named like the one before it with `` imag`` after it holds its imaginary
   part. Two rows without a place stand above the others: ``frequency_hz`` and, if known, ``damping_ratio``. An empty
-  cell was not measured. Lengths are in metres, or in a unit told with the column, ``x [mm]``, or to the reader.
+  cell was not measured. Lengths are in metres, or in the unit of the column, ``x [mm]``, or in that given to the
+  reader.
 
-Commas, semicolons or tabs part the cells; a line that begins with # is a remark.
+Commas, semicolons or tabs separate the cells; a line that begins with # is a remark.
 """
 
 import csv
@@ -50,7 +51,7 @@ def read_table(path: str | Path, *, unit: str | None = None) -> SurveyData:
     Raises
     ------
     MeasuredDataError
-        Naming the line, what stands there and what was expected.
+        Where a cell is wrong; the message names the line, its content and the expected form.
     """
     path = Path(path)
     rows = _rows(path)

@@ -1,4 +1,4 @@
-"""Universal files of a survey: written whole or not at all, and read back as they were within the format's digits.
+"""Writer of universal files: points, shapes and responses of a survey, written whole or not at all.
 
 Points go out in double precision (2411) or, where a program asks for it, in single (15); directions that are not
 along the axes as coordinate systems (18); shapes as dataset 55 in the points' own directions; responses as dataset 58
@@ -44,7 +44,7 @@ def write_universal(path: str | Path, survey: SurveyData, *, points: Literal[15,
     ------
     MeasuredDataError
         Where there are no points, labels are not whole numbers above 0, a point's directions are not perpendicular to
-        each other, or shapes lack values at single degrees of freedom, none of which the format can say.
+        each other, or shapes lack values at single degrees of freedom, none of which the format can express.
     """
     import pyuff
 
@@ -214,7 +214,7 @@ def _shapes(modes: MeasuredModes, nodes: list[int], frames: FloatArray) -> list[
 
 
 def _component(frame: FloatArray, direction: FloatArray) -> tuple[int, int]:
-    """Which of a point's three directions this one is, and its sign."""
+    """Index of this direction among a point's three, and its sign."""
     shares = frame @ direction
     component = int(np.argmax(np.abs(shares)))
     return component, 1 if shares[component] > 0.0 else -1
