@@ -1,13 +1,14 @@
-"""Updating: named parameters of a housing's model fitted to its measured modes, and what the fit is worth.
+"""Model updating: named parameters of a housing's model fitted to its measured modes, and validation of the fit.
 
-- :class:`Parameter` -- a number of the model with its range and prior; :class:`ModelRate`, :func:`modal_rates` -- what
-  it does to the modes, exactly; :class:`Surrogate` -- the modes of a design's neighbours.
-- :class:`Target`, :func:`measure` -- what was measured and how far a design is from it (:class:`Misfit`).
-- :func:`search` -- the fit from one start by true solves (:data:`Solve`) of :class:`Design`; :class:`MeshBias`,
-  :func:`debiased` -- a coarse mesh that stands for a fine one; :func:`race` -- from many starts on the one, judged by
-  the other, which :func:`polish` ends; :func:`posterior` -- what the data say beside the prior (:class:`Posterior`).
-- :class:`Procedure` -- all of that search on one mesh; :func:`hold_back`, :func:`null_fits` -- what the fit is worth by
-  it: modes left out and predicted, random frequencies fitted.
+- :class:`Parameter` -- a number of the model with its range and prior; :class:`ModelRate`, :func:`modal_rates` -- exact
+  sensitivities of the modes; :class:`Surrogate` -- the modes of neighbouring designs.
+- :class:`Target`, :func:`measure` -- measured modes, and the misfit of a design (:class:`Misfit`).
+- :func:`search` -- the fit from one start by full solutions (:data:`Solve`) of :class:`Design`; :class:`MeshBias`,
+  :func:`debiased` -- correction of a coarse mesh by a fine one; :func:`race` -- multistart search on the coarse mesh,
+  judged on the fine one; :func:`polish` -- its final steps; :func:`posterior` -- uncertainty of the parameters
+  (:class:`Posterior`).
+- :class:`Procedure` -- the whole search on one mesh; :func:`hold_back` -- leave-one-out cross-validation;
+  :func:`null_fits` -- fits to random frequencies.
 """
 
 from housing.updating.bias import Debiased, MeshBias, debiased
