@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from housing.errors import IncompleteModesError
 from housing.symmetric import Operator
-from housing.tall import Tall
+from housing.tall import BlockAlgebra
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -90,14 +90,14 @@ def shift_invert(
     small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
 
-    tall = Tall(n, threads)
+    algebra = BlockAlgebra(n, threads)
     start = np.random.default_rng(seed).standard_normal((n, width))
-    found = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, tall)
+    found = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, algebra)
     begin, size, checked = 0, 0, 0
     while found.block.shape[1] and size + found.block.shape[1] <= most + width:
         previous, begin, size = begin, size, size + found.block.shape[1]
         basis[:, begin:size], inertia[:, begin:size] = found.block, found.inertia
-        found = _orthonormal(basis[:, :size], inertia[:, :size], size - previous, solve(found.inertia), mass, tall)
+        found = _orthonormal(basis[:, :size], inertia[:, :size], size - previous, solve(found.inertia), mass, algebra)
         small[:size, begin:size] = found.projections[:size]
         remainder = found.projections[size:]
         whole = found.block.shape[1] == 0
@@ -114,8 +114,8 @@ def shift_invert(
                 step = outside / wanted
                 norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))
                 order = np.argsort(1.0 / wanted)
-                vectors = tall.combined(found.block, (step / norms)[:, order])
-                tall.subtract(vectors, basis[:, :size], -(mixture / norms)[:, order])
+                vectors = algebra.combined(found.block, (step / norms)[:, order])
+                algebra.subtract(vectors, basis[:, :size], -(mixture / norms)[:, order])
                 return shift + 1.0 / wanted[order], vectors
         small[size : size + len(remainder), begin:size] = remainder
         small[begin:size, size : size + len(remainder)] = remainder.T
@@ -145,7 +145,12 @@ class _Addition:
 
 
 def _orthonormal(
-    basis: FloatArray, inertia_of_basis: FloatArray, recent: int, block: FloatArray, mass: Operator, tall: Tall
+    basis: FloatArray,
+    inertia_of_basis: FloatArray,
+    recent: int,
+    block: FloatArray,
+    mass: Operator,
+    algebra: BlockAlgebra,
 ) -> _Addition:
     """Orthonormalise a block against a basis V, given M V.
 
@@ -154,29 +159,33 @@ def _orthonormal(
     """
     within = np.zeros((basis.shape[1], block.shape[1]))
     last = slice(basis.shape[1] - recent, None)
-    within[last] = tall.products(inertia_of_basis[:, last], block)
-    tall.subtract(block, basis[:, last], within[last])
-    again = tall.products(inertia_of_basis, block)
-    tall.subtract(block, basis, again)
+    within[last] = algebra.products(inertia_of_basis[:, last], block)
+    algebra.subtract(block, basis[:, last], within[last])
+    again = algebra.products(inertia_of_basis, block)
+    algebra.subtract(block, basis, again)
     within += again
     inertia = mass @ block
-    products = tall.products(block, inertia)
+    products = algebra.products(block, inertia)
     left = np.sqrt(np.maximum(products.diagonal(), 0.0))
     given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
     kept = left > _DEPENDENT * given
     values, turn = np.linalg.eigh(products[np.ix_(kept, kept)] / np.outer(left[kept], left[kept]))
     mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
     mixture[kept] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[kept, None]
-    new, new_inertia, shares = tall.combined(block, mixture), tall.combined(inertia, mixture), mixture.T @ products
+    new, new_inertia, shares = (
+        algebra.combined(block, mixture),
+        algebra.combined(inertia, mixture),
+        mixture.T @ products,
+    )
     if new.shape[1]:
         # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
         if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
-            tall.subtract(new, basis, tall.products(inertia_of_basis, new))
+            algebra.subtract(new, basis, algebra.products(inertia_of_basis, new))
             new_inertia = mass @ new
-            shares = tall.products(new, inertia)
-        own = tall.products(new, new_inertia)
+            shares = algebra.products(new, inertia)
+        own = algebra.products(new, new_inertia)
         if np.abs(own - np.eye(len(own))).max() > _ORTHONORMAL:
             unit = np.linalg.inv(np.linalg.cholesky(own)).T
-            new, new_inertia = tall.combined(new, unit), tall.combined(new_inertia, unit)
-            shares = tall.products(new, inertia)
+            new, new_inertia = algebra.combined(new, unit), algebra.combined(new_inertia, unit)
+            shares = algebra.products(new, inertia)
     return _Addition(new, new_inertia, np.vstack([within, shares]))

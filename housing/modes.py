@@ -16,7 +16,7 @@ from housing.factorization import Backend, Factorizer
 from housing.free_system import FreeSystem
 from housing.matrices import Matrices
 from housing.reduction import Attachments, residual_attachments
-from housing.search import MOST_MODES, Search, not_a_stiffness
+from housing.search import MOST_MODES, CertifiedSearch, not_a_stiffness
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -135,7 +135,7 @@ def solve_modes(
         raise HousingError(f"eigensolver {solver!r}; expected one of {', '.join(map(repr, get_args(Solver)))}")
     factorizer = Factorizer(backend=backend, threads=threads)
     factorizer.order_ahead(system.stiffness)
-    search = Search(system, factorizer, system.floor(frequency_limit or 0.0), solver)
+    search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
     found = (
         search.below(frequency_limit, progress)
         if frequency_limit is not None

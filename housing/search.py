@@ -22,7 +22,7 @@ from housing.errors import FactorizationError, HousingError, IncompleteModesErro
 from housing.factorization import Factorization, Factorizer
 from housing.free_system import FreeSystem
 from housing.lanczos import TOLERANCE, shift_invert
-from housing.tall import Tall
+from housing.tall import BlockAlgebra
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,7 +36,7 @@ _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a
 
 
 @dataclass(frozen=True)
-class Found:
+class CertifiedModes:
     """Certified modes, the shift of their search, and the factor of K - limit² M that counted them.
 
     In a draft, which is not counted, the factor is that of the search.
@@ -49,7 +49,7 @@ class Found:
     shift: float
 
 
-class Search:
+class CertifiedSearch:
     """Search for modes, repeated more widely until the certificate is complete; the seconds of each step add up."""
 
     def __init__(
@@ -62,7 +62,7 @@ class Search:
         self._solver = solver
         self._mass = system.mass  # made here, while another thread may be finding the ordering
 
-    def below(self, limit: float, progress: Callable[[str], None]) -> Found:
+    def below(self, limit: float, progress: Callable[[str], None]) -> CertifiedModes:
         """All modes below a limit, which is itself the shift."""
         progress("counting the modes below the limit")
         shift = limit**2
@@ -86,7 +86,7 @@ class Search:
             values, vectors = self._modes(pole, place, count, above=True, attempt=attempt)
             certificate, values, vectors = self._certify(values, vectors, limit, count)
             if certificate.complete:
-                return Found(values, vectors, certificate, factor, shift)
+                return CertifiedModes(values, vectors, certificate, factor, shift)
             if pole is factor and certificate.found == count:
                 pole, place = self._beside(factor, shift)
         raise _incomplete(certificate)
@@ -103,7 +103,7 @@ class Search:
                 return other, aside
         return factor, shift
 
-    def lowest(self, count: int, progress: Callable[[str], None], *, draft: bool = False) -> Found:
+    def lowest(self, count: int, progress: Callable[[str], None], *, draft: bool = False) -> CertifiedModes:
         """The lowest modes by number; a multiple mode at the end is completed.
 
         A draft is not counted, and its last modes are less accurate.
@@ -129,7 +129,7 @@ class Search:
             below = NOT_COUNTED if draft else factor.negative
             certificate, values, vectors = self._certify(values, vectors, limit, below)
             if certificate.complete or (draft and certificate.max_overlap < OVERLAP_BOUND):
-                return Found(values, vectors, certificate, factor, shift)
+                return CertifiedModes(values, vectors, certificate, factor, shift)
             if values.max(initial=0.0) > self.floor:
                 # Farther from rigid modes, by the scale of the elastic ones: less of their rounding stands in these.
                 shift = -max(self.floor, _BELOW * float(values[values > self.floor][0]))
@@ -210,13 +210,13 @@ def _refined(
     these, and its rounding contaminates each elastic mode by a factor of λ / |σ|. Vectors that overlap already are left
     as they are, so that they fail their certificate.
     """
-    tall = Tall(system.size, system.threads)
+    algebra = BlockAlgebra(system.size, system.threads)
     inertia, force = system.mass @ vectors, system.stiffness @ vectors
-    overlaps = tall.products(vectors, inertia)
+    overlaps = algebra.products(vectors, inertia)
     if np.abs(overlaps - np.eye(len(values))).max(initial=0.0) < OVERLAP_BOUND:
-        values, mixture = linalg.eigh(tall.products(vectors, force), overlaps)
-        vectors, inertia, force = (tall.combined(columns, mixture) for columns in (vectors, inertia, force))
-        overlaps = tall.products(vectors, inertia)
+        values, mixture = linalg.eigh(algebra.products(vectors, force), overlaps)
+        vectors, inertia, force = (algebra.combined(columns, mixture) for columns in (vectors, inertia, force))
+        overlaps = algebra.products(vectors, inertia)
     error = np.linalg.norm(force - inertia * values, axis=0)
     residuals = error / ((np.abs(values) + scale) * np.linalg.norm(inertia, axis=0))
     return values, vectors, residuals, float(np.abs(overlaps - np.eye(len(values))).max(initial=0.0))

@@ -13,7 +13,7 @@ _SHARES = 4  # of the rows
 _ROWS_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 
 
-class Tall:
+class BlockAlgebra:
     """Products of block vectors, matrices with many rows and few columns, by shares of their rows.
 
     The number of shares does not depend on the threads, so that sums over the rows are rounded alike.
