@@ -1,12 +1,13 @@
 """Model updating: named parameters of a housing's model fitted to its measured modes, and validation of the fit.
 
-- :class:`Parameter` -- a number of the model with its range and prior; :class:`ModelRate`, :func:`modal_rates` -- exact
-  sensitivities of the modes; :class:`Surrogate` -- the modes of neighbouring designs.
+- :class:`Parameter` -- a number of the model with its range and prior.
+- :class:`ModelRate`, :func:`modal_rates` -- exact sensitivities of the modes.
+- :class:`Surrogate` -- the modes of neighbouring designs.
 - :class:`Target`, :func:`measure` -- measured modes, and the misfit of a design (:class:`Misfit`).
-- :func:`search` -- the fit from one start by full solutions (:data:`Solve`) of :class:`Design`; :class:`MeshBias`,
-  :func:`debiased` -- correction of a coarse mesh by a fine one; :func:`race` -- multistart search on the coarse mesh,
-  judged on the fine one; :func:`polish` -- its final steps; :func:`posterior` -- uncertainty of the parameters
-  (:class:`Posterior`).
+- :func:`search` -- the fit from one start by full solutions (:data:`Solve`) of :class:`Design`.
+- :class:`MeshBias`, :func:`debiased` -- correction of a coarse mesh by a fine one.
+- :func:`race` -- multistart search on the coarse mesh, judged on the fine one; :func:`polish` -- its final steps.
+- :func:`posterior` -- uncertainty of the parameters (:class:`Posterior`).
 - :class:`Procedure` -- the whole search on one mesh; :func:`hold_back` -- leave-one-out cross-validation;
   :func:`null_fits` -- fits to random frequencies.
 """
