@@ -13,7 +13,6 @@ from housing.correlation import (
     cross_orthogonality,
     enhanced_comac,
     frac,
-    mean_phase,
     modal_assurance_criterion,
     pair_modes,
     pole_weighted_mac,
@@ -21,6 +20,7 @@ from housing.correlation import (
     real_shapes,
     span_mac,
 )
+from housing.correlation.complexity import mean_phase
 
 SEEDS = st.integers(0, 2**32 - 1)
 SIZES = st.tuples(st.integers(1, 4), st.integers(1, 4), st.integers(6, 12))

@@ -5,12 +5,12 @@ import pytest
 
 from housing.correlation import (
     complexity_factor,
-    mean_phase,
     modal_assurance_criterion,
     phase_collinearity,
     phase_deviation,
     real_shapes,
 )
+from housing.correlation.complexity import mean_phase
 
 X, Y = np.array([1.0, 2.0, -2.0, 0.0]), np.array([2.0, -1.0, 0.0, 2.0])  # orthogonal, of one norm
 

@@ -5,14 +5,8 @@ import pytest
 from scipy import linalg
 
 from housing import HousingError
-from housing.correlation import (
-    cross_orthogonality,
-    modal_assurance_criterion,
-    modal_coordinates,
-    outside_span,
-    self_orthogonality,
-    serep_mass,
-)
+from housing.correlation import cross_orthogonality, modal_assurance_criterion, outside_span, self_orthogonality
+from housing.correlation.orthogonality import modal_coordinates, serep_mass
 
 COUNT = 12
 RANDOM = np.random.default_rng(11)

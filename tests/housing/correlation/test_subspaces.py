@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from housing import HousingError
-from housing.correlation import close_modes, modal_assurance_criterion, nearest_in_span, principal_angles, span_mac
+from housing.correlation import modal_assurance_criterion, principal_angles, span_mac
+from housing.correlation.subspaces import close_modes, nearest_in_span
 
 RANDOM = np.random.default_rng(3)
 
