@@ -1,6 +1,5 @@
 """Animations of mode shapes and operating deflection shapes: GIF by Pillow, MP4 by ffmpeg where there is one."""
 
-import os
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
@@ -10,6 +9,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.drawn_shapes import DrawnHousing, DrawnShape
 from housing.errors import EncoderUnavailableError
 from housing.scene import Scene
@@ -88,12 +88,11 @@ def animate_shapes(
             progress(f"filming {shape.title}")
             frames = list(_frames(scene, shape))
             path = folder / f"{shape.name}.{film}"
-            temporary = path.with_name(f".{path.name}.part")
-            if film == "gif":
-                _write_gif(frames, temporary)
-            else:
-                _write_mp4(encoder, frames, temporary)
-            os.replace(temporary, path)
+            with atomic_file(path) as staged:
+                if film == "gif":
+                    _write_gif(frames, staged)
+                else:
+                    _write_mp4(encoder, frames, staged)
             files.append(path)
     return files
 

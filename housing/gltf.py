@@ -6,7 +6,6 @@ an animation that swings the target's weight as a sine. The layout follows the g
 """
 
 import json
-import os
 import struct
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.modes import ModeSet
 from housing.skin import DRAWN_SCALE, Skin, check_numbers, drawn_name, outer_skin
 from meshes import Mesh
@@ -57,9 +57,8 @@ def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder
     files = []
     for number in numbers:
         path = folder / f"{drawn_name(modes, number)}.glb"
-        temporary = path.with_name(f".{path.name}.part")
-        temporary.write_bytes(_model(mesh, skin, modes, number))
-        os.replace(temporary, path)
+        with atomic_file(path) as staged:
+            staged.write_bytes(_model(mesh, skin, modes, number))
         files.append(path)
     return files
 

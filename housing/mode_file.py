@@ -8,11 +8,10 @@ attribute) proves on reading that the content is, bit for bit, that of the certi
 signature against forgery.
 """
 
-import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
+from housing.atomic_file import atomic_file
 from housing.errors import HousingError, ModeFileError
 from housing.labelled import LabelledArray, digest
 from housing.mode_record import ModeRecord, record_arrays, record_attributes, record_of
@@ -47,15 +46,13 @@ def write_modes(path: str | Path, record: ModeRecord) -> None:
         for name, array in arrays.items()
     }
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        staged = Path(folder) / path.name
+    with atomic_file(path) as staged:
         try:
             # Without a fill value no number is taken for a missing one.
             write_netcdf(staged, variables, attributes, fill=False)
             seal(staged)
         except ValueError as error:
             raise HousingError(f"the arrays of a mode set do not fit each other: {error}") from error
-        os.replace(staged, path)
 
 
 def read_modes(path: str | Path) -> ModeRecord:

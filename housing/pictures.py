@@ -1,6 +1,5 @@
 """Pictures of mode shapes and operating deflection shapes, drawn off-screen with PyVista: single or on a sheet."""
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
 from housing.modes import ModeSet
 from housing.scene import STRIP, VIEWS, Scene, check_view, colour_strip
@@ -143,6 +143,5 @@ def _save(image: npt.NDArray[np.uint8], path: Path) -> None:
     """Write a PNG that appears whole or not at all."""
     from PIL import Image
 
-    temporary = path.with_name(f".{path.name}.part")
-    Image.fromarray(image).save(temporary, format="PNG", compress_level=2)
-    os.replace(temporary, path)
+    with atomic_file(path) as staged:
+        Image.fromarray(image).save(staged, format="PNG", compress_level=2)

@@ -13,14 +13,13 @@ Commas, semicolons or tabs separate the cells; a line that begins with # is a re
 """
 
 import csv
-import os
 import re
-import tempfile
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.errors import MeasuredDataError
 from housing.measured.geometry import MeasuredGeometry
 from housing.measured.modes import MeasuredModes
@@ -83,11 +82,8 @@ def write_table(path: str | Path, survey: SurveyData) -> None:
             lines.append(cells if ratios is None else [*cells, _digits(ratios[number])])
     else:
         lines = _shape_lines(geometry, modes)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        staged = Path(folder, path.name)
-        with staged.open("w", encoding="utf-8", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerows(lines)
-        os.replace(staged, path)
+    with atomic_file(path) as staged, staged.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(lines)
 
 
 def _shape_lines(geometry: MeasuredGeometry, modes: MeasuredModes | None) -> list[list[str]]:

@@ -5,14 +5,13 @@ along the axes as coordinate systems (18); shapes as dataset 55 in the points' o
 in binary, whose header and length of binary part are written here, because pyuff 2.5 counts complex values as half.
 """
 
-import os
-import tempfile
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.errors import MeasuredDataError
 from housing.measured.geometry import MeasuredGeometry
 from housing.measured.modes import MeasuredModes
@@ -65,14 +64,12 @@ def write_universal(path: str | Path, survey: SurveyData, *, points: Literal[15,
     datasets += _lines(geometry, nodes)
     if survey.modes is not None and survey.modes.shapes is not None:
         datasets += _shapes(survey.modes, nodes, frames)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        staged = Path(folder, path.name)
+    with atomic_file(path) as staged:
         pyuff.UFF(str(staged)).write_sets(datasets, "overwrite")
         if survey.responses is not None:
             with staged.open("ab") as file:
                 for block in _functions(survey.responses, nodes, frames):
                     file.write(block)
-        os.replace(staged, path)
 
 
 _HEADER: dict[str, Any] = {

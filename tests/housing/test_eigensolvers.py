@@ -1,12 +1,13 @@
 """Choice of the eigensolver: scipy's eigsh and block Lanczos give the same certified modes, double ones included."""
 
+from collections.abc import Callable
 from typing import Any, get_args
 
 import numpy as np
 import pytest
 
 import housing.search
-from housing import HousingError, IncompleteModesError, Material, Matrices, assemble, solve_modes
+from housing import Housing, HousingError, IncompleteModesError, Material, Matrices, assemble, solve_modes
 from housing.eigensolver import Solver, arpack_modes
 from meshes import ElementBlock, Mesh
 
@@ -96,3 +97,21 @@ def test_eigsh_that_does_not_converge_is_tried_again_and_then_refused(
 def test_an_unknown_eigensolver_is_refused(square_tube: Matrices) -> None:
     with pytest.raises(HousingError, match="eigensolver 'arnoldi'; expected one of 'lanczos', 'eigsh'"):
         solve_modes(square_tube, count=3, solver="arnoldi")  # type: ignore[arg-type]
+
+
+def test_a_housing_hands_the_choice_on(
+    block: Callable[..., Mesh], steel: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls = []
+
+    def counted(*arguments: Any, **options: Any) -> tuple[Any, Any]:
+        calls.append(options)
+        return arpack_modes(*arguments, **options)
+
+    monkeypatch.setattr(housing.search, "arpack_modes", counted)
+    solid = Housing(block((0.10, 0.07, 0.05), (2, 1, 1)), steel)
+    own = solid.modes(count=9)
+    assert not calls
+    other = solid.modes(count=9, solver="eigsh")
+    assert calls
+    np.testing.assert_allclose(own.frequencies_hz, other.frequencies_hz, rtol=1e-9)
