@@ -110,12 +110,12 @@ def _frames(scene: Scene, shape: DrawnShape) -> Iterator[Image]:
 
 
 def _write_gif(frames: Sequence[Image], path: Path) -> None:
-    """One palette for all frames, from three of them: no colour flickers, and only what moves is stored anew."""
+    """One palette for all frames, from three of them: no colour flickers, and only moving parts are stored anew."""
     from PIL import Image as Pillow
 
     # Each colour counts once, however much of it there is: most of a frame is white.
     pixels = np.concatenate([frame.reshape(-1, 3) for frame in frames[:: len(frames) // 3]])
-    pixels = pixels[(pixels < _PAPER).any(axis=1)]  # what is nearly white becomes so
+    pixels = pixels[(pixels < _PAPER).any(axis=1)]  # nearly white pixels become white
     palette = Pillow.fromarray(np.unique(pixels, axis=0)[None]).quantize(colors=255, method=Pillow.Quantize.MEDIANCUT)
     palette.putpalette([255, 255, 255, *(palette.getpalette() or [])[: 3 * 255]])
     images = [Pillow.fromarray(frame).quantize(palette=palette, dither=Pillow.Dither.NONE) for frame in frames]

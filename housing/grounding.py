@@ -101,7 +101,7 @@ def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArra
 
 
 def _spring_stiffness(mesh: Mesh, support: Support | Mount, fields: FloatArray) -> FloatArray:
-    """Rᵀ K R of what the support's springs add to the stiffness, with the six rigid motions R, shape (6, 6)."""
+    """Rᵀ K R of the stiffness K of the support's springs, with the six rigid motions R, shape (6, 6)."""
     added = support.additions(mesh).stiffness
     return np.asarray(fields.T @ (added.matrix(len(mesh.points)) @ fields)) if len(added) else np.zeros((6, 6))
 

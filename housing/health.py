@@ -1,8 +1,8 @@
 """Health report: checks of a solved housing, like those delivered with a Craig-Bampton model.
 
-Each line holds a figure, the bound it must keep, and what it was taken from. Figures that would make numbers wrong are
-essential: :meth:`HealthReport.require` raises for them. The others are for the engineer to judge, such as a housing
-whose supports leave it free to move.
+Each line holds a figure, its bound, and its source. A line is essential where a figure beyond its bound makes results
+wrong: :meth:`HealthReport.require` raises for it. The others are for the engineer to judge, such as a housing whose
+supports leave it free to move.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ FloatArray = npt.NDArray[np.float64]
 
 MASS_BOUND = 1e-6  # of mass, and of the centre over the diagonal: curved elements are integrated closely, not exactly
 REGULAR_BOUND = 1e-9
-STRAIN_BOUND = 1e-10  # what rounding leaves of K R is some 1e-14
+STRAIN_BOUND = 1e-10  # rounding of K R is about 1e-14
 SYMMETRY_BOUND = 1e-12
 
 
@@ -174,7 +174,7 @@ def _mass_lines(
 def _matrix_lines(mesh: Mesh, unsupported: Matrices, supported: Matrices, body: RigidBody) -> list[HealthLine]:
     stiffness = unsupported.stiffness
     fields = rigid_motions(mesh.points, body.center).reshape(-1, 6)
-    # Each entry of K R is a sum that cancels; its terms, taken without their signs, are what to measure it by.
+    # Each entry of K R is a sum that cancels; its scale is the sum of the terms' absolute values.
     strained = np.linalg.norm(stiffness @ fields, axis=0) / np.linalg.norm(abs(stiffness) @ np.abs(fields), axis=0)
     asymmetry = max(_asymmetry(supported.stiffness), _asymmetry(supported.mass))
     return [

@@ -32,7 +32,7 @@ TOLERANCE = 1e-9
 """Of a Ritz pair's residual, as a part of ν."""
 
 _BLOCK = 8
-_DEPENDENT = 1e-11  # what is left of a column, as a part of it, where it lay in the basis
+_DEPENDENT = 1e-11  # remainder of a column, as a part of it, below which it lay in the basis
 _NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
 _ORTHONORMAL = 1e-14  # how far products of a new block's columns may be from those of orthonormal ones
 _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
@@ -85,7 +85,7 @@ def shift_invert(
     n = mass.shape[0]
     width = min(_BLOCK * 2**seed, n)
     most = min(n, 8 * count + 40 * width)
-    # The system gives memory to what is used of it.
+    # The operating system allocates only the pages that are used.
     basis, inertia = (np.empty((n, most + width), order="F") for _ in range(2))
     small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
@@ -178,7 +178,7 @@ def _orthonormal(
         mixture.T @ products,
     )
     if new.shape[1]:
-        # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
+        # Scaling up the remainder of a block that nearly lay in the basis scales up its rounding: once more.
         if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
             algebra.subtract(new, basis, algebra.products(inertia_of_basis, new))
             new_inertia = mass @ new

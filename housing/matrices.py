@@ -153,7 +153,7 @@ class Matrices:
 
     @cached_property
     def _whole(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
-        """The pattern with what lies below the diagonal: its pointer and neighbours, where each block is kept, and
+        """The pattern of both triangles: its pointer and neighbours, where each block is kept, and
         whether it stands there transposed."""
         upper = np.flatnonzero(self.neighbors != self.rows)
         places = np.concatenate([np.arange(len(self.neighbors)), upper])

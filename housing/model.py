@@ -57,7 +57,7 @@ class Housing:
     seats : sequence of Seat
     sensors : sequence of Sensor
     damping_ratio : float
-        Fraction of critical damping of every mode, beside what dashpots of the fixtures add.
+        Fraction of critical damping of every mode, in addition to the dashpots of the fixtures.
 
     Raises
     ------
@@ -314,7 +314,7 @@ class Housing:
         solid = mass_properties(self.mesh, self.material, self.materials)
         mass, center = solid.mass, solid.center
         if not self.materials:
-            # Of one material, what its boundary encloses says the same without any of the elements inside.
+            # With one material the boundary's volume gives the mass, independent of the elements inside.
             volume, center = enclosed(self.mesh)
             mass = self.material.density * volume
         fastened = sum(one.mass for one in self.fixtures if isinstance(one, LumpedMass))
@@ -325,7 +325,7 @@ class Housing:
             [one for one in self.fixtures if isinstance(one, Support | Mount)],
             modes,
             mass=mass + fastened,
-            # The centre of what is fastened is not the geometry's to know.
+            # The geometry does not know the centres of lumped masses.
             center=None if fastened else center,
         )
 
@@ -345,7 +345,7 @@ class HousingModes:
     sensors : mapping of str to ndarray, shape (n,)
         Motions of modes and residual modes along each sensor.
     damping_matrix : ndarray, shape (n, n), or None
-        What dashpots of the fixtures add in modal coordinates [1/s].
+        Φᵀ C Φ of the fixtures' dashpots [1/s].
     participation : ndarray, shape (n, 6)
         φᵀ M R of the rigid motions along and about x, y, z through the origin [√kg, √kg m].
     """

@@ -87,7 +87,7 @@ def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *
     center : ndarray, shape (3,), optional
         The point whose translations come first [m]; the middle of the patch where not given.
     name : str
-        What the patch belongs to, for the message.
+        Owner of the patch, for the message.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *
     Raises
     ------
     HousingError
-        Where the patch does not span a rigid motion, or is far too small to tell that of a centre so far away.
+        Where the patch does not span a rigid motion, or is too small for a centre so far away.
     """
     middle = patch_center(mesh, facets)
     parts, area = _quadrature(mesh, facets)
@@ -121,7 +121,7 @@ def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *
 
 
 def point_matrix(mesh: Mesh, point: SurfacePoint) -> sparse.csr_array:
-    """The translations of a point of the surface, shape (3, 3 n_nodes); a point has no rotation that a solid knows."""
+    """The translations of a point of the surface, shape (3, 3 n_nodes); a point of a solid has no rotation."""
     columns = (3 * point.nodes[:, None] + np.arange(3)).ravel()
     return _port(np.asarray(np.kron(point.weights, np.eye(3)), dtype=np.float64), columns, mesh)
 

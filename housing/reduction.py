@@ -77,7 +77,7 @@ STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
 _SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
-_ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which what it adds to others is rounding
+_ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which its contribution is rounding
 _ALIKE = 1e-12  # part of the largest energy of a sweep's directions below which one is rounding
 _MOST_SWEEPS = 200
 
@@ -219,7 +219,7 @@ def residual_attachments(
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
     found = (ports @ shapes).T
     missing = (found.T / squared) @ found
-    # Each load without what accelerates the rigid modes, and the displacements claimed for it.
+    # Each load without the part that accelerates rigid modes, and the displacements found for it.
     balanced = loads - inertia[:, ~elastic] @ motions[~elastic]
     claimed = vectors[:, elastic] @ (motions[elastic] / values[elastic][:, None]) + shapes @ (found / squared[:, None])
     slack = 1.0 + max(-shift, 0.0) / max(float(values.max(initial=0.0)), floor)

@@ -113,7 +113,7 @@ class Scene:
         points = (self._housing.rest + reach * shape.at(angle))[self._origin]
         self._solid.points = points
         self._solid.point_data.active_normals = self._skin.normals(points)
-        self._plotter.render_window.Render()  # a screenshot alone shows what was drawn before
+        self._plotter.render_window.Render()  # a screenshot alone shows the previous image
         return np.asarray(self._plotter.screenshot(None, return_img=True))
 
     def shrunk(self, drawn: Image) -> Image:

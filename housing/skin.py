@@ -75,7 +75,7 @@ def check_numbers(modes: ModeSet, numbers: Sequence[int]) -> None:
     Raises
     ------
     HousingError
-        Where there is no mode of such a number, or no number.
+        Where there is no mode of a number, or no number.
     """
     missing = [number for number in numbers if not 1 <= number <= len(modes.shapes)]
     if missing or not numbers:

@@ -97,7 +97,7 @@ def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
         on = inside[block.corners]
         own = normals[start : start + len(block)]
         start += len(block)
-        # Neighbours share an edge with the bore; what has all its corners there belongs to it.
+        # Neighbours share an edge with the bore; a facet with all its corners there belongs to it.
         for facet in np.flatnonzero((on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(own @ axis) < SIDEWAYS)):
             edge = mesh.points[block.corners[facet][on[facet]]].mean(axis=0)
             inward = -across(edge[None] - np.asarray(bore.center), axis)[0]

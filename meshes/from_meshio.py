@@ -85,7 +85,7 @@ def _groups(content: Any, number: int) -> list[tuple[str, IntArray]]:
     """Named groups of one block, as (name, members).
 
     Of gmsh's format 4 meshio gives the groups twice, as sets and as tags, and the tags name one group only of an
-    element that is in several: the union of both is what the file says.
+    element that is in several: the union of both is the file's content.
     """
     groups: dict[str, IntArray] = {}
 

@@ -26,7 +26,7 @@ class ModePair:
     close_modes : tuple of int
         Numbers of the model modes close to each other that the pair's is one of; empty where it stands apart.
     mixed : bool
-        Whether shapes cannot tell which of the close modes is which.
+        Whether shapes cannot identify the single modes of the close group.
     """
 
     measured: float

@@ -51,7 +51,7 @@ def phase_deviation(shapes: npt.ArrayLike) -> FloatArray:
 def real_shapes(shapes: npt.ArrayLike) -> FloatArray:
     """Complex shapes turned on to the real axis by their mean phase, and their real parts; NaN stays.
 
-    Of all real shapes these are nearest to the given ones turned in any way: what is dropped is the minor axis of their
+    Of all real shapes these are nearest to the given ones at any phase: the part dropped is the minor axis of their
     scatter, a part (1 - √MPC) / 2 of their square.
 
     Parameters

@@ -32,7 +32,7 @@ def serep_mass(model: npt.ArrayLike) -> FloatArray:
     Raises
     ------
     HousingError
-        Where the survey has fewer degrees of freedom than there are modes, or cannot tell them apart.
+        Where the survey has fewer degrees of freedom than there are modes, or cannot separate them.
     """
     inverse = _inverse(shape_set(model, "the model's"), "the survey has")
     return np.asarray((inverse.T @ inverse).real)
@@ -56,8 +56,8 @@ def modal_coordinates(model: npt.ArrayLike, measured: npt.ArrayLike) -> ComplexA
     Raises
     ------
     HousingError
-        Where a shape was measured at fewer degrees of freedom than there are modes, or at such that cannot tell them
-        apart.
+        Where a shape was measured at fewer degrees of freedom than there are modes, or at ones that cannot separate
+        them.
     """
     phi, psi = two_sets(model, measured, ("the model's", "the measured"))
     found = np.empty((len(phi), len(psi)), dtype=np.complex128)
@@ -83,7 +83,7 @@ def cross_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatA
 def self_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     """Normalised orthogonality of the measured shapes among themselves, shape (n_measured, n_measured).
 
-    |ψ_iᴴ M_s ψ_j| / √(ψ_iᴴ M_s ψ_i · ψ_jᴴ M_s ψ_j): 1 on the diagonal, and off it what one measured mode holds of
+    |ψ_iᴴ M_s ψ_j| / √(ψ_iᴴ M_s ψ_i · ψ_jᴴ M_s ψ_j): 1 on the diagonal, and off it the share of one measured mode in
     another. Parameters and raises as :func:`modal_coordinates`.
     """
     coordinates = modal_coordinates(model, measured)

@@ -30,7 +30,7 @@ from housing.errors import HousingError
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_CLEAR = 0.75  # the part of what a shape has in the span of close modes that one of them must hold to be told apart
+_CLEAR = 0.75  # least share of one close mode in a shape's MAC with their span, by which it is identified
 _LEAST_FREEDOMS = 2
 _WINDOW = 2.0  # spreads of frequency within which pairs are made
 
@@ -49,7 +49,7 @@ class PairingRule:
     closeness : float
         Neighbours within this part of their frequency are close modes.
     duplicate_mac : float
-        Two measured modes as alike as this are one mode found twice, or two that the survey cannot tell apart.
+        Two measured modes as alike as this are one mode found twice, or two that the survey cannot separate.
     """
 
     least_mac: float = 0.5
@@ -91,7 +91,7 @@ class ShapePair:
     close_model, close_measured : tuple of int
         The modes close to each other that the pair's are among; empty where one stands apart.
     mixed : bool
-        Whether shapes could not tell which of the close modes is which, so that the order of frequency was kept.
+        Whether shapes could not identify the single modes of the close group, so that the order of frequency was kept.
     """
 
     model: int
@@ -128,8 +128,8 @@ def pair_modes(
     Raises
     ------
     HousingError
-        Where sets and frequencies do not fit together, or a shape has too few degrees of freedom to be told from any
-        other.
+        Where sets and frequencies do not fit together, or a shape has too few degrees of freedom to be distinguished
+        from any other.
     """
     rule = rule or PairingRule()
     phi, psi = two_sets(model_shapes, measured_shapes, ("the model's", "the measured"))

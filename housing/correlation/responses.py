@@ -47,7 +47,7 @@ def synthesised_responses(
     frequencies : ndarray, shape (f,)
         w [rad/s].
     quantity : str
-        What was measured per unit force.
+        Measured quantity of the motion per unit force.
 
     Returns
     -------

@@ -21,7 +21,9 @@ _FIRST_STEPS, _STEPS = 6, 40  # from every start; from the promising ones
 _PROMISING = 4.0  # times the least distance, and the spacing of the samples, after the first steps
 _SPREAD_STARTS = 60  # rotations spread over all there are, beside those of axes onto axes
 _SETTLED = 1e-6  # a step that moves points by less, as a part of the housing's diagonal, is the last
-_EQUAL = 0.005  # root mean square distances that differ by less, as a part of the diagonal, do not tell positions apart
+_EQUAL = (
+    0.005  # root mean square distances that differ by less, as a part of the diagonal, do not distinguish positions
+)
 _DISTINCT_DEGREES, _DISTINCT_SHIFT = 5.0, 0.05  # positions that differ by less, the latter of the diagonal, are one
 _LOOSE = 0.02  # firmness below which the points do not determine a motion; for points all over a box it is 0.3 and more
 _SCALE_OFF = 0.03  # deviation of the scale from 1 beyond which the survey is of another size than the model

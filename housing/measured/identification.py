@@ -181,7 +181,7 @@ def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[Co
 def _completed(
     table: ComplexArray, measured: npt.NDArray[np.bool_], shape: ComplexArray, participation: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """The pair φ, ψ of the least Σ |R - φ ψᵀ|² over what was measured, by least squares for each in turn."""
+    """The pair φ, ψ of the least Σ |R - φ ψᵀ|² over the measured entries, by alternating least squares."""
     for _ in range(_TURNS):
         before = shape
         weight = measured.T @ np.abs(shape) ** 2

@@ -145,7 +145,7 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     Raises
     ------
     HousingError
-        Where the surface has no room for so many.
+        Where the surface has no room for that number.
     """
     facets = outer_facets(mesh)
     samples = sample_surface(mesh, facets)

@@ -33,7 +33,7 @@ def read_datasets(path: Path) -> tuple[list[Dataset], tuple[str, ...]]:
     Raises
     ------
     MeasuredDataError
-        Where the file cannot be read, is no universal file, is cut short, or a dataset is not what its number says.
+        Where the file cannot be read, is no universal file, is truncated, or a dataset contradicts its number.
     """
     import pyuff
 

@@ -105,7 +105,7 @@ class Debiased(Generic[AnyDesign]):
             return given
         own, kept = elastic(given)
         whole = _mixed(own, *self._turned)
-        # Rigid modes stay what and where they are.
+        # Rigid modes are kept unchanged.
         frequencies, seats, skin = given.frequencies.copy(), given.seats.copy(), given.skin.copy()
         frequencies[kept], seats[kept], skin[kept] = whole.frequencies, whole.seats, whole.skin
         measured = None

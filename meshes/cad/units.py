@@ -33,7 +33,7 @@ def stated_unit(path: Path, kind: str) -> float | None:
 def _step_unit(text: str) -> float | None:
     """The length unit that the file's geometry is measured in, if there is but one.
 
-    An inch is itself defined by way of a millimetre, so converted units, where there are any, are what counts.
+    An inch is itself defined by way of a millimetre, so that converted units, where there are any, decide.
     """
     plain: set[float] = set()
     converted: set[float] = set()

@@ -100,7 +100,7 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
     with gmsh_session("it") as gmsh:
         at(READING)
         solids = read_solids(gmsh, request.path, request.kind)
-        # The kernel turns what STEP and IGES state into millimetres; BREP it takes as it is.
+        # The kernel converts STEP and IGES to millimetres by their stated unit; BREP is read unchanged.
         stated = request.stated if request.stated is not None else (None if request.kind == "brep" else 1e-3)
         numbers = extent(gmsh) / (1.0 if stated is None else stated / 1e-3)
         chosen = choose_unit(numbers, stated, request.given)
