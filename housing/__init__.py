@@ -1,25 +1,22 @@
 """Housing: finite-element model, natural modes proved complete, correlation with measured modes, pictures.
 
-What the room offers:
-
-- :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid;
-  :func:`mass_properties` -- its mass and centre of mass, from the geometry alone.
-- :class:`Support`, :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, each on a :class:`Patch` -- fixtures of the
-  solid; :func:`attach` -- the matrices with all of these.
-- :func:`bolted_joint` -- stiffness of a preloaded bolt and of the parts under its head.
-- :func:`rigid_body` -- mass, centre of gravity and inertia of the whole (:class:`RigidBody`).
-- :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` --
-  their damping by dashpots.
+- :class:`Housing` -- mesh, materials, fixtures, seats and sensors in one description; its :meth:`~Housing.modes` are
+  certified :class:`HousingModes`.
+- :class:`Material`; :class:`Support`, :class:`Mount` and :class:`Joint` (with a :class:`Bushing`), :class:`LumpedMass`,
+  each on a :class:`Patch` -- fixtures; :func:`bolted_joint`, :func:`cover_joints` -- preloaded bolts.
 - :class:`Seat`, :class:`Sensor` -- the ports at which the rest of the machine meets it.
+- :func:`assemble`, :func:`attach` -- stiffness and mass of the solid, and of the solid with its fixtures.
+- :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`, by block Lanczos or scipy's
+  ``eigsh``; :func:`modal_damping` -- their damping by dashpots.
 - :func:`attach_ports` -- residual attachment modes, which make the static compliance at ports exact.
 - :func:`receptance`, :func:`effective_mass` -- frequency response between ports, and effective modal masses.
 - :func:`health_report` -- mass, rigid motions, grounding, orthogonality, static error: each with its bound.
 - :func:`write_modes`, :func:`read_modes` -- a solved housing on file.
-- :func:`compare_by_dominance`, :func:`compare_by_shapes` -- correlation of model and measured modes;
-  ``housing.correlation`` has the criteria.
-- ``housing.measured`` -- files of measured modes and responses, and their measuring points on the model.
-- ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
-- ``housing.pictures``, ``housing.animations`` -- shapes drawn off-screen; not imported here, since they bring VTK.
+- :func:`compare_by_dominance`, :func:`compare_by_shapes` -- correlation of model and measured modes.
+
+Further sub-modules: ``housing.correlation`` (assurance criteria), ``housing.measured`` (files of measured modes and
+responses, identification, alignment), ``housing.updating`` (model updating); pictures, animations and 3D models of mode
+shapes, which are not imported here because they bring VTK.
 """
 
 from housing.assembly import assemble

@@ -1,7 +1,5 @@
 """Finite-element meshes: from a geometry, or a file, to nodes and elements with named regions.
 
-What the room offers:
-
 - :class:`Mesh` -- nodes, blocks of solid elements (:class:`ElementBlock`) and named regions, in metres.
 - :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet`, :class:`Rib`,
   :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
@@ -11,7 +9,7 @@ What the room offers:
 - :func:`box_facets`, :func:`circle_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`,
   :func:`with_bore` -- regions of the surface of any mesh by place; bores by centre and diameter.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
-- :func:`mesh_quality` -- edge lengths and shape numbers of the elements (:class:`MeshQuality`).
+- :func:`mesh_quality` -- edge lengths and shape numbers of the elements.
 - :func:`diagnose` -- defects of a mesh by name (:class:`Ailment`); :func:`resolution_ailments` -- elements that are
   too large for the structural waves.
 
