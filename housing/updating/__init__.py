@@ -6,7 +6,7 @@
 - :class:`Target`, :func:`measure` -- measured modes, and the misfit of a design (:class:`Misfit`).
 - :func:`search` -- the fit from one start by full solutions (:data:`Solve`).
 - :class:`MeshBias` -- correction of a coarse mesh by a fine one.
-- :func:`race` -- from many starts on the coarse mesh, judged on the fine one; :func:`polish` -- its final steps.
+- :func:`race` -- many starts on a coarse mesh, judged on the fine one; :func:`polish` -- its final steps.
 - :func:`posterior` -- uncertainty of the parameters (:class:`Posterior`).
 - :class:`Procedure` -- the whole search on one mesh; :func:`hold_back` -- leave-one-out cross-validation;
   :func:`null_fits` -- fits to random frequencies.
