@@ -1,6 +1,6 @@
-"""Eigensolver of K φ = λ M φ: scipy's ``eigsh`` (ARPACK, implicitly restarted Lanczos) in shift-invert mode.
+"""Eigensolvers of K φ = λ M φ in shift-invert mode: the choice of one, and scipy's ``eigsh`` (ARPACK).
 
-ARPACK works on A = (K - σM)⁻¹ M, which is self-adjoint in the inner product of M and has the eigenvalues
+The default is block Lanczos (:mod:`housing.lanczos`). ARPACK, an implicitly restarted Lanczos method, works on A = (K - σM)⁻¹ M, which is self-adjoint in the inner product of M and has the eigenvalues
 ν = 1/(λ - σ). The factor of K - σM stands behind ``OPinv``, so that it is shared with the inertia certificate. Modes
 below σ have ν < 0 and are exactly the smallest algebraic ν; modes above σ have ν > 0 and are the largest.
 

@@ -1,4 +1,4 @@
-"""Element integrals of the sensitivities of :func:`housing.updating.modal_rates`, in chunks of elements.
+"""Sensitivities of stiffness and mass to parameters: integrals over elements, in modal coordinates.
 
 Most of the work is in products of all modes with all modes, once for each parameter. So elements are grouped by the
 parameters that concern them, σ : T is summed over the six components of the symmetric σ, and where div V is constant

@@ -6,6 +6,7 @@ from typing import Any, get_args
 import numpy as np
 import pytest
 
+import housing.eigensolver
 import housing.search
 from housing import Housing, HousingError, IncompleteModesError, Material, Matrices, assemble, solve_modes
 from housing.eigensolver import Solver, arpack_modes
@@ -87,7 +88,7 @@ def test_eigsh_that_does_not_converge_is_tried_again_and_then_refused(
         tried.append(ncv)
         raise ArpackNoConvergence("No convergence", np.empty(0), np.empty((0, 0)))
 
-    monkeypatch.setattr("housing.eigensolver.eigsh", stuck)
+    monkeypatch.setattr(housing.eigensolver, "eigsh", stuck)
     with pytest.raises(IncompleteModesError, match="eigsh did not converge to 44 modes"):
         solve_modes(square_tube, count=12, solver="eigsh")
     assert tried == sorted(set(tried))
