@@ -1,8 +1,9 @@
 """Eigensolvers of K φ = λ M φ in shift-invert mode: the choice of one, and scipy's ``eigsh`` (ARPACK).
 
-The default is block Lanczos (:mod:`housing.lanczos`). ARPACK, an implicitly restarted Lanczos method, works on A = (K - σM)⁻¹ M, which is self-adjoint in the inner product of M and has the eigenvalues
-ν = 1/(λ - σ). The factor of K - σM stands behind ``OPinv``, so that it is shared with the inertia certificate. Modes
-below σ have ν < 0 and are exactly the smallest algebraic ν; modes above σ have ν > 0 and are the largest.
+The default is block Lanczos (:mod:`housing.lanczos`). ARPACK, an implicitly restarted Lanczos method, works on
+A = (K - σM)⁻¹ M, which is self-adjoint in the inner product of M and has the eigenvalues ν = 1/(λ - σ). The factor of
+K - σM stands behind ``OPinv``, so that it is shared with the inertia certificate. Modes below σ have ν < 0 and are
+exactly the smallest algebraic ν; modes above σ have ν > 0 and are the largest.
 
 ARPACK may leave out a copy of a multiple mode without notice; the certificate (:mod:`housing.search`) detects it.
 """
