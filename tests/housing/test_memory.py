@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import housing.memory
 from gearwhine.failures import explain
 from housing.memory import available_memory, check_memory
 
@@ -41,7 +42,7 @@ def test_the_first_version_of_control_groups_is_read_as_well(tmp_path: Path) -> 
 
 
 def test_what_does_not_fit_is_refused_with_both_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("housing.memory.available_memory", lambda: 2.0 * GB)
+    monkeypatch.setattr(housing.memory, "available_memory", lambda: 2.0 * GB)
     check_memory(2.0 * GB, "the factor")
     with pytest.raises(
         MemoryError, match=r"the factor needs 3 GB of memory, and 2 GB are available; .*mesh_size"
