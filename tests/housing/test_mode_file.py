@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 from housing import (
+    Certificate,
     HousingError,
     LabelledArray,
     Matrices,
@@ -19,6 +20,7 @@ from housing import (
     ModeSet,
     Seat,
     Sensor,
+    mesh_digest,
     read_modes,
     seat_matrix,
     sensor_port,
@@ -26,7 +28,7 @@ from housing import (
     with_sensors,
     write_modes,
 )
-from meshes import Facets, Mesh
+from meshes import ElementBlock, Facets, Mesh
 
 SEATS = (Seat("front-seat", (-0.03, 0.08, 0.12)), Seat("back-seat", (0.0, 0.08, -0.12)))
 
@@ -262,3 +264,20 @@ def test_every_field_of_a_mode_set_has_its_place_in_the_file(record: ModeRecord)
     numbers = (modes.frequencies, modes.shapes, modes.certificate, modes.attachments)
     notes = (modes.seconds, modes.backend, modes.shift, modes.threads)
     assert len(fields(ModeSet)) == len(numbers) + len(notes)
+    assert {field.name for field in fields(Certificate)} == {
+        "limit", "expected", "found", "max_residual", "max_overlap",
+    }  # fmt: skip
+
+
+def test_the_digest_of_a_mesh_is_that_of_its_content(box: Mesh) -> None:
+    assert mesh_digest(box) == mesh_digest(replace(box, points=box.points.copy()))
+    points = box.points.copy()
+    points[5, 1] = np.nextafter(points[5, 1], 1.0)
+    others = [
+        replace(box, points=points),
+        replace(box, surfaces={}),
+        replace(box, surfaces={name.upper(): facets for name, facets in box.surfaces.items()}),
+        replace(box, volumes={}),
+        replace(box, blocks=(ElementBlock(box.blocks[0].kind, box.blocks[0].nodes[::-1].copy()),)),
+    ]
+    assert len({mesh_digest(mesh) for mesh in [box, *others]}) == 6
