@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -35,8 +36,8 @@ def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequenc
     source : str or path
         A case file (TOML), or the name of a bundled case.
     changes : mapping or sequence of str
-        Keys and their new values, ``{"housing.box.mesh_size": "20 mm"}``, or texts such as
-        ``"housing.box.mesh_size=20 mm"``.
+        Keys and their new values, numbers, texts, lists or tables, ``{"housing.box.mesh_size": "20 mm"}``; or texts
+        such as ``"housing.box.mesh_size=20 mm"``. An empty text takes a key out.
 
     Raises
     ------
@@ -272,7 +273,18 @@ class Study:
 
 
 def _text(value: object) -> str:
-    """A value as it stands behind ``--set KEY=``."""
+    """A value as it stands behind ``--set KEY=``, where a text needs no quotes."""
+    return value if isinstance(value, str) else _toml(value)
+
+
+def _toml(value: object) -> str:
+    """A value in TOML, on one line."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{json.dumps(key)} = {_toml(inner)}" for key, inner in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, str):
+        return json.dumps(value)
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -1,17 +1,15 @@
-"""Run-up of a gear pair on its shafts: orders of the mesh force over speed."""
+"""Run-up of a gear pair on its shafts: the mesh order passes through a resonance."""
 
+import sys
 from pathlib import Path
 
 import gearwhine as gw
 
 CASE = Path(__file__).with_name("two_gears.toml")
-RUN = "{ run = { from = '1500 rpm', to = '4500 rpm', time = '0.5 s' }, tolerance = 5e-3 }"
+RUN = {"from": "1500 rpm", "to": "4500 rpm", "time": "0.5 s"}
 
-study = gw.load(CASE, {"operation.speed": "4500 rpm", "transient": RUN})
+study = gw.load(CASE, {"operation.speed": "4500 rpm", "transient": {"run": RUN, "tolerance": 5e-3}})
 run = study.simulate()
-signature = run.solved.run_signature
-orders = signature.orders["mesh force pinion-wheel"]
-peak_speed = orders.speeds_rpm[orders.amplitudes[:, orders.orders.searchsorted(28.0)].argmax()]
-
-print(f"{signature.speeds_rpm[0]:.0f} to {signature.speeds_rpm[-1]:.0f} rpm; orders of {list(signature.orders)}")
-run.plot(next(name for name, _ in run.figures() if name.startswith("run-up-waterfall")))
+print(run.dataset)
+print([n for n,_ in run.figures()])
+for k,v in run.dataset.data_vars.items(): print(k, v.dims, v.shape, v.attrs.get("units"))

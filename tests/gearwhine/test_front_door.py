@@ -127,6 +127,16 @@ def test_what_the_case_reader_refuses_objects_refuse_in_the_same_words(tmp_path:
         gw.load("small-gearbox", {"housing.box.mesh_size": "-3 mm"})
 
 
+def test_changes_of_a_case_may_be_lists_and_tables() -> None:
+    run = {"from": "1500 rpm", "to": "4500 rpm", "time": "0.5 s"}
+    case = gw.load("small-gearbox", {"transient.run": run, "measured": {"frequencies": ["658 Hz", 1049.0]}}).case
+    assert case.transient is not None
+    assert case.transient.run is not None
+    assert case.measured is not None
+    assert case.measured.frequencies == (658.0, 1049.0)
+    assert gw.load("small-gearbox", {"transient.run": run, "transient": ""}).case.transient is None
+
+
 def test_the_examples_of_docstrings_hold() -> None:
     import doctest
 
