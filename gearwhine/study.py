@@ -13,6 +13,7 @@ from gearwhine.case.checks import warnings_of
 from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
+    from coupling import Machine
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
     from gearwhine.drawings import ModeFormat
@@ -123,6 +124,19 @@ class Study:
 
             self._housing = solve_housing(self.case, self.progress)
         return self._housing
+
+    @property
+    def machine(self) -> Machine:
+        """The shafts, gears, bearings and gear pairs of the case as one object, on its solved housing.
+
+        It has the constant torques of `[operation]`; torques over time, motion of the base and gravity stay in the
+        case, and :meth:`simulate` applies them.
+        """
+        from gearwhine.stages.machine import describe_machine, housing_in_machine
+
+        solved = self.housing
+        part = None if solved is None else housing_in_machine(self.case, solved, self.progress).component
+        return describe_machine(self.case, part)
 
     def check(self) -> dict[str, Any]:
         """What the case means: ratios, mesh frequencies, contact ratios, sizes. Nothing is solved."""
