@@ -7,22 +7,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import gearwhine as gw
-from coupling.gears import (  # fmt: skip
-    GearPairGeometry,
-    PotentialEnergyStiffness,
-    TipRelief,
-    tooth_contact,
-)
+from coupling import gears
 
 RELIEF_FROM = 0.41  # roll angle where the relief begins [rad]
 
 
 def peak_to_peak(amount: float, force: float) -> float:
     """Peak-to-peak transmission error [m] of two gears with a tip relief [m], under a force along the path [N]."""
-    relief = TipRelief(amount, start_roll_angle=RELIEF_FROM) if amount else None
+    relief = gears.TipRelief(amount, start_roll_angle=RELIEF_FROM) if amount else None
     gear = gw.Gear("gear", 40, 3e-3, math.radians(20.0), face_width=20e-3, bore=40e-3, tip_relief=relief)
-    contact = tooth_contact(GearPairGeometry(gear, gear), PotentialEnergyStiffness())
-    return float(np.ptp(transmission_error(contact, force).transmission_error))
+    contact = gears.tooth_contact(gears.GearPairGeometry(gear, gear), gears.PotentialEnergyStiffness())
+    return float(np.ptp(gears.static_transmission_error(contact, force).transmission_error))
 
 
 amounts = np.linspace(0.0, 15e-6, 31)
@@ -32,9 +27,8 @@ best = {force: float(amounts[error.argmin()]) for force, error in errors.items()
 figure = Figure(layout="constrained")
 axes = figure.subplots()
 for force, error in errors.items():
-    print(
-        f"{force:.0f} N: {1e6 * error[0]:.2f} µm without relief, {1e6 * error.min():.2f} µm at {1e6 * best[force]:.1f} µm"
-    )
+    least = f"{1e6 * error.min():.2f} µm with {1e6 * best[force]:.1f} µm"
+    print(f"{force:.0f} N: transmission error {1e6 * error[0]:.2f} µm without relief, {least} of it")
     axes.plot(1e6 * amounts, 1e6 * error, label=f"{force:.0f} N")
 axes.set(xlabel="tip relief [µm]", ylabel="transmission error, peak to peak [µm]")
 axes.legend()
