@@ -140,12 +140,14 @@ def test_the_machine_of_a_case_is_the_one_that_its_analyses_solve() -> None:
 
 def test_changes_of_a_case_may_be_lists_and_tables() -> None:
     run = {"from": "1500 rpm", "to": "4500 rpm", "time": "0.5 s"}
-    case = gw.load("small-gearbox", {"transient.run": run, "measured": {"frequencies": ["658 Hz", 1049.0]}}).case
+    changes = {"transient": {"run": run, "tolerance": 1e-3}, "measured": {"frequencies": ["658 Hz", 1049.0]}}
+    case = gw.load("small-gearbox", changes).case
     assert case.transient is not None
     assert case.transient.run is not None
+    assert case.transient.tolerance == 1e-3
     assert case.measured is not None
-    assert case.measured.frequencies == (658.0, 1049.0)
-    assert gw.load("small-gearbox", {"transient.run": run, "transient": ""}).case.transient is None
+    assert case.measured.frequencies == pytest.approx((658.0, 1049.0))
+    assert gw.load("small-gearbox", {"transient": ""}).case.transient is None
 
 
 def test_the_examples_of_docstrings_hold() -> None:
