@@ -21,6 +21,7 @@ def example(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Example:
     def run(name: str, output: str | None = None) -> dict[str, Any]:
         path = EXAMPLES / f"{name}.py"
         arguments = [] if output is None else [str(tmp_path / output)]
+        monkeypatch.chdir(tmp_path)
         monkeypatch.setattr(sys, "argv", [str(path), *arguments])
         found = runpy.run_path(str(path), run_name="__main__")
         if output is not None:

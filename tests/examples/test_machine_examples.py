@@ -1,5 +1,6 @@
 """The worked examples of machines in motion against statics, resonances and the linearity of their equations."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,16 @@ def mesh_resonance_rpm(study: gw.Study) -> float:
     """Speed at which the mesh frequency of 28 teeth meets the first elastic mode of the coupled machine."""
     frequencies = study.system().dataset["system_frequency"].values
     return float(60.0 / 28.0 * frequencies[frequencies > 1.0].min())
+
+
+def test_first_steps_find_all_modes_and_the_mesh_harmonics(example: Any, tmp_path: Path) -> None:
+    found = example("first_steps")
+    certificate = found["modes"].proofs["certificate"]
+    assert certificate["complete"]
+    assert certificate["expected"] == len(found["frequencies"])
+    # 28 teeth at 3000 rpm; what is beside the mesh harmonics comes from unbalance and runout.
+    assert float(found["spectrum"].idxmax()) % (28 * 50.0) == pytest.approx(0.0, abs=1e-6)
+    assert (tmp_path / "results" / "results.nc").is_file()
 
 
 def test_spectrum_of_two_shafts_has_the_mean_force_and_the_mesh_frequency(example: Any) -> None:
