@@ -1,6 +1,7 @@
 """The documentation's Python runs, and shows the same code as the worked examples."""
 
 import ast
+import importlib
 import re
 from pathlib import Path
 from typing import Any
@@ -56,3 +57,13 @@ def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     # Torque over base radius, of 28 teeth at module 3.175 mm and 20 degrees.
     mean = 71.77 / (3.175e-3 * 28 / 2 * np.cos(np.radians(20.0)))
     assert float(names["force"].mean()) == pytest.approx(mean, rel=5e-3)
+
+
+def test_names_of_the_glossary_exist() -> None:
+    """Every row names a module and something in it."""
+    page = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
+    rows = [line for line in page.splitlines() if line.startswith("| ") and not line.startswith("| term")]
+    assert len(rows) >= 60
+    for row in rows:
+        module, _, name = row.split("`")[1].rpartition(".")
+        assert hasattr(importlib.import_module(module), name), row
