@@ -24,8 +24,9 @@ def body(example: str) -> str:
     return "".join(text.splitlines(keepends=True)[after - 1 :])
 
 
-def test_readme_shows_the_first_example() -> None:
+def test_readme_and_tutorial_show_the_first_example() -> None:
     assert blocks("README.md") == [body("first_steps.py")]
+    assert blocks("docs/tutorial.md")[0] == body("first_steps.py")
 
 
 def test_every_example_is_short_and_listed() -> None:
