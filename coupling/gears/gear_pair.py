@@ -19,14 +19,13 @@ from coupling.gears.stiffness_models import (
     SquareStiffness,
     StiffnessModel,
     TableStiffness,
-    stiffness_model,
+    stiffness_under_load,
 )
 from coupling.gears.tooth_contact import ToothContact
 
 _FADING = 0.1  # part of the mean compression from which on the damping of the mesh is all there
 _ROUNDED_BACKLASH = 1e-3  # modules: backlash below it is the rounding of printed sizes
 _MESH_SPRINGS = (ConstantStiffness, SquareStiffness, TableStiffness)  # models of the mesh, not of a pair of teeth
-_LOAD_DEPENDENT = ("elastic-ring", "cornell", "weber-banaschek")
 
 
 @dataclass(frozen=True)
@@ -188,7 +187,8 @@ def load_gear_pair(
         Where the pair cannot carry the torque, or its stiffness model does not fit the geometry.
     """
     force = abs(torque) / geometry.driver.base_radius
-    model = _stiffness_under_load(pair.stiffness, geometry, force)
+    given = pair.stiffness
+    model = stiffness_under_load(given, geometry, force) if isinstance(given, str) else given
     contact = tooth_contact(
         geometry,
         model,
@@ -207,20 +207,6 @@ def load_gear_pair(
 
 def _missing(gear: Gear) -> tuple[MissingTooth, ...]:
     return tuple(fault for fault in gear.faults if isinstance(fault, MissingTooth))
-
-
-def _stiffness_under_load(given: StiffnessModel | str, geometry: GearPairGeometry, force: float) -> StiffnessModel:
-    """The stiffness model; one that is named, at the load of the pair."""
-    if not isinstance(given, str):
-        return given
-    if given == "iso6336" and force > 0.0:
-        # F_t / b: tangential force at the reference circle over the common width, as the norm's load per width.
-        tangential = force * geometry.driver.base_radius / geometry.driver.pitch_radius
-        return stiffness_model(given, specific_load=tangential / geometry.face_width)
-    if given in _LOAD_DEPENDENT and force > 0.0:
-        # Their Hertzian contact stiffens with the load; it is frozen where one pair carries all of it.
-        return stiffness_model(given, force=force)
-    return stiffness_model(given)
 
 
 def _damping_coefficient(
