@@ -28,8 +28,8 @@ IntArray = npt.NDArray[np.int64]
 Weight = Callable[[FloatArray], FloatArray]
 
 CELL = 20
-POSITIONS = 160
-DEPTHS = 24
+_POSITIONS = 160
+_DEPTHS = 24
 _DEEPEST = 0.02
 """In modules: compression up to which the table goes, beyond what evens out the face."""
 _FEWEST = 4
@@ -110,8 +110,8 @@ def face_table(
     pieces = _pieces(_breaks(kinds, reach, breaks))
     knots = np.concatenate([*(piece[:-1] for piece in pieces[:-1]), pieces[-1]])
     deepest = _DEEPEST * module + 1.5 * float(np.ptp(slices.gap))
-    unit = deepest / DEPTHS**2
-    compressions = unit * np.arange(DEPTHS + 1.0) ** 2
+    unit = deepest / _DEPTHS**2
+    compressions = unit * np.arange(_DEPTHS + 1.0) ** 2
     factors = [slices.width * weight(knots[:, None] + slices.shift) for weight in weights]
     touches, cells = [], []
     for number in range(len(kinds)):
@@ -119,15 +119,15 @@ def face_table(
         gap = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         # At the very ends nothing may meet for rounding: as at the next position.
         gap = np.where(np.isfinite(gap), gap, np.nanmax(np.where(np.isfinite(gap), gap, np.nan)))
-        shape = (knots.size, DEPTHS + 1, slices.z.size)
-        base, gaps = np.repeat(state.base, DEPTHS + 1, axis=0), np.repeat(state.gap, DEPTHS + 1, axis=0)
-        meeting = np.repeat(state.meeting, DEPTHS + 1, axis=0)
+        shape = (knots.size, _DEPTHS + 1, slices.z.size)
+        base, gaps = np.repeat(state.base, _DEPTHS + 1, axis=0), np.repeat(state.gap, _DEPTHS + 1, axis=0)
+        meeting = np.repeat(state.meeting, _DEPTHS + 1, axis=0)
         loads = load_faces(slices, base, gaps, meeting, (gap[:, None] + compressions).ravel())
         for factor in factors:
             force = np.einsum("pdz,pz->pd", loads.line_load.reshape(shape), factor)
             tangent = np.einsum("pdz,pz->pd", loads.line_tangent.reshape(shape), factor)
             force[:, 0] = 0.0
-            rise = tangent * 2.0 * unit * np.arange(DEPTHS + 1.0)
+            rise = tangent * 2.0 * unit * np.arange(_DEPTHS + 1.0)
             touches.append(_powers(pieces, gap[:, None])[:, 0])
             cells.append(_cells(_powers(pieces, force), _powers(pieces, rise), unit))
     return FaceTable(knots, np.array(touches), np.stack(cells, axis=1), unit)
@@ -146,7 +146,7 @@ def _breaks(kinds: tuple[PairCurves, ...], reach: float, others: Sequence[float]
 
 def _pieces(breaks: FloatArray) -> list[FloatArray]:
     """Knots from each break to the next, both included, as evenly spaced as the breaks allow."""
-    spacing = (breaks[-1] - breaks[0]) / POSITIONS
+    spacing = (breaks[-1] - breaks[0]) / _POSITIONS
     # Rounding must not cost an interval more.
     counts = np.maximum(np.ceil(np.diff(breaks) / spacing - 1e-9).astype(int), _FEWEST)
     return [

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from coupling.gears.errors import ContactAccuracyError, GearError
 
@@ -51,36 +51,21 @@ class PiecewiseCubic:
             raise GearError("a piecewise cubic needs increasing knots and finite coefficients")
 
     def __call__(self, position: npt.ArrayLike, derivative: int = 0) -> FloatArray:
-        """Value at `position`, or its first derivative (`derivative` = 1); ends are held outside."""
-        u = np.clip(np.asarray(position, dtype=np.float64), self.knots[0], self.knots[-1])
-        interval = np.searchsorted(self.knots[1:-1], u, side="right")
-        width = self._widths.take(interval)
-        c0, c1, c2, c3 = self._columns
-        # In place: of many positions it is the passing of memory that costs.
-        u = (u - self.knots.take(interval)) / width
-        if derivative == 1:
-            value = c1.take(interval) + u * (2.0 * c2.take(interval) + 3.0 * u * c3.take(interval))
-            return np.asarray(value / width, dtype=np.float64)
-        value = c3.take(interval)
-        for column in (c2, c1, c0):
-            value = np.multiply(value, u, out=value) if value.ndim else value * u
-            value += column.take(interval)
-        return np.asarray(value, dtype=np.float64)
+        """Value at `position`, or its first derivative (`derivative` = 1); outside the range at its nearest end."""
+        inside = np.clip(np.asarray(position, dtype=np.float64), self.knots[0], self.knots[-1])
+        return np.asarray(self._polynomial(inside, derivative), dtype=np.float64)
 
     @cached_property
-    def _columns(self) -> FloatArray:
-        return np.ascontiguousarray(self.coefficients.T)
-
-    @cached_property
-    def _widths(self) -> FloatArray:
-        return np.diff(self.knots)
+    def _polynomial(self) -> PPoly:
+        """The same in powers of (x - knot), highest first."""
+        powers = np.diff(self.knots)[:, None] ** np.arange(4)
+        return PPoly(np.ascontiguousarray((self.coefficients / powers).T[::-1]), self.knots)
 
     @property
     def mean(self) -> float:
         """Mean value over the whole range."""
-        widths = np.diff(self.knots)
-        integrals = self.coefficients @ np.array([1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0])
-        return float(np.sum(widths * integrals) / np.sum(widths))
+        start, end = float(self.knots[0]), float(self.knots[-1])
+        return float(self._polynomial.integrate(start, end)) / (end - start)
 
     def on_knots(self, knots: FloatArray) -> PiecewiseCubic:
         """The same function with more knots, or on a wider range, where its ends are held.
@@ -236,7 +221,7 @@ def through_points(position: FloatArray, values: FloatArray, intervals: int = 40
     return _from_scipy(PchipInterpolator(knots, curve(knots)))
 
 
-def _from_scipy(curve: CubicSpline | PchipInterpolator) -> PiecewiseCubic:
+def _from_scipy(curve: PPoly) -> PiecewiseCubic:
     """Scipy's powers of (x - knot), highest first, to powers of u, lowest first."""
     knots = np.asarray(curve.x, dtype=np.float64)
     powers = np.diff(knots)[:, None] ** np.arange(4)
