@@ -1,12 +1,12 @@
-"""Gears: from the shape of a tooth to the force that a gear mesh answers with.
+"""Gears: tooth geometry, tooth stiffness, tooth contact law and loaded transmission error.
 
-The chain, each link usable alone:
+The steps, each usable alone:
 
 >>> from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness
 >>> from coupling.gears import static_transmission_error, tooth_contact
 >>> wheel = Gear("wheel", teeth=62, module=2e-3, pressure_angle=0.349066, face_width=20e-3, bore=35e-3)
 >>> pair = GearPairGeometry(wheel, wheel)  # path of contact, working angle, backlash
->>> contact = tooth_contact(pair, PotentialEnergyStiffness())  # the law: k(s), d(s), damping
+>>> contact = tooth_contact(pair, PotentialEnergyStiffness())  # contact law: k(s), d(s), damping
 >>> loaded = static_transmission_error(contact, force=2000.0)  # mesh stiffness, sharing
 >>> round(pair.contact_ratio, 4)
 1.7898

@@ -1,4 +1,4 @@
-"""The tooth as a beam of varying section: what it yields in bending, shear and compression under a load on its flank.
+"""Tooth compliance as a beam of varying section: bending, shear and axial compression under a load on the flank.
 
 A unit load at height ``y_o``, half thickness ``x_o`` and load angle ``beta`` bends the tooth with the moment
 ``cos(beta) (y_o - y) - sin(beta) x_o`` at height ``y``, shears it with ``cos(beta)`` and compresses it with
@@ -55,7 +55,7 @@ def beam_compliance(
     Parameters
     ----------
     gear : Gear
-        Of a helical gear the section given; pair models take the normal one (:mod:`coupling.gears.normal_section`).
+        A spur gear; pair models of helical gears take their normal section (:mod:`coupling.gears.normal_section`).
     radius : ndarray
         Radii of the loaded points [m], from the form radius to the tip.
     foot : float

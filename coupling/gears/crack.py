@@ -1,4 +1,4 @@
-r"""A crack at the foot of a tooth, and what the tooth yields more because of it.
+r"""Tooth root crack: its geometry, and the additional compliance of the cracked tooth.
 
 The crack runs from the root circle on the loaded side into the tooth, straight, across the whole face. Material beyond
 it carries no bending: above the crack the section that is left reaches from the sound flank to a line through the
@@ -68,12 +68,12 @@ class ToothCrack:
         return np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """What the tooth yields more [m/N] for loads at roll angles [rad].
+        """Additional compliance of the tooth [m/N] for loads at roll angles [rad].
 
         Raises
         ------
         GearError
-            For a crack that leaves less than a tenth of some section of the tooth.
+            For a crack that leaves less than a tenth of any section of the tooth.
         """
         low = fillet_points(gear, np.array(math.pi / 2.0))
         root = float(low.half_thickness)

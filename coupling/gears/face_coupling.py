@@ -1,4 +1,4 @@
-r"""How strongly neighbouring slices of a tooth hold each other: the coupling of its face.
+r"""Shear coupling of neighbouring slices of a tooth across its face.
 
 A tooth whose deflection varies across the face, ``W(z) phi(y)``, is a plate of thickness t(y) held at its foot. phi is
 the deflection of a slice as a beam under a load at the middle of the path of contact, with its bending and its shear,

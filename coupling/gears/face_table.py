@@ -1,11 +1,11 @@
-r"""The force of a pair whose face is loaded unevenly, as a table that a compiled kernel can read.
+r"""Lookup table of the contact force of a pair with an uneven load across its face, for the compiled kernels.
 
 Force, tangent and energy of such a pair (:mod:`coupling.gears.face_slices`) depend on its position s and on the
 compression ``u`` beyond its first touch. On a grid of both they are bicubic: with ``u = a r^2`` the grid is fine where
 contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is
-that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's slope, whatever
-the table may miss of the slices' own solution, and motion on it conserves energy. Beyond the last ``u`` the force goes
-on with its tangent t, which is a cell too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 to wherever it leads. Where
+that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's derivative,
+whatever the error of the table, and motion on it conserves energy. Beyond the last ``u`` the force goes
+on with its tangent t, which is a cell too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 upward. Where
 a corner of the profiles, such as a spall's edge, meets the first slice of the face and the last, which is at once over
 a spur gear's, the splines along the positions end and begin.
 """
@@ -31,7 +31,7 @@ CELL = 20
 _POSITIONS = 160
 _DEPTHS = 24
 _DEEPEST = 0.02
-"""In modules: compression up to which the table goes, beyond what evens out the face."""
+"""Depth of the table in modules, in addition to the compression that evens out the face."""
 _FEWEST = 4
 """Intervals between corners, at least."""
 _APART = 1e-6
@@ -63,9 +63,18 @@ class FaceTable:
 
 @dataclass(frozen=True, eq=False)
 class FaceState:
-    """The slices of pairs at given positions, (p, n) each.
+    """Slices of pairs at given positions, arrays of shape (p, n).
 
-    Stiffness of a pair whose whole face were like the slice [N/m], k_b [N/m per m], gap [m], whether they can touch.
+    Attributes
+    ----------
+    whole : ndarray
+        Stiffness of a pair whose whole face were like the slice [N/m].
+    base : ndarray
+        k_b [N/m per m].
+    gap : ndarray
+        [m]
+    meeting : ndarray of bool
+        Whether the slice is where it can touch.
     """
 
     whole: FloatArray
@@ -99,9 +108,9 @@ def face_table(
     slices : FaceSlices
     kinds : tuple of PairCurves
     module : float
-        Of the gears [m]; it sets how deep the table goes.
+        Of the gears [m]; it sets the depth of the table.
     weights : sequence of callable
-        What each slice's force counts, by its place on the path of contact [base pitches]. With w of them the table
+        Weight of each slice's force, by its position on the path of contact [base pitches]. With w of them the table
         holds w kinds for each of `kinds`, one after another.
     breaks : sequence of float
         Places on the path where a weight has a corner.
@@ -134,7 +143,7 @@ def face_table(
 
 
 def _breaks(kinds: tuple[PairCurves, ...], reach: float, others: Sequence[float]) -> FloatArray:
-    """Ends of the positions, and between them where corners come to the face and leave it, `reach` from its middle."""
+    """Ends of the positions, and between them those where corners enter and leave the face, `reach` from its middle."""
     start, end = kinds[0].stiffness.knots[[0, -1]]
     curves = [curve for kind in kinds for curve in (kind.stiffness, kind.deviation)]
     corners = np.concatenate([*(corners_of(curve) for curve in curves), others])

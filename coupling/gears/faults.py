@@ -1,4 +1,4 @@
-"""Teeth that are damaged: worn, spalled, missing; cracks are in :mod:`coupling.gears.crack`.
+"""Tooth faults: wear, spalls, missing teeth; cracks are in :mod:`coupling.gears.crack`.
 
 A fault changes the pairs that its tooth belongs to: it takes material off the flank, makes the contact softer, or
 both. All are given on the gear, by the number of the tooth in the order in which teeth come into mesh.
@@ -17,7 +17,7 @@ from coupling.gears.geometry import Gear
 FloatArray = npt.NDArray[np.float64]
 
 NEVER = 1.0
-"""Gap of a tooth that is not there [m]: nothing ever closes it."""
+"""Gap of a missing tooth [m], wider than any load closes."""
 _EDGE = 0.1
 """Part of a spall's length over which its edges rise, as a contact of finite width rides over them."""
 
@@ -33,8 +33,8 @@ class Wear:
     tooth : int or None
         Which tooth; None for all.
     shape : {"sliding", "uniform"}
-        In proportion to the sliding, so nothing at the pitch point and `depth` at that end of the flank which lies
-        farther from it; or the same all over.
+        In proportion to the sliding, so zero at the pitch point and `depth` at the end of the flank farther from it;
+        or uniform.
     """
 
     depth: float
@@ -121,7 +121,7 @@ class Spall:
         return self.depth * self._inside(roll_angle) if self.across_face(gear) else np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """What the contact flattens more, ``4 (1 - nu^2) / (pi E b)`` over the whole face (Yang and Sun, 1985)."""
+        """Additional flattening of the contact: ``4 (1 - nu^2) / (pi E b)`` over a whole face (Yang and Sun, 1985)."""
         if self.across_face(gear):
             return np.zeros_like(roll_angle)
         part = self._part_of_face(gear)
@@ -166,7 +166,7 @@ class MissingTooth:
         return np.full_like(roll_angle, NEVER)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """None that matters."""
+        """Zero: such a pair carries nothing."""
         return np.zeros_like(roll_angle)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""How much a tooth sinks because the gear's body gives way under it (Sainsot, Velex & Duverger 2004).
+"""Gear body (fillet foundation) compliance under a tooth after Sainsot, Velex & Duverger (2004).
 
 The body is an elastic ring.  With load angle ``beta``, load height ``u`` above the root circle and root
 thickness ``S`` along the root circle, the deflection along the load is
@@ -17,8 +17,8 @@ of action, which grows as h^2 and is the reason why P does.  A gear in one piece
 the formula less that twist in closed form.  The dent hardly depends on the bore (within 10 % over the whole
 range for 28 teeth and more); it is taken at h = 3, in the middle of the range, where the twist is small.
 
-The formula reads the ring at the middle of the root arc, and published cases take u to the loaded point of the flank.
-Both make it soft: see :mod:`coupling.gears.elastic_ring` for the same ring without either.
+The formula takes the deflection at the middle of the root arc, and published cases take u to the loaded point of the
+flank.  Both make the body too soft: see :mod:`coupling.gears.elastic_ring` for the same ring without either.
 """
 
 from __future__ import annotations

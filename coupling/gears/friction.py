@@ -1,8 +1,8 @@
-r"""Sliding friction of a mesh under a steady load: its force, which turns at the pitch point, its moments, its loss.
+r"""Mesh friction under a steady load: sliding friction force, moments on both gears, power loss and efficiency.
 
 At the distances xi_k and xi_i of a contact from both tangent points the flanks move along each other, across the line
 of action, with ``w_k xi_k`` and ``w_i xi_i``; these are equal at the pitch point. Before it the driven flank is the
-faster one and draws the driver's along with mu F, after it the force is turned round. With t the direction in which the
+faster one and draws the driver's along with mu F, after it the force is reversed. With t the direction in which the
 driver's flank moves, on the driver
 
     Q = sum_j mu F_j sgn(w_i xi_i - w_k xi_k),        M_k = sum_j mu F_j sgn(...) xi_k,
@@ -40,11 +40,11 @@ class MeshFriction:
     force : ndarray, shape (n,)
         Q on the driver, across the line of action in the direction in which its flanks move [N].
     driver_moment, driven_moment : ndarray, shape (n,)
-        On the driver in the sense of its turning, on the driven gear against its own [N m].
+        On the driver in the sense of its rotation, on the driven gear against its own [N m].
     loss : ndarray, shape (n,)
-        Energy lost per radian of the driver's turning [J/rad]: with the driver's speed, the power.
+        Energy lost per radian of the driver's rotation [J/rad]: times the driver's speed, the power loss.
     efficiency : float
-        What is left of the work put in, in the mean over the mesh period.
+        Output work over input work, mean over the mesh period.
     """
 
     phases: FloatArray
@@ -64,7 +64,7 @@ def mesh_friction(
     ----------
     geometry : GearPairGeometry
     contact : ToothContact
-        What `mesh` was solved with.
+        Contact law with which `mesh` was solved.
     mesh : StaticMesh
         With phases over whole mesh periods.
     coefficient : float

@@ -1,9 +1,9 @@
-r"""The numbers of a contact law, laid out for the compiled kernel: one row of numbers, whatever the law holds.
+r"""Memory layout of a tooth contact law for the compiled kernels: one row of numbers.
 
 The teeth of a mesh are a base pitch apart, so the phase places all of its pairs at once: pair j is at ``x + j``, x the
 phase's fraction. All curves of all pairs are therefore cut at common knots of x, and one look-up finds what the law
 needs of every pair. An interval is found by an index instead of a search: the period is cut into equal parts, and each
-names the interval in which it begins; from there it is few steps forward, mostly none.
+names the interval in which it begins; from there the search goes forward by few steps, mostly none.
 
 The row begins with `HEADER` numbers, at the places named below; then come
 
@@ -35,7 +35,7 @@ from coupling.gears.piecewise import PiecewiseCubic
 FloatArray = npt.NDArray[np.float64]
 
 FIRST_TOUCH, PARTS, INTERVALS, PAIRS, FIRST_PAIR, KIND_STEP = 0, 1, 2, 3, 4, 5
-"""Compression below which no pair touches [m]; how many parts, intervals, and pairs at once; j of the first pair; the
+"""Compression below which no pair touches [m]; numbers of parts, intervals, and pairs at once; j of the first pair; the
 distance from one kind's pairs to the next one's."""
 DAMPING, DAMPING_DEPTH, HUNTING, DEPTH_UNIT, DEPTHS, DEPTH_STEP = 6, 7, 8, 9, 10, 11
 """Damping [N s/m] and the depth over which it fades in [m]; pairs of the hunting period; unit of the cells' depth [m],
@@ -43,8 +43,8 @@ DAMPING, DAMPING_DEPTH, HUNTING, DEPTH_UNIT, DEPTHS, DEPTH_STEP = 6, 7, 8, 9, 10
 INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT = 12, 13, 14, 15
 """Where these begin; the parts begin at `HEADER`."""
 SHARED, GUESS_AT = 16, 17
-"""What all pairs together yield in common, by the bodies of their gears [m/N]; where the guesses begin of the part
-of the mesh's compression that leaves the pairs, by the depth of cells."""
+"""Compliance that all pairs share, of their gears' bodies [m/N]; where the first guesses of the pairs' fraction of the
+mesh's compression begin, by the depth of cells."""
 HEADER = 18
 INTERVAL, PAIR, ENTERING = 2, 8, 2
 
@@ -62,7 +62,7 @@ def law_table(
     damping_depth: float,
     shared_compliance: float = 0.0,
 ) -> FloatArray:
-    """The law's numbers in a row.
+    """Row of numbers of a contact law.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def law_table(
 
 
 def _guesses(table: FaceTable, first_touch: float, shared: float) -> FloatArray:
-    """Part of the mesh's compression that is left to the pairs, in the mean over the period, by depth."""
+    """Fraction of the mesh's compression in the pairs, without the shared bodies, mean over the period, by depth."""
     depths = np.arange(table.cells.shape[0], dtype=np.float64)
     compression = table.depth_unit * depths**2
     beyond = np.maximum(0.0, first_touch + compression[:, None] - table.first_touch[0, :, 0])
@@ -117,8 +117,8 @@ def _guesses(table: FaceTable, first_touch: float, shared: float) -> FloatArray:
     depth = np.sqrt(beyond / table.depth_unit)
     below = np.minimum(depth.astype(np.int64), depths.size - 2)
     force, column = table.cells[:, 0, :, 0], np.arange(below.shape[1])
-    pressed = force[below, column] + (depth - below) * (force[below + 1, column] - force[below, column])
-    mesh = compression + shared * (pressed @ np.diff(table.knots))
+    mean_force = force[below, column] + (depth - below) * (force[below + 1, column] - force[below, column])
+    mesh = compression + shared * (mean_force @ np.diff(table.knots))
     left = np.interp(compression, mesh, compression)
     left[1:] /= compression[1:]
     left[0] = left[1]

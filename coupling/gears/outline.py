@@ -1,4 +1,4 @@
-"""Whole gears as points for drawing, by themselves and placed in mesh.
+"""Gear outlines: whole gears as polygons for drawing, alone and placed in mesh.
 
 Placing a pair: at phase p the pair of teeth with number 0 touches at p base pitches along the path of contact.  Seen
 from its gear's centre, a flank point of roll angle ``u`` is ``atan(u)`` beyond the tangent point of the line of action
@@ -65,7 +65,7 @@ def gear_outline(
 def meshing_rotations(
     pair: GearPairGeometry, phase: float, *, centre_line_angle: float = 0.0, sense: int = 1
 ) -> tuple[float, float]:
-    """How far driver and driven gear are turned at a phase, so that their working flanks touch.
+    """Rotation angles of driver and driven gear at a phase, with their working flanks in contact.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Two gears in mesh on parallel shafts: working centre distance, path of contact, and who touches where.
+"""Gear pair on parallel shafts: working pressure angle, centre distance, backlash, path of contact, contact ratio.
 
 Everything is in the transverse plane, where a pair of helical gears is a pair of spur gears whose phase moves along
 the face.  Position along the path of contact is counted in base pitches: a pair of teeth comes into contact at
@@ -29,9 +29,10 @@ from coupling.gears.involute import involute
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# What printed sizes are rounded to (module 3.175 mm for 8 teeth per inch, printed as 3.1748).
-_ROUNDED = 1e-3
-# One per cent of a module is what cutting thins a tooth for backlash anyway.
+PRINTED_ROUNDING = 1e-3
+"""Relative rounding of printed sizes (8 teeth per inch, a module of 3.175 mm, printed as 3.1748): module, pressure angle
+and helix angle of a pair agree within it, and a backlash below it, in modules, is none."""
+# One per cent of a module: as much as cutting thins a tooth for backlash.
 _ALLOWED_JAM = 0.01
 
 
@@ -43,8 +44,8 @@ class GearPairGeometry:
     ----------
     driver, driven : Gear
     centre_distance : float or None
-        Distance of the shafts [m]; None for the distance without backlash of teeth as thick as their profile shifts
-        say, so that any `tooth_thinning` becomes backlash.
+        Distance of the shafts [m]; None for the distance without backlash of teeth that are not thinned, so that any
+        `tooth_thinning` becomes backlash.
 
     Raises
     ------
@@ -70,7 +71,7 @@ class GearPairGeometry:
 
     @property
     def label(self) -> str:
-        """What messages call the pair."""
+        """Name of the pair in messages."""
         return f"gear pair {self.driver.name!r} -> {self.driven.name!r}"
 
     @property
@@ -90,7 +91,7 @@ class GearPairGeometry:
 
     @cached_property
     def close_pressure_angle(self) -> float:
-        """Transverse pressure angle [rad] of the mesh without backlash, of the teeth as thick as they are.
+        """Transverse pressure angle [rad] of the mesh without backlash, thinning included.
 
         ``inv(w) = inv(alpha_t) + 2 tan(alpha_n) (x_k + x_i) / (z_k + z_i)``, x the generating shifts.
         """
@@ -131,13 +132,21 @@ class GearPairGeometry:
         return 2.0 * self.base_radii_sum * (involute(self.working_pressure_angle) - involute(self.close_pressure_angle))
 
     @property
+    def designed_backlash(self) -> float | None:
+        """The backlash where the design has one; None below `PRINTED_ROUNDING` modules.
+
+        Nominal gears at their nominal distance have teeth as thick as the spaces, without an allowance for backlash.
+        """
+        return self.backlash if self.backlash > PRINTED_ROUNDING * self.driver.module else None
+
+    @property
     def normal_backlash(self) -> float:
-        """Shortest distance of the idle flanks, what a feeler gauge finds [m]: ``backlash cos(beta_b)``."""
+        """Normal backlash, the shortest distance of the idle flanks [m]: ``backlash cos(beta_b)``."""
         return self.backlash * math.cos(self.driver.base_helix_angle)
 
     @property
     def circumferential_backlash(self) -> float:
-        """How far a working pitch circle turns freely, as an arc [m]: ``backlash / cos(w)``."""
+        """Circumferential backlash, on the working pitch circles [m]: ``backlash / cos(w)``."""
         return self.backlash / math.cos(self.working_pressure_angle)
 
     def tip_clearance(self, gear: Gear) -> float:
@@ -159,12 +168,12 @@ class GearPairGeometry:
 
     @property
     def overlap_ratio(self) -> float:
-        """How many pitches a helical tooth enters earlier at one end of the face, ``b sin(beta) / (pi m_n)``."""
+        """Overlap ratio of helical teeth, ``b sin(beta) / (pi m_n)``."""
         return self.face_width * abs(math.sin(self.driver.helix_angle)) / (math.pi * self.driver.module)
 
     @property
     def total_contact_ratio(self) -> float:
-        """Contact ratio with the overlap, the mean number of pairs that touch somewhere along the face."""
+        """Total contact ratio, transverse and overlap: the mean number of pairs that touch somewhere along the face."""
         return self.contact_ratio + self.overlap_ratio
 
     @property
@@ -270,13 +279,13 @@ def _check_match(pair: GearPairGeometry) -> None:
     degrees = 180.0 / math.pi
     for quantity, unit, scale in (("module", "mm", 1e3), ("pressure_angle", "degrees", degrees)):
         first, second = getattr(pair.driver, quantity), getattr(pair.driven, quantity)
-        if not math.isclose(first, second, rel_tol=_ROUNDED):
+        if not math.isclose(first, second, rel_tol=PRINTED_ROUNDING):
             raise MismatchedGearsError(
                 f"{pair.label}: both gears need the same {quantity}, "
                 f"got {first * scale:.8g} and {second * scale:.8g} {unit}"
             )
     first, second = pair.driver.helix_angle, pair.driven.helix_angle
-    if not math.isclose(first, -second, rel_tol=_ROUNDED):
+    if not math.isclose(first, -second, rel_tol=PRINTED_ROUNDING):
         raise MismatchedGearsError(
             f"{pair.label}: external gears on parallel shafts need equal helix_angle of opposite hands, "
             f"got {first * degrees:+.8g} and {second * degrees:+.8g} degrees"
@@ -302,7 +311,7 @@ def _check_distance(pair: GearPairGeometry) -> None:
 
 
 def _check_contact(pair: GearPairGeometry) -> None:
-    """Raise where the flanks lose each other, or a tip goes where the other gear has no flank."""
+    """Raise where the contact ratio is below one, or a tip reaches below the other gear's flank or into its root."""
     if pair.contact_ratio < 1.0:
         raise NoContactError(
             f"{pair.label}: the contact ratio is {pair.contact_ratio:.4f}, below 1, at a centre distance of "

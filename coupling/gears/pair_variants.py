@@ -1,4 +1,4 @@
-"""Pairs of teeth that are not like the others, because a tooth of theirs is damaged."""
+"""Faulty tooth pairs: which pairs of the hunting period have damaged teeth."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PairFaults = tuple[tuple[Fault, ...], tuple[Fault, ...]]
 
 @dataclass(frozen=True, eq=False)
 class PairVariants:
-    """The kinds of pairs in a mesh.
+    """Kinds of tooth pairs in a mesh, by the faults of their teeth.
 
     Attributes
     ----------
@@ -32,29 +32,29 @@ class PairVariants:
 
 
 def pair_variants(geometry: GearPairGeometry) -> PairVariants:
-    """Which pairs of teeth have which faults, over the hunting period."""
-    everywhere: PairFaults = (_of(geometry.driver, None), _of(geometry.driven, None))
+    """Faults of every pair of teeth over the hunting period."""
+    everywhere: PairFaults = (_faults_of(geometry.driver, None), _faults_of(geometry.driven, None))
     kinds: dict[tuple[int, int], int] = {(-1, -1): 0}
     faults = [everywhere]
     damaged = [{fault.tooth for fault in gear.faults} - {None} for gear in (geometry.driver, geometry.driven)]
 
-    def kinds_of(driver_teeth: IntArray, driven_teeth: IntArray) -> IntArray:
+    def kinds_faults_of(driver_teeth: IntArray, driven_teeth: IntArray) -> IntArray:
         found = np.zeros(driver_teeth.size, dtype=np.int64)
         for n, teeth in enumerate(zip(driver_teeth.tolist(), driven_teeth.tolist(), strict=True)):
             key = tuple(tooth if tooth in bad else -1 for tooth, bad in zip(teeth, damaged, strict=True))
             pair = (key[0], key[1])
             if pair not in kinds:
                 kinds[pair] = len(faults)
-                faults.append((_of(geometry.driver, pair[0]), _of(geometry.driven, pair[1])))
+                faults.append((_faults_of(geometry.driver, pair[0]), _faults_of(geometry.driven, pair[1])))
             found[n] = kinds[pair]
         return found
 
     numbers = hunting_numbers(geometry)
-    of_pair = kinds_of(*geometry.meeting_teeth(numbers))
-    of_back_pair = kinds_of(*geometry.meeting_back_teeth(numbers))
+    of_pair = kinds_faults_of(*geometry.meeting_teeth(numbers))
+    of_back_pair = kinds_faults_of(*geometry.meeting_back_teeth(numbers))
     return PairVariants(tuple(faults), of_pair, of_back_pair)
 
 
-def _of(gear: Gear, tooth: int | None) -> tuple[Fault, ...]:
+def _faults_of(gear: Gear, tooth: int | None) -> tuple[Fault, ...]:
     """Faults of a tooth, with those of all teeth; of a sound one for None or -1."""
     return tuple(fault for fault in gear.faults if fault.tooth is None or fault.tooth == tooth)

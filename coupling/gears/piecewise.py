@@ -108,6 +108,15 @@ class PiecewiseCubic:
         return np.stack(moved, axis=-1)
 
 
+def with_corners(knots: FloatArray, corners: npt.ArrayLike, apart: float) -> FloatArray:
+    """Knots with the corners within their range among them, without those nearer than `apart` to another one."""
+    inner = np.unique(np.asarray(corners, dtype=np.float64))
+    inner = inner[(inner > knots[0]) & (inner < knots[-1])]
+    above = np.searchsorted(knots, inner)
+    inner = inner[np.minimum(inner - knots[above - 1], knots[above] - inner) > apart]
+    return np.sort(np.concatenate([knots, inner[np.diff(inner, prepend=-np.inf) > apart]]))
+
+
 def constant(value: float, length: float) -> PiecewiseCubic:
     """The same value on ``[0, length]``."""
     return PiecewiseCubic(np.array([0.0, length]), np.array([[value, 0.0, 0.0, 0.0]]))

@@ -1,4 +1,4 @@
-"""The outline of a tooth: involute flank and the true trochoid of the root fillet.
+"""Tooth profile: involute flank and the true trochoid of the root fillet.
 
 Coordinates are the tooth's own: `height` along its axis from the gear's centre, `half_thickness` across.
 Each curve has a parameter in which it is smooth, so that integrals over the tooth converge fast:
@@ -31,7 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ProfilePoints:
-    """Points of one side of a tooth, and how fast the curve climbs.
+    """Points of one side of a tooth, and the derivative of their height.
 
     Attributes
     ----------

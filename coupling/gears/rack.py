@@ -1,11 +1,11 @@
-"""The basic rack that cuts a gear, and the root fillet that the tip corner of its tooth leaves.
+"""Basic rack (ISO 53) that cuts a gear, and the trochoid of the root fillet that the tip corner of its tooth cuts.
 
 A rack (hob, rack cutter, grinding worm) is straight along its teeth, so its section by the gear's transverse plane
 rolls on the gear's pitch circle as a plane figure, and the outline of the gear is the envelope of that section.  For a
 helical gear the section is the normal profile (ISO 53) stretched by ``1 / cos(beta)`` along the pitch line: the flanks
 stay straight, at the transverse pressure angle ``tan(alpha_t) = tan(alpha_n) / cos(beta)``, and the round corner of
-radius ``rho`` becomes an ellipse of half axes ``rho / cos(beta)`` along and ``rho`` across the pitch line.  Nothing is
-approximated by that; what is left out is that a hob has a finite number of cutting edges.
+radius ``rho`` becomes an ellipse of half axes ``rho / cos(beta)`` along and ``rho`` across the pitch line.  This is
+exact; the finite number of cutting edges of a hob is left out.
 
 The corner's point with the outward normal at ``gamma`` below the pitch line is, from the centre of the ellipse,
 
@@ -120,7 +120,7 @@ class RackCorner:
     helix_angle: float
 
     def trochoid(self, pitch_radius: float, gamma: npt.ArrayLike) -> TrochoidPoints:
-        """What the corner cuts out of a gear.
+        """Trochoid that the corner cuts into a gear.
 
         Parameters
         ----------

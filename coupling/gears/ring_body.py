@@ -1,4 +1,4 @@
-r"""The gear's body under one tooth: an elastic ring, exactly.
+r"""Elastic ring: exact flexibility of a gear's body under its teeth.
 
 The body is a flat ring between the root circle (radius 1 here) and a circle where it is held.  Tractions on the root
 circle are split into waves ``n`` around it.  In one wave the displacements are combinations of powers of ``r`` that
@@ -63,7 +63,7 @@ class Annulus:
 
 @dataclass(frozen=True, eq=False)
 class RootFlexibility:
-    """How the rigid root arc gives way, times E and width.
+    """Flexibility of the rigid root arc, times E and width.
 
     Attributes
     ----------
