@@ -19,7 +19,7 @@ from scipy.linalg import solveh_banded
 
 from coupling.gears.beam_compliance import shear_modulus
 from coupling.gears.geometry import Gear
-from coupling.gears.profile import tooth_outline
+from coupling.gears.profile import tooth_side
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -29,13 +29,13 @@ _LAYERS = 300
 
 def tooth_coupling(gear: Gear, radius: float) -> float:
     """T of one tooth [N], with the load at `radius` [m]."""
-    across, along = tooth_outline(gear, _OUTLINE)[: 2 * _OUTLINE - 1].T
+    across, along = tooth_side(gear, _OUTLINE)
     height = along - along[0]
     load = float(np.interp(radius, np.hypot(across, along), height))
     edges = np.linspace(0.0, height[-1], _LAYERS + 1)
     step = edges[1]
     y = 0.5 * (edges[1:] + edges[:-1])
-    thickness = -2.0 * np.interp(y, height, across)
+    thickness = 2.0 * np.interp(y, height, across)
     shear = shear_modulus(gear)
     # The slice as a beam: section turning psi, deflection phi, of a unit load.
     below = y < load

@@ -452,7 +452,7 @@ def _check_rack(gear: Gear) -> None:
 
 
 def _check_flank(gear: Gear) -> None:
-    """Raise `GearError`, `UndercutError` or `PointedToothError` where the teeth have no sound flank from foot to tip."""
+    """Raise `GearError`, `UndercutError` or `PointedToothError` where the teeth have no flank from foot to tip."""
     label = f"gear {gear.name!r}: "
     if gear.is_undercut and not gear.allow_undercut:
         least = gear.least_generating_shift + gear.profile_shift - gear.generating_shift

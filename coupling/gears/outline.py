@@ -20,7 +20,7 @@ import numpy.typing as npt
 from coupling.gears.errors import GearError
 from coupling.gears.geometry import Gear
 from coupling.gears.pair_geometry import GearPairGeometry
-from coupling.gears.profile import fillet_points, flank_points, load_angle, root_half_angle
+from coupling.gears.profile import root_half_angle, tooth_side
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -118,12 +118,8 @@ def pair_outlines(
 
 def _tooth_and_space(gear: Gear, points: int) -> npt.NDArray[np.complex128]:
     """The outline from the root of the tooth on the x axis to the root of the next one, in complex coordinates."""
-    fillet = fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, points))
-    ends = load_angle(gear, np.array([gear.form_radius, gear.tip_radius]))
-    flank = flank_points(gear, np.linspace(ends[0], ends[1], points))
-    side = np.concatenate([fillet.height, flank.height[1:]]) + 1j * np.concatenate(
-        [fillet.half_thickness, flank.half_thickness[1:]]
-    )
+    across, along = tooth_side(gear, points)
+    side = along + 1j * across
     arc = np.linspace(-1.0, 1.0, max(3, points // 4))[1:-1]
     tip = gear.tip_radius * np.exp(1j * gear.tip_half_angle * arc)
     middle = math.pi / gear.teeth

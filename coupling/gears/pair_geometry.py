@@ -30,8 +30,8 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 PRINTED_ROUNDING = 1e-3
-"""Relative rounding of printed sizes (8 teeth per inch, a module of 3.175 mm, printed as 3.1748): module, pressure angle
-and helix angle of a pair agree within it, and a backlash below it, in modules, is none."""
+"""Relative rounding of printed sizes, as of a module of 3.175 mm (8 teeth per inch) printed as 3.1748. Module, pressure
+angle and helix angle of a pair agree within it, and a backlash of less, in modules, is none."""
 # One per cent of a module: as much as cutting thins a tooth for backlash.
 _ALLOWED_JAM = 0.01
 
