@@ -64,7 +64,7 @@ class ToothCrack:
         require_tooth(gear, self.tooth)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
-        """None: the flank stays where it is until it is loaded."""
+        """Zero: an unloaded flank does not move."""
         return np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
@@ -89,7 +89,7 @@ class ToothCrack:
         beta = load_angle(gear, np.clip(radius, gear.form_radius, gear.tip_radius))[..., None]
         load = flank_points(gear, beta)
         sine, cosine = np.sin(beta), np.cos(beta)
-        # The section loses its slope where it meets the crack's line: panels keep the quadrature exact enough.
+        # The section has a corner where it meets the crack's line: panels keep the quadrature exact enough.
         edges = np.linspace(0.0, 1.0, _PANELS + 1)
         part = (0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 / _PANELS * _NODES).ravel()
         weight = np.tile(0.5 / _PANELS * _WEIGHTS, _PANELS)

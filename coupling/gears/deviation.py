@@ -22,7 +22,7 @@ SAME_CORNER = 1e-9
 
 
 def flank_gap(gear: Gear, roll_angle: FloatArray) -> FloatArray:
-    """Material that a gear's flank is short of the involute [m], at roll angles [rad]; negative where it has more."""
+    """Material missing from a gear's flank below the involute [m], at roll angles [rad]; negative for excess."""
     tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
     gap = np.zeros_like(roll_angle)
     if gear.tip_relief is not None:

@@ -15,8 +15,8 @@ finite-element model.  Here
   (:mod:`coupling.gears.rim`), loaded in full equilibrium with the load on the flank.
 
 No number is fitted.  Against finite elements (tests/validation) the model is -2 to +8 % off, most where the load is
-near the root and the tooth is no beam; neighbouring teeth, which stiffen the root by some 2 %, are left out. What a
-load moves the next tooth is `coupling.gears.rim.neighbour_compliance`.
+near the root and the tooth is no beam; neighbouring teeth, which stiffen the root by some 2 %, are left out. The cross
+compliance of the next tooth is `coupling.gears.rim.neighbour_compliance`.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@ r"""Shear coupling of neighbouring slices of a tooth across its face.
 
 A tooth whose deflection varies across the face, ``W(z) phi(y)``, is a plate of thickness t(y) held at its foot. phi is
 the deflection of a slice as a beam under a load at the middle of the path of contact, with its bending and its shear,
-psi the turning of its sections; both are 1 in the measure of the loaded point's deflection. Where W has a slope, the
-plate's normals may turn across the face by ``chi(y) W'`` and do so in the way of least energy (Mindlin's plate):
+psi the rotation of its sections; both are 1 in the measure of the loaded point's deflection. Where W has a slope, the
+plate's normals rotate across the face by ``chi(y) W'`` with the least energy (Mindlin's plate):
 
     T = min over chi of  int 5/6 G t (phi - chi)^2 + G t^3/12 (psi + chi')^2 dy,        chi = 0 at the foot,
 
@@ -28,7 +28,7 @@ _LAYERS = 300
 
 
 def tooth_coupling(gear: Gear, radius: float) -> float:
-    """T of one tooth [N], with the load at `radius` [m]."""
+    """Shear coupling T of one tooth across its face [N], with the load at `radius` [m]."""
     across, along = tooth_side(gear, _OUTLINE)
     height = along - along[0]
     load = float(np.interp(radius, np.hypot(across, along), height))
@@ -37,7 +37,7 @@ def tooth_coupling(gear: Gear, radius: float) -> float:
     y = 0.5 * (edges[1:] + edges[:-1])
     thickness = 2.0 * np.interp(y, height, across)
     shear = shear_modulus(gear)
-    # The slice as a beam: section turning psi, deflection phi, of a unit load.
+    # The slice as a beam: section rotation psi, deflection phi, of a unit load.
     below = y < load
     turning = _summed(np.where(below, (load - y) * 12.0 / (gear.youngs_modulus * thickness**3), 0.0) * step)
     psi = 0.5 * (turning[1:] + turning[:-1])

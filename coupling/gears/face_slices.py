@@ -2,8 +2,8 @@ r"""Load distribution across the face: a pair of teeth as coupled slices.
 
 Where the flanks are not alike across the face (helical, crowned, misaligned), the load spreads along the contact
 line as the teeth yield. The face of width b is cut into slices at places z, each with its own position on the path
-of contact, ``s + eps_beta z / b``, and its own gap. The field ``w(z)`` by which both teeth and their bodies give way is
-that of a foundation which passes shear on (Pasternak's; for gears: Ajmi and Velex, Mech. Mach. Theory 40, 2005),
+of contact, ``s + eps_beta z / b``, and its own gap. The deflection ``w(z)`` of both teeth and their bodies is
+that of a foundation with shear stiffness (Pasternak's; for gears: Ajmi and Velex, Mech. Mach. Theory 40, 2005),
 
     k_b w - T w'' = q,        w' = 0 at the ends of the face,
 
@@ -49,7 +49,7 @@ _ALONE_ROUNDS = 8
 
 @dataclass(frozen=True, eq=False)
 class FaceSlices:
-    """The slices of a pair's common face.
+    """Slices of a pair's common face.
 
     Attributes
     ----------
@@ -283,7 +283,7 @@ def _touching_alone(
         offset = np.bincount(owner, (pushed * touching).sum(axis=1), force.size)
         with np.errstate(divide="ignore", invalid="ignore"):
             compression = np.where(stiffness > 0.0, (force / slices.width + offset) / stiffness, 0.0)
-        # From every slice that could touch the set shrinks to the right one.
+        # The set shrinks from every slice that could touch to those in contact.
         touches = meeting & (gap < compression[owner, None])
         if (touches == touching).all():
             break
@@ -314,7 +314,7 @@ def _fields(
     beside = np.full(diagonal.shape, -link)
     beside[:, -1] = 0.0  # where one pair's face ends and the next one's begins
     right = np.stack([-(flat * gap), flat])
-    # One symmetric tridiagonal matrix of all pairs, diagonally dominant; its two right-hand sides as LAPACK has them.
+    # One symmetric, diagonally dominant tridiagonal matrix of all pairs, with two right-hand sides in LAPACK's order.
     _, _, fields, info = dptsv(
         diagonal.ravel(), beside.ravel()[:-1], right.reshape(2, -1).T, overwrite_d=1, overwrite_e=1, overwrite_b=1
     )

@@ -126,7 +126,7 @@ def face_table(
     for number in range(len(kinds)):
         state = face_state(slices, kinds, knots, np.full(knots.size, number))
         gap = np.where(state.meeting, state.gap, np.inf).min(axis=1)
-        # At the very ends nothing may meet for rounding: as at the next position.
+        # At the very ends rounding may leave no slice in contact: the next position is taken.
         gap = np.where(np.isfinite(gap), gap, np.nanmax(np.where(np.isfinite(gap), gap, np.nan)))
         shape = (knots.size, _DEPTHS + 1, slices.z.size)
         base, gaps = np.repeat(state.base, _DEPTHS + 1, axis=0), np.repeat(state.gap, _DEPTHS + 1, axis=0)
@@ -156,7 +156,7 @@ def _breaks(kinds: tuple[PairCurves, ...], reach: float, others: Sequence[float]
 def _pieces(breaks: FloatArray) -> list[FloatArray]:
     """Knots from each break to the next, both included, as evenly spaced as the breaks allow."""
     spacing = (breaks[-1] - breaks[0]) / _POSITIONS
-    # Rounding must not cost an interval more.
+    # Rounding must not add an interval.
     counts = np.maximum(np.ceil(np.diff(breaks) / spacing - 1e-9).astype(int), _FEWEST)
     return [
         np.linspace(low, high, count + 1)
@@ -186,7 +186,7 @@ def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
         ],
         axis=-1,
     )
-    # Beyond: straight in the compression, so of second degree in rho.
+    # Beyond the table: linear in the compression, so of second degree in rho.
     last = low.shape[1]
     straight = rise[:, -1] / (2.0 * last)
     beyond = np.stack([force[:, -1], rise[:, -1], straight, 0.0 * straight], axis=-1)

@@ -60,7 +60,7 @@ class Wear:
         return np.asarray(self.depth * np.abs(roll_angle - pitch_roll_angle) / farthest, dtype=np.float64)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """None: the depth worn off is small beside the tooth."""
+        """Zero: the worn depth is small compared with the tooth."""
         return np.zeros_like(roll_angle)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
@@ -72,7 +72,7 @@ class Wear:
 class Spall:
     """A pit in the flank of one tooth, across all of the face or a part of it.
 
-    Across all of the face the contact falls into it by `depth`. Across a part, the rest of the face carries: the
+    Across all of the face the contact drops into it by `depth`. Across a part, the rest of the face carries: the
     flattening of the contact, inversely proportional to the width, grows by ``1 / (1 - width / face_width)``. Its edges
     rise over a tenth of its length.
 
@@ -150,7 +150,7 @@ class Spall:
 
 @dataclass(frozen=True)
 class MissingTooth:
-    """A tooth that is broken off: its pairs carry nothing."""
+    """A broken-off tooth, whose pairs carry no load."""
 
     tooth: int
 
@@ -162,7 +162,7 @@ class MissingTooth:
         require_tooth(gear, self.tooth)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
-        """A gap that no mesh closes."""
+        """Gap wider than any load closes."""
         return np.full_like(roll_angle, NEVER)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
@@ -181,7 +181,7 @@ def check_tooth_number(name: str, tooth: int | None) -> None:
 
 
 def require_tooth(gear: Gear, tooth: int | None) -> None:
-    """Raise `GearError` where a gear has no tooth of a fault's number."""
+    """Raise `GearError` where a gear has no tooth of this number."""
     if tooth is not None and tooth >= gear.teeth:
         raise GearError(
             f"gear {gear.name!r}: a fault is on tooth {tooth}; the teeth are numbered 0 to {gear.teeth - 1}"

@@ -174,12 +174,12 @@ class Gear:
 
     @property
     def transverse_module(self) -> float:
-        """Diameter of the reference circle over teeth [m]."""
+        """Transverse module [m]: reference diameter over number of teeth."""
         return self.module / math.cos(self.helix_angle)
 
     @property
     def transverse_pressure_angle(self) -> float:
-        """Pressure angle on the reference circle [rad]."""
+        """Transverse pressure angle on the reference circle [rad]."""
         if self.helix_angle == 0.0:
             return self.pressure_angle  # to the last bit
         return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
@@ -191,27 +191,27 @@ class Gear:
 
     @cached_property
     def base_radius(self) -> float:
-        """Radius of the circle the involute unwinds from [m]."""
+        """Base circle radius, of the circle from which the involute unwinds [m]."""
         return self.pitch_radius * math.cos(self.transverse_pressure_angle)
 
     @cached_property
     def tip_radius(self) -> float:
-        """Outer radius [m]."""
+        """Tip circle radius [m]."""
         return self.pitch_radius + (self.addendum + self.profile_shift) * self.module
 
     @property
     def root_circle_radius(self) -> float:
-        """Radius of the bottom of the tooth space [m]."""
+        """Root circle radius [m]."""
         return self.pitch_radius - (self.dedendum - self.generating_shift) * self.module
 
     @cached_property
     def base_pitch(self) -> float:
-        """Distance between neighbouring flanks along the line of action, in the transverse plane [m]."""
+        """Transverse base pitch: distance of neighbouring flanks along the line of action [m]."""
         return 2.0 * math.pi * self.base_radius / self.teeth
 
     @cached_property
     def form_radius(self) -> float:
-        """Radius where the fillet's trochoid ends and the involute begins [m]."""
+        """Form circle radius, at which the fillet's trochoid ends and the involute begins [m]."""
         if self.is_undercut:
             height, across, _ = self.rack_corner_arc.trochoid(self.pitch_radius, self.fillet_end)
             return math.hypot(height, across)

@@ -376,7 +376,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
         tangent += damping * rate / damping_depth * gain
         damping *= deepest / damping_depth
     if force + damping * rate < 0.0:
-        # Teeth do not pull: the damping takes no more than the springs give, and all of that.
+        # Teeth do not pull: the damping absorbs at most the springs' force, here all of it.
         return 0.0, 0.0, -force / rate, energy, slope, touching
     return force + damping * rate, tangent, damping, energy, slope, touching
 

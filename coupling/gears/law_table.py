@@ -87,7 +87,7 @@ def law_table(
     pairs = np.concatenate([first, second], axis=-1)
     parts = _PARTS_PER_INTERVAL * (knots.size - 1)
     begins = np.minimum(np.searchsorted(knots, np.arange(parts) / parts + _HAIR, side="right") - 1, knots.size - 2)
-    # But where contact ends within rounding of a period, the sliver between both is looked up as well.
+    # Where contact ends within rounding of a period, the sliver between both is included in the search.
     begins -= (begins > 0) & (np.diff(knots)[begins - 1] < 2.0 * _HAIR)
     intervals = np.column_stack([knots, np.append(1.0 / np.diff(knots), 0.0)])
     # No cubic c0 + c1 u + ... falls below c0 and its negative coefficients together on 0 <= u <= 1.
@@ -113,7 +113,7 @@ def _guesses(table: FaceTable, first_touch: float, shared: float) -> FloatArray:
     depths = np.arange(table.cells.shape[0], dtype=np.float64)
     compression = table.depth_unit * depths**2
     beyond = np.maximum(0.0, first_touch + compression[:, None] - table.first_touch[0, :, 0])
-    # Straight between depths, and beyond the last.
+    # Linear between depths, and beyond the last.
     depth = np.sqrt(beyond / table.depth_unit)
     below = np.minimum(depth.astype(np.int64), depths.size - 2)
     force, column = table.cells[:, 0, :, 0], np.arange(below.shape[1])

@@ -76,7 +76,7 @@ class GearPairGeometry:
 
     @property
     def ratio(self) -> float:
-        """Teeth of the driven over teeth of the driver: speeds divide by it."""
+        """Gear ratio, teeth of the driven over teeth of the driver: speeds divide by it."""
         return self.driven.teeth / self.driver.teeth
 
     @cached_property
@@ -99,21 +99,21 @@ class GearPairGeometry:
 
     @cached_property
     def working_centre_distance(self) -> float:
-        """Distance of the shafts [m]."""
+        """Working centre distance of the shafts [m]."""
         if self.centre_distance is not None:
             return self.centre_distance
         return self.base_radii_sum / math.cos(self.working_pressure_angle)
 
     @cached_property
     def working_pressure_angle(self) -> float:
-        """Angle of the line of action to the common tangent of the pitch circles, transverse [rad]."""
+        """Transverse working pressure angle, of the line of action to the common tangent of the pitch circles [rad]."""
         if self.centre_distance is None:
             return closing_pressure_angle(self.driver, self.driven)
         return math.acos(self.base_radii_sum / self.centre_distance)
 
     @property
     def working_pitch_radii(self) -> tuple[float, float]:
-        """Radii of driver and driven gear that roll on each other [m]."""
+        """Working pitch radii of driver and driven gear, which roll on each other [m]."""
         cosine = math.cos(self.working_pressure_angle)
         return self.driver.base_radius / cosine, self.driven.base_radius / cosine
 
@@ -124,7 +124,7 @@ class GearPairGeometry:
 
     @property
     def backlash(self) -> float:
-        """Gap of the idle flanks along their line of action, in the transverse plane [m].
+        """Backlash: gap of the idle flanks along their line of action, in the transverse plane [m].
 
         From centre distance and tooth thicknesses, ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
         teeth would jam.
@@ -150,7 +150,7 @@ class GearPairGeometry:
         return self.backlash / math.cos(self.working_pressure_angle)
 
     def tip_clearance(self, gear: Gear) -> float:
-        """Gap between the tip circle of `gear`, one of the two, and the other's root circle [m]."""
+        """Tip clearance between the tip circle of `gear`, one of the two, and the other's root circle [m]."""
         other = self.driven if gear is self.driver else self.driver
         return self.working_centre_distance - gear.tip_radius - other.root_circle_radius
 
@@ -193,12 +193,12 @@ class GearPairGeometry:
         return self._back_flank_shift % 1.0
 
     def meeting_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
-        """Teeth of driver and driven gear in the pairs that enter at whole phases `number`."""
+        """Mating teeth of driver and driven gear in the pairs that enter at whole phases `number`."""
         n = np.asarray(number, dtype=np.int64)
         return n % self.driver.teeth, n % self.driven.teeth
 
     def meeting_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
-        """Teeth whose idle flanks meet in the pairs that enter at whole phases `number` of the idle flanks.
+        """Mating teeth of the idle flanks in the pairs that enter at whole phases `number` of the idle flanks.
 
         With B the offset before its whole periods are dropped, the idle flank of driver tooth n is at
         ``s = B - p + n`` and so belongs to the pair that enters at ``-n - floor(B)`` of ``frac(B) - p``.  Its mate is

@@ -38,7 +38,7 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
     faults = [everywhere]
     damaged = [{fault.tooth for fault in gear.faults} - {None} for gear in (geometry.driver, geometry.driven)]
 
-    def kinds_faults_of(driver_teeth: IntArray, driven_teeth: IntArray) -> IntArray:
+    def kinds_of(driver_teeth: IntArray, driven_teeth: IntArray) -> IntArray:
         found = np.zeros(driver_teeth.size, dtype=np.int64)
         for n, teeth in enumerate(zip(driver_teeth.tolist(), driven_teeth.tolist(), strict=True)):
             key = tuple(tooth if tooth in bad else -1 for tooth, bad in zip(teeth, damaged, strict=True))
@@ -50,8 +50,8 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
         return found
 
     numbers = hunting_numbers(geometry)
-    of_pair = kinds_faults_of(*geometry.meeting_teeth(numbers))
-    of_back_pair = kinds_faults_of(*geometry.meeting_back_teeth(numbers))
+    of_pair = kinds_of(*geometry.meeting_teeth(numbers))
+    of_back_pair = kinds_of(*geometry.meeting_back_teeth(numbers))
     return PairVariants(tuple(faults), of_pair, of_back_pair)
 
 

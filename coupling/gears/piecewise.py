@@ -1,4 +1,4 @@
-"""Smooth functions as piecewise cubics, in plain arrays that a compiled kernel can hold.
+"""Piecewise cubics: smooth functions in plain arrays that a compiled kernel can hold.
 
 On each interval ``f = c0 + c1 u + c2 u^2 + c3 u^3`` with ``u`` running from 0 to 1.
 """
@@ -19,7 +19,7 @@ from coupling.gears.errors import ContactAccuracyError, GearError
 FloatArray = npt.NDArray[np.float64]
 
 NARROWEST = 1e-7
-"""Intervals this short are split no further."""
+"""Shortest interval that is split."""
 _MOST_INTERVALS = 20_000
 _NODES = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
 _BETWEEN = np.array([1.0 / 6.0, 0.5, 5.0 / 6.0])
@@ -135,7 +135,7 @@ def polyline(knots: FloatArray, values: FloatArray) -> PiecewiseCubic:
 
 
 def fitted(function: Callable[[FloatArray], FloatArray], breaks: FloatArray, tolerance: float) -> PiecewiseCubic:
-    """Cubics through a continuous function, split until they follow it.
+    """Cubics through a continuous function, with intervals halved until they follow it.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def fitted(function: Callable[[FloatArray], FloatArray], breaks: FloatArray, tol
 
 
 def tabulated(function: Callable[[FloatArray], FloatArray], length: float, tolerance: float = 1e-9) -> PiecewiseCubic:
-    """Cubic spline of a smooth function on a uniform grid over ``[0, length]``, as fine as it needs.
+    """Cubic spline of a smooth function on a uniform grid over ``[0, length]``, refined until it follows it.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def tabulated(function: Callable[[FloatArray], FloatArray], length: float, toler
             error = float(np.max(np.abs(table(elsewhere) - function(elsewhere)))) / largest
         if error <= tolerance:
             return table
-        # A spline's error falls with the fourth power of the spacing; few calls cost less than few points.
+        # A spline's error falls with the fourth power of the spacing; a call costs more than its points.
         finer = 2 ** max(1, min(3, math.ceil(math.log2(max(error / tolerance, 1.0)) / 4.0)))
         intervals *= finer
         points = np.linspace(0.0, length, 2 * intervals + 1)

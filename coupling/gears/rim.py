@@ -33,7 +33,7 @@ from coupling.gears.ring_body import Annulus, neighbour_flexibility, root_flexib
 FloatArray = npt.NDArray[np.float64]
 
 SOLID_HOLD = 1.0 / 3.0
-"""Where a gear without a bore is held, in root circle radii."""
+"""Radius at which a gear without a bore is held, in root circle radii."""
 
 
 BodyCompliance = Callable[[FloatArray], FloatArray]
@@ -84,7 +84,7 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, twis
     state : {"plane-stress", "plane-strain"}
     twists : bool
         Whether the twist of the whole body is counted; never that of a gear in one piece with its shaft. Without it the
-        bore and the rim are left out too, as by a tooth on a half plane: what is left is the dent of a solid gear.
+        bore and the rim are left out too, as for a tooth on a half plane: the dent of a solid gear remains.
 
     Returns
     -------
@@ -129,7 +129,7 @@ def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, twists: b
 
 
 def _whole_twist(rings: tuple[Annulus, ...], nu: float) -> float:
-    """Twist of the whole body under a torque alone, times E and width: the same whatever the tractions."""
+    """Twist of the whole body under a torque alone, times E and width, independent of the tractions."""
     width = rings[-1].width
     turned = sum(width / ring.width * (ring.inner**-2 - ring.outer**-2) for ring in rings)
     return (1.0 + nu) / (2.0 * math.pi) * turned
@@ -162,6 +162,6 @@ def _rings(gear: Gear) -> tuple[Annulus, ...]:
 
 
 def _hold(gear: Gear) -> float:
-    """Where the body is held, in root circle radii."""
+    """Radius at which the body is held, in root circle radii."""
     held = held_radius(gear)
     return SOLID_HOLD if held is None else held / gear.root_circle_radius

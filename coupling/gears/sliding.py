@@ -94,7 +94,7 @@ def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coeffici
     friction = SlidingFriction(
         coefficient / math.cos(geometry.driver.base_helix_angle), geometry.pitch_point_position, geometry.contact_ratio
     )
-    return replace(friction, shares=_shares(contact, friction)) if _turns_by_slices(contact) else friction
+    return replace(friction, shares=_shares(contact, friction)) if _reverses_by_slices(contact) else friction
 
 
 def turned_share(
@@ -122,7 +122,7 @@ def turned_share(
     return sign, placed
 
 
-def _turns_by_slices(contact: ToothContact) -> bool:
+def _reverses_by_slices(contact: ToothContact) -> bool:
     return contact.faces is not None and contact.faces.half_span > 0.0
 
 

@@ -147,7 +147,7 @@ def static_transmission_error(
     later = np.where(np.isfinite(gap), gap - first, 0.0)
     sum_stiffness = np.cumsum(stiffness, axis=1)
     candidate = first + (force + np.cumsum(stiffness * later, axis=1)) / sum_stiffness
-    # The n-th candidate stands while it exceeds the n-th gap; the first always does (or equals it).
+    # The n-th candidate holds while it exceeds the n-th gap; the first always does (or equals it).
     stands = (candidate > gap) & np.isfinite(gap)
     stands[:, 0] = True
     touching = np.argmin(np.column_stack([stands, np.zeros(at.size, dtype=bool)]), axis=1) - 1
@@ -156,7 +156,7 @@ def static_transmission_error(
     tangent = sum_stiffness[rows, touching]
 
     forces = states.stiffness * np.maximum(0.0, compression[:, None] - states.deviation)
-    # Rounding of delta - d, times the stiffness, is the least that any solution leaves.
+    # Rounding of delta - d, times the stiffness, is the least residual of any solution.
     rounding = 64.0 * np.finfo(np.float64).eps * (force + tangent * np.abs(compression))
     imbalance = np.abs(forces.sum(axis=1) - force)
     if np.any(imbalance > rounding + 1e-300):

@@ -98,7 +98,7 @@ class SquareStiffness:
 
 @dataclass(frozen=True)
 class ConstantStiffness:
-    """The mesh is one spring of stiffness `value` [N/m], whatever the teeth do."""
+    """The mesh is one spring of constant stiffness `value` [N/m]."""
 
     name: ClassVar[str] = "constant"
     value: float
