@@ -1,13 +1,13 @@
-r"""Lookup table of the contact force of a pair with an uneven load across its face, for the compiled kernels.
+r"""Lookup tables of the tooth contact law for the compiled kernels.
 
-Force, tangent and energy of such a pair (:mod:`coupling.gears.face_slices`) depend on its position s and on the
-compression ``u`` beyond its first touch. On a grid of both they are bicubic: with ``u = a r^2`` the grid is fine where
-contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is
-that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's derivative,
-whatever the error of the table, and motion on it conserves energy. Beyond the last ``u`` the force goes
-on with its tangent t, which is a cell too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 upward. Where
-a corner of the profiles, such as a spall's edge, meets the first slice of the face and the last, which is at once over
-a spur gear's, the splines along the positions end and begin.
+Uneven load across the face: force, tangent and energy of such a pair (:mod:`coupling.gears.face_slices`) depend on its
+position s and on the compression ``u`` beyond its first touch. On a grid of both they are bicubic: with ``u = a r^2``
+the grid is fine where contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across
+it, and its energy is that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the
+energy's derivative, whatever the error of the table, and motion on it conserves energy. Beyond the last ``u`` the force
+goes on with its tangent t, which is a cell too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 upward. Where a corner
+of the profiles, such as a spall's edge, meets the first slice of the face and the last, which is at once over a spur
+gear's, the splines along the positions end and begin.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-r"""Memory layout of a tooth contact law for the compiled kernels: one row of numbers.
+r"""Memory layout of a tooth contact law: one row of numbers for the compiled kernels.
 
-The teeth of a mesh are a base pitch apart, so the phase places all of its pairs at once: pair j is at ``x + j``, x the
+The teeth of a mesh are a base pitch apart, so the phase fixes the positions of all pairs: pair j is at ``x + j``, x the
 phase's fraction. All curves of all pairs are therefore cut at common knots of x, and one look-up finds what the law
 needs of every pair. An interval is found by an index instead of a search: the period is cut into equal parts, and each
 names the interval in which it begins; from there the search goes forward by few steps, mostly none.
@@ -10,10 +10,10 @@ The row begins with `HEADER` numbers, at the places named below; then come
 * the parts, with the number of an interval each;
 * the intervals, `INTERVAL` numbers each: where it begins and one over its width. One more begins at 1, where steps end;
 * the pairs, `PAIR` numbers each, by kind of pair, interval and pair. First the cubic of its gap [m] in a variable from
-  0 to 1 over the interval; then that of its stiffness [N/m] or, where the load spreads over the face, the number of its
-  column of cells, and where in it the interval begins and how long it is. A pair that cannot be there has an infinite
+  0 to 1 over the interval; then that of its stiffness [N/m] or, for an uneven load across the face, the number of its
+  column of cells, and the begin and length of the interval in it. A pair outside the range of contact has an infinite
   gap;
-* the pairs of the hunting period, `ENTERING` numbers each: what pitch deviations add to the gap of the pair that enters
+* the pairs of the hunting period, `ENTERING` numbers each: the gap by pitch deviations of the pair that enters
   at phase n, at n mod h [m], and its kind; none where all pairs are alike;
 * the cells of `coupling.gears.face_table`, `CELL` numbers each, by depth, kind and position;
 * with cells, the guesses: the pairs' part of the mesh's compression in the mean over the mesh period, both counted from

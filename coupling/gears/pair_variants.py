@@ -1,4 +1,4 @@
-"""Faulty tooth pairs: which pairs of the hunting period have damaged teeth."""
+"""Pitch deviations and faulty teeth: how the pairs of teeth of the hunting period differ."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pitch deviations: the gap that those of two mating teeth leave between their flanks.
+"""Pitch gap: gap that the pitch deviations of two mating teeth leave between their flanks.
 
 A tooth that stands ahead by ``f`` along the arc of the working pitch circle has turned by ``f / r_w`` and its flank
 has moved by ``rb f / r_w = f cos(w)`` along the line of action, w the working pressure angle.  With the driver's

@@ -1,7 +1,8 @@
-"""Potential energy method (Ma et al. 2014): the tooth as a beam, Sainsot's gear body, Yang & Sun's contact.
+"""Tooth models, compliance of one tooth: potential energy method, elastic ring, Cornell, Weber-Banaschek.
 
-The tooth is a beam on the root circle (:mod:`coupling.gears.beam_compliance`, in plane stress), the body a ring held at
-its bore (:mod:`coupling.gears.foundation`); the rim's share is that of :mod:`coupling.gears.rim`.
+Potential energy method (Ma et al. 2014) with Sainsot's gear body and Yang & Sun's contact: the tooth is a beam on the
+root circle (:mod:`coupling.gears.beam_compliance`, in plane stress), the body a ring held at its bore
+(:mod:`coupling.gears.foundation`); the rim's share is that of :mod:`coupling.gears.rim`.
 """
 
 from __future__ import annotations
