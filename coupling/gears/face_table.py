@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
+from coupling.gears import piecewise
 from coupling.gears.face_slices import FaceSlices, load_faces, tooth_stiffness
 from coupling.gears.pair_curves import PairCurves, corners_of
 
@@ -166,12 +167,13 @@ def _pieces(breaks: FloatArray) -> list[FloatArray]:
 
 def _powers(pieces: list[FloatArray], values: FloatArray) -> FloatArray:
     """Cubic splines through columns of values at each piece's knots, (m, columns, 4), in a variable from 0 to 1."""
-    found, first = [], 0
-    for knots in pieces:
-        coefficients = np.asarray(CubicSpline(knots, values[first : first + knots.size], axis=0).c)[::-1]
-        found.append(np.moveaxis(coefficients, 0, -1) * (knots[1] - knots[0]) ** np.arange(4))
-        first += knots.size - 1
-    return np.asarray(np.concatenate(found), dtype=np.float64)
+    firsts = np.cumsum([0, *(knots.size - 1 for knots in pieces)])
+    return np.concatenate(
+        [
+            piecewise.unit_coefficients(CubicSpline(knots, values[first : first + knots.size], axis=0))
+            for knots, first in zip(pieces, firsts[:-1], strict=True)
+        ]
+    )
 
 
 def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:

@@ -230,8 +230,12 @@ def through_points(position: FloatArray, values: FloatArray, intervals: int = 40
     return _from_scipy(PchipInterpolator(knots, curve(knots)))
 
 
+def unit_coefficients(curve: PPoly) -> FloatArray:
+    """Coefficients of a scipy cubic in the variable u of each interval, c0 ... c3 in the last axis, (n, ..., 4)."""
+    highest_first = np.moveaxis(np.asarray(curve.c, dtype=np.float64), 0, -1)
+    widths = np.diff(curve.x).reshape(-1, *(1,) * (highest_first.ndim - 1))
+    return np.ascontiguousarray(highest_first[..., ::-1] * widths ** np.arange(4))
+
+
 def _from_scipy(curve: PPoly) -> PiecewiseCubic:
-    """Scipy's powers of (x - knot), highest first, to powers of u, lowest first."""
-    knots = np.asarray(curve.x, dtype=np.float64)
-    powers = np.diff(knots)[:, None] ** np.arange(4)
-    return PiecewiseCubic(knots, np.ascontiguousarray(np.asarray(curve.c, dtype=np.float64)[::-1].T * powers))
+    return PiecewiseCubic(np.asarray(curve.x, dtype=np.float64), unit_coefficients(curve))
