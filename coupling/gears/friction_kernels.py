@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.kernels import PRECISE, nearness, number_at, pair_rise, pairs_compression, place
+from coupling.gears.kernels import PRECISE, locate, nearness, number_at, pair_rise, pairs_compression
 from coupling.gears.law_table import FIRST_PAIR, HUNTING, KIND_STEP, PAIR, PAIRS, PAIRS_AT
 from rotors.compiled import counted, uncounted
 
@@ -43,7 +43,7 @@ def friction_shares(
     pitch_point, path_end : float
         As in `coupling.gears.sliding.SlidingFriction`.
     """
-    number, interval, u, _ = place(law, at, phase)
+    number, interval, u, _ = locate(law, at, phase)
     # The pairs' own compression, without that of their gears' bodies.
     own, gain = pairs_compression(law, at, number, interval, u, compression, PRECISE)
     pairs = int(number_at(law, at + PAIRS))

@@ -61,7 +61,7 @@ def number_at(law: FloatArray, index: int) -> float:
 
 
 @inner(inline="always")
-def place(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, float]:
+def locate(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, float]:
     """Whole periods, interval of the period, position in it from 0 to 1, and one over its width."""
     number = np.floor(phase)
     x = phase - number
@@ -191,7 +191,7 @@ def pairs_compression(
     The iteration stops where the curvature of F changes a step by no more than ``precision`` of the whole compression,
     and adds that change: the error is of the next order.
 
-    ``number``, ``interval``, ``u``: from `place`.
+    ``number``, ``interval``, ``u``: from `locate`.
     """
     shared = number_at(law, at + SHARED)
     if shared == 0.0:
@@ -246,7 +246,7 @@ def ranked_nearness(phase: float, compression: float, law: FloatArray, at: int, 
     their number it gives the distance to the next change. Before the pair touches, the pairs ahead of it carry the load
     and their gears' bodies deflect by ``c F``.
     """
-    number, interval, u, _ = place(law, at, phase)
+    number, interval, u, _ = locate(law, at, phase)
     pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
     start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
     first = int(number) - int(number_at(law, at + FIRST_PAIR))
@@ -296,7 +296,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     """
     if compression <= number_at(law, at + FIRST_TOUCH):
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
-    number, interval, u, per_width = place(law, at, phase)
+    number, interval, u, per_width = locate(law, at, phase)
     pairs = int(number_at(law, at + PAIRS))
     hunting = int(number_at(law, at + HUNTING))
     unit = number_at(law, at + DEPTH_UNIT)

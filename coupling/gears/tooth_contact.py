@@ -285,7 +285,7 @@ class ToothContact:
         sound : bool
             Whether to treat all teeth as sound.
         """
-        places = self.places(phases)
+        places = self.pair_positions(phases)
         shift, half = (np.zeros(1), 0.0) if self.faces is None else (self.faces.shift, self.faces.half_span)
         at = places.position[..., None] + shift
         end = self.contact_ratio
@@ -361,7 +361,7 @@ class ToothContact:
         """The same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
         return replace(self, damping=damping, damping_depth=depth)
 
-    def places(self, phases: npt.ArrayLike) -> PairPlaces:
+    def pair_positions(self, phases: npt.ArrayLike) -> PairPlaces:
         """Positions of the pairs at `phases` (n,)."""
         phase = np.atleast_1d(np.asarray(phases, dtype=np.float64))
         number = np.floor(phase)
@@ -378,7 +378,7 @@ class ToothContact:
 
     def pairs(self, phases: npt.ArrayLike) -> PairStates:
         """Positions, stiffness and deviation of the pairs at `phases` (n,)."""
-        places = self.places(phases)
+        places = self.pair_positions(phases)
         position, present, kind, entered = places.position, places.present, places.kind, places.entered
         stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
         state = None
