@@ -2,7 +2,7 @@
 
 The teeth count as a ring out to the reference circle, where they fill half the circumference.  A gear without a rim is
 a disc as wide as its face, down to its bore.  A gear with a rim is a ring of the full width down to the inside of the
-rim, and a web of its own thickness in the middle of the face from there to the bore; without a web the ring stands
+rim, and a web of its own thickness in the middle of the face from there to the bore; without a web the ring is
 alone, and its carrier is given as a disc of the rotor.
 """
 

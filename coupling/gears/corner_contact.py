@@ -1,15 +1,15 @@
 r"""Corner contact beyond the path of contact: a tip's corner on the mating flank, before entry and after exit.
 
-On the nominal motion a pair that is not yet at its path of contact stands apart by a small gap. A loaded mesh, its
+On the nominal motion a pair that is not yet at its path of contact is apart by a small gap. A loaded mesh, its
 gears rotated against each other by the deflection of the loaded pairs, closes it: the corner of the driven tip
 touches the driver's flank early, and the driver's own tip stays late. The force then comes and goes without a step,
 and the contact ratio grows with the load.
 
 The gap follows exactly from where the corner is. With the driver's tangent point on the line of action at angle
 zero, its flank's point at radius ``rho`` has the polar angle ``xi_k / rb_k - inv(rho)``, xi_k the distance of the
-nominal contact from that tangent point; in the same frame turned half round, the driven gear's tip is at
+nominal contact from that tangent point; in the same frame rotated by half a turn, the driven gear's tip is at
 ``xi_i / rb_i - inv(r_a,i)`` about its own centre. The corner lies at a radius ``rho`` and an angle ``theta`` about
-the driver's centre; the driver has to turn by ``theta - xi_k / rb_k + inv(rho)`` to meet it: the gap is that times
+the driver's centre; the driver has to rotate by ``theta - xi_k / rb_k + inv(rho)`` to meet it: the gap is that times
 rb_k. Leaving is entering with the gears exchanged. It begins with the square of the distance from the path.
 
 Where the gears are large and the gap small, the flank's radius there hardly differs from where the path ends
@@ -97,10 +97,10 @@ def _corner(
     ``roll``, ``mating_roll``: nominal contact's roll angles on the flank's gear and on the corner's.
     """
     tip_roll = np.sqrt((mating_tip / mating_base) ** 2 - 1.0)
-    turned = mating_roll - tip_roll + np.arctan(tip_roll)
+    angle = mating_roll - tip_roll + np.arctan(tip_roll)
     tangent_distance = base * roll + mating_base * mating_roll
-    x = base + mating_base - mating_tip * np.cos(turned)
-    y = tangent_distance - mating_tip * np.sin(turned)
+    x = base + mating_base - mating_tip * np.cos(angle)
+    y = tangent_distance - mating_tip * np.sin(angle)
     squared = x * x + y * y
     touched = np.sqrt(np.maximum(0.0, squared / base**2 - 1.0))
     gap = base * (np.arctan2(y, x) - roll + touched - np.arctan(touched))

@@ -4,7 +4,7 @@ Sainsot, Velex & Duverger (2004) solved the same ring.  Their printed polynomial
 middle* under a linear normal and a constant shear traction, in plane strain with ``nu = 0.3``: a test finds L, P and
 P Q so, within 4 %.
 The load's lever on the root circle is often taken to the loaded point of the flank, as in the published case of Ma et
-al. (2014), not to where the line of action crosses the tooth's axis.  The middle of the arc turns a third more than
+al. (2014), not to where the line of action crosses the tooth's axis.  The middle of the arc rotates a third more than
 the work of the load asks for, and the longer lever adds to it: tooth and body come out up to 30 % too soft against a
 finite-element model.  Here
 

@@ -39,8 +39,8 @@ def tooth_coupling(gear: Gear, radius: float) -> float:
     shear = shear_modulus(gear)
     # The slice as a beam: section rotation psi, deflection phi, of a unit load.
     below = y < load
-    turning = _summed(np.where(below, (load - y) * 12.0 / (gear.youngs_modulus * thickness**3), 0.0) * step)
-    psi = 0.5 * (turning[1:] + turning[:-1])
+    rotation = _summed(np.where(below, (load - y) * 12.0 / (gear.youngs_modulus * thickness**3), 0.0) * step)
+    psi = 0.5 * (rotation[1:] + rotation[:-1])
     deflection = _summed((psi + np.where(below, 1.2 / (shear * thickness), 0.0)) * step)
     unit = float(np.interp(load, edges, deflection))
     phi, psi = 0.5 * (deflection[1:] + deflection[:-1]) / unit, psi / unit

@@ -7,7 +7,7 @@ driver's flank moves, on the driver
 
     Q = sum_j mu F_j sgn(w_i xi_i - w_k xi_k),        M_k = sum_j mu F_j sgn(...) xi_k,
 
-on the driven gear -Q and, against its turning, ``sum_j mu F_j sgn(...) xi_i``; the power lost is
+on the driven gear -Q and, against its rotation, ``sum_j mu F_j sgn(...) xi_i``; the power lost is
 ``sum_j mu F_j |w_k xi_k - w_i xi_i|``. The loads are those without friction, F_j the normal ones: those in the
 transverse plane over cos(beta_b), the flanks of helical gears sliding in that plane too.
 """
@@ -81,12 +81,12 @@ def mesh_friction(
         forces = mesh.line_loads * contact.faces.width
     else:
         positions, half, forces = mesh.positions[..., None], 0.0, mesh.pair_forces[..., None]
-    turned, placed = turned_share(positions, half, geometry.pitch_point_position, geometry.contact_ratio)
+    signed, moment = turned_share(positions, half, geometry.pitch_point_position, geometry.contact_ratio)
     normal = coefficient * forces / math.cos(geometry.driver.base_helix_angle)
     # Before the pitch point the force is positive, and both distances are straight lines along the path.
-    across, by_place = -(normal * turned).sum(axis=(1, 2)), -(normal * placed).sum(axis=(1, 2))
+    across, by_position = -(normal * signed).sum(axis=(1, 2)), -(normal * moment).sum(axis=(1, 2))
     driver_moment, driven_moment = (
-        gear.base_radius * (roll(0.0) * across + (roll(1.0) - roll(0.0)) * by_place)
+        gear.base_radius * (roll(0.0) * across + (roll(1.0) - roll(0.0)) * by_position)
         for gear, roll in (
             (geometry.driver, geometry.driver_roll_angle),
             (geometry.driven, geometry.driven_roll_angle),

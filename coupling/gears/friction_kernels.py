@@ -49,9 +49,9 @@ def friction_shares(
     pairs = int(number_at(law, at + PAIRS))
     hunting, first = int(number_at(law, at + HUNTING)), int(number_at(law, at + FIRST_PAIR))
     pairs_at = at + int(number_at(law, at + PAIRS_AT))
-    # Shares hold three kinds for one: the force, the force turned, the force turned and placed.
+    # Shares hold three kinds for each: the force, the signed force, and the signed force times its position.
     next_kind = int(number_at(law, at + KIND_STEP))
-    elastic, stiff, across, across_slope, by_place, by_place_slope = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    elastic, stiff, across, across_slope, moments, moments_slope = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for pair in range(pairs):
         start = pairs_at + PAIR * (pairs * interval + pair)
         approach, here = nearness(law, at, hunting, int(number) - first - pair, u, own, start)
@@ -59,25 +59,25 @@ def friction_shares(
             continue
         force, k, _ = pair_rise(law, at, here, u, approach)
         if by_slices:
-            turned, turned_slope, _ = pair_rise(law, at, here + next_kind, u, approach)
-            placed, placed_slope, _ = pair_rise(law, at, here + 2 * next_kind, u, approach)
+            signed, signed_slope, _ = pair_rise(law, at, here + next_kind, u, approach)
+            moment, moment_slope, _ = pair_rise(law, at, here + 2 * next_kind, u, approach)
         else:
             # Beyond the path the corner slides, at the end of the path.
             position = min(max(phase - number + (first + pair), 0.0), path_end)
             sign = 1.0 if position > pitch_point else (-1.0 if position < pitch_point else 0.0)
-            turned, turned_slope = sign * force, sign * k
-            placed, placed_slope = position * turned, position * turned_slope
+            signed, signed_slope = sign * force, sign * k
+            moment, moment_slope = position * signed, position * signed_slope
         elastic += force
         stiff += k
-        across += turned
-        across_slope += turned_slope
-        by_place += placed
-        by_place_slope += placed_slope
+        across += signed
+        across_slope += signed_slope
+        moments += moment
+        moments_slope += moment_slope
     if elastic <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
-    a, b = across / elastic, by_place / elastic
+    a, b = across / elastic, moments / elastic
     rise = gain / elastic
-    return a, b, (across_slope - a * stiff) * rise, (by_place_slope - b * stiff) * rise
+    return a, b, (across_slope - a * stiff) * rise, (moments_slope - b * stiff) * rise
 
 
 @counted()

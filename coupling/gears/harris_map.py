@@ -88,8 +88,8 @@ def transmission_error_harmonics(mesh: StaticMesh, count: int = 8) -> FloatArray
     x = np.append(phases, phases[0] + 1.0)
     y = np.append(values, values[0])
     w = 2.0 * np.pi * np.arange(1, count + 1)[:, None]
-    turn = np.exp(-1j * w * x)
+    phasor = np.exp(-1j * w * x)
     # Integral of a straight segment times e^{-iwx}, by parts.
     slope = np.diff(y) / np.diff(x)
-    integral = ((y * turn)[:, :-1] - (y * turn)[:, 1:]) / (1j * w) + slope * (turn[:, 1:] - turn[:, :-1]) / w**2
+    integral = ((y * phasor)[:, :-1] - (y * phasor)[:, 1:]) / (1j * w) + slope * (phasor[:, 1:] - phasor[:, :-1]) / w**2
     return np.asarray(2.0 * np.abs(integral.sum(axis=1)))

@@ -103,7 +103,7 @@ def iso6336_stiffness(geometry: GearPairGeometry, specific_load: float | None = 
 
 
 def blank_factor(gear: Gear) -> float:
-    """Gear blank factor C_R, 1 for a disc and for a rim alone (of which the norm says nothing)."""
+    """Gear blank factor C_R, 1 for a disc and for a rim alone (which the norm does not cover)."""
     if gear.rim_thickness is None or gear.web_thickness is None:
         return 1.0
     web = min(max(gear.web_thickness / gear.face_width, 0.2), 1.2)

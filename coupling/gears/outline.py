@@ -4,7 +4,7 @@ Placing a pair: at phase p the pair of teeth with number 0 touches at p base pit
 from its gear's centre, a flank point of roll angle ``u`` is ``atan(u)`` beyond the tangent point of the line of action
 and ``psi - inv(atan(u))`` from its tooth's axis, psi half the tooth's angle on the base circle; so the axis is
 ``u - psi`` beyond the tangent point.  The tangent points are at the working pressure angle w from the line of centres.
-With that line at ``zeta`` from x, and the driver turning in
+With that line at ``zeta`` from x, and the driver rotating in
 the sense s = +1 (counter-clockwise) or -1, the axes of the two teeth stand at
 
     driver:  zeta + s (u_k - w - psi_k)          driven:  zeta + pi + s (u_i - w - psi_i).
@@ -43,7 +43,7 @@ def gear_outline(
     centre : tuple of float
         Where the gear's centre is [m].
     axial_position : float
-        Which transverse plane of a helical gear [m]: a right-hand tooth turns by ``tan(beta) z / r``.
+        Which transverse plane of a helical gear [m]: a right-hand tooth rotates by ``tan(beta) z / r``.
     points : int
         Points on each fillet and each flank, at least 2.
 
@@ -57,8 +57,8 @@ def gear_outline(
     tooth = _tooth_and_space(gear, points)
     twist = math.tan(gear.helix_angle) * axial_position / gear.pitch_radius
     angles = rotation + twist + 2.0 * math.pi * np.arange(gear.teeth) / gear.teeth
-    turned = tooth[None, :] * np.exp(1j * angles)[:, None]
-    outline = turned.ravel() + complex(*centre)
+    rotated = tooth[None, :] * np.exp(1j * angles)[:, None]
+    outline = rotated.ravel() + complex(*centre)
     return np.column_stack([outline.real, outline.imag])
 
 

@@ -1,13 +1,13 @@
 """Pitch gap: gap that the pitch deviations of two mating teeth leave between their flanks.
 
-A tooth that stands ahead by ``f`` along the arc of the working pitch circle has turned by ``f / r_w`` and its flank
+A tooth that is ahead by ``f`` along the arc of the working pitch circle has rotated by ``f / r_w`` and its flank
 has moved by ``rb f / r_w = f cos(w)`` along the line of action, w the working pressure angle.  With the driver's
 tooth m and the driven gear's tooth n the pair's gap is
 
     d(s) + f_pair,    f_pair = -(f_k[m] + f_i[n]) cos(w),
 
 constant while the pair is in contact.  The idle flanks of the same teeth are behind where the working ones are
-ahead: there the sign turns, and other teeth meet (`GearPairGeometry.meeting_back_teeth`).
+ahead: there the sign is opposite, and other teeth mate (`GearPairGeometry.meeting_back_teeth`).
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ The corner's point with the outward normal at ``gamma`` below the pitch line is,
 c towards the flank and e towards the bottom, with the radius of curvature ``R = rho / (k^3 cos(beta)^2)``.  By the law
 of gearing it cuts when its normal passes through the pitch point (Litvin & Fuentes, Gear Geometry and Applied Theory,
 2004).  With the centre ``depth`` below the pitch line and ``across`` from the tooth's axis, D = depth + e, the
-gear of pitch radius ``r`` has then turned by ``turn``, and the point is ``reach`` away from the pitch point:
+gear of pitch radius ``r`` has then rotated by ``turn``, and the point is ``reach`` away from the pitch point:
 
     turn = (across - c + D cot(gamma)) / r,     reach = D / sin(gamma),
     r turn' = (R - reach) / sin(gamma),         reach' = r turn' cos(gamma)      (derivatives by gamma).

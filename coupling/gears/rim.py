@@ -28,7 +28,7 @@ from coupling.gears.errors import StiffnessModelError
 from coupling.gears.foundation import held_radius
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import load_angle, root_half_angle
-from coupling.gears.ring_body import Annulus, neighbour_flexibility, root_flexibility
+from coupling.gears.ring_body import Annulus, neighbour_flexibility, root_flexibility, twist_flexibility
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -130,9 +130,7 @@ def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, twists: b
 
 def _whole_twist(rings: tuple[Annulus, ...], nu: float) -> float:
     """Twist of the whole body under a torque alone, times E and width, independent of the tractions."""
-    width = rings[-1].width
-    turned = sum(width / ring.width * (ring.inner**-2 - ring.outer**-2) for ring in rings)
-    return (1.0 + nu) / (2.0 * math.pi) * turned
+    return (1.0 + nu) / (2.0 * math.pi) * twist_flexibility(rings)
 
 
 def _kolosov(gear: Gear, state: PlaneState) -> float:

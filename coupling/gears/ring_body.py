@@ -177,7 +177,7 @@ def _stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, 
     ]
     # Beyond, J_k J_l averages to +-1 / (pi n theta) and the flexibility falls as 1/n: all terms of a block alike.
     tail = half_angle * last / (last + 0.5) * np.diagonal(flexibility[-1])
-    twist, breathing = _twist(rings), _breathing(rings, kappa)
+    twist, breathing = twist_flexibility(rings), _breathing(rings, kappa)
     # Across the axis: radial tractions odd, tangential ones even.  Shifted by a quarter wave, tangential changes sign.
     lateral = _energy(content[1], content[0], flexibility, -1.0, tail)
     whole = np.where(even == 0, math.pi * half_angle, 0.0)
@@ -308,7 +308,7 @@ def _potential(
     return (kappa - k) * power, side * (kappa + k) * power, k * (3.0 - k) * rate, side * k * (k - 1.0) * rate
 
 
-def _twist(rings: tuple[Annulus, ...]) -> float:
+def twist_flexibility(rings: tuple[Annulus, ...]) -> float:
     """Rotation of the root circle (times 2 mu) under a uniform tangential traction 1 on it."""
     outermost = rings[-1].width
     return sum(outermost / ring.width * (ring.inner**-2 - ring.outer**-2) for ring in rings)

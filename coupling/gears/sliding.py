@@ -113,13 +113,13 @@ def turned_share(
     """
     at = np.asarray(place, dtype=np.float64)
     low, high = np.clip(at - half, 0.0, path_end), np.clip(at + half, 0.0, path_end)
-    turn = np.clip(pitch_point, low, high)
+    reversal = np.clip(pitch_point, low, high)
     length = high - low
     point = length <= 0.0
     length = np.where(point, 1.0, length)
-    sign = np.where(point, np.sign(low - pitch_point), (high + low - 2.0 * turn) / length)
-    placed = np.where(point, low * np.sign(low - pitch_point), (0.5 * (high**2 + low**2) - turn**2) / length)
-    return sign, placed
+    sign = np.where(point, np.sign(low - pitch_point), (high + low - 2.0 * reversal) / length)
+    moment = np.where(point, low * np.sign(low - pitch_point), (0.5 * (high**2 + low**2) - reversal**2) / length)
+    return sign, moment
 
 
 def _reverses_by_slices(contact: ToothContact) -> bool:

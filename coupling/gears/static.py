@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _HAIR = 1e-9
 """Compression for the tangent stiffness of an unloaded face [m]."""
-_BESIDE = 1e-9
+_EVENT_DISTANCE = 1e-9
 """Distance from an event of the phases for both limits of a step, in mesh periods."""
 
 
@@ -100,8 +100,8 @@ def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 
     """
     even = (np.arange(points) + 0.5) / points
     events = np.array(contact.event_phases)
-    beside = np.concatenate([events - _BESIDE, events + _BESIDE, np.array(contact.corner_phases)]) % 1.0
-    period = np.unique(np.concatenate([even, beside]))
+    limits = np.concatenate([events - _EVENT_DISTANCE, events + _EVENT_DISTANCE, np.array(contact.corner_phases)]) % 1.0
+    period = np.unique(np.concatenate([even, limits]))
     return np.asarray((np.arange(periods)[:, None] + period).ravel(), dtype=np.float64)
 
 
@@ -148,9 +148,9 @@ def static_transmission_error(
     sum_stiffness = np.cumsum(stiffness, axis=1)
     candidate = first + (force + np.cumsum(stiffness * later, axis=1)) / sum_stiffness
     # The n-th candidate holds while it exceeds the n-th gap; the first always does (or equals it).
-    stands = (candidate > gap) & np.isfinite(gap)
-    stands[:, 0] = True
-    touching = np.argmin(np.column_stack([stands, np.zeros(at.size, dtype=bool)]), axis=1) - 1
+    holds = (candidate > gap) & np.isfinite(gap)
+    holds[:, 0] = True
+    touching = np.argmin(np.column_stack([holds, np.zeros(at.size, dtype=bool)]), axis=1) - 1
     rows = np.arange(at.size)
     compression = candidate[rows, touching]
     tangent = sum_stiffness[rows, touching]

@@ -30,7 +30,7 @@ motion projected on the mirrored line of action, less the backlash), and ``dU/dp
 pitch gaps come with `ToothContact.back_flanks`.
 
 Where contact is held to the theoretical path, ``0 <= s < eps``, a deflected tooth without relief comes in and goes
-out with a step in force, as in the sources.  The step stands exactly at `event_phases`.  With corner contact
+out with a step in force, as in the sources.  The step is exactly at `event_phases`.  With corner contact
 (:mod:`coupling.gears.corner_contact`) pairs touch beyond the path too, over a gap that grows with the distance from
 it, and the force has no steps; ``k`` is held there at what it is at the end of the path.
 
