@@ -21,12 +21,11 @@ import numpy.typing as npt
 from coupling.contact_state import mean_contact
 from coupling.machine import CoupledMachine
 from coupling.receptance import response
-from coupling.transmissibility import sensor_rows
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_AROUND = np.linspace(-0.015, 0.015, 7)  # parts of a frequency at which the two bases are compared
+_NEIGHBOURHOOD = np.linspace(-0.015, 0.015, 7)  # parts of a frequency at which the two bases are compared
 _SAFETY = 2.0
 _LEAST = 0.005
 _HIGHEST = 10.0  # an error of ten times the line says all there is to say
@@ -68,9 +67,9 @@ class BasisError:
             Where an undamped mode is driven at its own frequency.
         """
         asked = np.asarray(frequencies, dtype=np.float64)
-        if not asked.size or not sensor_rows(self.machine):
-            return {name: np.zeros(asked.size) for name in sensor_rows(self.machine)}
-        w = (asked[:, None] * (1.0 + _AROUND)).ravel()
+        if not asked.size or not self.machine.sensor_rows:
+            return {name: np.zeros(asked.size) for name in self.machine.sensor_rows}
+        w = (asked[:, None] * (1.0 + _NEIGHBOURHOOD)).ravel()
         ours, others = _sensor_responses(self.machine, w), _sensor_responses(self.other, w)
         found = {}
         for name, motion in ours.items():
@@ -86,7 +85,7 @@ def _sensor_responses(machine: CoupledMachine, frequencies: FloatArray) -> dict[
     state = mean_contact(machine.system)
     loads = np.broadcast_to(_excitations(machine), (len(frequencies), *_excitations(machine).shape))
     moved = response(machine.system, loads, frequencies, state)
-    return {name: moved @ row for name, row in sensor_rows(machine).items()}
+    return {name: moved @ row for name, row in machine.sensor_rows.items()}
 
 
 def _excitations(machine: CoupledMachine) -> FloatArray:

@@ -67,7 +67,7 @@ def excitation_lines(
     ]
     for mesh in machine.meshes:
         teeth = mesh.geometry.driver.teeth * ratios[mesh.driver.rotor]
-        name = f"{mesh.driver.name} -> {mesh.driven.name}"
+        name = mesh.name
         shafts = {round(ratios[rotor], 12): rotor for rotor in (mesh.driven.rotor, mesh.driver.rotor)}
         for harmonic in mesh_harmonics:
             lines.append(ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth))

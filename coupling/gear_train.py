@@ -338,10 +338,14 @@ def _require_place(mesh: GearMesh, starts: Mapping[str, float]) -> None:
             f"{mesh.label}: the axes of rotors {gears[0].rotor!r} and {gears[1].rotor!r} are {1e3 * apart:.6g} mm "
             f"apart; expected the gears' centre distance, {1e3 * distance:.6g} mm"
         )
-    places = [starts[gear.rotor] + gear.at for gear in gears]
-    shift, reach = abs(places[0] - places[1]), 0.5 * mesh.geometry.face_width
+    require_one_plane(mesh.label, [starts[gear.rotor] + gear.at for gear in gears], mesh.geometry.face_width)
+
+
+def require_one_plane(label: str, places: Sequence[float], face_width: float) -> None:
+    """Refuse gears whose faces do not overlap: two middles of faces along z, and the width of the common face [m]."""
+    shift, reach = abs(places[0] - places[1]), 0.5 * face_width
     if shift > reach + LARGEST_OFFSET:
         raise CouplingError(
-            f"{mesh.label}: the gears are {1e3 * shift:.6g} mm apart along z; expected them in one plane, within half "
-            f"a face width, {1e3 * reach:.6g} mm"
+            f"{label}: the gears are {1e3 * shift:.6g} mm apart along z; expected them in one plane, within half a "
+            f"face width, {1e3 * reach:.6g} mm"
         )

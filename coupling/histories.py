@@ -14,7 +14,6 @@ from coupling.machine import CoupledMachine
 from coupling.mounted import MountedGear
 from coupling.settings import TransientOutputs
 from coupling.sliding import friction_of
-from coupling.system import embed
 from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
@@ -224,22 +223,16 @@ HISTORY_QUANTITIES = (
 def transient_outputs(machine: CoupledMachine) -> TransientOutputs:
     """The rows to record so that :func:`histories` can name them."""
     system = machine.system
-    numbers = {component.name: i for i, component in enumerate(system.components)}
-    displacement = []
+    moved = [np.zeros((0, system.size))]
     for gear in _gears(machine):
         rotor = next(rotor for rotor in machine.rotors if rotor.name == gear.rotor)
-        for row in (rotor.direction(gear.at, 0), rotor.direction(gear.at, 1), rotor.rotation(gear.at)):
-            displacement.append(embed(system.components, numbers[rotor.name], row))
-    deflections = [row for connector in _bearings(machine) for row in connector.directions.T]
-    sensors = []
-    if machine.housing is not None:
-        which = numbers[machine.housing.name]
-        sensors = [embed(system.components, which, row) for row in machine.housing.sensors.values()]
-    n = system.size
+        rows = np.vstack([rotor.motions(gear.at)[:2], rotor.rotation(gear.at)])
+        moved.append(machine.rows(rotor.name, rows))
+    deflections = np.vstack([moved[0], *(connector.directions.T for connector in _bearings(machine))])
     return TransientOutputs(
-        displacement=np.array(displacement + deflections).reshape(-1, n),
-        velocity=np.array(deflections).reshape(-1, n),
-        acceleration=np.array(sensors).reshape(-1, n),
+        displacement=np.vstack([*moved, deflections]),
+        velocity=deflections,
+        acceleration=np.array([*machine.sensor_rows.values()]).reshape(-1, system.size),
     )
 
 

@@ -12,9 +12,10 @@ import numpy.typing as npt
 from coupling.boundaries import SAMPLES_PER_BLOCK
 from coupling.condensation import condensed
 from coupling.errors import CouplingError
-from coupling.exact_march import ExactRun, exact_part
+from coupling.exact_march import CollocationStepper, exact_part
 from coupling.fingerprint import fingerprint
-from coupling.march_run import Checkpoint, MarchRun, sample_times
+from coupling.march_run import Checkpoint, Integration, sample_times
+from coupling.newmark_stepper import NewmarkStepper
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.step import empty_samples
 from coupling.system import CoupledSystem
@@ -123,8 +124,8 @@ def _prepared(
     turning: Turning | None,
     initial: tuple[FloatArray, FloatArray] | None,
     samples_per_block: int,
-) -> tuple[MarchRun, tuple[FloatArray, FloatArray] | None]:
-    """The march of the coordinates that are followed, and their initial state."""
+) -> tuple[Integration, tuple[FloatArray, FloatArray] | None]:
+    """Integration of the condensed coordinates by the method that the settings ask for, and their initial state."""
     if samples_per_block < 1:
         raise CouplingError(f"blocks of {samples_per_block} samples; expected at least one")
     followed = condensed(system)
@@ -132,24 +133,17 @@ def _prepared(
         system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
         outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
         initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
-    return march_run(system, settings, outputs, turning or Turning.steady(), samples_per_block), initial
+    turning = turning or Turning.steady()
+    part = exact_part(system, settings, turning)
+    stepper = (
+        NewmarkStepper(system, settings, outputs, turning)
+        if part is None
+        else CollocationStepper(part, settings, outputs, turning)
+    )
+    return Integration(stepper, settings, turning, samples_per_block), initial
 
 
 def _samples_until(settings: TransientSettings, end: float, first: int, total: int) -> int:
     """Room for the samples up to the end of a block: rounding may let one more or less fall into it."""
     upto = int(np.ceil((end - settings.record_from) / settings.sample_interval)) + 2
     return min(max(upto - first, 0), total - first)
-
-
-def march_run(
-    system: CoupledSystem,
-    settings: TransientSettings,
-    outputs: TransientOutputs,
-    turning: Turning,
-    samples_per_block: int,
-) -> MarchRun:
-    """The march by the method that the settings ask for."""
-    part = exact_part(system, settings, turning)
-    if part is not None:
-        return ExactRun(part, settings, outputs, turning, samples_per_block)
-    return MarchRun(system, settings, outputs, turning, samples_per_block)

@@ -19,7 +19,6 @@ from coupling.errors import CouplingError
 from coupling.histories import Recorded
 from coupling.machine import CoupledMachine
 from coupling.settings import TransientOutputs
-from coupling.system import embed
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -51,23 +50,16 @@ def modal_rows(machine: CoupledMachine, rotor: str) -> ModalRows:
     CouplingError
         Where no rotor has the name.
     """
-    components = machine.system.components
-    found = next((number for number, part in enumerate(machine.rotors) if part.name == rotor), None)
-    if found is None:
+    part = next((part for part in machine.rotors if part.name == rotor), None)
+    if part is None:
         names = ", ".join(part.name for part in machine.rotors)
         raise CouplingError(f"no rotor is named {rotor!r}; there are: {names}")
-    part = machine.rotors[found]
     lateral, torsional = part.modal.lateral, part.modal.torsional
     planar, twisting = lateral.certificate.found, torsional.certificate.found
     own = np.eye(part.size)
     x, y = (part.mixture[:planar] @ own[plane * lateral.count : (plane + 1) * lateral.count] for plane in (0, 1))
     torsion = own[2 * lateral.count : 2 * lateral.count + twisting]
-    return ModalRows(
-        *(
-            np.array([embed(components, found, row) for row in rows]).reshape(-1, machine.system.size)
-            for rows in (x, y, torsion)
-        )
-    )
+    return ModalRows(*(machine.rows(rotor, rows) for rows in (x, y, torsion)))
 
 
 @dataclass(frozen=True)
@@ -150,8 +142,5 @@ def _housing_rows(machine: CoupledMachine) -> FloatArray:
     """Rows of the housing's modes, without its residual attachments, shape (m, n)."""
     if machine.housing is None:
         return np.zeros((0, machine.system.size))
-    components = machine.system.components
-    number = [part.name for part in components].index(machine.housing.name)
     modes = sum(kind == "housing" for kind in machine.housing.kinds)
-    rows = [embed(components, number, row) for row in np.eye(machine.housing.size)[:modes]]
-    return np.array(rows).reshape(modes, machine.system.size)
+    return machine.rows(machine.housing.name, np.eye(machine.housing.size)[:modes])

@@ -12,7 +12,7 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROUNDING = 1e-9  # part of what the coordinates press below which a force is none
+_NO_FORCE = 1e-9  # part of what the coordinates press below which a force is none
 
 
 def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
@@ -28,7 +28,7 @@ def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
     q = np.linalg.solve(system.mean_stiffness + stiffest * rigid @ rigid.T, system.load)
     stiffness = np.array([contact.drives * contact.contact.mean_stiffness for contact in system.contacts])
     forces = stiffness * (system.contact_directions.T @ q)
-    rounding = _ROUNDING * stiffness * (np.abs(system.contact_directions.T) @ np.abs(q))
+    rounding = _NO_FORCE * stiffness * (np.abs(system.contact_directions.T) @ np.abs(q))
     return np.where(np.abs(forces) > rounding, forces, 0.0)
 
 

@@ -221,9 +221,9 @@ class CoupledSystem:
         return total
 
 
-def embed(components: Sequence[Component], which: int, direction: FloatArray) -> FloatArray:
-    """A component's direction as one of the whole system, shape (n,)."""
-    row = np.zeros(sum(component.size for component in components))
+def embed(components: Sequence[Component], which: int, directions: FloatArray) -> FloatArray:
+    """Directions of one component, shape (..., m), as directions of the whole system, shape (..., n)."""
+    whole = np.zeros((*directions.shape[:-1], sum(component.size for component in components)))
     start = sum(component.size for component in components[:which])
-    row[start : start + components[which].size] = direction
-    return row
+    whole[..., start : start + components[which].size] = directions
+    return whole

@@ -6,13 +6,14 @@ on which their axial parts do not cancel needs a bearing that holds it along its
 coordinate, and the thrust would vanish from the model.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry
+from coupling.mounted import MountedBearing
 
 _CANCELLED = 1e-6  # part of the largest axial force of a gear on the rotor that may be left over
 
@@ -46,6 +47,18 @@ class AxialForces:
         """Their sum [N]; zero where they cancel but for rounding."""
         total = sum(self.forces)
         return total if abs(total) > _CANCELLED * max(map(abs, self.forces), default=0.0) else 0.0
+
+
+def axially_held(
+    bearings: Sequence[MountedBearing], speeds: Mapping[str, float], among: Container[str] | None = None
+) -> set[str]:
+    """Rotors that a bearing with axial stiffness holds at their speeds [rad/s]; only ``among`` these are looked at."""
+    return {
+        mounted.rotor
+        for mounted in bearings
+        if mounted.rotor in (speeds if among is None else among)
+        and mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0
+    }
 
 
 def axial_forces(

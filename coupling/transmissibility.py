@@ -16,7 +16,7 @@ from coupling.errors import CouplingError
 from coupling.machine import CoupledMachine
 from coupling.modes import CoupledModes
 from coupling.receptance import response
-from coupling.system import CoupledSystem, embed
+from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -116,7 +116,7 @@ def sensor_force_response(
     ModesError
         As :func:`coupling.receptance`.
     """
-    rows = sensor_rows(machine)
+    rows = machine.sensor_rows
     if sensor not in rows:
         raise CouplingError(f"no sensor {sensor!r}; there are: {', '.join(rows) or 'none'}")
     state = mean_contact(machine.system) if contact is None else contact
@@ -186,14 +186,6 @@ def unbalance_response(
     )
 
 
-def sensor_rows(machine: CoupledMachine) -> dict[str, FloatArray]:
-    """Motion along each sensor by the coordinates of the whole system, shape (n,) each."""
-    if machine.housing is None:
-        return {}
-    number = [part.name for part in machine.system.components].index(machine.housing.name)
-    return {name: embed(machine.system.components, number, row) for name, row in machine.housing.sensors.items()}
-
-
 def _rows_of(system: CoupledSystem, number: int) -> npt.NDArray[np.bool_]:
     """Which coordinates are a component's, shape (n,)."""
     owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
@@ -232,7 +224,7 @@ def _named(
         unit=unit,
         frequencies=np.asarray(frequencies),
         coordinates=moved,
-        sensor_acceleration={name: -(frequencies**2) * (moved @ row) for name, row in sensor_rows(machine).items()},
+        sensor_acceleration={name: -(frequencies**2) * (moved @ row) for name, row in machine.sensor_rows.items()},
         bearing_load=loads,
         mesh_force=pressed,
     )
