@@ -1,15 +1,15 @@
-r"""The exact march: a transient at constant speed without time steps of the modes.
+r"""Exponential collocation: time integration at constant speed that is exact in the linear machine.
 
-The machine with its teeth at their mean is linear and does not change in time, so its motion is known in closed form:
-modes by their exponentials, gyroscopic and damped as they are; harmonic loads and runout errors by the reference's own
-response; motions that nothing resists by uniform acceleration. What remains is what the teeth do beyond their mean, one
-force for each contact, and this alone is approximated: over an element of time by the polynomial through its values at
-Gauss places, see :mod:`coupling.periodic.kernels`; this march shares its elements with the search of periodic motions.
-They end at every tooth event, and where a law changes its branch by itself.
+The machine with its mean mesh stiffness is linear and time-invariant, so its motion is known in closed form: modes by
+their exponentials, gyroscopic and damped as they are; harmonic loads and runout errors by the steady response of the
+reference; rigid-body motions by uniform acceleration. The difference of the tooth forces from their mean law, one force
+for each contact, is all that is approximated: over an element of time by the polynomial through its values at Gauss
+points, see :mod:`coupling.periodic.kernels`, whose elements the search of periodic motions shares. Elements end at
+every tooth event, and where a contact law changes its branch by itself.
 
-The local error is what that polynomial misses. It has no defect at the places, so between them the defect has the shape
-of the polynomial that vanishes there, and two looks at the law just inside the element's ends give its size. Carried
-through the propagator,
+The local error is that of the polynomial. It has no defect at the Gauss points, so between them the defect has the
+shape of the polynomial that vanishes there, and two evaluations of the law just inside the element's ends give its
+size. Carried through the propagator,
 
     e = -∫₀ʰ e^{λ(h - t)} b (g - p) dt,
 
@@ -42,27 +42,27 @@ from coupling.turning import Turning
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_STRETCHES, _ELEMENTS = 256, 1024  # at most about so many between two looks at the error ...
-_FIRST_STRETCHES = 8  # ... and at first: most of what is marched in vain is found out there
-_SIZES = 64  # that have matrices of their own, besides the ladder's
+_STRETCHES, _ELEMENTS = 256, 1024  # approximate maximum between two looks at the error ...
+_FIRST_STRETCHES = 8  # ... and at first: most attempts that fail, fail there
+_SIZES = 64  # of elements with matrices of their own, besides the ladder's
 _SAME_SIZE = 1e-11  # parts of the coarsest element by which elements of one size may differ
 _MUCH_BETTER = 1e-2  # part of the tolerance below which elements may grow
 _CUTS = 400  # room for switches in a chunk, besides four for each element
 
 
 def march_method(system: CoupledSystem, settings: TransientSettings, turning: Turning) -> Literal["newmark", "exact"]:
-    """Which method marches: the one asked for, or by ``auto`` the exact one wherever it applies.
+    """Method of time integration: the given one, or by ``auto`` the exact one wherever it applies.
 
     Raises
     ------
     TransientError
-        Where the exact one is asked for and does not apply, with the reason.
+        Where the exact method is given and does not apply, with the reason.
     """
     return "newmark" if exact_part(condensed(system).system, settings, turning) is None else "exact"
 
 
 def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Turning) -> LinearPart | None:
-    """The linear part that is marched exactly; None where Newmark's method marches.
+    """Linear part of the exact method; None for Newmark's method.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Turn
 
 
 def steady_part(system: CoupledSystem) -> LinearPart:
-    """The linear part in units of the fastest mesh, load or mode."""
+    """The linear part, its rates in units of the fastest mesh, load or mode."""
     rates = [2.0 * np.pi * abs(contact.rate) for contact in system.contacts]
     rates += [abs(load.frequency) for load in system.harmonic_loads]
     return linear_part(system, max(rates, default=0.0) or system.highest_frequency or 1.0, repeats=False)
@@ -174,7 +174,7 @@ class CollocationStepper:
 
         The trace holds until the next call.
         """
-        from coupling.periodic.kernels import NO_BALANCE, NO_ROOM, march
+        from coupling.periodic.kernels import NO_BALANCE, NO_ROOM, integrate_elements
 
         reference, modes = self._part.reference, len(self._part.eigenvalues)
         lengths = np.diff(stretches) / pieces
@@ -186,7 +186,7 @@ class CollocationStepper:
             self._trace = empty_trace(room, *self._shape)
         trace, end = self._trace, self._z.copy()
         head = reference, self.arrays.contacts, self._steps, starts, length, slots, end, self._undisturbed
-        count, _, wrong = march(*head, modes, trace, 0, self._work)
+        count, _, wrong = integrate_elements(*head, modes, trace, 0, self._work)
         where = f"after t = {trace.start[max(int(count) - 1, 0)]:.6g} s"
         if wrong == NO_BALANCE:
             raise TransientError(f"{where} the teeth's forces do not balance; expected a law that grows")
@@ -201,13 +201,13 @@ def _pieces(bounds: FloatArray, size: float) -> IntArray:
 
 
 class _Sizes:
-    """Which sizes of elements have matrices of their own; all others make do with the ladder's."""
+    """Sizes of elements that have matrices of their own; all others take those of the ladder."""
 
     def __init__(self, steps: Steps, unit: float) -> None:
         self._steps, self._unit, self._known = steps, unit, dict[int, int]()
 
     def slots(self, lengths: FloatArray) -> IntArray:
-        """The slot of each length, -1 for none: the first sizes get one, while there is room."""
+        """Slot of each length, -1 for none: the first sizes get one, while there is room."""
         # What rounding alone holds apart is one size.
         keys, first, which = np.unique(np.rint(lengths / self._unit), return_index=True, return_inverse=True)
         slots = np.full(len(keys), -1, dtype=np.int64)

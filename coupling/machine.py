@@ -225,7 +225,9 @@ def couple(
         load=loads.constant,
         harmonic_loads=tuple(loads.harmonic),
         timed_loads=tuple(loads.timed),
-        swing=coordinates.acceleration_load([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives),
+        acceleration_load=coordinates.acceleration_load(
+            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives
+        ),
         nonlinear=tuple(own for _, own in held if own is not None),
     )
     system = with_pressed_flanks(system, _back_contacts(meshes))

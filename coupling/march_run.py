@@ -186,7 +186,7 @@ class Integration:
     def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
         """Static equilibrium under the initial loads, coasting where nothing resists; or a given state."""
         system, (_, rates, swings) = self.system, self.turning.at(0.0)
-        load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.swing)
+        load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.acceleration_load)
         resting = system if np.array_equal(load, system.load) else replace(system, load=load)
         q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)
@@ -294,9 +294,9 @@ class Integration:
         """Kinetic energy and strain energy of the springs that do not change with the speed [J]."""
         dynamics = self.arrays.dynamics
         energy = 0.5 * v @ v + 0.5 * q @ (dynamics.stiffness * q)
-        if len(dynamics.tie_rates) == 1:
-            tied = dynamics.ties @ q
-            energy += 0.5 * tied @ dynamics.tie_stiffness[0] @ tied
+        if len(dynamics.connector_rates) == 1:
+            tied = dynamics.connectors @ q
+            energy += 0.5 * tied @ dynamics.connector_stiffness[0] @ tied
         return float(energy)
 
     def _divergence(self, begin: float, last_touch: FloatArray, until: float) -> str:

@@ -1,6 +1,7 @@
-"""The march through time, block by block: each block's samples with the state from which the next one goes on.
+"""Time integration in blocks: the samples of each block, with the checkpoint from which the next one continues.
 
-Newmark's steps are in :mod:`coupling.march_run`, the exact march between tooth events in :mod:`coupling.exact_march`.
+The driver is in :mod:`coupling.march_run`; its steppers are in :mod:`coupling.newmark_stepper` and
+:mod:`coupling.exact_march`.
 """
 
 from collections.abc import Callable, Iterator
@@ -26,7 +27,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Block:
-    """A stretch of the record, s samples, and where the march stands after it.
+    """A block of the record, s samples, and the checkpoint after it.
 
     Attributes
     ----------
@@ -35,7 +36,7 @@ class Block:
     times : ndarray, shape (s,)
         [s].
     displacement, velocity, acceleration : ndarray, shapes (s, k)
-        The rows asked for.
+        The output rows.
     compression, force : ndarray, shape (s, c)
         Of each contact [m], [N].
     after : Checkpoint
@@ -65,14 +66,14 @@ def march_blocks(
     samples_per_block: int = SAMPLES_PER_BLOCK,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> Iterator[Block]:
-    """March the coupled system through time and hand its record over block by block.
+    """Integrate the motion of the coupled system, and yield its record block by block.
 
     Parameters
     ----------
     after : Checkpoint, optional
-        Go on from here: the march must be the one that led to it, see :func:`march_key`.
+        Checkpoint to continue from, of the same run; see :func:`march_key`.
     samples_per_block : int
-        About how many a block holds. Time is cut where blocks end, so the last digits of a result depend on it.
+        Approximate length of a block. Time is cut where blocks end, so the last digits of a result depend on it.
 
     Other parameters and errors are those of :func:`coupling.simulate`.
     """
@@ -108,9 +109,9 @@ def march_key(
     initial: tuple[FloatArray, FloatArray] | None = None,
     samples_per_block: int = SAMPLES_PER_BLOCK,
 ) -> str:
-    """A digest of all that decides how a march goes, so that two with the same key go alike, bit for bit.
+    """Digest of all inputs of a time integration: runs with the same key agree bit for bit.
 
-    It knows nothing of the code and of the processor: whoever keeps checkpoints must note these as well.
+    It does not cover the code and the processor: these must be stored with checkpoints as well.
     """
     run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
     start = run.start(initial).as_arrays()

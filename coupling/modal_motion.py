@@ -1,4 +1,4 @@
-"""Modal coordinates of a rotor in the coupled motion, by the modes that the sources plot.
+"""Modal coordinates of rotors and housing in a coupled motion.
 
 A component's own coordinates are those of the shaft freed of its bearings. The modes of TM-101442, Eqs. 7 to 10, are
 those on averaged supports: x = Σ A_i φ_i, y = Σ B_i φ_i, and for torsion θ = Σ D_i φ_t,i (Eq. 11) of the free shaft.
@@ -6,8 +6,8 @@ Both span the same motions. With the component's lateral coordinates q, whose sh
 
     A = V q,    V = `RotorComponent.mixture`, orthogonal,
 
-so that a row of V, at the place of the rotor's coordinates, is all that :class:`coupling.TransientOutputs` needs. The
-housing's coordinates are its modes' as they are.
+so a row of V, at the position of the rotor's coordinates, is a row of :class:`coupling.TransientOutputs`. The housing's
+coordinates are those of its modes.
 """
 
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ModalRows:
-    """Rows that take a rotor's modal coordinates out of the n coordinates of the machine.
+    """Output rows of a rotor's modal coordinates over the n coordinates of the machine.
 
     Coordinates are in m √kg (lateral) and rad √(kg m²) (torsional): a shape is per unit modal mass.
 
@@ -43,7 +43,7 @@ class ModalRows:
 
 
 def modal_rows(machine: CoupledMachine, rotor: str) -> ModalRows:
-    """The rows of one rotor; stacked into ``TransientOutputs.displacement`` they are recorded as time passes.
+    """Output rows of the modal coordinates of one rotor, for ``TransientOutputs.displacement``.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def modal_rows(machine: CoupledMachine, rotor: str) -> ModalRows:
 
 @dataclass(frozen=True)
 class ModalRecord:
-    """Modal motion that was recorded at even spacing, s samples.
+    """Recorded modal motion at even spacing, s samples.
 
     Attributes
     ----------
@@ -79,12 +79,12 @@ class ModalRecord:
 
     @property
     def columns(self) -> FloatArray:
-        """Every signal beside the others, shape (s, k)."""
+        """All signals as columns, shape (s, k)."""
         moved = [coordinate[:, None] for coordinate in self.coordinates.values()]
         return np.concatenate([*moved, self.housing_acceleration], axis=1)
 
     def with_columns(self, columns: FloatArray) -> "ModalRecord":
-        """Other samples of the same signals, from what :attr:`columns` gives."""
+        """The same signals with other samples, from columns as in :attr:`columns`."""
         coordinates = {name: columns[:, i] for i, name in enumerate(self.coordinates)}
         return ModalRecord(coordinates, columns[:, len(coordinates) :])
 
@@ -99,9 +99,9 @@ def with_modal_rows(
     machine : CoupledMachine
     outputs : TransientOutputs
     count : int
-        How many of each kind of a rotor's modes, and of the housing's, are to have their displacement recorded.
+        Number of modes of each kind of a rotor, and of the housing, whose displacement is recorded.
     housing : bool
-        Whether the accelerations of the housing's modes are.
+        Whether the accelerations of the housing's modes are recorded.
     """
     accelerations = _housing_rows(machine)[: None if housing else 0]
     rows = np.array(list(_coordinate_rows(machine, count).values())).reshape(-1, machine.system.size)
@@ -113,7 +113,7 @@ def with_modal_rows(
 
 
 def modal_record(machine: CoupledMachine, result: Recorded, count: int = 0, *, housing: bool = True) -> ModalRecord:
-    """Name what a transient with :func:`with_modal_rows` recorded after its other outputs."""
+    """Modal motion by name from the record of a transient with :func:`with_modal_rows`."""
     names = list(_coordinate_rows(machine, count))
     moved = result.displacement[:, result.displacement.shape[1] - len(names) :]
     first = result.acceleration.shape[1] - (len(_housing_rows(machine)) if housing else 0)

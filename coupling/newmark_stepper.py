@@ -75,14 +75,14 @@ class NewmarkStepper:
 
     def _run(self, state: Checkpoint, segments: Segments, samples: Samples) -> tuple[Checkpoint, float, float]:
         """The kernel on copies of what it changes."""
-        from coupling.newmark import march
+        from coupling.newmark import newmark_steps
 
         q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))
         arrays = self.arrays
         head = (
             q, v, arrays.dynamics, arrays.contacts, arrays.bearings, self._cache.matrices, segments, arrays.outputs,
         )  # fmt: skip
-        sample, stored, curvature, acceleration, unsettled = march(
+        sample, stored, curvature, acceleration, unsettled = newmark_steps(
             *head, samples, state.sample, state.stored, totals, contacts, scratch_room(arrays)
         )
         moved = replace(state, q=q, v=v, totals=totals, contact_totals=contacts, sample=sample, stored=stored)

@@ -1,4 +1,4 @@
-"""How far and how finely to march, and what to record."""
+"""Settings of a time integration, and its output rows."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -14,7 +14,7 @@ Method = Literal["newmark", "exact", "auto"]
 
 @dataclass(frozen=True)
 class TransientSettings:
-    """How far and how finely to march.
+    """Settings of a time integration.
 
     Attributes
     ----------
@@ -27,12 +27,12 @@ class TransientSettings:
     largest_step : float
         [s].
     tolerance : float
-        Of the error measure above.
+        Largest local error of a step, relative; see :mod:`coupling.march_run`.
     beta, gamma : float
-        Newmark's parameters; 1/4 and 1/2 are the only pair that neither gains nor loses energy.
+        Newmark's parameters; only with 1/4 and 1/2 the method neither gains nor loses energy.
     method : "newmark", "exact" or "auto"
-        Newmark's steps; the exact march of :mod:`coupling.exact_march` in elements of time, for constant speeds and
-        loads without tables over time; or the exact one where it applies, else Newmark's.
+        Newmark's method; exponential collocation of :mod:`coupling.exact_march`, for constant speeds and loads without
+        tables over time; or the exact method where it applies, else Newmark's.
     """
 
     duration: float
@@ -62,12 +62,12 @@ class TransientSettings:
 
 @dataclass(frozen=True)
 class TransientOutputs:
-    """Rows to record: each a linear combination of the n coordinates.
+    """Output rows of a time integration: each a linear combination of the n coordinates.
 
     Attributes
     ----------
     displacement, velocity, acceleration : ndarray, shapes (k, n)
-        What is taken of the coordinates, of their rates, and of their accelerations.
+        Rows over the coordinates, their rates, and their accelerations.
     """
 
     displacement: FloatArray

@@ -1,4 +1,4 @@
-"""Axial force of helical gears on each rotor, and the bearings that must carry it.
+"""Thrust: axial force of helical gears on each rotor, and the bearings that must carry it.
 
 A pair's force F acts along the normal of the teeth: in the transverse plane along the line of action, and along z by
 F tan β_b. At constant torque the moment about z of every rotor balances, s Σ F R_b = T, which gives the forces; a rotor
@@ -20,7 +20,7 @@ _CANCELLED = 1e-6  # part of the largest axial force of a gear on the rotor that
 
 @dataclass(frozen=True)
 class ThrustPair:
-    """A gear pair as far as its thrust goes: the rotors and the names of its gears, and their geometry."""
+    """A gear pair in the thrust balance: its rotors, the names of its gears, and their geometry."""
 
     rotors: tuple[str, str]
     gears: tuple[str, str]
@@ -77,7 +77,7 @@ def axial_forces(
 
     Notes
     -----
-    Where several paths share a torque the forces of least squares are taken: alike pairs carry alike parts.
+    Where several paths share a torque the least-squares forces are taken: equal pairs carry equal parts.
     """
     names = list(dict.fromkeys(name for pair in pairs for name in pair.rotors))
     moments = np.zeros((len(names), len(pairs)))

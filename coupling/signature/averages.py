@@ -1,7 +1,7 @@
-"""Long records by short stretches: the power density by Welch's averages, and the spectrogram along the record.
+"""Power spectral density by Welch's method, and the spectrogram of a record.
 
 Welch (1967) averages the squares of the spectra of windowed, overlapping stretches: lines of a steady sine keep their
-height, and noise, whose spectra never settle by themselves, comes to its density.
+height, and the average of noise converges to its density.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class PowerDensity:
     density : ndarray, shape (..., m)
         Square of the signal's unit by Hz: its integral is the mean square.
     stretches : int
-        How many were averaged.
+        Number of averaged stretches.
     window : {"uniform", "hann"}
     """
 
@@ -39,7 +39,7 @@ class PowerDensity:
 
     @property
     def amplitude(self) -> FloatArray:
-        """Peak amplitude of the sine that would raise a line so high, shape (..., m): true for sines, not for noise."""
+        """Peak amplitude of a sine whose line has this height, shape (..., m); meaningless for noise."""
         bandwidth = _NOISE_BANDWIDTH[self.window] * self.frequencies[0]
         return np.asarray(np.sqrt(2.0 * self.density * bandwidth))
 
@@ -83,7 +83,7 @@ def power_density(
 
 @dataclass(frozen=True)
 class Spectrogram:
-    """Spectra along a record, t stretches.
+    """Spectrogram: spectra along a record, t stretches.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class Spectrogram:
 def spectrogram(
     signal: FloatArray, interval: float, length: int, step: int, *, start: float = 0.0, window: Window = "hann"
 ) -> Spectrogram:
-    """Amplitude spectra of stretches along a record: a waterfall over time, or over the speed at those times.
+    """Amplitude spectra of stretches along a record: a waterfall over time, or over the speed.
 
     Parameters
     ----------

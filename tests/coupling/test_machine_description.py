@@ -111,10 +111,14 @@ CHANGES: list[tuple[str, dict[str, Any], str]] = [
     (
         "pair twice",
         {"gear_pairs": [*PAIRS, GearPair("d", "c")]},
-        "'d' -> 'c' is given twice; expected gears that are not",
+        "is given twice; expected gears that are not yet",
     ),
     ("output at input", {"outputs": [Output("fast", 40.0)]}, "a shaft other than 'fast', where the torque comes in"),
-    ("names swapped", {"gear_pairs": [PAIRS[0], GearPair("d", "c")]}, "from driver to driven; swap the two names"),
+    (
+        "names swapped",
+        {"gear_pairs": [PAIRS[0], GearPair("d", "c")], "outputs": [Output("slow", 96.0)]},
+        "expected power to flow from driver to driven; swap the two names",
+    ),
     ("brake", {"torque": -40.0}, "'a' -> 'b': expected a backlash: the torque is negative"),
     ("nothing takes it", {"gears": [], "gear_pairs": []}, "a torque of 40 N m that nothing takes"),
     (
@@ -166,7 +170,7 @@ def test_a_bearing_needs_a_seat_on_its_shaft_and_no_pedestal_in_it() -> None:
         seated = [replace(machine.bearings[0], seat="front"), *machine.bearings[1:]]
         if words is None:
             two_stages(bearings=seated, housing=housing)
-            foot = Pedestal(2.0, 1e8 * np.eye(2), np.zeros((2, 2)))
+            foot = Pedestal(1e8 * np.eye(2), np.zeros((2, 2)), 2.0)
             standing = replace(seated[0], bearing=replace(seated[0].bearing, pedestal=foot))
             with pytest.raises(CouplingError, match="expected no pedestal under a bearing in seat 'front'"):
                 two_stages(bearings=[standing, *seated[1:]], housing=housing)
