@@ -16,6 +16,8 @@ from coupling.gears import SlidingFriction, ToothContact
 
 FloatArray = npt.NDArray[np.float64]
 
+_JUST_AFTER = 1e-9  # mesh periods
+
 
 @dataclass(frozen=True)
 class LinearConnector:
@@ -179,6 +181,14 @@ class ContactConnector:
         """Law table by which the pairs share friction, and whether it is by slices of the face."""
         shares = np.zeros(0) if self.sliding is None else self.sliding.friction.shares
         return (shares, True) if shares.size else (self.contact.kernel_arguments[0], False)
+
+    def runout(self, time: float) -> float:
+        """Runout error at a time [m]."""
+        return float(np.sum(self.errors[:, 0] * np.cos(self.errors[:, 1] * time + self.errors[:, 2])))
+
+    def phase_after(self, time: float) -> float:
+        """Mesh phase just after a time [mesh periods]: a pair that enters contact then counts."""
+        return self.phase + self.rate * time + _JUST_AFTER
 
     def event_times(self, start: float, end: float) -> FloatArray:
         """Times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from coupling.bearing_kernels import evaluate_bearings
 from coupling.gears.friction_kernels import friction_shares
 from coupling.gears.kernels import ranked_nearness, tooth_force
-from coupling.kernel_arrays import Bearings, Contacts
+from coupling.kernel_arrays import Bearings, Contacts, Scratch
 from coupling.small_systems import solve_in_place
 from rotors.compiled import inner
 
@@ -81,30 +81,20 @@ def evaluate_friction(
 
 
 @inner(inline="always")
-def evaluate_forces(
-    contacts: Contacts,
-    bearings: Bearings,
-    turned: float,
-    delta: FloatArray,
-    rate: FloatArray,
-    laws: FloatArray,
-    force: FloatArray,
-    drag: FloatArray,
-    tangents: FloatArray,
-    held: FloatArray,
-) -> None:
-    """Evaluate all nonlinear laws at some deflections: teeth, their friction, bearings.
+def evaluate_forces(contacts: Contacts, bearings: Bearings, turned: float, scratch: Scratch) -> None:
+    """Evaluate all nonlinear laws at the deflections and rates in ``scratch``: teeth, their friction, bearings.
 
-    Fills in the laws' table, the force along every direction (k,), the friction's slopes (c, 4), the bearings' tangents
-    (b, 5, 5), and the energy held in the bearings, in the first row of (8, 5).
+    Fills in the laws' table, the force along every direction, the friction's slopes, the bearings' tangents, and the
+    energy held in the bearings.
     """
+    delta, rate, laws, push = scratch.delta, scratch.rate, scratch.laws, scratch.push
     for k in range(contacts.phase.size):
         evaluate_contact(contacts, k, turned, delta[k], rate[k], laws, k)
-        force[k] = laws[k, FORCE]
+        push[k] = laws[k, FORCE]
         if contacts.friction_row[k] >= 0:
-            evaluate_friction(contacts, k, turned, delta[k], laws, force, drag[k])
+            evaluate_friction(contacts, k, turned, delta[k], laws, push, scratch.drag[k])
     if bearings.axis.size > 0:
-        evaluate_bearings(bearings, contacts.phase.size, turned, delta, force, tangents, held)
+        evaluate_bearings(bearings, contacts.phase.size, turned, delta, push, scratch.tangents, scratch.held)
 
 
 @inner(inline="always")
@@ -112,20 +102,10 @@ def solve_contact_forces(
     contacts: Contacts,
     bearings: Bearings,
     turned: float,
-    free: FloatArray,
-    free_rate: FloatArray,
     flexibility: FloatArray,
     by_displacement: float,
     by_velocity: float,
-    delta: FloatArray,
-    rate: FloatArray,
-    laws: FloatArray,
-    force: FloatArray,
-    drag: FloatArray,
-    tangents: FloatArray,
-    held: FloatArray,
-    jacobian: FloatArray,
-    residual: FloatArray,
+    scratch: Scratch,
 ) -> bool:
     """Contact forces by Newton iteration, from the deflections and rates without them.
 
@@ -134,22 +114,32 @@ def solve_contact_forces(
     Bearings begin with their last forces. The function is inlined, as passing its arguments would cost time at every
     call.
     """
-    c, u, directions = contacts.phase.size, free.size, force.size
+    free, free_rate, delta, rate, push = (
+        scratch.delta_free,
+        scratch.rate_free,
+        scratch.delta,
+        scratch.rate,
+        scratch.push,
+    )
+    laws, drag, tangents, jacobian, residual = (
+        scratch.laws, scratch.drag, scratch.tangents, scratch.jacobian, scratch.residual,
+    )  # fmt: skip
+    c, u, directions = contacts.phase.size, free.size, push.size
     per = by_velocity / by_displacement
     for k in range(u):
         delta[k] = free[k]
     for k in range(c, u):
         for j in range(directions):
-            delta[k] -= by_displacement * flexibility[k, j] * force[j]
+            delta[k] -= by_displacement * flexibility[k, j] * push[j]
     for _ in range(_NEWTON_STEPS):
         for k in range(c):
             rate[k] = free_rate[k] + per * (delta[k] - free[k])
-        evaluate_forces(contacts, bearings, turned, delta, rate, laws, force, drag, tangents, held)
+        evaluate_forces(contacts, bearings, turned, scratch)
         largest, scale = 0.0, 1e-300
         for k in range(u):
             residual[k, 0] = free[k] - delta[k]
             for j in range(directions):
-                residual[k, 0] -= by_displacement * flexibility[k, j] * force[j]
+                residual[k, 0] -= by_displacement * flexibility[k, j] * push[j]
             scale = max(scale, abs(free[k]) + abs(delta[k]))
             largest = max(largest, abs(residual[k, 0]))
         if largest <= 1e-13 * scale:

@@ -12,8 +12,6 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_JUST_AFTER = 1e-9  # mesh periods: a contact at an event is evaluated just after it, as in the statics
-
 
 @dataclass(frozen=True)
 class ContactState:
@@ -50,11 +48,7 @@ def mean_contact(system: CoupledSystem) -> ContactState:
 
 def unloaded_contact(system: CoupledSystem) -> ContactState:
     """Drive flanks at their mean stiffness with all pairs on the path of contact touching, the back flanks apart."""
-    drives = np.array([float(contact.drives) for contact in system.contacts])
-    laws = [contact.contact for contact in system.contacts]
-    return ContactState(
-        drives * np.array([law.mean_stiffness for law in laws]), drives * np.array([law.damping for law in laws])
-    )
+    return ContactState(system.drive_stiffness, system.drive_damping)
 
 
 def contact_at(system: CoupledSystem, time: float) -> ContactState:
@@ -78,10 +72,9 @@ def contact_at(system: CoupledSystem, time: float) -> ContactState:
     q = static_equilibrium(system, time)
     tangents = []
     for contact in system.contacts:
-        error = np.sum(contact.errors[:, 0] * np.cos(contact.errors[:, 1] * time + contact.errors[:, 2]))
-        compression = float(contact.direction @ q - error - contact.clearance)
-        phase = contact.phase + contact.rate * time + _JUST_AFTER
-        force, *tangent = tooth_force(phase, compression, 0.0, *contact.contact.kernel_arguments)[:3]
+        compression = float(contact.direction @ q) - contact.runout(time) - contact.clearance
+        law = contact.contact.kernel_arguments
+        force, *tangent = tooth_force(contact.phase_after(time), compression, 0.0, *law)[:3]
         # Of a contact that is held apart the law gives the coefficient of its losses, which act on no force.
         tangents.append(tangent if force > 0.0 else [0.0, 0.0])
     stiffness, damping = np.array(tangents).reshape(-1, 2).T

@@ -26,7 +26,7 @@ import numpy.typing as npt
 from coupling.boundaries import coarsest_step
 from coupling.condensation import condensed
 from coupling.errors import PeriodicError, TransientError
-from coupling.exact_record import Record
+from coupling.exact_record import CollocationRecord
 from coupling.kernel_arrays import Samples
 from coupling.march_run import Attempt, Checkpoint, sample_times
 from coupling.periodic.arrays import Steps, Trace, empty_trace, first_elements
@@ -109,7 +109,7 @@ class CollocationStepper:
         self.arrays = kernel_arrays(part.system, outputs, settings.beta, settings.gamma)
         self.coarsen_below = _MUCH_BETTER * settings.tolerance
         self._coarsest = ORDER * coarsest_step(part.system, turning, settings.largest_step)
-        self._record = Record(part, outputs, self.arrays.contacts)
+        self._record = CollocationRecord(part, outputs, self.arrays.contacts)
         self._steps = element_sizes(part, np.zeros(_SIZES), self._coarsest, inner=True)
         self._shape = part.reference.eigenvalue.size, ORDER, len(part.system.contacts)
         self._trace = empty_trace(0, *self._shape)

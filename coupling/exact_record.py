@@ -16,7 +16,7 @@ from coupling.settings import TransientOutputs
 FloatArray = npt.NDArray[np.float64]
 
 
-class Record:
+class CollocationRecord:
     """Output rows over the amplitudes; n coordinates, M amplitudes."""
 
     def __init__(self, part: LinearPart, outputs: TransientOutputs, contacts: Contacts) -> None:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, NamedTuple, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,28 +12,11 @@ from coupling.bearing_arrays import bearing_arrays
 from coupling.connector import LinearConnector, NonlinearConnector
 from coupling.machine import CoupledMachine
 from coupling.mounted import MountedGear
-from coupling.settings import TransientOutputs
+from coupling.settings import Recorded, TransientOutputs
 from coupling.sliding import friction_of
 from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
-
-
-class Recorded(Protocol):
-    """Record of a transient or a periodic response at even spacing."""
-
-    @property
-    def times(self) -> FloatArray: ...
-    @property
-    def displacement(self) -> FloatArray: ...
-    @property
-    def velocity(self) -> FloatArray: ...
-    @property
-    def acceleration(self) -> FloatArray: ...
-    @property
-    def compression(self) -> FloatArray: ...
-    @property
-    def force(self) -> FloatArray: ...
 
 
 @dataclass(frozen=True)
@@ -236,20 +219,11 @@ def transient_outputs(machine: CoupledMachine) -> TransientOutputs:
     )
 
 
-class _Nothing(NamedTuple):
-    times: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    compression: FloatArray
-    force: FloatArray
-
-
 def nothing_recorded(machine: CoupledMachine, outputs: TransientOutputs) -> Recorded:
     """Empty record of a transient with these outputs: names and widths of the signals before the first sample."""
     contacts = len(machine.system.contacts)
     widths = *(len(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)), contacts, contacts
-    return _Nothing(np.zeros(0), *(np.zeros((0, width)) for width in widths))
+    return Recorded(np.zeros(0), *(np.zeros((0, width)) for width in widths))
 
 
 def histories(machine: CoupledMachine, result: Recorded, turning: Turning | None = None) -> Histories:

@@ -17,7 +17,7 @@ from coupling.exact_march import CollocationStepper, exact_part
 from coupling.fingerprint import fingerprint
 from coupling.march_run import Checkpoint, Integration, sample_times
 from coupling.newmark_stepper import NewmarkStepper
-from coupling.settings import TransientOutputs, TransientSettings
+from coupling.settings import RECORDED, Recorded, TransientOutputs, TransientSettings
 from coupling.step import empty_samples
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
@@ -25,32 +25,20 @@ from coupling.turning import Turning
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Block:
-    """A block of the record, s samples, and the checkpoint after it.
+@dataclass(frozen=True, eq=False)
+class Block(Recorded):
+    """A block of the record, and the checkpoint after it.
 
     Attributes
     ----------
     first : int
         Number of its first sample.
-    times : ndarray, shape (s,)
-        [s].
-    displacement, velocity, acceleration : ndarray, shapes (s, k)
-        The output rows.
-    compression, force : ndarray, shape (s, c)
-        Of each contact [m], [N].
     after : Checkpoint
     count : int
         Blocks of the whole run.
     """
 
     first: int
-    times: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    compression: FloatArray
-    force: FloatArray
     after: Checkpoint
     count: int
 
@@ -90,11 +78,7 @@ def march_blocks(
         yield Block(
             first=first,
             times=sample_times(settings, first, state.sample - first),
-            displacement=samples.displacement[written],
-            velocity=samples.velocity[written],
-            acceleration=samples.acceleration[written],
-            compression=samples.compression[written],
-            force=samples.force[written],
+            **{name: getattr(samples, name)[written] for name in RECORDED[1:]},
             after=state,
             count=len(run.ends) - 1,
         )

@@ -16,9 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError
-from coupling.histories import Recorded
 from coupling.machine import CoupledMachine
-from coupling.settings import TransientOutputs
+from coupling.settings import Recorded, TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -162,8 +162,7 @@ def _start_segment(
         delta[k], rate[k] = dq[k] - gone, dv[k] - scratch.slip[k]
     for k in range(c, delta.size):
         delta[k] = dq[k]
-    laws = scratch.laws
-    evaluate_forces(contacts, bearings, turned, delta, rate, laws, push, scratch.drag, scratch.tangents, scratch.held)
+    evaluate_forces(contacts, bearings, turned, scratch)
     for i in range(a.size):
         a[i] = scratch.load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
     blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
@@ -182,7 +181,7 @@ def _start_segment(
     for k in range(scratch.powers.size):
         scratch.powers_before[k] = scratch.powers[k]
     for k in range(c):
-        scratch.force_before[k] = laws[k, FORCE]
+        scratch.force_before[k] = scratch.laws[k, FORCE]
     return stored_in(dynamics, matrices.connector_stiffness[slot], scratch)
 
 
@@ -288,31 +287,13 @@ def _contact_response(
         rate[k] = scratch.dv0[k] + moved * da[k] - scratch.slip[k]
     for k in range(c, delta.size):
         delta[k] = scratch.dq0[k] + displaced * da[k]
-    settled = solve_contact_forces(
-        contacts,
-        bearings,
-        turned,
-        delta,
-        rate,
-        flexibility,
-        displaced,
-        moved,
-        scratch.delta,
-        scratch.rate,
-        scratch.laws,
-        push,
-        scratch.drag,
-        scratch.tangents,
-        scratch.held,
-        scratch.jacobian,
-        scratch.residual,
-    )
+    converged = solve_contact_forces(contacts, bearings, turned, flexibility, displaced, moved, scratch)
     add_rows(matrices.contact[slot], push, -1.0, free)
     add_rows(matrices.contact_connectors[slot], push, -1.0, scratch.seen)
     for j in range(da.size):
         for k in range(push.size):
             da[j] -= flexibility[j, k] * push[k]
-    return settled
+    return converged
 
 
 @inner(fastmath=SUMS, forceinline=True)

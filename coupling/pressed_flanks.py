@@ -26,7 +26,7 @@ def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
         return forces
     rigid, stiffest = system.unresisted_motions
     q = np.linalg.solve(system.mean_stiffness + stiffest * rigid @ rigid.T, system.load)
-    stiffness = np.array([contact.drives * contact.contact.mean_stiffness for contact in system.contacts])
+    stiffness = system.drive_stiffness
     forces = stiffness * (system.contact_directions.T @ q)
     rounding = _NO_FORCE * stiffness * (np.abs(system.contact_directions.T) @ np.abs(q))
     return np.where(np.abs(forces) > rounding, forces, 0.0)

@@ -1,6 +1,6 @@
 """Settings of a time integration, and its output rows."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal, get_args
 
 import numpy as np
@@ -58,6 +58,33 @@ class TransientSettings:
     def samples(self) -> int:
         """Number of samples from ``record_from`` up to, not including, the end."""
         return int(np.ceil((self.duration - self.record_from) / self.sample_interval - 1e-6))
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """Record of a transient or a periodic response at even spacing; s samples, c contacts.
+
+    Attributes
+    ----------
+    times : ndarray, shape (s,)
+        [s].
+    displacement, velocity, acceleration : ndarray, shapes (s, k)
+        The output rows, see :class:`TransientOutputs`.
+    compression : ndarray, shape (s, c)
+        δ of each contact [m].
+    force : ndarray, shape (s, c)
+        Of each contact [N].
+    """
+
+    times: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    compression: FloatArray
+    force: FloatArray
+
+
+RECORDED = tuple(field.name for field in fields(Recorded))
 
 
 @dataclass(frozen=True)

@@ -46,8 +46,8 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     closing = np.zeros(system.size)
     for contact in system.contacts:
         if contact.drives:
-            first_touch = float(contact.contact.pairs(_phase(contact, time)).deviation.min())
-            gap = first_touch + contact.clearance + _error(contact, time)
+            first_touch = float(contact.contact.pairs(contact.phase_after(time)).deviation.min())
+            gap = first_touch + contact.clearance + contact.runout(time)
             closing += contact.contact.mean_stiffness * gap * contact.direction
     for bearing in system.nonlinear:
         # Bearings begin at their mean load: within their clearance the tangent would be singular.
@@ -107,12 +107,12 @@ def _out_of_balance(
     residual = system.load - system.stiffness @ q - penalty @ q
     tangent = system.stiffness + penalty
     for contact in system.contacts:
-        compression = float(contact.direction @ q) - _error(contact, time) - contact.clearance
-        law = contact.contact.kernel_arguments
-        force, slope = tooth_force(_phase(contact, time), compression, 0.0, *law)[:2]
+        compression = float(contact.direction @ q) - contact.runout(time) - contact.clearance
+        phase = contact.phase_after(time)
+        force, slope = tooth_force(phase, compression, 0.0, *contact.contact.kernel_arguments)[:2]
         push, rise = force * contact.direction, slope * contact.direction
         if contact.sliding is not None:
-            rubbing, rising = friction_push(contact, _phase(contact, time), compression, force, slope)
+            rubbing, rising = friction_push(contact, phase, compression, force, slope)
             push, rise = push + rubbing, rise + rising
         residual = residual - push
         tangent = tangent + np.outer(rise, contact.direction)
@@ -171,13 +171,3 @@ def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
         if np.abs(pushed).max(initial=0.0) > _PUSHED * np.linalg.norm(load.amplitude):
             velocity += rigid @ (pushed / (1j * frequency)).real
     return velocity
-
-
-def _phase(contact: ContactConnector, time: float) -> float:
-    """Phase of a contact just after a time [mesh periods]."""
-    return contact.phase + contact.rate * time + 1e-9
-
-
-def _error(contact: ContactConnector, time: float) -> float:
-    """Runout error of a contact [m]."""
-    return float(np.sum(contact.errors[:, 0] * np.cos(contact.errors[:, 1] * time + contact.errors[:, 2])))

@@ -181,14 +181,24 @@ class CoupledSystem:
         return not self.nonlinear and all(contact.sliding is None for contact in self.contacts)
 
     @cached_property
+    def drive_stiffness(self) -> FloatArray:
+        """Mean mesh stiffness of every drive flank, 0 of the others [N/m], shape (c,)."""
+        return np.array([one.contact.mean_stiffness * one.drives for one in self.contacts], dtype=np.float64)
+
+    @cached_property
+    def drive_damping(self) -> FloatArray:
+        """Mesh damping of every drive flank, 0 of the others [N s/m], shape (c,)."""
+        return np.array([one.contact.damping * one.drives for one in self.contacts], dtype=np.float64)
+
+    @cached_property
     def mean_stiffness(self) -> FloatArray:
         """K with every drive flank at its mean mesh stiffness [1/s²], shape (n, n)."""
-        return self.stiffness + self._contact_sum([c.contact.mean_stiffness for c in self.contacts])
+        return self.stiffness + (self.contact_directions * self.drive_stiffness) @ self.contact_directions.T
 
     @cached_property
     def mean_damping(self) -> FloatArray:
         """C with every drive flank's damping [1/s], shape (n, n)."""
-        return self.damping + self._contact_sum([c.contact.damping for c in self.contacts])
+        return self.damping + (self.contact_directions * self.drive_damping) @ self.contact_directions.T
 
     @cached_property
     def highest_frequency(self) -> float:
@@ -204,11 +214,6 @@ class CoupledSystem:
         """
         values, vectors = np.linalg.eigh(0.5 * (self.mean_stiffness + self.mean_stiffness.T))
         return vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)], float(values[-1])
-
-    def _contact_sum(self, values: Sequence[float]) -> FloatArray:
-        """Σ value d dᵀ over the flanks that drive."""
-        touching = np.array([v * c.drives for v, c in zip(values, self.contacts, strict=True)])
-        return np.asarray((self.contact_directions * touching) @ self.contact_directions.T)
 
     def _blocks(self, matrices: Sequence[FloatArray]) -> FloatArray:
         total = np.zeros((self.size, self.size))

@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from coupling.errors import TransientError
 from coupling.march_run import Checkpoint
-from coupling.marching import Block, march_blocks
-from coupling.settings import TransientOutputs, TransientSettings
+from coupling.marching import march_blocks
+from coupling.settings import RECORDED, Recorded, TransientOutputs, TransientSettings
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
 
@@ -87,28 +87,9 @@ class TransientFigures:
     seconds: float
 
 
-@dataclass(frozen=True)
-class TransientResult(TransientFigures):
-    """Record at even spacing, with the figures of the run; s samples, c contacts.
-
-    Attributes
-    ----------
-    times : ndarray, shape (s,)
-        [s].
-    displacement, velocity, acceleration : ndarray, shapes (s, k)
-        The output rows.
-    compression : ndarray, shape (s, c)
-        δ of each contact [m].
-    force : ndarray, shape (s, c)
-        [N].
-    """
-
-    times: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    compression: FloatArray
-    force: FloatArray
+@dataclass(frozen=True, eq=False)
+class TransientResult(TransientFigures, Recorded):
+    """Record of a transient at even spacing, with the figures of the run."""
 
 
 def simulate(
@@ -148,12 +129,7 @@ def simulate(
     figures = transient_figures(settings, blocks[-1].after)
     return TransientResult(
         **vars(figures),
-        times=_joined(blocks, "times"),
-        displacement=_joined(blocks, "displacement"),
-        velocity=_joined(blocks, "velocity"),
-        acceleration=_joined(blocks, "acceleration"),
-        compression=_joined(blocks, "compression"),
-        force=_joined(blocks, "force"),
+        **{name: np.concatenate([getattr(block, name) for block in blocks]) for name in RECORDED},
     )
 
 
@@ -185,11 +161,6 @@ def transient_figures(settings: TransientSettings, end: Checkpoint) -> Transient
         error=end.worst,
         seconds=end.seconds,
     )
-
-
-def _joined(blocks: list[Block], what: str) -> FloatArray:
-    parts = [getattr(block, what) for block in blocks]
-    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def _balance(change: float, totals: FloatArray, held: float) -> EnergyBalance:

@@ -13,7 +13,7 @@ numba is imported only when a response is computed.
 from coupling.periodic.base_period import common_period
 from coupling.periodic.continuation import response_curve
 from coupling.periodic.floquet import FloquetMultipliers
-from coupling.periodic.response import PeriodicRecord, PeriodicResponse
+from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.response_curve import Bifurcation, ResponseCurve
 from coupling.periodic.shooting import periodic_response
 from coupling.periodic.superposition import (
@@ -32,7 +32,6 @@ __all__ = [
     "ExcitationGroup",
     "FloquetMultipliers",
     "GroupMotion",
-    "PeriodicRecord",
     "PeriodicResponse",
     "ResponseCurve",
     "SuperposedResponse",

@@ -136,7 +136,6 @@ class LinearPart:
                 for other, row in enumerate(phasors):
                     row.append(-amplitude * np.exp(1j * phase) if other == k else 0.0)
         mean = self.mean @ self.system.contact_directions - [contact.clearance for contact in contacts]
-        stiffness = _reference_values(self.system, [contact.contact.mean_stiffness for contact in contacts])
         phasor = np.array(phasors, dtype=np.complex128).reshape(len(contacts), len(frequencies))
         turning = 1j * np.array(frequencies)
         own = np.zeros((len(frequencies) + 1, len(contacts)))
@@ -148,8 +147,8 @@ class LinearPart:
             source=np.concatenate([self.left[:, half:] @ directions / self.rate_unit, own]),
             displacement=real_rows(np.concatenate(displacement, axis=1)),
             rate=real_rows(np.concatenate(rate, axis=1)),
-            stiffness=stiffness,
-            damping=_reference_values(self.system, [contact.contact.damping for contact in contacts]),
+            stiffness=self.system.drive_stiffness,
+            damping=self.system.drive_damping,
             full_damping=np.array([contact.contact.damping for contact in contacts], dtype=np.float64),
         )
 
@@ -184,10 +183,8 @@ def linear_part(
         Where the reference has a load at an undamped natural frequency, or eigenvectors that do not separate.
     """
     directions = system.contact_directions
-    k_mean = _reference_values(system, [contact.contact.mean_stiffness for contact in system.contacts])
-    c_mean = _reference_values(system, [contact.contact.damping for contact in system.contacts])
-    stiffness = system.stiffness + (directions * k_mean) @ directions.T
-    damping = system.damping + (directions * c_mean) @ directions.T
+    k_mean, c_mean = system.drive_stiffness, system.drive_damping
+    stiffness, damping = system.mean_stiffness, system.mean_damping
     same = like is not None and all(map(np.array_equal, like.matrices, (stiffness, damping)))
     if like is not None and (same or _splits(like, stiffness, damping, directions)):
         basis, rigid = like.basis, like.rigid
@@ -236,12 +233,6 @@ def linear_part(
     return LinearPart(
         system, rate_unit, basis, rigid, eigenvalues, right, left, mean, frequencies, amplitudes, matrices
     )
-
-
-def _reference_values(system: CoupledSystem, values: list[float]) -> FloatArray:
-    """Values of the drive flanks; the others are apart in the reference."""
-    pairs = zip(values, system.contacts, strict=True)
-    return np.array([value if contact.drives else 0.0 for value, contact in pairs], dtype=np.float64)
 
 
 def _split(stiffness: FloatArray, damping: FloatArray, directions: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -13,37 +13,13 @@ from coupling.periodic.collocation import MONOMIALS, ORDER, weights_to
 from coupling.periodic.element_work import element_work
 from coupling.periodic.floquet import FloquetMultipliers
 from coupling.periodic.linear_part import LinearPart
-from coupling.settings import TransientOutputs
+from coupling.settings import Recorded, TransientOutputs
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
 _LOOKS = 16  # at each element for the peak
 _MAY_MISS = 0.02  # error of the peak of a force's polynomial, relative to its range in an element
-
-
-@dataclass(frozen=True, eq=False)
-class PeriodicRecord:
-    """One period at even spacing, s samples from t = 0, the last one spacing before the period; c contacts.
-
-    Attributes
-    ----------
-    times : ndarray, shape (s,)
-        [s].
-    displacement, velocity, acceleration : ndarray, shapes (s, k)
-        The rows asked for.
-    compression : ndarray, shape (s, c)
-        δ of each contact [m].
-    force : ndarray, shape (s, c)
-        [N].
-    """
-
-    times: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    compression: FloatArray
-    force: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +98,7 @@ class PeriodicResponse:
         _, force = self._contacts(times, self._amplitudes(times))
         return np.asarray(np.maximum(force.max(axis=0, initial=0.0), trace.force.max(axis=(0, 1))))
 
-    def record(self, outputs: TransientOutputs, samples: int) -> PeriodicRecord:
+    def record(self, outputs: TransientOutputs, samples: int) -> Recorded:
         """Rows of coordinates, rates and accelerations over the period, and the contacts.
 
         Parameters
@@ -143,7 +119,7 @@ class PeriodicResponse:
         a = system.load - q @ system.stiffness.T - v @ system.damping.T - force @ system.contact_directions.T
         for load in system.harmonic_loads:
             a = a + (np.exp(1j * load.frequency * times)[:, None] * load.amplitude).real
-        return PeriodicRecord(
+        return Recorded(
             times=times,
             displacement=q @ (outputs.displacement @ self.recovery).T,
             velocity=v @ (outputs.velocity @ self.recovery).T,

@@ -71,14 +71,13 @@ def power_density(
     CouplingError
         For a length or an overlap that the record does not allow.
     """
-    starts = _starts(signal.shape[-1], length, round(length * (1.0 - overlap)))
-    spectra = (amplitude_spectrum(signal[..., start : start + length], interval, window) for start in starts)
-    squares = 0.5 / len(starts) * np.asarray(sum(spectrum.amplitude[..., 1:] ** 2 for spectrum in spectra))
-    frequencies = np.asarray(np.fft.rfftfreq(length, interval)[1:], dtype=np.float64)
-    if length % 2 == 0:
-        squares[..., -1] *= 2.0  # the line at half the sampling rate alternates: its mean square is its own square
-    density = squares / (_NOISE_BANDWIDTH[window] * frequencies[0])
-    return PowerDensity(frequencies, density, len(starts), window)
+    from scipy.signal import welch
+
+    step = round(length * (1.0 - overlap))
+    stretches = len(_starts(signal.shape[-1], length, step))
+    shape = "boxcar" if window == "uniform" else window
+    frequencies, density = welch(signal, 1.0 / interval, shape, length, length - step, detrend="constant")
+    return PowerDensity(frequencies[1:], density[..., 1:], stretches, window)
 
 
 @dataclass(frozen=True)
