@@ -63,7 +63,7 @@ def modal_rows(machine: CoupledMachine, rotor: str) -> ModalRows:
 
 @dataclass(frozen=True)
 class ModalRecord:
-    """Recorded modal motion at even spacing, s samples.
+    """Modal motion on record at even spacing, s samples.
 
     Attributes
     ----------

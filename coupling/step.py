@@ -1,6 +1,6 @@
 """Newmark step matrices: the coupled system as arrays for the kernels, and the matrices of each step size."""
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,7 @@ from coupling.kernel_arrays import (
     StepMatrices,
 )
 from coupling.low_rank import common_span
+from coupling.settings import TransientOutputs
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
 
@@ -28,15 +29,6 @@ IntArray = npt.NDArray[np.int64]
 
 _WIDTH = 16  # rows of a vectorised loop
 _FOLLOWS = {"time": BY_TIME, "turning": BY_TURNING, "unbalance": BY_UNBALANCE}
-
-
-class _Rows(Protocol):
-    @property
-    def displacement(self) -> FloatArray: ...
-    @property
-    def velocity(self) -> FloatArray: ...
-    @property
-    def acceleration(self) -> FloatArray: ...
 
 
 class KernelArrays(NamedTuple):
@@ -48,7 +40,7 @@ class KernelArrays(NamedTuple):
     outputs: Outputs
 
 
-def kernel_arrays(system: CoupledSystem, outputs: _Rows, beta: float, gamma: float) -> KernelArrays:
+def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float, gamma: float) -> KernelArrays:
     """Arrays of the system and of its output rows."""
     rows = (np.ascontiguousarray(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
     bearings = bearing_arrays(system.nonlinear)

@@ -3,6 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
+from coupling.connector import SpeedTable
 from coupling.kernel_arrays import Bearings, Contacts, Dynamics
 
 FloatArray = npt.NDArray[np.float64]
@@ -37,11 +38,9 @@ def stored_energy(
 
 def _of_connectors(dynamics: Dynamics, q: FloatArray, rate: float) -> float:
     """½ qᵀ U K_t Uᵀ q, K_t linear between the speeds at which it is given."""
-    rates, tied = dynamics.connector_rates, dynamics.connectors @ q
-    at = int(np.clip(np.searchsorted(rates, rate) - 1, 0, rates.size - 2))
-    part = float(np.clip((rate - rates[at]) / (rates[at + 1] - rates[at]), 0.0, 1.0))
-    stiffness = (1.0 - part) * dynamics.connector_stiffness[at] + part * dynamics.connector_stiffness[at + 1]
-    return float(0.5 * tied @ stiffness @ tied)
+    law = SpeedTable(dynamics.connector_rates, dynamics.connector_stiffness, dynamics.connector_damping)
+    tied = dynamics.connectors @ q
+    return float(0.5 * tied @ law.at(rate)[0] @ tied)
 
 
 def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, turned: float) -> float:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -127,10 +128,8 @@ def simulate(
     marched = march_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
     blocks = list(marched)
     figures = transient_figures(settings, blocks[-1].after)
-    return TransientResult(
-        **vars(figures),
-        **{name: np.concatenate([getattr(block, name) for block in blocks]) for name in RECORDED},
-    )
+    record: dict[str, Any] = {name: np.concatenate([getattr(block, name) for block in blocks]) for name in RECORDED}
+    return TransientResult(**vars(figures), **record)
 
 
 def transient_figures(settings: TransientSettings, end: Checkpoint) -> TransientFigures:
