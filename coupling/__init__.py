@@ -28,7 +28,7 @@ from coupling.contact_state import (
     unloaded_contact,
 )
 from coupling.decimation import Decimation, decimation
-from coupling.description import Driving, Machine, Shaft, ShaftGear
+from coupling.description import Machine
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
 from coupling.exact_march import march_method
 from coupling.excitation import ExcitationLine, excitation_lines
@@ -43,6 +43,7 @@ from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_ro
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
 from coupling.motion import Motion
 from coupling.mounted import GearMesh, MountedBearing, MountedGear
+from coupling.parts import Driving, Shaft, ShaftGear
 from coupling.periodic import (
     LONGEST_COMMON_PERIOD,
     ExcitationGroup,

@@ -5,7 +5,7 @@ pairs from the torques that enter and leave the train. Parts that cannot form a 
 solved. :meth:`Machine.assemble` reduces shafts and housing to modes (component mode synthesis) and couples them.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import copysign, hypot
@@ -13,13 +13,11 @@ from math import copysign, hypot
 import numpy as np
 import numpy.typing as npt
 
-from coupling.base_motion import BaseMotion
 from coupling.bearing_law import RollingLaw
 from coupling.component import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.errors import CouplingError
 from coupling.gear_train import (
     LARGEST_IMBALANCE,
-    LARGEST_OFFSET,
     GearedShafts,
     GearTrain,
     Output,
@@ -28,126 +26,35 @@ from coupling.gear_train import (
     require_one_plane,
     shared_torques,
 )
-from coupling.gears import Gear, GearPairGeometry
+from coupling.gears import GearPairGeometry
 from coupling.gears.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.histories import histories, transient_outputs
-from coupling.loads import AnyTorque, BowReactions, Drive, Torque, Unbalance, constant_torques
+from coupling.loads import BowReactions, Torque, Unbalance, constant_torques
 from coupling.machine import CoupledMachine, couple
 from coupling.motion import Motion
 from coupling.mounted import GearMesh, MountedBearing, MountedGear
+from coupling.parts import (
+    CONSTANT,
+    Driving,
+    Shaft,
+    ShaftGear,
+    pair_label,
+    require_names,
+    require_seats,
+    require_stations,
+)
 from coupling.settings import TransientSettings
 from coupling.shaft_dashpots import ShaftDashpots
 from coupling.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
 from coupling.transient import simulate
 from housing import HousingModes
-from rotors import Bow, Coupling, Disc, Rotor, bow_shape, modal_rotor
-from rotors import Unbalance as ShaftUnbalance
+from rotors import Coupling, Disc, Rotor, bow_shape, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]
 
 _LATERAL_LIMIT = 2.0 * np.pi * 8000.0  # of the bending modes of a shaft that says nothing of its own [rad/s]
 _SAME_STATION = 1e-6  # part of the rotor's length
 _NO_TORQUE = 1e-9  # part of the input torque below which a gear pair carries none but for rounding
-
-
-@dataclass(frozen=True)
-class Shaft:
-    """A rotor on its axis in the machine, without its gears.
-
-    Attributes
-    ----------
-    rotor : rotors.Rotor
-        Its name is the shaft's.
-    axis : tuple of float
-        x and y of the shaft's line [m].
-    start : float
-        z of the left end [m].
-    damping_ratio : float
-        Modal damping ratio of the shaft's own material and fits, on every mode of the free shaft.
-    unbalances : sequence of rotors.Unbalance
-    bow : rotors.Bow, optional
-    frequency_limit : float, optional
-        Highest natural frequency of the retained bending modes [rad/s]; higher modes respond statically. 8 kHz by
-        default.
-    mode_count : int, optional
-        Number of retained modes of each kind, in place of the limit.
-    """
-
-    rotor: Rotor
-    axis: tuple[float, float] = (0.0, 0.0)
-    start: float = 0.0
-    damping_ratio: float = 0.0
-    unbalances: Sequence[ShaftUnbalance] = ()
-    bow: Bow | None = None
-    frequency_limit: float | None = None
-    mode_count: int | None = None
-
-    @property
-    def name(self) -> str:
-        """Name of the rotor."""
-        return self.rotor.name
-
-
-@dataclass(frozen=True)
-class ShaftGear:
-    """A gear on a shaft.
-
-    Attributes
-    ----------
-    gear : coupling.gears.Gear
-    shaft : str
-        Name of the shaft.
-    at : float
-        Distance of the middle of the face from the shaft's left end [m].
-    inertia : tuple of float, optional
-        Mass [kg], polar and diametral moment of inertia [kg m²], in place of those of the gear's geometry; zeros where
-        a disc of the rotor stands for the gear.
-    """
-
-    gear: Gear
-    shaft: str
-    at: float
-    inertia: tuple[float, float, float] | None = None
-
-    @property
-    def name(self) -> str:
-        """Name of the gear."""
-        return self.gear.name
-
-    @property
-    def mass_and_inertias(self) -> tuple[float, float, float]:
-        """Mass [kg], polar and diametral moment of inertia [kg m²]."""
-        if self.inertia is not None:
-            return self.inertia
-        return self.gear.mass, self.gear.polar_inertia, self.gear.diametral_inertia
-
-
-@dataclass(frozen=True)
-class Driving:
-    """Excitation of a machine beside its constant torques.
-
-    Attributes
-    ----------
-    torques : sequence of coupling torques, or None
-        In place of the constant torques that follow from the machine's torque; with stations on their rotors.
-    drives : sequence of Drive
-        Stations of the torques that accelerate a train.
-    rates : tuple of float
-        Lowest and highest speed of the run, as parts of the machine's speed.
-    base : BaseMotion, optional
-        Motion of the ground.
-    gravity : sequence of float, optional
-        Acceleration of free fall along x, y, z [m/s²].
-    """
-
-    torques: Sequence[AnyTorque] | None = None
-    drives: Sequence[Drive] = ()
-    rates: tuple[float, float] = (1.0, 1.0)
-    base: BaseMotion | None = None
-    gravity: Sequence[float] | None = None
-
-
-CONSTANT = Driving()
 
 
 @dataclass(frozen=True)
@@ -196,13 +103,13 @@ class Machine:
     torque_at: float = 0.0
 
     def __post_init__(self) -> None:
-        _require_names(self)
-        _require_stations(self)
-        _require_seats(self, self.housing_component)
+        require_names(self)
+        require_stations(self)
+        require_seats(self, self.housing_component)
         _ = self.speeds, self.pair_geometries, self.constant_torques
         for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
             places = [self.shaft(one.shaft).start + one.at for one in self._gears_of(pair)]
-            require_one_plane(_label(pair), places, geometry.face_width)
+            require_one_plane(pair_label(pair), places, geometry.face_width)
         self._require_power_flow()
         self._require_thrust_carried()
 
@@ -226,7 +133,7 @@ class Machine:
         names = [shaft.name for shaft in self.shafts]
         if not self.gear_pairs:
             return dict.fromkeys(names, self.speed)
-        ratios = self.train.require_turning(names, [_label(pair) for pair in self.gear_pairs])
+        ratios = self.train.require_turning(names, [pair_label(pair) for pair in self.gear_pairs])
         return {name: self.speed * float(ratios[name]) for name in names}
 
     @cached_property
@@ -462,13 +369,13 @@ class Machine:
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             if sense * torque < -least:
                 raise CouplingError(
-                    f"{_label(pair)}: {-sense * torque:g} N m flow from {pair.driven!r} to {pair.driver!r}; expected "
-                    "power to flow from driver to driven; swap the two names"
+                    f"{pair_label(pair)}: {-sense * torque:g} N m flow from {pair.driven!r} to {pair.driver!r}; "
+                    "expected power to flow from driver to driven; swap the two names"
                 )
             if torque < -least and pair.backlash_of(geometry) is None:
                 raise CouplingError(
-                    f"{_label(pair)}: expected a backlash: the torque is negative, so the driven gear drives by the "
-                    "back flanks, which never meet without one"
+                    f"{pair_label(pair)}: expected a backlash: the torque is negative, so the driven gear drives by "
+                    "the back flanks, which never meet without one"
                 )
 
     def _component(self, shaft: Shaft, reach: float, progress: Callable[[str], None]) -> RotorComponent:
@@ -517,79 +424,6 @@ class Machine:
         if inertia == 0.0:
             inertia = self.rotor(gear.shaft).polar_inertia
         return inertia if inertia > 0.0 else gear.gear.polar_inertia
-
-
-def _label(pair: GearPair) -> str:
-    return f"gear pair {pair.driver!r} -> {pair.driven!r}"
-
-
-def _require_names(machine: Machine) -> None:
-    """Refuse names given twice, unknown names, and gears that are a pair twice or with themselves."""
-    kinds: Mapping[str, Sequence[str]] = {
-        "shaft": [shaft.name for shaft in machine.shafts],
-        "gear": [gear.name for gear in machine.gears],
-        "bearing": [mounted.bearing.name for mounted in machine.bearings],
-    }
-    for kind, names in kinds.items():
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise CouplingError(f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once")
-    if not machine.shafts:
-        raise CouplingError("a machine without shafts; expected at least one")
-    needed = [(f"bearing {one.bearing.name!r}", "shaft", one.rotor) for one in machine.bearings]
-    needed += [(f"gear {one.name!r}", "shaft", one.shaft) for one in machine.gears]
-    needed += [(_label(pair), "gear", name) for pair in machine.gear_pairs for name in (pair.driver, pair.driven)]
-    needed += [("an output", "shaft", one.shaft) for one in machine.outputs]
-    for where, kind, name in needed:
-        if name not in kinds[kind]:
-            known = ", ".join(map(repr, kinds[kind])) or "none"
-            raise CouplingError(f"{where}: no {kind} {name!r}; expected one of {known}")
-    gear_shafts = {gear.name: gear.shaft for gear in machine.gears}
-    for number, pair in enumerate(machine.gear_pairs):
-        if any({pair.driver, pair.driven} == {one.driver, one.driven} for one in machine.gear_pairs[:number]):
-            raise CouplingError(f"{_label(pair)} is given twice; expected gears that are not yet a pair")
-        if gear_shafts[pair.driver] == gear_shafts[pair.driven]:
-            raise CouplingError(
-                f"{_label(pair)}: both gears are on shaft {gear_shafts[pair.driver]!r}; expected the driven one on "
-                "another"
-            )
-
-
-def _require_stations(machine: Machine) -> None:
-    """Refuse gears, bearings and torques beyond the ends of their shafts."""
-    stations = [(f"gear {one.name!r}", one.shaft, one.at) for one in machine.gears]
-    stations += [(f"bearing {one.bearing.name!r}", one.rotor, one.bearing.at) for one in machine.bearings]
-    stations += [("an output", one.shaft, one.at) for one in machine.outputs if one.at is not None]
-    if machine.gear_pairs:
-        stations.append(("the input torque", machine.train.pairs[0].driver, machine.torque_at))
-    for what, shaft, at in stations:
-        machine.shaft(shaft).rotor.require_on_shaft(what, at)
-
-
-def _require_seats(machine: Machine, housing: HousingComponent | None) -> None:
-    """Refuse bearings in seats that the housing does not have or that are off their shaft, and pedestals in seats."""
-    seats = () if housing is None else tuple(housing.seats)
-    for mounted in machine.bearings:
-        if mounted.seat is not None and mounted.bearing.pedestal is not None:
-            raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: expected no pedestal under a bearing in seat {mounted.seat!r}, "
-                "which moves with the housing"
-            )
-        if mounted.seat is not None and mounted.seat not in seats:
-            known = ", ".join(map(repr, seats)) or "none"
-            raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing; expected one of {known}, "
-                "or None for the ground"
-            )
-        if mounted.seat is None or housing is None or mounted.seat not in housing.seat_axes:
-            continue
-        centre, axis = housing.seat_axes[mounted.seat], machine.shaft(mounted.rotor).axis
-        offset = hypot(axis[0] - centre[0], axis[1] - centre[1])
-        if offset > LARGEST_OFFSET:
-            raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: seat {mounted.seat!r} is {1e3 * offset:.6g} mm off the axis of "
-                f"shaft {mounted.rotor!r}; expected a seat on it"
-            )
 
 
 def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:
