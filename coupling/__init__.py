@@ -1,25 +1,15 @@
-"""The coupling: housing modes, rotor modes and gears in one modal system, and its motion.
+"""Coupled dynamics: a geared machine of housing modes, rotor modes, bearings and gears, and its motion.
 
-What the room offers:
-
-- :func:`housing_component`, :func:`rotor_component` -- components in mass-normalised coordinates.
-- :func:`couple` with :class:`MountedBearing`, :class:`GearMesh` and the loads of :mod:`coupling.loads` -- the
-  :class:`CoupledMachine` and its :class:`CoupledSystem`; every tie is a connector, see :mod:`coupling.connector`.
-- :class:`RollingLaw`, :class:`GapLaw` -- bearings with laws of their own, beside the linear ones of their tangents.
-- :func:`coupled_modes` -- complex natural modes about the mean contact, or that of an instant (:func:`contact_at`),
-  with energies by component, bearing and gear mesh; :func:`stability` -- which grow, and what feeds them.
-- :func:`system_campbell` -- these over speed, with the crossings of shaft and mesh orders.
-- :func:`mesh_error_response`, :func:`unbalance_response`, :func:`sensor_force_response`, :func:`receptance` -- over
-  frequency, from what excites to mesh forces, bearing forces and sensors.
-- :func:`static_equilibrium`, :func:`simulate` -- where it rests, and how it moves from there.
-- :mod:`coupling.periodic` -- the steady state directly: :func:`periodic_response`, its Floquet multipliers, and
-  :func:`response_curve` over speed.
-- :func:`transient_outputs`, :func:`histories`, :func:`amplitude_spectrum` -- what the sensors, gears and bearings
-  show; :func:`modal_rows` -- the same motion by each rotor's modes.
-- :mod:`coupling.signature` -- what the lines of a spectrum are and where they come from; orders, sidebands, levels.
+- :class:`Machine` -- shafts, gears, gear pairs, bearings and a housing; it derives speeds, torques and mesh geometry,
+  and refuses parts that cannot form a machine. :func:`couple` assembles a :class:`CoupledMachine` of components.
+- :func:`static_equilibrium` -- rest position under the mean load, at which the mean mesh stiffness is taken.
+- :func:`coupled_modes`, :func:`stability`, :func:`system_campbell`, :func:`receptance` -- linear dynamics about it.
+- :func:`simulate` -- transient by Newmark's method or exponential collocation.
+- :func:`periodic_response`, :func:`response_curve` -- steady state by shooting, and its continuation over speed.
+- :func:`amplitude_spectrum` and :mod:`coupling.signature` -- spectra, orders, sidebands, transfer paths.
 - :mod:`coupling.gears` -- tooth geometry, mesh stiffness and the contact law.
 
-numba is imported only when one of :func:`simulate`, :func:`static_equilibrium` and :mod:`coupling.periodic` runs.
+numba is imported only when :func:`simulate`, :func:`static_equilibrium` or :mod:`coupling.periodic` runs.
 """
 
 from coupling.base_motion import BaseHarmonic, BaseHistory, BaseMotion
@@ -38,13 +28,13 @@ from coupling.contact_state import (
     unloaded_contact,
 )
 from coupling.decimation import Decimation, decimation
-from coupling.description import Driving, Machine, Shaft, ShaftGear
+from coupling.description import Machine
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
 from coupling.exact_march import march_method
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.free_speed import free_speed
 from coupling.gear_train import Output
-from coupling.histories import Histories, Recorded, histories, nothing_recorded, transient_outputs
+from coupling.histories import Histories, histories, nothing_recorded, transient_outputs
 from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
 from coupling.machine import CoupledMachine, couple
 from coupling.march_run import Checkpoint, sample_times
@@ -53,6 +43,7 @@ from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_ro
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
 from coupling.motion import Motion
 from coupling.mounted import GearMesh, MountedBearing, MountedGear
+from coupling.parts import Driving, Shaft, ShaftGear
 from coupling.periodic import (
     LONGEST_COMMON_PERIOD,
     ExcitationGroup,
@@ -67,7 +58,7 @@ from coupling.periodic import (
     superposed_response,
 )
 from coupling.receptance import receptance, resonance_grid
-from coupling.settings import TransientOutputs, TransientSettings
+from coupling.settings import Recorded, TransientOutputs, TransientSettings
 from coupling.shaft_dashpots import ShaftDashpots
 from coupling.shares import ModeShares, Part
 from coupling.spectrum import (

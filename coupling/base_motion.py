@@ -1,10 +1,10 @@
-"""A base that moves: the coordinates are relative to it, and every mass is held back by its acceleration.
+"""Base excitation and gravity: inertia loads on coordinates that are relative to a moving base.
 
 With u = q + R s, R the six rigid motions of the base about a point, the coordinates are loaded by -P a, where
 P = ∫ φ R dm is their participation and a the acceleration, three components along and three about x, y and z.
-Rotations of the base are small: what is quadratic in them, and Coriolis forces on the vibration, are left out. Kept is
-the gyroscopic moment of a shaft that turns at Ω on a base that tilts at the rates ω_x and ω_y: Ω ∫ β dI_p ω_x on the
-x plane and Ω ∫ β dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, by P g.
+Rotations of the base are small: terms quadratic in them, and Coriolis forces on the vibration, are neglected. The
+gyroscopic moment of a shaft that turns at Ω on a base that tilts at the rates ω_x and ω_y is kept: Ω ∫ β dI_p ω_x on
+the x plane and Ω ∫ β dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, by P g.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 Point = tuple[float, float, float]
 
-_RATE_PIECES = 16  # straight pieces that stand for the parabola of a rate between two accelerations
+_RATE_PIECES = 16  # straight pieces in place of the parabola of a velocity between two accelerations
 
 
 @dataclass(frozen=True)
@@ -49,12 +49,12 @@ class BaseHistory:
 
 @dataclass(frozen=True)
 class BaseMotion:
-    """How the base moves, at a point of it [m] and about axes through this point.
+    """Motion of the base: acceleration of a point of it [m], and angular acceleration about axes through this point.
 
     Attributes
     ----------
     parts : tuple
-        That add up.
+        Their accelerations add up.
     point : tuple of float
     """
 
@@ -62,7 +62,7 @@ class BaseMotion:
     point: Point = (0.0, 0.0, 0.0)
 
     def acceleration(self, times: FloatArray) -> FloatArray:
-        """Shape (s, 6)."""
+        """Acceleration of the base at some times [m/s², rad/s²], shape (s, 6)."""
         total = np.zeros((len(times), 6))
         for part in self.parts:
             if isinstance(part, BaseHarmonic):
@@ -72,7 +72,7 @@ class BaseMotion:
         return total
 
     def acceleration_at(self, position: FloatArray, direction: FloatArray, times: FloatArray) -> FloatArray:
-        """Along a direction at a place that moves with the base [m/s²], shape (s,)."""
+        """Acceleration along a direction at a place that moves with the base [m/s²], shape (s,)."""
         moment = np.cross(np.subtract(position, self.point), direction)
         return np.asarray(self.acceleration(times) @ np.concatenate([direction, moment]))
 
@@ -80,7 +80,7 @@ class BaseMotion:
 def base_loads(
     components: Sequence[Component], speeds: Sequence[float], base: BaseMotion, places: dict[str, Point]
 ) -> tuple[list[HarmonicLoad], list[TimedLoad]]:
-    """Loads of a base that moves; ``places`` are those of pedestals [m]."""
+    """Inertia loads of a moving base; ``places`` are the positions of the pedestals [m]."""
     held = participations(components, base.point, places)
     tilting = _gyroscopic(components, speeds)
     harmonic: list[HarmonicLoad] = []
@@ -98,17 +98,17 @@ def base_loads(
 
 
 def gravity_load(components: Sequence[Component], gravity: Sequence[float], places: dict[str, Point]) -> FloatArray:
-    """Load of the weight under an acceleration along x, y, z [m/s²], shape (n,)."""
+    """Weight under an acceleration along x, y, z [m/s²], shape (n,)."""
     return participations(components, (0.0, 0.0, 0.0), places)[:, :3] @ np.array(gravity, dtype=np.float64)
 
 
 def participations(components: Sequence[Component], point: Point, places: dict[str, Point]) -> FloatArray:
-    """P of all coordinates in the motions of a base about a point [√kg, √kg m], shape (n, 6).
+    """Participation P of all coordinates in rigid motions of a base about a point [√kg, √kg m], shape (n, 6).
 
     Raises
     ------
     CouplingError
-        Where a component does not know its own.
+        Where a component has no participation.
     """
     rows = []
     for component in components:
@@ -128,7 +128,7 @@ def participations(components: Sequence[Component], point: Point, places: dict[s
 
 
 def _about(participation: FloatArray, point: Point) -> FloatArray:
-    """Participation about the origin as that about a point: a turn about it is one about the origin, less p × α."""
+    """Participation about a point from that about the origin."""
     x, y, z = point
     # α × (r - p) = α × r + p × α.
     moved = participation.copy()
@@ -153,7 +153,7 @@ def _of_rotor(rotor: RotorComponent, point: Point) -> FloatArray:
 
 
 def _gyroscopic(components: Sequence[Component], speeds: Sequence[float]) -> FloatArray:
-    """Load of a base that turns at one rad/s about each axis, in the columns of the rotations, shape (n, 6)."""
+    """Gyroscopic load of a base that turns at 1 rad/s about each axis, in the rotations' columns, shape (n, 6)."""
     rows = []
     for component, speed in zip(components, speeds, strict=True):
         whole = np.zeros((component.size, 6))
@@ -166,7 +166,7 @@ def _gyroscopic(components: Sequence[Component], speeds: Sequence[float]) -> Flo
 
 
 def _rates(part: BaseHistory) -> tuple[FloatArray, FloatArray]:
-    """Velocities that a table of accelerations has led to from rest at its first time."""
+    """Velocities from a table of accelerations, at rest at its first time."""
     gaps = np.arange(_RATE_PIECES) / _RATE_PIECES
     times = np.append((part.times[:-1, None] + np.diff(part.times)[:, None] * gaps).ravel(), part.times[-1])
     values = np.column_stack([np.interp(times, part.times, column) for column in part.values.T])

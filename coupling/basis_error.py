@@ -1,15 +1,15 @@
-"""The error that the modal basis leaves in responses, told by two bases of one machine.
+"""Modal truncation error of frequency responses, estimated from two modal bases of one machine.
 
 The error of a basis is estimated from another basis that differs from it by the part least well represented. Both are
-coupled to the same bearings, teeth and loads, and driven alike: with the response H by the one and H' by the other at a
-frequency w, the relative error of a sensor's line there is about
+coupled to the same bearings, teeth and loads, and excited alike: with the response H by the one and H' by the other at
+a frequency w, the relative error of a sensor's line there is about
 
     u(w) = max(2 max |H'(v) - H(v)| / |H(v)|, 0.5 %),        v within 1.5 % of w,
 
 the norms over all excitations that make lines. The difference of whole machines holds the shift of a resonance too,
-which is what makes large errors of small ones. The neighbourhood is for lines that sit where the two curves happen to
-cross; the factor of two is for directions in which the other basis is no better; and the least value for what both
-bases have in common, such as the one damping ratio that stands for all modes above the limit.
+which turns small errors into large ones. The neighbourhood covers lines at frequencies where the two curves cross by
+chance; the factor of two covers directions in which the other basis is no better; and the least value covers errors
+that both bases share, such as the one damping ratio of all modes above the limit.
 """
 
 from collections.abc import Sequence
@@ -21,25 +21,24 @@ import numpy.typing as npt
 from coupling.contact_state import mean_contact
 from coupling.machine import CoupledMachine
 from coupling.receptance import response
-from coupling.transmissibility import sensor_rows
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_AROUND = np.linspace(-0.015, 0.015, 7)  # parts of a frequency at which the two bases are compared
+_NEIGHBOURHOOD = np.linspace(-0.015, 0.015, 7)  # relative frequencies at which the two bases are compared
 _SAFETY = 2.0
 _LEAST = 0.005
-_HIGHEST = 10.0  # an error of ten times the line says all there is to say
+_HIGHEST = 10.0  # errors beyond ten times the line carry no information
 
 
 @dataclass(frozen=True)
 class BasisError:
-    """Two bases of one machine.
+    """Modal truncation error of a machine, by the same machine on another basis.
 
     Attributes
     ----------
     machine : CoupledMachine
-        On the basis whose error is asked for.
+        On the basis whose error is estimated.
     other : CoupledMachine
         The same machine on another basis, its sensors, meshes and bearings in the same order.
     """
@@ -48,7 +47,7 @@ class BasisError:
     other: CoupledMachine
 
     def at(self, frequencies: Sequence[float] | FloatArray) -> dict[str, FloatArray]:
-        """Relative error of each sensor's motion at these frequencies.
+        """Relative error of the motion of each sensor.
 
         Parameters
         ----------
@@ -58,7 +57,7 @@ class BasisError:
         Returns
         -------
         dict of str to ndarray, shape (f,)
-            By sensor; between 0.005 and 10.
+            By name of the sensor; between 0.005 and 10.
 
         Raises
         ------
@@ -68,9 +67,9 @@ class BasisError:
             Where an undamped mode is driven at its own frequency.
         """
         asked = np.asarray(frequencies, dtype=np.float64)
-        if not asked.size or not sensor_rows(self.machine):
-            return {name: np.zeros(asked.size) for name in sensor_rows(self.machine)}
-        w = (asked[:, None] * (1.0 + _AROUND)).ravel()
+        if not asked.size or not self.machine.sensor_rows:
+            return {name: np.zeros(asked.size) for name in self.machine.sensor_rows}
+        w = (asked[:, None] * (1.0 + _NEIGHBOURHOOD)).ravel()
         ours, others = _sensor_responses(self.machine, w), _sensor_responses(self.other, w)
         found = {}
         for name, motion in ours.items():
@@ -86,11 +85,11 @@ def _sensor_responses(machine: CoupledMachine, frequencies: FloatArray) -> dict[
     state = mean_contact(machine.system)
     loads = np.broadcast_to(_excitations(machine), (len(frequencies), *_excitations(machine).shape))
     moved = response(machine.system, loads, frequencies, state)
-    return {name: moved @ row for name, row in sensor_rows(machine).items()}
+    return {name: moved @ row for name, row in machine.sensor_rows.items()}
 
 
 def _excitations(machine: CoupledMachine) -> FloatArray:
-    """Loads that make lines, shape (e, n): along each line of action; without gears, of each shaft on its bearings."""
+    """Unit loads of the excitations, shape (e, n): along each line of action; without gears, at each bearing."""
     drives = [contact.direction for contact in machine.system.contacts if contact.drives]
     if drives:
         return np.array(drives)

@@ -1,4 +1,4 @@
-"""Nonlinear bearings as the plain arrays that their compiled law takes."""
+"""Rolling-bearing and gap laws as plain arrays for the compiled kernels."""
 
 from collections.abc import Iterator, Sequence
 
@@ -17,7 +17,7 @@ Row = tuple[int, int, tuple[float, ...], tuple[float, float], FloatArray]
 
 
 def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
-    """Lay out the laws of some bearings, see `coupling.kernel_arrays.Bearings`."""
+    """Arrays of the laws of some bearings, see :class:`coupling.kernel_arrays.Bearings`."""
     b = len(connectors)
     linear, fixed, preload = np.zeros((b, 5, 5)), np.zeros((b, 5)), np.zeros(b)
     rows: list[Row] = []

@@ -1,8 +1,8 @@
-r"""Laws of bearings that are not linear, compiled: deflections and the cage's angle in, forces and tangents out.
+r"""Rolling-bearing law, compiled: forces and tangent stiffness by the ring's deflections and the cage angle.
 
-Of a ball at the azimuth ψ the law is that of :mod:`rotors.rolling.ball_contacts`, of a roller's slice that of
-:mod:`rotors.rolling.roller_contacts`, with the energy's slope by ψ besides, which is what the turning cage does to the
-balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the ring's,
+The law of a ball at the azimuth ψ is that of :mod:`rotors.rolling.ball_contacts`, the law of a roller's slice that of
+:mod:`rotors.rolling.roller_contacts`. Added is the slope of the energy over ψ, by which the rotating cage does work on
+the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the ring's,
 
     ∂U/∂ψ = f_r ∂m_r/∂ψ + f_z ∂m_z/∂ψ.
 
@@ -26,7 +26,7 @@ FloatArray = npt.NDArray[np.float64]
 def _balls(
     shape: FloatArray, count: int, angle: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
-    """Add a row of balls; its energy [J] and the slope of that by the cage's angle."""
+    """Add the forces and tangent of a row of balls; returns its energy [J] and the slope of it over the cage angle."""
     distance, start_r, start_z, before = shape[0], shape[1], shape[2], shape[3]
     reach, place, stiffness = shape[4], shape[5], shape[6]
     energy, slope = 0.0, 0.0
@@ -70,7 +70,7 @@ def _rollers(
     force: FloatArray,
     tangent: FloatArray,
 ) -> tuple[float, float]:
-    """Add a row of rollers cut into slices (n, 2), the place of each along the axis and the gap of its profile."""
+    """Add the forces and tangent of a row of rollers in slices (n, 2): position along the axis, gap of the profile."""
     clearance, stiffness, number = shape[0], shape[1], int(shape[2])
     energy, slope = 0.0, 0.0
     for roller in range(count):
@@ -113,7 +113,7 @@ def _rollers(
 
 @inner()
 def _gap(shape: FloatArray, q: FloatArray, force: FloatArray, tangent: FloatArray) -> float:
-    """Add a gap that closes; its energy [J]."""
+    """Add the force and tangent of a closed gap; returns its energy [J]."""
     unit, depth, exponent, gap = shape[0], shape[1], shape[2], shape[3]
     radius = math.sqrt(q[0] * q[0] + q[1] * q[1])
     deep = radius - gap
@@ -145,7 +145,7 @@ def bearing_force(
     energy : float
         [J].
     slope : float
-        Its derivative by the turned time [J/s]: the power of the turning cage at nominal speed.
+        Its derivative by the turned time [J/s]: the power of the rotating cage at nominal speed.
     """
     for i in range(5):
         force[i] = 0.0
@@ -169,7 +169,7 @@ def bearing_force(
 
 
 @uncounted()
-def take_bearings(
+def evaluate_bearings(
     bearings: Bearings,
     offset: int,
     turned: float,
@@ -178,10 +178,10 @@ def take_bearings(
     tangents: FloatArray,
     held: FloatArray,
 ) -> None:
-    """What every bearing adds to its linear law at the deflections ``delta[offset:]``: f - K δ and its tangent.
+    """Nonlinear part f - K δ of every bearing's force at the deflections ``delta[offset:]``, and its tangent.
 
-    Fills in the forces, tangents (b, 5, 5) with their leading d by d, and ``held`` (8, 5): in row 0 energy [J] and its
-    slope [J/s]; the others are room for one bearing.
+    Fills in the forces, the leading d by d of the tangents (b, 5, 5), and ``held`` (8, 5): in row 0 energy [J] and its
+    slope [J/s]; the other rows are scratch for one bearing.
     """
     held[0, 0], held[0, 1] = 0.0, 0.0
     q, push, tangent = held[1], held[2], held[3:]
@@ -206,7 +206,7 @@ def take_bearings(
 
 @counted()
 def bearing_history(bearings: Bearings, number: int, turned: FloatArray, deflection: FloatArray) -> FloatArray:
-    """Force of the shaft on one bearing at every sample, shape (s, d), from its deflections (s, d)."""
+    """Force of the shaft on one bearing over time, shape (s, d), from its deflections (s, d)."""
     first, end = bearings.first[number], bearings.first[number + 1]
     q, push, tangent = np.zeros(5), np.zeros(5), np.zeros((5, 5))
     history = np.empty((turned.size, end - first))

@@ -1,4 +1,4 @@
-r"""Laws of bearings that are not linear, as data: rolling elements with clearance, and gaps that close.
+r"""Nonlinear bearing laws: rolling elements with clearance, and gaps that close.
 
 A law turns the deflections δ of the shaft against its seat (x, y, z and the rotations about x and y) into the forces of
 the shaft on the seat; :mod:`coupling.bearing_kernels` is its compiled form.
@@ -18,16 +18,16 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class RollingLaw:
-    """Hertz's force of every rolling element, with the clearance, as the cage carries the elements round.
+    """Hertzian force of every rolling element, with the clearance, as the cage carries the elements round.
 
-    The elements have no inertia. Where a bearing stands before and behind an element it yields more or less: the
-    compliance varies with the frequency at which elements pass.
+    The elements have no inertia. The compliance of the bearing depends on the cage angle, so it varies with the
+    element-passing frequency.
 
     Attributes
     ----------
     state : RollingState
-        The bearing, at its mean load: where the search for equilibrium begins, and where the ring stays along
-        directions in which the shaft cannot move.
+        The bearing at its mean load: start of the search for equilibrium, and position of the ring along directions
+        in which the shaft cannot move.
     cage_angle : float
         Azimuth of the first element of every row at t = 0 [rad].
     """
@@ -43,14 +43,14 @@ class RollingLaw:
 
 @dataclass(frozen=True)
 class GapLaw:
-    """A ring around the shaft with a gap: the radial force F (depth / unit)^n that the shaft feels beyond it.
+    """Radial gap law of a ring around the shaft: beyond the gap the force is F (penetration / depth)^n.
 
     Attributes
     ----------
     force : float
-        At a depth of ``depth`` [N].
+        F, at a penetration of ``depth`` [N].
     depth : float
-        Beyond the gap [m].
+        Penetration beyond the gap at which the force is F [m].
     exponent : float
         n, at least 1.
     gap : float
@@ -74,14 +74,14 @@ class GapLaw:
 
     @property
     def reference(self) -> FloatArray:
-        """At rest in the middle, shape (5,)."""
+        """Displacement at which the search for equilibrium begins: the centre, shape (5,)."""
         return np.zeros(5)
 
     def tangent(self, load: npt.ArrayLike) -> FloatArray:
-        """Stiffness over x, y [N/m] where the shaft presses with a radial load (2,) [N]: nothing without one.
+        """Tangent stiffness over x, y [N/m] under a radial load (2,) [N]; zero without a load.
 
-        With F the load's size and r = gap + depth (F / force)^(1/n) where it puts the shaft: n F / (r - gap) along it,
-        F / r across.
+        With F the load's size and r = gap + depth (F / force)^(1/n) the shaft's radial position: n F / (r - gap) along
+        the load, F / r across it.
         """
         push = np.asarray(load, dtype=np.float64)
         size = float(np.hypot(*push))

@@ -1,4 +1,4 @@
-"""Where time is cut: at every event, so that no step crosses a jump, and into blocks, so that memory stays flat."""
+"""Event times: bounds between which a time integration steps, so that no step crosses a jump of the stiffness."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
 
-_POINTS_PER_PERIOD = 6  # of the highest coordinate; what moves much gets more, by the tolerance
+_POINTS_PER_PERIOD = 6  # of the highest natural frequency; the tolerance refines motions that matter
 _STEPS_PER_SEGMENT = 64  # where no event cuts the time
 _SPEED_GAIN = 2e-4  # change of speed, as a part of the nominal one, within which a stretch's matrices stay the same
 _SAME_TIME = 1e-6  # part of the coarsest step within which two events are one
@@ -21,24 +21,24 @@ _MOST_BLOCKS = 1 << 24
 
 
 def coarsest_step(system: CoupledSystem, turning: Turning, largest: float) -> float:
-    """The step that nothing refines [s]: enough for the highest natural frequency, and for the fastest turning."""
+    """Coarsest step [s]: it resolves the highest natural frequency, and the largest step at the highest speed."""
     highest = system.highest_frequency
     resolving = 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
     return float(min(largest / max(1.0, float(turning.rates.max())), resolving))
 
 
 def same_time(step: float) -> float:
-    """Span within which two events are one [s]."""
+    """Tolerance within which two events are one [s]."""
     return _SAME_TIME * step
 
 
 def block_ends(duration: float, interval: float, step: float, samples: int = SAMPLES_PER_BLOCK) -> FloatArray:
-    """Ends of stretches that hold a limited number of samples and coarsest steps, from 0 to the duration [s].
+    """Ends of blocks with a limited number of samples and coarsest steps, from 0 to the duration [s].
 
     Raises
     ------
     TransientError
-        Where there would be more of them than any run can take.
+        Where there would be too many blocks for any run.
     """
     count = np.ceil(max(duration / (interval * samples), duration / (step * _STEPS_PER_BLOCK), 1.0))
     if not count < _MOST_BLOCKS:
@@ -49,7 +49,7 @@ def block_ends(duration: float, interval: float, step: float, samples: int = SAM
 def boundaries(
     system: CoupledSystem, turning: Turning, start: float, end: float, step: float, others: tuple[float, ...]
 ) -> FloatArray:
-    """Start, events and end of a block, with long stretches cut evenly [s]."""
+    """Start, events and end of a block, with long stretches between them cut evenly [s]."""
     inner = [np.array([time for time in others if start < time < end])]
     inner += [times[(times > start) & (times < end)] for times in _known_times(system, turning)]
     (turned_from,), (turned_to,) = (turning.at(time)[0] for time in (start, end))
@@ -73,11 +73,11 @@ def boundaries(
 
 
 def _known_times(system: CoupledSystem, turning: Turning) -> Iterator[FloatArray]:
-    """Times at which loads and speeds change their slope."""
+    """Times at which loads and speeds change their slope [s]."""
     if len(turning.times) > 1:
         yield turning.times
-        # The ties change their slope over speed where these speeds are met.
-        for rate in system.tie_rates if len(system.tie_rates) > 1 else ():
+        # Connectors change their slope over speed where these speeds are passed.
+        for rate in system.connector_rates if len(system.connector_rates) > 1 else ():
             before, after = turning.rates[:-1] - rate, turning.rates[1:] - rate
             crossing = before * after < 0.0
             part = before[crossing] / (before[crossing] - after[crossing])

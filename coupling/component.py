@@ -1,6 +1,8 @@
-"""Components: each part of the machine as a set of mass-normalised coordinates.
+"""Components for mode synthesis: each part of the machine in mass-normalised modal coordinates.
 
-A component's own equation of motion, with no connector attached, is
+Component mode synthesis here takes the free modes of a part and, for the static response of the truncated ones,
+residual attachment modes (MacNeal 1971, Rubin 1975), in place of the fixed-interface and constraint modes of Craig and
+Bampton. A component's own equation of motion, with no connector attached, is
 
     q'' + (C + Ω G) q' + K q = f,
 
@@ -21,7 +23,7 @@ from rotors import ModalRotor, Pedestal
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROUNDING = 1e-10  # part of the largest entry that a damping matrix may miss of being symmetric and without gain
+_ROUNDING = 1e-10  # tolerance of a symmetric, positive semidefinite damping matrix, relative to its largest entry
 
 
 @dataclass(frozen=True)
@@ -32,9 +34,9 @@ class Component:
     ----------
     name : str
     kinds : tuple of str
-        For each coordinate what it moves: ``housing``, ``rotor`` (lateral), ``torsion``, ``axial``, ``pedestal``, or
-        ``residual``: an attachment of the housing, which stands for the static response of all that its modes leave
-        out. Its own frequency is no natural frequency of the housing, and motion at that frequency means nothing.
+        Kind of each coordinate: ``housing``, ``rotor`` (lateral), ``torsion``, ``axial``, ``pedestal``, or
+        ``residual``: a residual attachment mode of the housing, the static response of its truncated modes. Its own
+        frequency is no natural frequency of the housing, and motion at that frequency means nothing.
     stiffness : ndarray, shape (n, n)
         K [1/s²], symmetric.
     damping : ndarray, shape (n, n)
@@ -62,11 +64,11 @@ class HousingComponent(Component):
     Attributes
     ----------
     seats : mapping of str to ndarray, shape (n, 6)
-        Coordinates' motions at each seat: translations x, y, z, rotations about x, y, z, at the seat's centre.
+        Motion of each seat's centre by the coordinates: translations x, y, z, rotations about x, y, z.
     seat_z : mapping of str to float
         z of each seat's centre [m].
     sensors : mapping of str to ndarray, shape (n,)
-        Coordinates' motions along each sensor.
+        Motion along each sensor by the coordinates.
     participation : ndarray, shape (n, 6), or None
         φᵀ M R of the rigid motions along and about x, y, z through the origin [√kg, √kg m]; needed where the base moves
         or there is weight.
@@ -182,8 +184,8 @@ def housing_component(
     Raises
     ------
     CouplingError
-        Where the damping does not fit the modes, the matrix would drive them, or there are not as many motions as
-        coordinates.
+        Where the damping does not fit the modes, the matrix would feed energy in, or motions and coordinates differ in
+        number.
     """
     m = len(modes.frequencies)
     if damping_ratios.shape != (m,):
@@ -232,12 +234,12 @@ def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingC
 
 @dataclass(frozen=True)
 class PedestalComponent(Component):
-    """What a grounded bearing stands on: its motions along x and y, times the root of its mass.
+    """Pedestal of a grounded bearing: its motions along x and y, times the root of its mass.
 
     Attributes
     ----------
     motion : ndarray, shape (2, 2)
-        x and y of the bearing's foot by the coordinates [1/√kg].
+        Motion of the bearing's foot along x and y by the coordinates [1/√kg].
     """
 
     motion: FloatArray
@@ -249,7 +251,7 @@ def pedestal_component(name: str, pedestal: Pedestal) -> PedestalComponent:
     Raises
     ------
     CouplingError
-        Where it has no mass, whose motion no step in time could follow.
+        Where it has no mass, so that no time step could resolve its motion.
     """
     if pedestal.mass <= 0.0:
         raise CouplingError(

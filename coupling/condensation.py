@@ -1,14 +1,14 @@
-"""Coordinates that are too stiff to be worth following in time answer statically.
+"""Static condensation (Guyan) of residual coordinates that are too stiff for a time integration.
 
-A residual coordinate of the housing has a stiffness that matters and a frequency that does not. Where this frequency
-lies within those of the other coordinates it is marched like them, and its inertia improves the response below. Where
-it lies above, no step should be refined for it: it is taken to be in equilibrium at all times,
+The stiffness of a residual coordinate of the housing matters, its frequency does not. Where this frequency lies within
+those of the other coordinates it is integrated like them, and its inertia improves the response below. Where it lies
+above, no step should be refined for it: it is in equilibrium at all times,
 
     K_rr q_r + K_rk q_k = 0,        q = T q_k,        T = [I; -K_rr⁻¹ K_rk],
 
 which takes K, C, the contacts' directions and the loads to Tᵀ K T and so on (Guyan's condensation of the stiffness;
-MacNeal's residual flexibility without its mass), and keeps the static compliance exact. Dampers that act on q_r hold it
-back in truth: at a circular frequency w it errs by w C/K of its bearing, the kept coordinates by the square of that.
+MacNeal's residual flexibility without its mass), and keeps the static compliance exact. The error by dampers that act
+on q_r is w C/K of its bearing at a circular frequency w, and the square of that in the retained coordinates.
 """
 
 from collections.abc import Iterator
@@ -27,16 +27,16 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Condensed:
-    """A system without some of its coordinates, and what brings them back.
+    """A condensed system, and the recovery of all coordinates.
 
     Attributes
     ----------
     system : CoupledSystem
-        Of the m kept coordinates, in their order, and a connector that stands for all ties.
+        Of the m retained coordinates, in their order, with one connector in place of all linear ones.
     kept : ndarray of int, shape (m,)
-        Which of the n coordinates these are.
+        Their numbers among the n coordinates.
     recovery : ndarray, shape (n, m)
-        T: all coordinates from the kept ones.
+        T: all coordinates from the retained ones.
     """
 
     system: CoupledSystem
@@ -45,12 +45,12 @@ class Condensed:
 
 
 def condensed(system: CoupledSystem) -> Condensed:
-    """The system without the residual coordinates that are stiffer than all others; the same where it has none.
+    """Condense the residual coordinates that are stiffer than all others; a system without any is returned as it is.
 
-    Also the same where its ties change with the speed: the condensation would have to change with them.
+    So is a system whose connectors change with the speed: the condensation would have to change with them.
     """
     stiff = _stiff(system)
-    if not stiff.any() or len(system.tie_rates) > 1:
+    if not stiff.any() or len(system.connector_rates) > 1:
         return Condensed(system, np.arange(system.size), np.eye(system.size))
     kept = ~stiff
     held, left = np.flatnonzero(stiff), np.flatnonzero(kept)
@@ -58,30 +58,30 @@ def condensed(system: CoupledSystem) -> Condensed:
     follow = -np.linalg.solve(stiffness[np.ix_(held, held)], stiffness[np.ix_(held, left)])
     recovery = np.zeros((system.size, len(left)))
     recovery[left], recovery[held] = np.eye(len(left)), follow
-    # What the kept coordinates gain: ties between them that act in few directions.
+    # Retained coordinates gain connectors between them that act in few directions.
     crossing = damping[np.ix_(left, held)] @ follow
-    tied = [part[np.ix_(left, left)] for part in system.ties()]
+    tied = [part[np.ix_(left, left)] for part in system.connector_matrices()]
     tied[0] = tied[0] + stiffness[np.ix_(left, held)] @ follow
     tied[1] = (
         tied[1] + crossing + follow.T @ damping[np.ix_(held, left)] + follow.T @ damping[np.ix_(held, held)] @ follow
     )
-    directions, (tie_stiffness, tie_damping) = common_span(tied)
+    directions, (connector_stiffness, connector_damping) = common_span(tied)
     less = CoupledSystem(
         components=tuple(_part(component, among) for component, among in _members(system, kept)),
         speeds=system.speeds,
-        linear=(LinearConnector("ties", directions, tie_stiffness, tie_damping),),
+        linear=(LinearConnector("ties", directions, connector_stiffness, connector_damping),),
         contacts=tuple(_reduced(contact, recovery) for contact in system.contacts),
         load=system.load @ recovery,
         harmonic_loads=tuple(replace(one, amplitude=one.amplitude @ recovery) for one in system.harmonic_loads),
         timed_loads=tuple(replace(one, direction=one.direction @ recovery) for one in system.timed_loads),
-        swing=system.swing @ recovery,
+        acceleration_load=system.acceleration_load @ recovery,
         nonlinear=tuple(replace(one, directions=recovery.T @ one.directions) for one in system.nonlinear),
     )
     return Condensed(less, left, recovery)
 
 
 def _members(system: CoupledSystem, kept: npt.NDArray[np.bool_]) -> Iterator[tuple[Component, npt.NDArray[np.int64]]]:
-    """Each component, and which of its own coordinates stay."""
+    """Each component, with the numbers of its retained coordinates."""
     start = 0
     for component in system.components:
         yield component, np.flatnonzero(kept[start : start + component.size])
@@ -96,7 +96,7 @@ def _reduced(contact: ContactConnector, recovery: FloatArray) -> ContactConnecto
 
 
 def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
-    """A component of some of the coordinates."""
+    """A component reduced to some of its coordinates."""
     square = np.ix_(among, among)
     return Component(
         component.name,
@@ -108,9 +108,9 @@ def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
 
 
 def _stiff(system: CoupledSystem) -> npt.NDArray[np.bool_]:
-    """Residual coordinates beyond the highest frequency of the others, unless a load or a law acts on them."""
+    """Mask of residual coordinates beyond the highest frequency of the others on which no load or law acts."""
     loaded = system.load != 0.0
-    loaded |= system.swing != 0.0
+    loaded |= system.acceleration_load != 0.0
     for load in [*(one.amplitude for one in system.harmonic_loads), *(one.direction for one in system.timed_loads)]:
         loaded = loaded | (load != 0.0)
     sliding = [contact.sliding.directions for contact in system.contacts if contact.sliding is not None]

@@ -1,4 +1,4 @@
-"""Connectors: what ties components together.
+"""Connectors between components: bearings, couplings and tooth contacts.
 
 A connector is a matrix of directions D, shape (n, d), that turns the n coordinates of the whole system into
 relative deflections δ = Dᵀ q, and a law that turns deflections, rates and phase into forces f. It adds -D f to the
@@ -15,6 +15,8 @@ from coupling.errors import CouplingError
 from coupling.gears import SlidingFriction, ToothContact
 
 FloatArray = npt.NDArray[np.float64]
+
+_JUST_AFTER = 1e-9  # mesh periods
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ class LinearConnector:
     over_speed : SpeedTable, optional
         K and C at other speeds than the nominal one, where they depend on it.
     axes : tuple of int
-        Of a bearing, which of x, y, z and the rotations about x and y (0 to 4) the directions are; empty otherwise.
+        Of a bearing, the axis of each direction: x, y, z and the rotations about x and y (0 to 4); empty otherwise.
     """
 
     name: str
@@ -81,7 +83,7 @@ class SpeedTable:
 
 @dataclass(frozen=True)
 class NonlinearConnector:
-    """A connector whose law is a bearing's own, in place of the linear one of its tangent.
+    """A connector with a nonlinear bearing law, in place of the linear law of its tangent.
 
     The linear connector of the same bearing stays among the system's, so that linear analyses see the tangent K about
     the bearing's mean load; this one adds f(δ) - K δ to it.
@@ -92,12 +94,12 @@ class NonlinearConnector:
     directions : ndarray, shape (n, d)
         D.
     axes : ndarray of int, shape (d,)
-        Which of x, y, z and the rotations about x and y each of them is, 0 to 4.
+        Axis of each direction: x, y, z and the rotations about x and y, 0 to 4.
     law : BearingLaw
     stiffness : ndarray, shape (d, d)
         K [N/m], symmetric.
     speed : float
-        Signed speed of the shaft [rad/s], with which rolling elements go round.
+        Signed speed of the shaft [rad/s], which carries the rolling elements round.
     """
 
     name: str
@@ -118,7 +120,7 @@ class NonlinearConnector:
 
 @dataclass(frozen=True)
 class Sliding:
-    """How the flanks of a tooth contact slide, see :mod:`coupling.sliding`.
+    """Sliding of the flanks of a tooth contact, see :mod:`coupling.sliding`.
 
     Attributes
     ----------
@@ -156,9 +158,9 @@ class ContactConnector:
     clearance : float
         Gap to close before the flanks touch [m]: 0 for the drive flanks, the backlash for the back flanks.
     drives : bool
-        Whether the mean load presses these flanks together.
+        Whether these flanks carry the mean load.
     greatest_compression : float
-        What the teeth can be pressed together by [m]; a march that passes it is refused.
+        Largest compression that the teeth can follow [m]; a motion that exceeds it is refused.
     sliding : Sliding or None
         Friction, which adds μ Σ ± F_j (a + x_j b) to what the pairs' forces F_j do along d; None for none.
     """
@@ -176,9 +178,17 @@ class ContactConnector:
 
     @property
     def friction_law(self) -> tuple[FloatArray, bool]:
-        """The numbers by which the pairs share friction, and whether these go by slices of the face."""
+        """Law table by which the pairs share friction, and whether it is by slices of the face."""
         shares = np.zeros(0) if self.sliding is None else self.sliding.friction.shares
         return (shares, True) if shares.size else (self.contact.kernel_arguments[0], False)
+
+    def runout(self, time: float) -> float:
+        """Runout error at a time [m]."""
+        return float(np.sum(self.errors[:, 0] * np.cos(self.errors[:, 1] * time + self.errors[:, 2])))
+
+    def phase_after(self, time: float) -> float:
+        """Mesh phase just after a time [mesh periods]: a pair that enters contact then counts."""
+        return self.phase + self.rate * time + _JUST_AFTER
 
     def event_times(self, start: float, end: float) -> FloatArray:
         """Times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].

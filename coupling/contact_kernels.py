@@ -1,4 +1,4 @@
-"""The tooth contacts within a time step, compiled: their compressions, their law, and their forces.
+"""Tooth contact forces within a time step, compiled: compressions, contact law, friction, Newton iteration.
 
 Importing this module imports numba.
 """
@@ -8,10 +8,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.bearing_kernels import take_bearings
+from coupling.bearing_kernels import evaluate_bearings
 from coupling.gears.friction_kernels import friction_shares
 from coupling.gears.kernels import ranked_nearness, tooth_force
-from coupling.kernel_arrays import Bearings, Contacts
+from coupling.kernel_arrays import Bearings, Contacts, Scratch
 from coupling.small_systems import solve_in_place
 from rotors.compiled import inner
 
@@ -24,8 +24,10 @@ FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE, TOUCHING = 0, 1, 2, 3, 4, 5
 
 
 @inner()
-def deviation_of(clearance: FloatArray, errors: FloatArray, k: int, turned: float, speed: float) -> tuple[float, float]:
-    """What runout and clearance take from a contact's compression [m], and its rate [m/s]."""
+def flank_deviation(
+    clearance: FloatArray, errors: FloatArray, k: int, turned: float, speed: float
+) -> tuple[float, float]:
+    """Runout error and clearance of a contact, which reduce its compression [m], and their rate [m/s]."""
     value, rate = clearance[k], 0.0
     for m in range(errors.shape[1]):
         amplitude, w = errors[k, m, 0], errors[k, m, 1]
@@ -37,8 +39,10 @@ def deviation_of(clearance: FloatArray, errors: FloatArray, k: int, turned: floa
 
 
 @inner(inline="always")
-def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
-    """Fill in a row of the laws' table for a contact."""
+def evaluate_contact(
+    contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray, row: int
+) -> None:
+    """Evaluate the contact law into a row of the laws' table."""
     phase = contacts.phase[k] + contacts.rate[k] * turned
     law = tooth_force(phase, delta, rate, contacts.law, contacts.law_at[k])
     laws[row, FORCE], laws[row, TANGENT], laws[row, DAMPING] = law[0], law[1], law[2]
@@ -46,16 +50,16 @@ def take_law(contacts: Contacts, k: int, turned: float, delta: float, rate: floa
 
 
 @inner()
-def nearness_of(contacts: Contacts, k: int, turned: float, delta: float, rank: int) -> float:
-    """By how much a contact's pair that is so many down from the most pressed one is pressed together [m]."""
+def penetration(contacts: Contacts, k: int, turned: float, delta: float, rank: int) -> float:
+    """Penetration of the ``rank``-th most compressed tooth pair of a contact [m]."""
     return ranked_nearness(contacts.phase[k] + contacts.rate[k] * turned, delta, contacts.law, contacts.law_at[k], rank)
 
 
 @inner()
-def take_friction(
+def evaluate_friction(
     contacts: Contacts, k: int, turned: float, delta: float, laws: FloatArray, force: FloatArray, drag: FloatArray
 ) -> None:
-    """Fill in the two forces of a contact's friction, and their slopes by compression and by rate (4,)."""
+    """Evaluate the two friction forces of a contact, and their slopes by compression and by rate (4,)."""
     row = contacts.friction_row[k]
     a, b, a_slope, b_slope = 0.0, 0.0, 0.0, 0.0
     if laws[k, FORCE] > 0.0:
@@ -77,74 +81,65 @@ def take_friction(
 
 
 @inner(inline="always")
-def take_forces(
-    contacts: Contacts,
-    bearings: Bearings,
-    turned: float,
-    delta: FloatArray,
-    rate: FloatArray,
-    laws: FloatArray,
-    force: FloatArray,
-    drag: FloatArray,
-    tangents: FloatArray,
-    held: FloatArray,
-) -> None:
-    """All laws at some deflections: teeth, their friction, bearings.
+def evaluate_forces(contacts: Contacts, bearings: Bearings, turned: float, scratch: Scratch) -> None:
+    """Evaluate all nonlinear laws at the deflections and rates in ``scratch``: teeth, their friction, bearings.
 
-    Fills in the laws' table, the force along every direction (k,), the friction's slopes (c, 4), the bearings' tangents
-    (b, 5, 5), and what energy the bearings hold, in the first row of (8, 5).
+    Fills in the laws' table, the force along every direction, the friction's slopes, the bearings' tangents, and the
+    energy held in the bearings.
     """
+    delta, rate, laws, push = scratch.delta, scratch.rate, scratch.laws, scratch.push
     for k in range(contacts.phase.size):
-        take_law(contacts, k, turned, delta[k], rate[k], laws, k)
-        force[k] = laws[k, FORCE]
+        evaluate_contact(contacts, k, turned, delta[k], rate[k], laws, k)
+        push[k] = laws[k, FORCE]
         if contacts.friction_row[k] >= 0:
-            take_friction(contacts, k, turned, delta[k], laws, force, drag[k])
+            evaluate_friction(contacts, k, turned, delta[k], laws, push, scratch.drag[k])
     if bearings.axis.size > 0:
-        take_bearings(bearings, contacts.phase.size, turned, delta, force, tangents, held)
+        evaluate_bearings(bearings, contacts.phase.size, turned, delta, push, scratch.tangents, scratch.held)
 
 
 @inner(inline="always")
-def settle(
+def solve_contact_forces(
     contacts: Contacts,
     bearings: Bearings,
     turned: float,
-    free: FloatArray,
-    free_rate: FloatArray,
     flexibility: FloatArray,
     by_displacement: float,
     by_velocity: float,
-    delta: FloatArray,
-    rate: FloatArray,
-    laws: FloatArray,
-    force: FloatArray,
-    drag: FloatArray,
-    tangents: FloatArray,
-    held: FloatArray,
-    jacobian: FloatArray,
-    residual: FloatArray,
+    scratch: Scratch,
 ) -> bool:
-    """Forces from the deflections and rates without them, by Newton's method on the deflections.
+    """Contact forces by Newton iteration, from the deflections and rates without them.
 
-    Fills in deflections, rates, laws and forces. The teeth's law is piecewise linear but for wide faces, so the method
-    ends after a few steps with the right set of touching pairs. Bearings begin with the forces that they had. Put in
-    place, as what it is given would cost time at every call.
+    Fills in deflections, rates, laws and forces; returns whether the iteration converged. The tooth contact law is
+    piecewise linear but for wide faces, so the iteration ends after a few steps with the right set of touching pairs.
+    Bearings begin with their last forces. The function is inlined, as passing its arguments would cost time at every
+    call.
     """
-    c, u, directions = contacts.phase.size, free.size, force.size
+    free, free_rate, delta, rate, push = (
+        scratch.delta_free,
+        scratch.rate_free,
+        scratch.delta,
+        scratch.rate,
+        scratch.push,
+    )
+    laws, drag, tangents, jacobian, residual = (
+        scratch.laws, scratch.drag, scratch.tangents, scratch.jacobian, scratch.residual,
+    )  # fmt: skip
+    c, u, directions = contacts.phase.size, free.size, push.size
     per = by_velocity / by_displacement
     for k in range(u):
         delta[k] = free[k]
     for k in range(c, u):
         for j in range(directions):
-            delta[k] -= by_displacement * flexibility[k, j] * force[j]
+            delta[k] -= by_displacement * flexibility[k, j] * push[j]
     for _ in range(_NEWTON_STEPS):
         for k in range(c):
             rate[k] = free_rate[k] + per * (delta[k] - free[k])
-        take_forces(contacts, bearings, turned, delta, rate, laws, force, drag, tangents, held)
+        evaluate_forces(contacts, bearings, turned, scratch)
         largest, scale = 0.0, 1e-300
         for k in range(u):
             residual[k, 0] = free[k] - delta[k]
             for j in range(directions):
-                residual[k, 0] -= by_displacement * flexibility[k, j] * force[j]
+                residual[k, 0] -= by_displacement * flexibility[k, j] * push[j]
             scale = max(scale, abs(free[k]) + abs(delta[k]))
             largest = max(largest, abs(residual[k, 0]))
         if largest <= 1e-13 * scale:

@@ -1,4 +1,4 @@
-"""The tooth contacts as springs and dashpots: at their means under load, or as they stand at an instant."""
+"""Linearised tooth contacts: mesh stiffness and damping about the mean load, or at an instant."""
 
 from dataclasses import dataclass, replace
 
@@ -12,21 +12,19 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_JUST_AFTER = 1e-9  # mesh periods: the side of an event on which a contact is looked at, as in the statics
-
 
 @dataclass(frozen=True)
 class ContactState:
-    """What linear analyses take each contact for.
+    """Mesh stiffness and damping of each contact in linear analyses.
 
     Attributes
     ----------
     stiffness : ndarray, shape (c,)
-        Of each contact of the system, drive flanks and back flanks [N/m]; 0 where they are apart.
+        Of each contact of the system, drive flanks and back flanks [N/m]; 0 without contact.
     damping : ndarray, shape (c,)
         [N s/m].
     force : ndarray, shape (c,), or None
-        Mean force under which the stiffness is that of the contact [N]; 0 where it is that without load.
+        Mean force about which the contact is linearised [N]; 0 for the stiffness without load.
     """
 
     stiffness: FloatArray
@@ -35,11 +33,11 @@ class ContactState:
 
 
 def mean_contact(system: CoupledSystem) -> ContactState:
-    """Contacts linearised about the mean load: each pressed flank at its mean mesh stiffness under its mean force.
+    """Contacts linearised about the mean load: each loaded flank at its mean mesh stiffness under its mean force.
 
     The mean mesh stiffness under load is the mean over a mesh period of the tangent dF/dδ at static equilibrium under
-    the contact's mean force: load sharing, reliefs, deviations, corner contact and uneven faces count. A flank that no
-    mean force presses has its mean stiffness without load, see :func:`unloaded_contact`.
+    the contact's mean force: load sharing, reliefs, deviations, corner contact and uneven faces count. A flank
+    without a mean force has its mean stiffness without load, see :func:`unloaded_contact`.
     """
     state = unloaded_contact(system)
     means = mean_meshes(system)
@@ -49,18 +47,14 @@ def mean_contact(system: CoupledSystem) -> ContactState:
 
 
 def unloaded_contact(system: CoupledSystem) -> ContactState:
-    """Every pressed flank at its mean stiffness with all pairs on the path of contact touching, the others apart."""
-    drives = np.array([float(contact.drives) for contact in system.contacts])
-    laws = [contact.contact for contact in system.contacts]
-    return ContactState(
-        drives * np.array([law.mean_stiffness for law in laws]), drives * np.array([law.damping for law in laws])
-    )
+    """Drive flanks at their mean stiffness with all pairs on the path of contact touching, the back flanks apart."""
+    return ContactState(system.drive_stiffness, system.drive_damping)
 
 
 def contact_at(system: CoupledSystem, time: float) -> ContactState:
-    """Tangents of the contact law in static equilibrium under the constant load, the teeth where they are at a time.
+    """Tangents of the contact law in static equilibrium under the constant load, at the mesh phases of a time.
 
-    Reliefs, deviations and backlash count: a pair that the load does not close is not there.
+    Reliefs, deviations and backlash count: a pair that the load does not close has no stiffness.
 
     Parameters
     ----------
@@ -78,10 +72,9 @@ def contact_at(system: CoupledSystem, time: float) -> ContactState:
     q = static_equilibrium(system, time)
     tangents = []
     for contact in system.contacts:
-        error = np.sum(contact.errors[:, 0] * np.cos(contact.errors[:, 1] * time + contact.errors[:, 2]))
-        compression = float(contact.direction @ q - error - contact.clearance)
-        phase = contact.phase + contact.rate * time + _JUST_AFTER
-        force, *tangent = tooth_force(phase, compression, 0.0, *contact.contact.kernel_arguments)[:3]
+        compression = float(contact.direction @ q) - contact.runout(time) - contact.clearance
+        law = contact.contact.kernel_arguments
+        force, *tangent = tooth_force(contact.phase_after(time), compression, 0.0, *law)[:3]
         # Of a contact that is held apart the law gives the coefficient of its losses, which act on no force.
         tangents.append(tangent if force > 0.0 else [0.0, 0.0])
     stiffness, damping = np.array(tangents).reshape(-1, 2).T
@@ -112,7 +105,7 @@ def linear_matrices(system: CoupledSystem, contact: ContactState) -> tuple[Float
     Raises
     ------
     CouplingError
-        Where the state has not as many contacts as the system.
+        Where the state has another number of contacts than the system.
     """
     count = len(system.contacts)
     if contact.stiffness.shape != (count,) or contact.damping.shape != (count,):

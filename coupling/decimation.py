@@ -1,6 +1,6 @@
-"""Fewer samples of a record that comes in pieces, without what would fold back.
+"""Streaming decimation with an anti-aliasing filter.
 
-A symmetric filter of 2H + 1 taps h goes over the record, and every D-th of its values is kept,
+A symmetric FIR filter of 2H + 1 taps h is applied to the record, and every D-th of its values is kept,
 
     y[m] = sum over k of h[k] x[m D + k],   which stands for the time of sample m D + H:
 
@@ -24,7 +24,7 @@ _REJECTION = 120.0  # dB: below the seven digits in which histories are kept
 
 @dataclass(frozen=True)
 class Decimation:
-    """A filter, and how many samples go into one.
+    """Anti-aliasing filter and decimation factor.
 
     Attributes
     ----------
@@ -43,23 +43,23 @@ class Decimation:
         return len(self.taps) // 2
 
     def kept(self, samples: int) -> int:
-        """How many values a record of so many samples gives."""
+        """Number of values from a record of ``samples`` samples."""
         return max((samples - len(self.taps)) // self.factor + 1, 0)
 
     def through(self, held: FloatArray, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Filter the next piece of a record.
+        """Filter and decimate the next piece of a record.
 
         Parameters
         ----------
         held : ndarray, shape (p, k)
-            What the piece before left; at the start of the record none, p = 0.
+            Remainder of the piece before; none at the start of the record, p = 0.
         samples : ndarray, shape (s, k)
 
         Returns
         -------
         kept : ndarray, shape (m, k)
         held : ndarray
-            For the next piece.
+            Remainder for the next piece.
         """
         record = np.concatenate([held, samples])
         count = self.kept(len(record))
@@ -75,23 +75,25 @@ class Decimation:
 
 
 def decimation(factor: int, band: float) -> Decimation:
-    """A filter by Kaiser's window that leaves a band alone and lets nothing fold back into it.
+    """Design a low-pass filter by Kaiser's window that passes a band and suppresses aliases into it by 120 dB.
 
-    Between the band and the frequency that folds onto its edge the response falls, by 120 dB: above the band the kept
-    samples hold what is no longer there in full, below it all is there.
+    Between the band and the frequency that folds onto its edge the response falls: the decimated signal is complete up
+    to the band and attenuated above it.
 
     Parameters
     ----------
     factor : int
-        Samples that go into one; 1 keeps all as they are.
+        Samples for one of the result; 1 changes nothing.
     band : float
-        Upper end of the band, as a part of the kept samples' rate; below 1/2.
+        Upper end of the band, as a part of the decimated sampling rate; below 1/2.
 
     References
     ----------
     J. F. Kaiser, "Nonrecursive digital filter design using the I0-sinh window function", *IEEE Int. Symp. Circuits and
     Systems*, 1974.
     """
+    from scipy import signal
+
     if factor < 1 or not 0.0 < band < 0.5:
         raise CouplingError(
             f"decimation by {factor} with a band up to {band} of the rate; expected 1 or more, below 1/2"
@@ -100,6 +102,6 @@ def decimation(factor: int, band: float) -> Decimation:
         return Decimation(1, np.ones(1))
     transition = 2.0 * math.pi * (1.0 - 2.0 * band) / factor
     half = math.ceil((_REJECTION - 7.95) / (2.285 * transition) / 2.0)
-    places = np.arange(-half, half + 1)
-    taps = np.sinc(places / factor) * np.kaiser(2 * half + 1, 0.1102 * (_REJECTION - 8.7))
-    return Decimation(factor, taps / taps.sum())
+    return Decimation(
+        factor, signal.firwin(2 * half + 1, 1.0 / factor, window=("kaiser", signal.kaiser_beta(_REJECTION)))
+    )

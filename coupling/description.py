@@ -1,10 +1,11 @@
-"""Machine: shafts, gears, gear pairs, bearings and a housing as an engineer lists them, and what follows from the list.
+"""Machine description: shafts, gears, gear pairs, bearings, a housing; the quantities derived from them, and checks.
 
 Speed ratios and senses of rotation follow from the teeth, centre distances from the shafts' axes, torques of the gear
-pairs from what enters and leaves the train. A list that no machine can have is refused before anything is solved.
+pairs from the torques that enter and leave the train. Parts that cannot form a machine are refused before anything is
+solved. :meth:`Machine.assemble` reduces shafts and housing to modes (component mode synthesis) and couples them.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import copysign, hypot
@@ -12,137 +13,48 @@ from math import copysign, hypot
 import numpy as np
 import numpy.typing as npt
 
-from coupling.base_motion import BaseMotion
 from coupling.bearing_law import RollingLaw
 from coupling.component import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.errors import CouplingError
 from coupling.gear_train import (
-    LARGEST_OFFSET,
+    LARGEST_IMBALANCE,
     GearedShafts,
     GearTrain,
     Output,
     gear_train,
     require_balanced_outputs,
+    require_one_plane,
     shared_torques,
 )
-from coupling.gears import Gear, GearPairGeometry
+from coupling.gears import GearPairGeometry
 from coupling.gears.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.histories import histories, transient_outputs
-from coupling.loads import AnyTorque, BowReactions, Drive, Torque, Unbalance
+from coupling.loads import BowReactions, Torque, Unbalance, constant_torques
 from coupling.machine import CoupledMachine, couple
 from coupling.motion import Motion
 from coupling.mounted import GearMesh, MountedBearing, MountedGear
+from coupling.parts import (
+    CONSTANT,
+    Driving,
+    Shaft,
+    ShaftGear,
+    pair_label,
+    require_names,
+    require_seats,
+    require_stations,
+)
 from coupling.settings import TransientSettings
 from coupling.shaft_dashpots import ShaftDashpots
-from coupling.thrust import ThrustPair, axial_forces, require_thrust_carried
+from coupling.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
 from coupling.transient import simulate
 from housing import HousingModes
-from rotors import Bow, Coupling, Disc, Rotor, bow_shape, modal_rotor
-from rotors import Unbalance as ShaftUnbalance
+from rotors import Coupling, Disc, Rotor, bow_shape, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]
 
 _LATERAL_LIMIT = 2.0 * np.pi * 8000.0  # of the bending modes of a shaft that says nothing of its own [rad/s]
 _SAME_STATION = 1e-6  # part of the rotor's length
-
-
-@dataclass(frozen=True)
-class Shaft:
-    """A rotor on its axis in the machine, without its gears.
-
-    Attributes
-    ----------
-    rotor : rotors.Rotor
-        Whose name is the shaft's.
-    axis : tuple of float
-        x and y of the shaft's line [m].
-    start : float
-        z of the left end [m].
-    damping_ratio : float
-        Of the shaft's own material and fits, on every mode of the free shaft.
-    unbalances : sequence of rotors.Unbalance
-    bow : rotors.Bow, optional
-    frequency_limit : float, optional
-        Up to which bending modes are kept [rad/s]; what lies above answers statically. 8 kHz by default.
-    mode_count : int, optional
-        Number of modes of each kind that are kept, in place of the limit.
-    """
-
-    rotor: Rotor
-    axis: tuple[float, float] = (0.0, 0.0)
-    start: float = 0.0
-    damping_ratio: float = 0.0
-    unbalances: Sequence[ShaftUnbalance] = ()
-    bow: Bow | None = None
-    frequency_limit: float | None = None
-    mode_count: int | None = None
-
-    @property
-    def name(self) -> str:
-        """Name of the rotor."""
-        return self.rotor.name
-
-
-@dataclass(frozen=True)
-class ShaftGear:
-    """A gear on a shaft.
-
-    Attributes
-    ----------
-    gear : coupling.gears.Gear
-    shaft : str
-        Name of the shaft.
-    at : float
-        Distance of the middle of the face from the shaft's left end [m].
-    inertia : tuple of float, optional
-        Mass [kg], polar and diametral moment of inertia [kg m²], in place of those of the gear's geometry; zeros where
-        a disc of the rotor stands for the gear.
-    """
-
-    gear: Gear
-    shaft: str
-    at: float
-    inertia: tuple[float, float, float] | None = None
-
-    @property
-    def name(self) -> str:
-        """Name of the gear."""
-        return self.gear.name
-
-    @property
-    def mass_and_inertias(self) -> tuple[float, float, float]:
-        """Mass [kg], polar and diametral moment of inertia [kg m²]."""
-        if self.inertia is not None:
-            return self.inertia
-        return self.gear.mass, self.gear.polar_inertia, self.gear.diametral_inertia
-
-
-@dataclass(frozen=True)
-class Driving:
-    """What drives a machine beside its constant torques.
-
-    Attributes
-    ----------
-    torques : sequence of coupling torques, or None
-        In place of the constant ones that follow from the machine's torque; with stations on their rotors.
-    drives : sequence of Drive
-        Where the torque comes in that speeds a train up.
-    rates : tuple of float
-        The least and the highest speed that the machine will run at, as parts of its speed.
-    base : BaseMotion, optional
-        Of the ground.
-    gravity : sequence of float, optional
-        Acceleration of free fall along x, y, z [m/s²].
-    """
-
-    torques: Sequence[AnyTorque] | None = None
-    drives: Sequence[Drive] = ()
-    rates: tuple[float, float] = (1.0, 1.0)
-    base: BaseMotion | None = None
-    gravity: Sequence[float] | None = None
-
-
-CONSTANT = Driving()
+_NO_TORQUE = 1e-9  # part of the input torque below which a gear pair carries none but for rounding
 
 
 @dataclass(frozen=True)
@@ -160,21 +72,24 @@ class Machine:
     speed : float
         Signed speed of the first driver's shaft about z [rad/s]; of every shaft where there are no gear pairs.
     torque : float
-        That drives the first driver's shaft [N m]; negative where it brakes.
+        Driving torque on the first driver's shaft [N m]; negative where it brakes.
     outputs : sequence of Output
         Shafts where the torque leaves; by default the shafts that drive no other, with equal power.
     housing : housing.HousingModes or HousingComponent, optional
     torque_at : float
-        Where the torque comes in, from the left end of its shaft [m].
+        Station of the input torque, from the left end of its shaft [m].
 
     Raises
     ------
     CouplingError
-        Where a name is given twice or belongs to nothing, no gear pair turns a shaft, a loop of pairs locks, both gears
-        of a pair sit on one shaft, faces do not overlap along z, outputs do not balance the torque, a bearing sits in a
-        seat that the housing does not have, or nothing carries the thrust of helical gears.
+        Where a name is given twice or unknown, no gear pair turns a shaft, a loop of pairs locks, gears are a pair
+        twice, both gears of a pair sit on one shaft, faces do not overlap along z, outputs do not balance the torque or
+        nothing takes it, power flows from driven to driver, a bearing sits in a seat that the housing does not have or
+        that is off its shaft, or nothing carries the thrust of helical gears.
     coupling.gears.GearError
         Where the gears of a pair do not fit each other at the distance of their shafts.
+    rotors.RotorError
+        Where a gear, bearing or torque is beyond the end of its shaft.
     """
 
     shafts: Sequence[Shaft]
@@ -188,9 +103,14 @@ class Machine:
     torque_at: float = 0.0
 
     def __post_init__(self) -> None:
-        _require_names(self, self.housing_component)
+        require_names(self)
+        require_stations(self)
+        require_seats(self, self.housing_component)
         _ = self.speeds, self.pair_geometries, self.constant_torques
-        self._require_planes()
+        for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
+            places = [self.shaft(one.shaft).start + one.at for one in self._gears_of(pair)]
+            require_one_plane(pair_label(pair), places, geometry.face_width)
+        self._require_power_flow()
         self._require_thrust_carried()
 
     @cached_property
@@ -201,14 +121,10 @@ class Machine:
     @cached_property
     def train(self) -> GearTrain:
         """The gear train."""
-        gears = {gear.name: gear for gear in self.gears}
+        geared = [self._gears_of(pair) for pair in self.gear_pairs]
         return gear_train(
-            GearedShafts(
-                gears[pair.driver].shaft,
-                gears[pair.driven].shaft,
-                (gears[pair.driver].gear.teeth, gears[pair.driven].gear.teeth),
-            )
-            for pair in self.gear_pairs
+            GearedShafts(driver.shaft, driven.shaft, (driver.gear.teeth, driven.gear.teeth))
+            for driver, driven in geared
         )
 
     @cached_property
@@ -217,23 +133,21 @@ class Machine:
         names = [shaft.name for shaft in self.shafts]
         if not self.gear_pairs:
             return dict.fromkeys(names, self.speed)
-        ratios = self.train.require_turning(names, [_label(pair) for pair in self.gear_pairs])
+        ratios = self.train.require_turning(names, [pair_label(pair) for pair in self.gear_pairs])
         return {name: self.speed * float(ratios[name]) for name in names}
 
     @cached_property
     def mesh_frequencies(self) -> tuple[float, ...]:
         """Tooth-mesh frequency of each gear pair [Hz]."""
-        gears = {gear.name: gear for gear in self.gears}
-        drivers = [gears[pair.driver] for pair in self.gear_pairs]
+        drivers = [self._gears_of(pair)[0] for pair in self.gear_pairs]
         return tuple(abs(self.speeds[one.shaft]) * one.gear.teeth / (2.0 * np.pi) for one in drivers)
 
     @cached_property
     def pair_geometries(self) -> tuple[GearPairGeometry, ...]:
         """Both gears of every pair in mesh, at the distance of their shafts."""
-        gears = {gear.name: gear for gear in self.gears}
         found = []
         for pair in self.gear_pairs:
-            driver, driven = gears[pair.driver], gears[pair.driven]
+            driver, driven = self._gears_of(pair)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
             found.append(GearPairGeometry(driver.gear, driven.gear, distance))
@@ -245,9 +159,14 @@ class Machine:
         if not self.gear_pairs:
             ratios = dict.fromkeys((shaft.name for shaft in self.shafts), 1.0)
             first = self.outputs[0].shaft if self.outputs else None
+            self._require_balance_of_each_shaft()
         else:
             ratios = {name: float(ratio) for name, ratio in self.train.ratios.items()}
             first = next(iter(ratios))
+            if any(output.shaft == first for output in self.outputs):
+                raise CouplingError(
+                    f"an output on shaft {first!r}; expected a shaft other than {first!r}, where the torque comes in"
+                )
         require_balanced_outputs(ratios, self.torque, self.outputs)
         if first is None or self.torque == 0.0:
             return ()
@@ -280,11 +199,10 @@ class Machine:
         return Rotor(rotor.name, rotor.segments, [*rotor.discs, *discs], rotor.mass_model)
 
     def loaded_pairs(self) -> tuple[LoadedGearPair, ...]:
-        """Contact law of every gear pair, and its mesh at rest under its mean torque."""
-        gears = {gear.name: gear for gear in self.gears}
+        """Contact law of every gear pair, and its static mesh under the mean torque."""
         found = []
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
-            driver, driven = gears[pair.driver], gears[pair.driven]
+            driver, driven = self._gears_of(pair)
             inertias = self._inertia_at(driver), self._inertia_at(driven)
             speed = self.speeds[driver.shaft]
             found.append(load_gear_pair(pair, geometry, torque=torque, inertias=inertias, speed=speed))
@@ -298,9 +216,9 @@ class Machine:
         Parameters
         ----------
         reach : float
-            Multiplies the frequency, or the number, up to which modes of the shafts are kept.
+            Multiplies the frequency limit, or the number, of the retained modes of the shafts.
         progress : callable
-            Told which shaft is reduced.
+            Called with a line of text for each shaft.
         """
         return tuple(self._component(shaft, reach, progress) for shaft in self.shafts)
 
@@ -315,9 +233,9 @@ class Machine:
         Parameters
         ----------
         pairs : sequence of LoadedGearPair, optional
-            Where they are known already; else :meth:`loaded_pairs`.
+            By default :meth:`loaded_pairs`.
         components : sequence of RotorComponent, optional
-            Where they are known already; else :meth:`rotor_components`.
+            By default :meth:`rotor_components`.
         driving : Driving
             Torques that vary, motion of the base, gravity.
 
@@ -364,7 +282,7 @@ class Machine:
         tolerance: float = 5e-4,
         driving: Driving = CONSTANT,
     ) -> Motion:
-        """March the machine from its static equilibrium, by Newmark's method with steps that adapt.
+        """Integrate the motion from static equilibrium, by Newmark's method with adaptive steps.
 
         Parameters
         ----------
@@ -408,36 +326,56 @@ class Machine:
         CouplingError
             With the shafts, the gears and the forces [N].
         """
-        gears = {gear.name: gear for gear in self.gears}
         pairs = [
-            ThrustPair((gears[pair.driver].shaft, gears[pair.driven].shaft), (pair.driver, pair.driven), geometry)
-            for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True)
-        ]
-        torques: dict[str, float] = {}
-        for torque in self.constant_torques:
-            torques[torque.rotor] = torques.get(torque.rotor, 0.0) + torque.value
-        forces = axial_forces(pairs, self.speeds, torques)
-        carriers = {
-            name: any(
-                mounted.bearing.at_speed(self.speeds[name]).spatial_stiffness[2, 2] > 0.0
-                for mounted in self.bearings
-                if mounted.rotor == name
+            ThrustPair((driver.shaft, driven.shaft), (driver.name, driven.name), geometry)
+            for (driver, driven), geometry in zip(
+                map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True
             )
-            for name in forces
-        }
-        require_thrust_carried(forces, carriers)
+        ]
+        forces = axial_forces(pairs, self.speeds, constant_torques(self.constant_torques))
+        held = axially_held(self.bearings, self.speeds, forces)
+        require_thrust_carried(forces, {name: name in held for name in forces})
 
-    def _require_planes(self) -> None:
-        """Refuse gear pairs on one shaft, and faces that do not overlap along z."""
-        gears = {gear.name: gear for gear in self.gears}
-        for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
-            driver, driven = gears[pair.driver], gears[pair.driven]
-            places = [self.shaft(one.shaft).start + one.at for one in (driver, driven)]
-            apart, reach = abs(places[0] - places[1]), 0.5 * geometry.face_width
-            if apart > reach + LARGEST_OFFSET:
+    def _require_balance_of_each_shaft(self) -> None:
+        """Refuse torques that no gear pair leads away and that do not balance on their own shaft.
+
+        Raises
+        ------
+        CouplingError
+            Also where a torque comes in and no output takes it.
+        """
+        if self.torque != 0.0 and not self.outputs:
+            raise CouplingError(
+                f"a torque of {self.torque:g} N m that nothing takes; expected a gear pair or an output that leads it "
+                "away"
+            )
+        if len(self.shafts) == 1 or any(output.torque is None for output in self.outputs):
+            return
+        for place, name in enumerate(dict.fromkeys(output.shaft for output in self.outputs)):
+            entering = self.torque if place == 0 else 0.0
+            taken = sum(output.torque or 0.0 for output in self.outputs if output.shaft == name)
+            if abs(taken - entering) > LARGEST_IMBALANCE * max(abs(entering), abs(taken)):
                 raise CouplingError(
-                    f"{_label(pair)}: the gears are {1e3 * apart:.6g} mm apart along z; expected them in one plane, "
-                    f"within half a face width, {1e3 * reach:.6g} mm"
+                    f"shaft {name!r} takes in {entering:g} N m and gives out {taken:g} N m; expected torques that "
+                    f"balance on shaft {name!r}, as no gear pair leads to or from it"
+                )
+
+    def _require_power_flow(self) -> None:
+        """Refuse pairs whose driven gear drives the driver, and braked pairs without back flanks."""
+        least = _NO_TORQUE * abs(self.torque)
+        sense = copysign(1.0, self.torque)
+        if self.torque == 0.0:
+            return
+        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+            if sense * torque < -least:
+                raise CouplingError(
+                    f"{pair_label(pair)}: {-sense * torque:g} N m flow from {pair.driven!r} to {pair.driver!r}; "
+                    "expected power to flow from driver to driven; swap the two names"
+                )
+            if torque < -least and pair.backlash_of(geometry) is None:
+                raise CouplingError(
+                    f"{pair_label(pair)}: expected a backlash: the torque is negative, so the driven gear drives by "
+                    "the back flanks, which never meet without one"
                 )
 
     def _component(self, shaft: Shaft, reach: float, progress: Callable[[str], None]) -> RotorComponent:
@@ -465,11 +403,14 @@ class Machine:
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 
-    def _mesh(self, loaded: LoadedGearPair) -> GearMesh:
+    def _gears_of(self, pair: GearPair) -> tuple[ShaftGear, ShaftGear]:
+        """Driver and driven gear of a pair."""
         gears = {gear.name: gear for gear in self.gears}
+        return gears[pair.driver], gears[pair.driven]
+
+    def _mesh(self, loaded: LoadedGearPair) -> GearMesh:
         driver, driven = (
-            MountedGear(one.name, one.shaft, one.at, self.shaft(one.shaft).axis)
-            for one in (gears[loaded.pair.driver], gears[loaded.pair.driven])
+            MountedGear(one.name, one.shaft, one.at, self.shaft(one.shaft).axis) for one in self._gears_of(loaded.pair)
         )
         return GearMesh(driver, driven, loaded.geometry, loaded.contact, loaded.backlash, loaded.pair.friction)
 
@@ -485,61 +426,8 @@ class Machine:
         return inertia if inertia > 0.0 else gear.gear.polar_inertia
 
 
-def _label(pair: GearPair) -> str:
-    return f"gear pair {pair.driver!r} -> {pair.driven!r}"
-
-
-def _require_names(machine: Machine, housing: HousingComponent | None) -> None:
-    """Refuse names given twice, and names of nothing."""
-    kinds: Mapping[str, Sequence[str]] = {
-        "shaft": [shaft.name for shaft in machine.shafts],
-        "gear": [gear.name for gear in machine.gears],
-        "bearing": [mounted.bearing.name for mounted in machine.bearings],
-    }
-    for kind, names in kinds.items():
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise CouplingError(f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once")
-    if not machine.shafts:
-        raise CouplingError("a machine without shafts; expected at least one")
-    needed = [(f"bearing {one.bearing.name!r}", "shaft", one.rotor) for one in machine.bearings]
-    needed += [(f"gear {one.name!r}", "shaft", one.shaft) for one in machine.gears]
-    needed += [(_label(pair), "gear", name) for pair in machine.gear_pairs for name in (pair.driver, pair.driven)]
-    needed += [("an output", "shaft", one.shaft) for one in machine.outputs]
-    for where, kind, name in needed:
-        if name not in kinds[kind]:
-            known = ", ".join(map(repr, kinds[kind])) or "none"
-            raise CouplingError(f"{where}: no {kind} {name!r}; expected one of {known}")
-    for gear in machine.gears:
-        machine.shaft(gear.shaft).rotor.require_on_shaft(f"gear {gear.name!r}", gear.at)
-    gear_shafts = {gear.name: gear.shaft for gear in machine.gears}
-    for pair in machine.gear_pairs:
-        if gear_shafts[pair.driver] == gear_shafts[pair.driven]:
-            raise CouplingError(
-                f"{_label(pair)}: both gears are on shaft {gear_shafts[pair.driver]!r}; expected the driven one on "
-                "another"
-            )
-    seats = () if housing is None else tuple(housing.seats)
-    for mounted in machine.bearings:
-        if mounted.seat is not None and mounted.seat not in seats:
-            known = ", ".join(map(repr, seats)) or "none"
-            raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing; expected one of {known}, "
-                "or None for the ground"
-            )
-        if mounted.seat is None or housing is None or mounted.seat not in housing.seat_axes:
-            continue
-        centre, axis = housing.seat_axes[mounted.seat], machine.shaft(mounted.rotor).axis
-        offset = hypot(axis[0] - centre[0], axis[1] - centre[1])
-        if offset > LARGEST_OFFSET:
-            raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: seat {mounted.seat!r} is {1e3 * offset:.6g} mm off the axis of "
-                f"shaft {mounted.rotor!r}; expected a seat on it"
-            )
-
-
 def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:
-    """Dashpots of a rotor's flexible couplings."""
+    """Dashpots of the flexible couplings of a rotor."""
     found, left = list[ShaftDashpots](), 0.0
     for part in rotor.segments:
         if isinstance(part, Coupling) and part.is_damped:

@@ -1,4 +1,4 @@
-"""Eigenvalues of λ² q + λ C q + K q = 0 with right and left vectors, every one proved.
+"""Quadratic eigenvalue problem λ² q + λ C q + K q = 0: eigenvalues with right and left vectors, every one proved.
 
 The vectors are normalised so that pᴴ (2 λ I + C) q = 1 with |q| = 1 (Tisseur and Meerbergen 2001). The inverse of the
 dynamic stiffness is then, with X the drift of :mod:`coupling.rigid_motions`,
@@ -20,9 +20,9 @@ from coupling.rigid_motions import reduce_state
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_RESIDUAL = 1e-9  # what a pair may miss its equation by, as a part of the equation's terms
-_REFINE = 1e-12  # pairs that miss it by more are improved
-_DOUBLE = 1e-9  # eigenvalues nearer to each other than this part of their size are one, twice
+_RESIDUAL = 1e-9  # largest residual of a pair, relative to the terms of its equation
+_REFINE = 1e-12  # pairs with a larger residual are refined
+_DOUBLE = 1e-9  # relative distance within which two eigenvalues are one double eigenvalue
 _INDEPENDENT = 1e-6  # singular value below which their vectors are one as well
 
 
@@ -37,9 +37,9 @@ class Eigenpairs:
     right, left : ndarray of complex, shapes (m, n)
         q, of unit norm, and p; rows.
     rigid : ndarray, shape (r, n)
-        Motions that no spring resists, orthonormal; rows.
+        Rigid-body motions, which no spring resists, orthonormal; rows.
     drifts : int
-        s, how many of the zeros are double: motions that no dashpot resists either.
+        s, number of double zeros: motions that no dashpot resists either.
     drift : ndarray, shape (n, n)
         X.
     residuals : ndarray, shape (m,)
@@ -153,7 +153,7 @@ def refine_pair(
 
 
 def _separate_doubles(values: ComplexArray, vectors: ComplexArray) -> None:
-    """Give eigenvalues that are one, several times, vectors at right angles, in place, where there are as many.
+    """Orthogonalise the vectors of multiple eigenvalues, in place, where they are independent.
 
     An eigensolver's vectors of such a group may be all but parallel although the group is not defective.
     """

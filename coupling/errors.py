@@ -1,4 +1,4 @@
-"""What can go wrong between the components and the coupled answer."""
+"""Errors of the coupled machine and its analyses."""
 
 
 class CouplingError(ValueError):
@@ -6,11 +6,11 @@ class CouplingError(ValueError):
 
 
 class DeflectionError(CouplingError):
-    """A motion beyond what the parts can follow: teeth pressed in by more than they can be."""
+    """A motion beyond the deflection that the parts can follow: teeth compressed too far."""
 
 
 class TransientError(RuntimeError):
-    """A time integration that cannot be trusted: it diverged, stalled, or its energies do not balance."""
+    """A time integration that diverged, stalled, or whose energies do not balance."""
 
 
 class ModesError(RuntimeError):
@@ -18,4 +18,4 @@ class ModesError(RuntimeError):
 
 
 class PeriodicError(RuntimeError):
-    """A periodic motion that was not found, or cannot be trusted; the message says what to try."""
+    """A periodic motion that was not found, or fails its proof; the message says what to try."""

@@ -1,4 +1,4 @@
-"""What an exact march leaves behind: states, samples and the figures of its proof, from the trace of its elements."""
+"""Record of exponential collocation: states, samples and energy balance, from the trace of its elements."""
 
 from dataclasses import replace
 
@@ -16,13 +16,14 @@ from coupling.settings import TransientOutputs
 FloatArray = npt.NDArray[np.float64]
 
 
-class Record:
-    """Rows that turn amplitudes into what is recorded; n coordinates, M amplitudes."""
+class CollocationRecord:
+    """Output rows over the amplitudes; n coordinates, M amplitudes."""
 
     def __init__(self, part: LinearPart, outputs: TransientOutputs, contacts: Contacts) -> None:
         self.part, self.contacts, system = part, contacts, part.system
         modes, count = len(part.eigenvalues), len(part.reference.eigenvalue)
-        # Loads ride along as the reference's own response does: constant ones last, harmonic ones at its frequencies.
+        # Loads are amplitudes too, as the reference's own response is: constant ones last, harmonic ones at its
+        # frequencies.
         load = np.zeros((system.size, 2 * count))
         load[:, count - 1] = system.load
         for one in system.harmonic_loads:
@@ -42,7 +43,7 @@ class Record:
 
     def _rows_of_powers(self, load: FloatArray) -> Powers:
         part, system = self.part, self.part.system
-        # In the principal directions of what damps the squares of the rates give the loss.
+        # In the principal directions of the damping matrix the squares of the rates give the loss.
         loss, directions = np.linalg.eigh(0.5 * (system.damping + system.damping.T))
         forces = system.stiffness @ part.displacement_rows
         skew = (system.stiffness - system.stiffness.T) @ part.displacement_rows
@@ -54,7 +55,7 @@ class Record:
         return Powers(rate, loss, skew, riding, pushing)
 
     def free_motion(self, state: Checkpoint) -> FreeMotion:
-        """From a state on."""
+        """Rigid-body motion from a state on."""
         rigid = self.part.rigid
         q, v = self.part.own_response(state.time)
         return FreeMotion(
@@ -62,13 +63,13 @@ class Record:
         )
 
     def motion(self, z: FloatArray, free: FreeMotion, time: float) -> tuple[FloatArray, FloatArray]:
-        """All coordinates and rates at a time, shape (n,) each."""
+        """Coordinates and their rates at a time, shape (n,) each."""
         place, rate = free.at(np.array([time]))
         rigid = self.part.rigid
         return self.part.displacement_rows @ z + rigid @ place[0], self.part.velocity_rows @ z + rigid @ rate[0]
 
     def write(self, trace: Trace, free: FreeMotion, times: FloatArray, samples: Samples, first: int) -> None:
-        """Samples at ascending times of a trace, from a number on."""
+        """Write the samples at ascending times of a trace, from number ``first`` on."""
         from coupling.periodic.dense import amplitudes_at, forces_at
 
         reference = self.part.reference
@@ -84,7 +85,7 @@ class Record:
         samples.acceleration[rows] = z @ self._acceleration[0].T - force @ self._acceleration[1].T
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion) -> Checkpoint:
-        """The state with the work, the losses and the contacts' figures of a trace added."""
+        """The state with the work, the losses and the contact figures of a trace added."""
         from coupling.record_kernels import add_contacts, add_powers
 
         totals, figures = state.totals.copy(), state.contact_totals.copy()
@@ -94,7 +95,7 @@ class Record:
         return replace(state, totals=totals, stored=float(stored), contact_totals=figures)
 
     def contact_figures(self, before: Checkpoint, trace: Trace) -> FloatArray:
-        """Impulse, time apart, largest force and last touch, shape (c, 4), with those of a trace."""
+        """Impulse, time apart, largest force and last touch, shape (c, 4), with those of a trace added."""
         from coupling.record_kernels import add_contacts
 
         figures = before.contact_totals.copy()

@@ -1,4 +1,4 @@
-"""The frequencies that a turning machine excites: orders of its shafts and of its gear meshes."""
+"""Excitation orders of a machine: shaft orders, mesh harmonics and sidebands."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from coupling.machine import CoupledMachine
 
 @dataclass(frozen=True)
 class ExcitationLine:
-    """A frequency in proportion to the speed.
+    """An excitation whose frequency is proportional to the speed.
 
     Attributes
     ----------
@@ -19,7 +19,7 @@ class ExcitationLine:
     kind : str
         ``shaft``, ``mesh`` or ``sideband``.
     order : float
-        Over the speed of the leading rotor, positive.
+        Frequency over the speed of the leading rotor, positive.
     """
 
     name: str
@@ -34,18 +34,17 @@ def excitation_lines(
     mesh_harmonics: Sequence[int] = (1, 2, 3),
     sidebands: int = 0,
 ) -> tuple[ExcitationLine, ...]:
-    """Orders of all shafts and meshes; shafts of one speed have one line together.
+    """Orders of all shafts and meshes; shafts of equal speed share a line.
 
     Parameters
     ----------
     machine : CoupledMachine
-        That turns.
     shaft_orders : sequence of float
         Multiples of each shaft's speed: 1 is its unbalance.
     mesh_harmonics : sequence of int
         Multiples of each mesh frequency.
     sidebands : int
-        How many on either side of each harmonic of a mesh, at the distance of either gear's shaft speed.
+        Number on either side of each harmonic of a mesh, at the distance of either gear's shaft speed.
 
     Raises
     ------
@@ -67,7 +66,7 @@ def excitation_lines(
     ]
     for mesh in machine.meshes:
         teeth = mesh.geometry.driver.teeth * ratios[mesh.driver.rotor]
-        name = f"{mesh.driver.name} -> {mesh.driven.name}"
+        name = mesh.name
         shafts = {round(ratios[rotor], 12): rotor for rotor in (mesh.driven.rotor, mesh.driver.rotor)}
         for harmonic in mesh_harmonics:
             lines.append(ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth))

@@ -1,4 +1,4 @@
-"""One number for everything that enters a computation, the same only where all of it is the same bit for bit."""
+"""Digest of the inputs of a computation: equal only where all of them are equal bit for bit."""
 
 import hashlib
 import struct
@@ -16,7 +16,7 @@ def fingerprint(*parts: object) -> str:
     Raises
     ------
     TypeError
-        For anything else: what cannot be told apart must not pass for the same.
+        For objects of any other type, whose difference the digest would not show.
     """
     total = hashlib.sha256()
     _feed(total, parts)

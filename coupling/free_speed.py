@@ -1,11 +1,11 @@
-"""The speed of a machine that nothing prescribes: the motor against the load on the whole train's inertia.
+"""Free speed of a machine: run-up of the rigid train under motor and load torque.
 
 The nominal rotation, about which the coordinates move, is that of the rigid train,
 
     J dω/dt = T_motor(ω) - T_load(ω),
 
-J = Σ J_r (ω_r/ω)² at the first driver's rotor. What the torques do beside it, where a shaft is a little faster or
-slower than its nominal rotation, is their slope over speed: :class:`coupling.loads.TorqueSlope`.
+J = Σ J_r (ω_r/ω)² at the first driver's rotor. Where a shaft is a little faster or slower than its nominal rotation,
+the torques change by their slope over speed: :class:`coupling.loads.TorqueSlope`.
 """
 
 from collections.abc import Callable
@@ -31,7 +31,7 @@ def free_speed(
     duration: float,
     nominal: float,
 ) -> Turning:
-    """The speed of the rigid train over time, in straight pieces of equal duration.
+    """Speed of the rigid train over time, piecewise linear with pieces of equal duration.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def free_speed(
     duration : float
         [s].
     nominal : float
-        Speed that the rates are parts of [rad/s], positive.
+        Nominal speed, to which the result is relative [rad/s], positive.
 
     Raises
     ------

@@ -1,9 +1,9 @@
-"""Where in their mesh period gear pairs stand when they share gears.
+"""Mesh phases of gear pairs that share gears.
 
-Each gear is fitted to its shaft so that the first pair it belongs to begins a mesh period at t = 0. Every further pair
-of the same gear stands where the gear's teeth put it: as gears roll without slip, tooth 0 of driver and driven gear lie
-at angles that are linear in the pair's phase (`coupling.gears.meshing_rotations`), and an angle that is known already
-gives the phase. Gears that close a loop must fit: an arrangement whose teeth would clash cannot be assembled.
+Each gear is fitted to its shaft so that the first pair it belongs to begins a mesh period at t = 0. The phase of
+every further pair of the same gear follows from the gear's teeth: as gears roll without slip, tooth 0 of driver and
+driven gear lie at angles that are linear in the pair's phase (`coupling.gears.meshing_rotations`), and an angle that is
+known already gives the phase. Gears that close a loop must fit: where teeth would clash, they cannot be assembled.
 """
 
 import math
@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry, meshing_rotations
 
-_MISFIT = 1e-3  # of a pitch: beyond, teeth do not meet by mere rounding of the axes
+_MISFIT = 1e-3  # of a pitch: larger misfits are no rounding of the axes
 
 
 def mesh_phases(

@@ -1,4 +1,4 @@
-"""Gear train: speed ratios, senses of rotation, power flow through the pairs; and the trains that cannot exist.
+"""Gear train: speed ratios, senses of rotation, power flow through the pairs; checks that a train can exist.
 
 External gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂; their shafts are as far apart as the geometry
 of the pair says, and their faces overlap along the shafts. A train at constant speed takes as much power as it gives,
@@ -15,10 +15,10 @@ from coupling.loads import AnyTorque, Torque, TorqueRipple, constant_torques, tr
 from coupling.mounted import GearMesh
 
 LARGEST_OFFSET = 1e-6
-"""How far the distance of two axes may be from the centre distance of the gears on them [m]."""
+"""Largest difference of the distance of two axes from the centre distance of the gears on them [m]."""
 
 LARGEST_IMBALANCE = 0.01
-"""Part of the power of a train that its torques may leave over."""
+"""Largest imbalance of the power of a train, relative."""
 
 _RATIO_ROUNDING = 1e-9
 
@@ -32,7 +32,7 @@ class GearedShafts:
     driver, driven : str
         Names of the shafts.
     teeth : tuple of int
-        Of the driver's gear and of the driven one.
+        Tooth numbers of the driver and of the driven gear.
     """
 
     driver: str
@@ -52,9 +52,9 @@ class Contradiction:
     Attributes
     ----------
     pair : int
-        Place among the pairs.
+        Index of the pair.
     shaft : str
-        That would have to turn at two speeds.
+        Shaft that would have to turn at two speeds.
     ratio, other : Fraction
         Its speed over that of the first driver by the other pairs, and by this one.
     """
@@ -84,19 +84,19 @@ class GearTrain:
 
     @property
     def output_shafts(self) -> tuple[str, ...]:
-        """Shafts that drive no other, where the power leaves unless outputs are named."""
+        """Shafts that drive no other: the power leaves there unless outputs are given."""
         drivers = {pair.driver for pair in self.pairs}
         return tuple(shaft for shaft in self.ratios if shaft not in drivers)
 
     def require_turning(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
-        """The ratios, where every shaft can turn.
+        """Speed ratios of a train in which every shaft turns.
 
         Parameters
         ----------
         shafts : sequence of str
             Names of all shafts.
         labels : sequence of str
-            What messages call the pairs.
+            Names of the pairs in messages.
 
         Raises
         ------
@@ -118,12 +118,12 @@ class GearTrain:
         return self.ratios
 
     def pair_torques(self, torques: Mapping[str, float]) -> tuple[float, ...]:
-        """Mean torque that each pair takes off its driver [N m].
+        """Mean torque that each pair takes from its driver [N m].
 
         Parameters
         ----------
         torques : mapping of str to float
-            Acting on the shafts from outside [N m], each positive in the sense in which its shaft turns.
+            External torques on the shafts [N m], each positive in the sense in which its shaft turns.
 
         Returns
         -------
@@ -198,13 +198,13 @@ def _potentials(pairs: Sequence[GearedShafts], entering: Mapping[str, float]) ->
 
 @dataclass(frozen=True)
 class Output:
-    """Where torque leaves a train.
+    """Output torque of a train.
 
     Attributes
     ----------
     shaft : str
     torque : float, optional
-        Against the turning of the shaft [N m]; None: what is left, with the power shared equally.
+        Against the rotation of the shaft [N m]; None: the outputs share the power equally.
     at : float, optional
         Distance from the shaft's left end [m]; None: the right end.
     """
@@ -217,7 +217,7 @@ class Output:
 def shared_torques(
     train: GearTrain, ratios: Mapping[str, float], torque: float, outputs: Sequence[Output]
 ) -> list[tuple[Output, float]]:
-    """What each output takes of the torque that comes in [N m], against the turning of its shaft.
+    """Torque of each output [N m], against the rotation of its shaft.
 
     Without outputs, the shafts that drive no other take equal power. Given torques are proportions: they are scaled to
     balance the input exactly.
@@ -241,7 +241,7 @@ def shared_torques(
 
 
 def require_balanced_outputs(ratios: Mapping[str, float], torque: float, outputs: Sequence[Output]) -> None:
-    """Refuse outputs that, through the gears, take another power than comes in; see :func:`shared_torques`.
+    """Refuse outputs whose power is not the input power; see :func:`shared_torques`.
 
     Raises
     ------
@@ -284,7 +284,7 @@ def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], spe
 
 
 def require_balance(meshes: Sequence[GearMesh], torques: Sequence[AnyTorque], speeds: Mapping[str, float]) -> None:
-    """Refuse constant torques that no rotor of their gear train takes.
+    """Refuse constant torques that do not balance in their gear train.
 
     Trains that stand still, or whose torques vary over time or with the speed, are left to the solution.
 
@@ -338,10 +338,14 @@ def _require_place(mesh: GearMesh, starts: Mapping[str, float]) -> None:
             f"{mesh.label}: the axes of rotors {gears[0].rotor!r} and {gears[1].rotor!r} are {1e3 * apart:.6g} mm "
             f"apart; expected the gears' centre distance, {1e3 * distance:.6g} mm"
         )
-    places = [starts[gear.rotor] + gear.at for gear in gears]
-    shift, reach = abs(places[0] - places[1]), 0.5 * mesh.geometry.face_width
+    require_one_plane(mesh.label, [starts[gear.rotor] + gear.at for gear in gears], mesh.geometry.face_width)
+
+
+def require_one_plane(label: str, places: Sequence[float], face_width: float) -> None:
+    """Refuse gears whose faces do not overlap: two middles of faces along z, and the width of the common face [m]."""
+    shift, reach = abs(places[0] - places[1]), 0.5 * face_width
     if shift > reach + LARGEST_OFFSET:
         raise CouplingError(
-            f"{mesh.label}: the gears are {1e3 * shift:.6g} mm apart along z; expected them in one plane, within half "
-            f"a face width, {1e3 * reach:.6g} mm"
+            f"{label}: the gears are {1e3 * shift:.6g} mm apart along z; expected them in one plane, within half a "
+            f"face width, {1e3 * reach:.6g} mm"
         )

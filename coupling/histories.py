@@ -1,9 +1,9 @@
-"""What a transient or a periodic response tells, under the names of sensors, gears, bearings and gear pairs."""
+"""Time histories of a transient or a periodic response, by the names of sensors, gears, bearings and gear pairs."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, NamedTuple, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,29 +12,11 @@ from coupling.bearing_arrays import bearing_arrays
 from coupling.connector import LinearConnector, NonlinearConnector
 from coupling.machine import CoupledMachine
 from coupling.mounted import MountedGear
-from coupling.settings import TransientOutputs
+from coupling.settings import Recorded, TransientOutputs
 from coupling.sliding import friction_of
-from coupling.system import embed
 from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
-
-
-class Recorded(Protocol):
-    """What a transient or a periodic response recorded at even spacing."""
-
-    @property
-    def times(self) -> FloatArray: ...
-    @property
-    def displacement(self) -> FloatArray: ...
-    @property
-    def velocity(self) -> FloatArray: ...
-    @property
-    def acceleration(self) -> FloatArray: ...
-    @property
-    def compression(self) -> FloatArray: ...
-    @property
-    def force(self) -> FloatArray: ...
 
 
 @dataclass(frozen=True)
@@ -48,18 +30,18 @@ class Histories:
     sensor_acceleration : dict of str to ndarray, shape (s,)
         Along each sensor [m/s²].
     gear_motion : dict of str to ndarray, shape (s, 3)
-        x, y [m] of each gear's centre, and its rotation beside the steady one [rad].
+        x, y [m] of each gear's centre, and its rotation relative to the nominal one [rad].
     tie_force : dict of str to ndarray, shape (s, d)
-        Force of each shaft on its bearing in all the directions that it holds, x and y first [N, N m].
+        Force of each shaft on its bearing in every held direction, x and y first [N, N m].
     mesh_force : dict of str to ndarray, shape (s,)
         Force along the line of action [N], drive flanks and back flanks apart.
     mesh_compression : dict of str to ndarray, shape (s,)
         [m].
     mesh_friction : dict of str to ndarray, shape (s, 2)
-        Of every contact with friction: its force across the line of action [N], and the power that it takes from the
-        nominal rotation [W]; see :func:`coupling.sliding.friction_of`.
+        Of every contact with friction: its force across the line of action [N], and its power loss from the nominal
+        rotation [W]; see :func:`coupling.sliding.friction_of`.
     tie_axes : dict of str to tuple of int
-        Which of x, y, z and the rotations about x and y (0 to 4) the columns of each ``tie_force`` are.
+        Axes of the columns of each ``tie_force``: x, y, z and the rotations about x and y, 0 to 4.
     """
 
     times: FloatArray
@@ -90,14 +72,14 @@ class Histories:
 
     @property
     def columns(self) -> FloatArray:
-        """Every signal beside the others, shape (s, k)."""
+        """All signals as columns, shape (s, k)."""
         count = len(self.times)
         signals = [signal for name in _GROUPS for signal in getattr(self, name).values()]
         parts = [signal.reshape(count, math.prod(signal.shape[1:])) for signal in signals]
         return np.concatenate([np.empty((count, 0)), *parts], axis=1)
 
     def with_columns(self, times: FloatArray, columns: FloatArray) -> "Histories":
-        """Other samples of the same signals, from what :attr:`columns` gives."""
+        """The same signals with other samples, from columns as in :attr:`columns`."""
         groups: list[dict[str, FloatArray]] = []
         column = 0
         for name in _GROUPS:
@@ -120,11 +102,11 @@ class Quantity:
     Attributes
     ----------
     name : str
-        Of the variable.
+        Name of the variable.
     dimensions : tuple of str
         The signals' own first, then ``time``.
     of : callable
-        Takes the values of each signal by its name out of a record, time along their first axis.
+        Values of each signal of a record by its name, time along their first axis.
     unit : str
     what : str
         Long name.
@@ -222,47 +204,32 @@ HISTORY_QUANTITIES = (
 
 
 def transient_outputs(machine: CoupledMachine) -> TransientOutputs:
-    """The rows to record so that :func:`histories` can name them."""
+    """Output rows of a machine, which :func:`histories` names."""
     system = machine.system
-    numbers = {component.name: i for i, component in enumerate(system.components)}
-    displacement = []
+    moved = [np.zeros((0, system.size))]
     for gear in _gears(machine):
         rotor = next(rotor for rotor in machine.rotors if rotor.name == gear.rotor)
-        for row in (rotor.direction(gear.at, 0), rotor.direction(gear.at, 1), rotor.rotation(gear.at)):
-            displacement.append(embed(system.components, numbers[rotor.name], row))
-    deflections = [row for connector in _bearings(machine) for row in connector.directions.T]
-    sensors = []
-    if machine.housing is not None:
-        which = numbers[machine.housing.name]
-        sensors = [embed(system.components, which, row) for row in machine.housing.sensors.values()]
-    n = system.size
+        rows = np.vstack([rotor.motions(gear.at)[:2], rotor.rotation(gear.at)])
+        moved.append(machine.rows(rotor.name, rows))
+    deflections = np.vstack([moved[0], *(connector.directions.T for connector in _bearings(machine))])
     return TransientOutputs(
-        displacement=np.array(displacement + deflections).reshape(-1, n),
-        velocity=np.array(deflections).reshape(-1, n),
-        acceleration=np.array(sensors).reshape(-1, n),
+        displacement=np.vstack([*moved, deflections]),
+        velocity=deflections,
+        acceleration=np.array([*machine.sensor_rows.values()]).reshape(-1, system.size),
     )
 
 
-class _Nothing(NamedTuple):
-    times: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    compression: FloatArray
-    force: FloatArray
-
-
 def nothing_recorded(machine: CoupledMachine, outputs: TransientOutputs) -> Recorded:
-    """What a transient with these outputs records before its first sample: names what comes, and how wide it is."""
+    """Empty record of a transient with these outputs: names and widths of the signals before the first sample."""
     contacts = len(machine.system.contacts)
     widths = *(len(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)), contacts, contacts
-    return _Nothing(np.zeros(0), *(np.zeros((0, width)) for width in widths))
+    return Recorded(np.zeros(0), *(np.zeros((0, width)) for width in widths))
 
 
 def histories(machine: CoupledMachine, result: Recorded, turning: Turning | None = None) -> Histories:
-    """Name what a transient or a periodic response with :func:`transient_outputs` recorded.
+    """Time histories by name of a transient or a periodic response with :func:`transient_outputs`.
 
-    At its speeds over time, or the nominal ones.
+    ``turning`` is the speed over time, by default the nominal one.
     """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
@@ -309,10 +276,10 @@ def _bearings(machine: CoupledMachine) -> tuple[LinearConnector, ...]:
 def _beside_linear(
     linear: LinearConnector, connector: NonlinearConnector, deflection: FloatArray, turned: FloatArray
 ) -> FloatArray:
-    """What a nonlinear bearing adds to the linear one of its tangent, shape (s, d)."""
+    """Nonlinear part of a bearing's force beside its tangent's, shape (s, d)."""
     from coupling.bearing_kernels import bearing_history
 
-    # Directions in which nothing can move are no part of it.
+    # Directions in which nothing can move have no part in it.
     moving = np.flatnonzero(np.any(linear.directions != 0.0, axis=0))
     force = np.zeros_like(deflection)
     own = np.ascontiguousarray(deflection[:, moving])
@@ -321,13 +288,13 @@ def _beside_linear(
 
 
 def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatArray, rates: FloatArray) -> FloatArray:
-    """A bearing's force in every direction that it holds, shape (s, d), at each sample's speed in nominal terms."""
+    """Linear force of a bearing in every held direction, shape (s, d), at the relative speed of each sample."""
     table = connector.over_speed
     if table is None:
         return np.asarray(deflection @ connector.stiffness.T + velocity @ connector.damping.T)
     force = np.zeros_like(deflection)
     for row in range(len(table.rates)):
-        # The share that each speed of the table has in what is linear between them.
+        # Weight of each speed of the table in the linear interpolation.
         share = np.interp(rates, table.rates, np.eye(len(table.rates))[row])
         held = np.flatnonzero(share)
         push = deflection[held] @ table.stiffness[row].T + velocity[held] @ table.damping[row].T

@@ -1,8 +1,8 @@
-"""The plain arrays that the time-stepping kernels take, by name.
+"""Plain arrays of the coupled system for the time-stepping kernels, by name.
 
-n coordinates, c contacts, r ties, h harmonic loads; :mod:`coupling.step` fills them from a coupled system. Laws that
-are not linear act along k directions: those of the contacts, then those of b nonlinear bearings, e in all, then two
-for each contact with friction.
+n coordinates, c contacts, r connector directions, h harmonic loads; :mod:`coupling.step` fills them from a coupled
+system. Nonlinear laws act along k directions: those of the contacts, then those of b nonlinear bearings, e in all, then
+two for each contact with friction.
 """
 
 from typing import NamedTuple
@@ -18,22 +18,22 @@ BALLS, ROLLERS, GAP = 0, 1, 2
 
 
 class Dynamics(NamedTuple):
-    """The system itself: diagonal but for the gyroscopic blocks and a few directions, the ties."""
+    """The linear system: diagonal but for the gyroscopic blocks and the few directions of its connectors."""
 
     stiffness: FloatArray  # (n,) diagonal of the components' K
     damping: FloatArray  # (n,) and of their C
     block_start: IntArray  # (g,) first coordinate of each gyroscopic block
     block_size: IntArray  # (g,)
     gyroscopic: FloatArray  # (g, b, b) Gᵀ at nominal speed, padded
-    ties: FloatArray  # (r, n) Uᵀ, orthonormal: all else in K and C is U K_t Uᵀ and U C_t Uᵀ
-    tie_rates: FloatArray  # (t,) speeds, as parts of the nominal one, at which these are given
-    tie_stiffness: FloatArray  # (t, r, r) K_t
-    tie_damping: FloatArray  # (t, r, r) C_t
+    connectors: FloatArray  # (r, n) Uᵀ, orthonormal: all else in K and C is U K_t Uᵀ and U C_t Uᵀ
+    connector_rates: FloatArray  # (t,) speeds, as parts of the nominal one, at which these are given
+    connector_stiffness: FloatArray  # (t, r, r) K_t
+    connector_damping: FloatArray  # (t, r, r) C_t
     has_skew: bool  # whether K_t is not symmetric
     constant: FloatArray  # (n,) F
-    swing: FloatArray  # (n,) load of an angular acceleration s'' of one
+    acceleration_load: FloatArray  # (n,) load of an angular acceleration s'' of one
     frequency: FloatArray  # (h,) w [rad/s]
-    follows: IntArray  # (h,) what the load follows: BY_TIME ...
+    follows: IntArray  # (h,) whether the load follows time, rotation or speed: BY_TIME ...
     cosine: FloatArray  # (h, n) Re F_w
     sine: FloatArray  # (h, n) Im F_w
     timed_times: FloatArray  # (k, l) [s], padded
@@ -46,18 +46,18 @@ class Dynamics(NamedTuple):
 
 
 class StepMatrices(NamedTuple):
-    """What the step needs for each of m step sizes."""
+    """Matrices of Newmark's step for each of m step sizes."""
 
     size: FloatArray  # (m,) h [s]
     base: FloatArray  # (m, n) inverse of the diagonal of S
     blocks: FloatArray  # (m, g, b, b) inverses of its gyroscopic blocks, transposed
-    tie_stiffness: FloatArray  # (m, r, r) K_t
-    tie_damping: FloatArray  # (m, r, r) C_t
-    ties: FloatArray  # (m, r, n) (B U)ᵀ, B the inverse without ties
+    connector_stiffness: FloatArray  # (m, r, r) K_t
+    connector_damping: FloatArray  # (m, r, r) C_t
+    connectors: FloatArray  # (m, r, n) (B U)ᵀ, B the inverse without connectors
     between: FloatArray  # (m, r, r) Uᵀ B U
     link: FloatArray  # (m, r, r) (I + E Uᵀ B U)⁻¹ E, E = γ h C_t + β h² K_t
     contact: FloatArray  # (m, k, n) Wᵀ = (S⁻¹ D)ᵀ
-    contact_ties: FloatArray  # (m, k, r) (Uᵀ W)ᵀ
+    contact_connectors: FloatArray  # (m, k, r) (Uᵀ W)ᵀ
     flexibility: FloatArray  # (m, k, k) Dᵀ W
 
 
@@ -66,29 +66,29 @@ class Contacts(NamedTuple):
 
     direction: FloatArray  # (k, n) Dᵀ, those of bearings and friction included
     law: FloatArray  # numbers of all laws, one after another: `coupling.gears.law_table`
-    law_at: IntArray  # (c,) where those of each begin
-    shares_at: IntArray  # (c,) the same of what friction takes; -1 where its lines of contact turn all at once
+    law_at: IntArray  # (c,) offset of the law of each contact
+    shares_at: IntArray  # (c,) the same of its friction law; -1 where its lines of contact slide as one
     phase: FloatArray  # (c,)
     rate: FloatArray  # (c,)
     errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
     clearance: FloatArray  # (c,)
     friction_row: IntArray  # (c,) first of the two directions along which friction acts; -1: none
     friction: FloatArray  # (c, 3) coefficient with the sense of sliding; pitch point and end of the path
-    sliding: FloatArray  # (c, 2) W_a and W_b: how the nominal rotation slides
+    sliding: FloatArray  # (c, 2) W_a and W_b: sliding by the nominal rotation
 
 
 class Bearings(NamedTuple):
-    """The bearings whose laws are not linear, their rows of rolling elements one after another (w)."""
+    """Nonlinear bearings, their rows of rolling elements one after another (w)."""
 
-    axis: IntArray  # (e,) which of x, y, z and the rotations about x and y a direction is
+    axis: IntArray  # (e,) axis of each direction: x, y, z and the rotations about x and y
     first: IntArray  # (b + 1,) first direction of each
-    linear: FloatArray  # (b, 5, 5) stiffness that the ties hold already, its leading part
+    linear: FloatArray  # (b, 5, 5) stiffness that the connectors hold already, its leading part
     fixed: FloatArray  # (b, 5) displacement along axes that are no directions
     preload: FloatArray  # (b,) of a spring along z [N]
     first_row: IntArray  # (b + 1,)
     kind: IntArray  # (w,) BALLS, ROLLERS or GAP
-    elements: IntArray  # (w,) how many of them
-    shape: FloatArray  # (w, 7) what they are like, by their kind
+    elements: IntArray  # (w,) number of rolling elements
+    shape: FloatArray  # (w, 7) geometry and stiffness, by the kind
     cage: FloatArray  # (w, 2) azimuth of the first element and its rate by the turned time
     slices: FloatArray  # (w, slices, 2) of rollers: place and gap
 
@@ -99,12 +99,12 @@ class Segments(NamedTuple):
     start: FloatArray  # (s,)
     end: FloatArray  # (s,)
     steps: IntArray  # (s,)
-    kind: IntArray  # (s,) which step matrices
+    kind: IntArray  # (s,) slot of the step matrices
     turned: FloatArray  # (s, 3) s, s' and s'' at the start
 
 
 class Scratch(NamedTuple):
-    """Room for one march, w the gyroscopic blocks' width and e + c the number of deflections; zeros at its start."""
+    """Scratch arrays, w the gyroscopic blocks' width and e + c the number of deflections; zeros at the start."""
 
     a: FloatArray  # (n,) accelerations at the step's start ...
     before: FloatArray  # (n,) ... and at that of the step before
@@ -112,19 +112,19 @@ class Scratch(NamedTuple):
     q0: FloatArray  # (n,) q*
     v0: FloatArray  # (n,) v*
     load: FloatArray  # (n,)
-    pushed: FloatArray  # (n,) loads and all that resists q* and v*
+    pushed: FloatArray  # (n,) loads less the resistance to q* and v*
     x: FloatArray  # (n,) of a sample
     y: FloatArray  # (n,)
-    tq: FloatArray  # (r,) what the ties see of q, v, a, q* and v* ...
+    tq: FloatArray  # (r,) projections Uᵀ of q, v, a, q* and v* ...
     tv: FloatArray  # (r,)
     ta: FloatArray  # (r,)
     tq0: FloatArray  # (r,)
     tv0: FloatArray  # (r,)
     seen: FloatArray  # (r,) ... and of the accelerations at the step's end
-    tie_push: FloatArray  # (r,)
+    connector_force: FloatArray  # (r,)
     response: FloatArray  # (r,)
     linked: FloatArray  # (r,)
-    dq: FloatArray  # (k,) what the laws' directions see of q, v, a, q* and v*
+    dq: FloatArray  # (k,) projections Dᵀ of q, v, a, q* and v*
     dv: FloatArray  # (k,)
     da: FloatArray  # (k,)
     dq0: FloatArray  # (k,)
@@ -134,7 +134,7 @@ class Scratch(NamedTuple):
     rate: FloatArray  # (e + c,)
     delta_free: FloatArray  # (e + c,)
     rate_free: FloatArray  # (e + c,)
-    slip: FloatArray  # (e + c,) rates that runout takes from the contacts'
+    slip: FloatArray  # (e + c,) rates of the runout errors
     force_before: FloatArray  # (e + c,)
     laws: FloatArray  # (c, 6)
     spare: FloatArray  # (c, 6)
@@ -142,14 +142,14 @@ class Scratch(NamedTuple):
     jacobian: FloatArray  # (e + c, e + c)
     residual: FloatArray  # (e + c, 1)
     tangents: FloatArray  # (b, 5, 5) of bearings
-    held: FloatArray  # (8, 5): `coupling.bearing_kernels.take_bearings`
-    powers: FloatArray  # (5,): `coupling.power_kernels.take_powers`
+    held: FloatArray  # (8, 5): `coupling.bearing_kernels.evaluate_bearings`
+    powers: FloatArray  # (5,): `coupling.power_kernels.evaluate_powers`
     powers_before: FloatArray  # (5,)
     block: FloatArray  # (w,)
 
 
 class Outputs(NamedTuple):
-    """What is written at each sample."""
+    """Rows that are written at each sample."""
 
     displacement: FloatArray  # (k0, n)
     velocity: FloatArray  # (k1, n)
@@ -157,7 +157,7 @@ class Outputs(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """Where it is written: sample i is of the time first + i * interval, in row i - offset."""
+    """Arrays of the samples: sample i is of the time first + i * interval, in row i - offset."""
 
     first: float
     interval: float

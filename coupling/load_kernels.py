@@ -1,4 +1,4 @@
-"""The loads at a time, compiled.
+"""Loads at a time, compiled; s is the turned time, s' the speed and α = s'' the angular acceleration.
 
 Importing this module imports numba.
 """
@@ -15,18 +15,18 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @inner(forceinline=True)
-def load_at(dynamics: Dynamics, time: float, turned: float, speed: float, swing: float, out: FloatArray) -> None:
+def load_at(dynamics: Dynamics, time: float, turned: float, speed: float, alpha: float, out: FloatArray) -> None:
     """All loads at a time."""
     n = out.size
     for i in range(n):
-        out[i] = dynamics.constant[i] + swing * dynamics.swing[i]
+        out[i] = dynamics.constant[i] + alpha * dynamics.acceleration_load[i]
     for w in range(dynamics.frequency.size):
         frequency, follows = dynamics.frequency[w], dynamics.follows[w]
         angle = frequency * (time if follows == BY_TIME else turned)
         cosine, sine = math.cos(angle), math.sin(angle)
         if follows == BY_UNBALANCE:
-            # (s'² - i s''/w) e^{iws}: what an eccentric mass feels, by differentiating twice.
-            square, side = speed * speed, swing / frequency
+            # (s'² - i s''/w) e^{iws}: inertia force of an eccentric mass, by differentiating twice.
+            square, side = speed * speed, alpha / frequency
             cosine, sine = square * cosine + side * sine, square * sine - side * cosine
         for i in range(n):
             out[i] += cosine * dynamics.cosine[w, i] - sine * dynamics.sine[w, i]

@@ -1,4 +1,4 @@
-"""What drives a machine from outside, on its parts by name, and the loads on the coordinates that come of it."""
+"""Loads on a machine: unbalance, shaft bow, torques; on its parts by name, and on the coordinates."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -26,7 +26,7 @@ class Unbalance:
 
 @dataclass(frozen=True)
 class BowReactions:
-    """What a bow loads the straight shaft with: forces that turn with it, see :func:`rotors.bow_shape`.
+    """Shaft bow as forces on the straight shaft that rotate with it, see :func:`rotors.bow_shape`.
 
     Attributes
     ----------
@@ -62,12 +62,12 @@ class TorqueHistory:
 
 @dataclass(frozen=True)
 class TorqueRipple:
-    """A torque about z that swings, amplitude cos(w t + phase) [N m].
+    """A harmonic torque about z, amplitude cos(w t + phase) [N m].
 
     Attributes
     ----------
     order : float or None
-        w over the speed of the rotor that it acts on: it turns with the shaft, faster and slower.
+        w over the speed of its rotor: the frequency follows the speed.
     frequency : float or None
         w [rad/s], whatever the speed; one of the two.
     """
@@ -89,14 +89,14 @@ class TorqueRipple:
 
 @dataclass(frozen=True)
 class TorqueSlope:
-    """By how much a torque about z rises with the speed of its own rotor beside the nominal one [N m s].
+    """Slope of a torque about z over the speed of its rotor, about the nominal speed [N m s].
 
     Attributes
     ----------
     rates : ndarray, shape (t,)
         Speeds as parts of the nominal one, ascending.
     slopes : ndarray, shape (t,)
-        dT/dω there: a motor's torque mostly falls, and so resists what departs from the nominal speed.
+        dT/dω there: negative for most motors, whose torque then damps departures from the nominal speed.
     """
 
     name: str
@@ -110,7 +110,7 @@ AnyTorque = Torque | TorqueHistory | TorqueRipple | TorqueSlope
 
 
 def constant_torques(torques: "Sequence[AnyTorque]") -> dict[str, float]:
-    """Sum of the torques on each rotor [N m], of those that vary over time the largest value; ripples left out."""
+    """Sum of the torques on each rotor [N m]: of tables over time the largest value, without ripples and slopes."""
     total: dict[str, float] = {}
     for torque in torques:
         match torque:
@@ -126,7 +126,7 @@ def constant_torques(torques: "Sequence[AnyTorque]") -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Drive:
-    """Where the torque comes in that speeds a train up: a rotor, and a distance from its left end [m]."""
+    """Station at which the torque acts that accelerates a train: a rotor, and a distance from its left end [m]."""
 
     rotor: str
     at: float
@@ -134,7 +134,7 @@ class Drive:
 
 @dataclass
 class Loads:
-    """What acts on the coordinates, n of them; a collection that is still added to.
+    """Loads on the n coordinates, collected while the machine is assembled.
 
     Attributes
     ----------
@@ -150,55 +150,66 @@ class Loads:
     dashpots: list[LinearConnector] = field(default_factory=list)
 
 
-class LoadedParts:
-    """The components of a machine with their speeds, and where loads on its rotors act."""
+class MachineCoordinates:
+    """The n coordinates of a machine's components: rows of the motion of places on them, and loads on those places.
+
+    Attributes
+    ----------
+    components : sequence of Component
+    speeds : mapping of str to float
+        Signed speed of each rotor [rad/s].
+    size : int
+        n.
+    """
 
     def __init__(self, components: Sequence[Component], speeds: Mapping[str, float]) -> None:
-        self._components, self._speeds = components, speeds
-        self._rotors = {part.name: i for i, part in enumerate(components) if isinstance(part, RotorComponent)}
+        self.components, self.speeds = components, speeds
+        self.size = sum(component.size for component in components)
+        self._numbers = {part.name: i for i, part in enumerate(components)}
 
-    def rotor(self, name: str) -> tuple[int, RotorComponent]:
-        """A rotor and its number among the components."""
-        if name not in self._rotors:
-            raise CouplingError(f"no rotor is named {name!r}; there are: {', '.join(sorted(self._rotors))}")
-        part = self._components[self._rotors[name]]
-        assert isinstance(part, RotorComponent)
-        return self._rotors[name], part
+    def rotor(self, name: str) -> RotorComponent:
+        """The rotor of this name."""
+        part = self.components[self._numbers[name]] if name in self._numbers else None
+        if not isinstance(part, RotorComponent):
+            known = sorted(part.name for part in self.components if isinstance(part, RotorComponent))
+            raise CouplingError(f"no rotor is named {name!r}; there are: {', '.join(known)}")
+        return part
 
-    def turning(self, name: str) -> FloatArray:
+    def rows(self, name: str, rows: FloatArray) -> FloatArray:
+        """Rows over the coordinates of one component, shape (..., m), as rows over all of them, shape (..., n)."""
+        return embed(self.components, self._numbers[name], rows)
+
+    def rigid_rotation(self, name: str) -> FloatArray:
         """Coordinates of a rotation of a whole rotor by one radian, shape (n,)."""
-        which, rotor = self.rotor(name)
-        return embed(self._components, which, rotor.turning)
+        return self.rows(name, self.rotor(name).turning)
 
     def rotation(self, name: str, at: float) -> FloatArray:
-        """Rotation about z of a place on a rotor, shape (n,)."""
-        which, rotor = self.rotor(name)
-        return embed(self._components, which, rotor.rotation(at))
+        """Rotation about z of a station of a rotor, shape (n,)."""
+        return self.rows(name, self.rotor(name).rotation(at))
 
-    def circling(self, name: str, at: float) -> npt.NDArray[np.complex128]:
-        """Amplitude of a force of 1 N that circles counter-clockwise, (cos, sin) on x and y, shape (n,)."""
-        which, rotor = self.rotor(name)
-        x, y = (embed(self._components, which, rotor.direction(at, axis)) for axis in (0, 1))
+    def rotating_force(self, name: str, at: float) -> npt.NDArray[np.complex128]:
+        """Amplitude of a force of 1 N that rotates counter-clockwise, (cos, sin) on x and y, shape (n,)."""
+        x, y = self.rows(name, self.rotor(name).motions(at)[:2])
         return np.asarray(x - 1j * y)
 
     def add_unbalance(self, loads: Loads, unbalance: Unbalance) -> None:
         """m e Ω² (cos, sin)(Ω t + phase) on x and y: y lags x by a quarter turn, in the sense of rotation."""
-        speed = self._speeds[unbalance.rotor]
-        circling = self.circling(unbalance.rotor, unbalance.at)
+        speed = self.speeds[unbalance.rotor]
+        rotating = self.rotating_force(unbalance.rotor, unbalance.at)
         if speed == 0.0 or unbalance.moment == 0.0:
             return
         force = unbalance.moment * speed**2 * np.exp(1j * unbalance.phase)
-        loads.harmonic.append(HarmonicLoad(speed, force * circling, follows="unbalance"))
+        loads.harmonic.append(HarmonicLoad(speed, force * rotating, follows="unbalance"))
 
     def add_bow(self, loads: Loads, bow: BowReactions) -> None:
-        """K b e^{iΩs} of a bow b: the shaft resists what its motion u differs from it, by K (u - b e^{iΩs})."""
+        """K b e^{iΩs} of a bow b: the shaft resists its motion u beside the bow by K (u - b e^{iΩs})."""
         force = np.zeros_like(loads.constant, dtype=np.complex128)
         for at, value in zip(bow.at.tolist(), bow.forces, strict=True):
-            force = force + value * self.circling(bow.rotor, at)
-        loads.harmonic.append(HarmonicLoad(self._speeds[bow.rotor], force, follows="turning"))
+            force = force + value * self.rotating_force(bow.rotor, at)
+        loads.harmonic.append(HarmonicLoad(self.speeds[bow.rotor], force, follows="turning"))
 
     def add_torque(self, loads: Loads, torque: AnyTorque) -> None:
-        """Constant, over time, swinging, or by the speed beside the nominal one."""
+        """A torque that is constant, tabled over time, harmonic, or a slope over the speed."""
         row = self.rotation(torque.rotor, torque.at)
         match torque:
             case Torque():
@@ -211,43 +222,44 @@ class LoadedParts:
                     loads.harmonic.append(HarmonicLoad(torque.frequency, amplitude))
                     return
                 assert torque.order is not None
-                frequency = torque.order * abs(self._speeds[torque.rotor])
+                frequency = torque.order * abs(self.speeds[torque.rotor])
                 loads.harmonic.append(HarmonicLoad(frequency, amplitude, follows="turning"))
             case TorqueSlope():
                 loads.dashpots.append(_dashpot(torque, row))
 
-    def swing(self, pairs: Sequence[tuple[str, str]], drives: Sequence[Drive]) -> FloatArray:
+    def acceleration_load(self, pairs: Sequence[tuple[str, str]], drives: Sequence[Drive]) -> FloatArray:
         """Load of an angular acceleration s'' = 1/s, at which each rotor gains its own speed in a second, shape (n,).
 
         The coordinates turn relative to the nominal rotation, so each shaft's inertia holds it back by -∫ Ω s'' dI_p,
-        which its modes feel as -Ω s'' times the coordinates of a rotation of the whole. For rotors that gears tie, of
-        inertia J and speed Ω, the drive adds (Σ J Ω²) s'' / Ω_drive, so that the train as a whole follows the nominal
-        rotation, and no load is left on it.
+        which its modes feel as -Ω s'' times the coordinates of a rotation of the whole. For rotors that gears connect,
+        of inertia J and speed Ω, the drive adds (Σ J Ω²) s'' / Ω_drive, so that the train as a whole follows the
+        nominal rotation, and no load is left on it.
 
         Parameters
         ----------
         pairs : sequence of two names
-            Rotors that gears tie.
+            Rotors that gears connect.
         drives : sequence of Drive
             One for each train at most; a train without is driven at the left end of its first rotor.
         """
-        total = np.zeros(sum(component.size for component in self._components))
-        for train in trains(list(self._rotors), pairs):
+        total = np.zeros(self.size)
+        rotors = [part.name for part in self.components if isinstance(part, RotorComponent)]
+        for train in trains(rotors, pairs):
             here = [drive for drive in drives if drive.rotor in train] or [Drive(train[0], 0.0)]
             if len(here) > 1:
                 raise CouplingError(
                     f"rotors {[one.rotor for one in here]} of one train are said to drive it; expected one"
                 )
             for name in train:
-                total -= self._speeds[name] * self.turning(name)
-            power = sum(self._speeds[name] ** 2 * float(np.sum(self.turning(name) ** 2)) for name in train)
+                total -= self.speeds[name] * self.rigid_rotation(name)
+            power = sum(self.speeds[name] ** 2 * float(np.sum(self.rigid_rotation(name) ** 2)) for name in train)
             if power:
-                total += power / self._speeds[here[0].rotor] * self.rotation(here[0].rotor, here[0].at)
+                total += power / self.speeds[here[0].rotor] * self.rotation(here[0].rotor, here[0].at)
         return total
 
 
 def _dashpot(slope: TorqueSlope, row: FloatArray) -> LinearConnector:
-    """A torque's slope over speed resists as a dashpot of minus the slope."""
+    """A torque's slope over speed as a dashpot of minus the slope."""
     damping = -slope.slopes.reshape(-1, 1, 1)
     none = np.zeros_like(damping)
     table = SpeedTable(slope.rates, none, damping) if np.ptp(slope.slopes) > 0.0 else None
@@ -258,7 +270,7 @@ def _dashpot(slope: TorqueSlope, row: FloatArray) -> LinearConnector:
 
 
 def trains(names: Sequence[str], pairs: Sequence[tuple[str, str]]) -> list[list[str]]:
-    """Rotors that gear pairs tie together, in their order; a rotor that none ties is a train of its own."""
+    """Gear trains: rotors that gear pairs connect, in their order; a rotor without a pair is a train of its own."""
     found = [[name] for name in names]
     for first, second in pairs:
         one, other = (next(train for train in found if name in train) for name in (first, second))

@@ -1,4 +1,4 @@
-"""Square matrices that act in few directions."""
+"""Low-rank matrices: the common subspace in which several square matrices act."""
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +20,7 @@ def common_span(matrices: list[FloatArray]) -> tuple[FloatArray, list[FloatArray
     n = len(matrices[0])
     if not scaled:
         return np.zeros((n, 0)), [np.zeros((0, 0)) for _ in matrices]
-    # What all of them leave alone on both sides has no part in the decomposition.
+    # Coordinates without any entry have no part in the decomposition.
     touched = np.any([np.any(matrix, axis=0) | np.any(matrix, axis=1) for matrix in scaled], axis=0)
     among = np.ix_(touched, touched)
     left, sizes, _ = np.linalg.svd(np.hstack([part for m in scaled for part in (m[among], m[among].T)]))

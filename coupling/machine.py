@@ -1,4 +1,4 @@
-"""From rotors, a housing, bearings and gear pairs to the coupled system."""
+"""Assembly of the coupled system: components, connectors of bearings and gear pairs, and loads."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,13 +9,13 @@ import numpy.typing as npt
 
 from coupling.base_motion import BaseMotion, base_loads, gravity_load
 from coupling.bearing_law import RollingLaw
-from coupling.component import Component, HousingComponent, RotorComponent, pedestal_component
+from coupling.component import Component, HousingComponent, PedestalComponent, RotorComponent, pedestal_component
 from coupling.connector import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
 from coupling.errors import CouplingError
 from coupling.gear_phases import mesh_phases
 from coupling.gear_train import require_balance, require_meshing
 from coupling.gears import ToothContact, sliding_friction
-from coupling.loads import AnyTorque, BowReactions, Drive, LoadedParts, Loads, Unbalance, constant_torques
+from coupling.loads import AnyTorque, BowReactions, Drive, Loads, MachineCoordinates, Unbalance, constant_torques
 from coupling.mean_mesh import mean_meshes
 from coupling.mounted import GearMesh, MountedBearing
 from coupling.pressed_flanks import with_pressed_flanks
@@ -23,7 +23,7 @@ from coupling.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from coupling.shuttling import shuttling_loads
 from coupling.sliding import held_at_speed, sliding_flanks
 from coupling.system import CoupledSystem, embed
-from coupling.thrust import ThrustPair, axial_forces, require_thrust_carried
+from coupling.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
 from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
@@ -37,7 +37,7 @@ _PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two sp
 
 @dataclass(frozen=True)
 class CoupledMachine:
-    """The parts, and the coupled system that they make.
+    """The parts of a machine, and the coupled system assembled of them.
 
     Attributes
     ----------
@@ -46,12 +46,12 @@ class CoupledMachine:
     bearings : tuple of MountedBearing
     meshes : tuple of GearMesh
     system : CoupledSystem
-        Components in the order rotors, housing, pedestals; linear connectors as ``bearings``, then the slopes of
-        torques; the drive flanks of ``meshes`` first among its contacts, then the back flanks.
+        Components in the order rotors, housing, pedestals; linear connectors in the order ``bearings``, dashpots of
+        couplings, slopes of torques; contacts in the order drive flanks of ``meshes``, back flanks.
     unbalances, bows, torques, drives, base, gravity
         The loads in the system.
     dashpots : tuple of ShaftDashpots
-        In the rotors' couplings; their connectors stand behind those of the bearings.
+        In the rotors' couplings.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -79,13 +79,25 @@ class CoupledMachine:
 
     @property
     def pressed_contacts(self) -> tuple[int, ...]:
-        """Number of the contact of each mesh that its mean load presses: drive flanks, or back flanks if braked."""
-        contacts, found, back = self.system.contacts, list[int](), len(self.meshes)
-        for number, mesh in enumerate(self.meshes):
-            has_back = mesh.backlash is not None
-            found.append(back if has_back and contacts[back].drives else number)
-            back += has_back
-        return tuple(found)
+        """Number of the contact of each mesh that carries the mean load: its drive flanks, or back flanks if braked."""
+        contacts = self.system.contacts
+        return tuple(
+            number if back is None or not contacts[back].drives else back
+            for number, back in enumerate(_back_contacts(self.meshes))
+        )
+
+    def rows(self, component: str, rows: FloatArray) -> FloatArray:
+        """Rows over the coordinates of one component, shape (..., m), as rows over all of them, shape (..., n)."""
+        components = self.system.components
+        return embed(components, [part.name for part in components].index(component), rows)
+
+    @property
+    def sensor_rows(self) -> dict[str, FloatArray]:
+        """Motion along each sensor by the coordinates of the whole system, shape (n,) each."""
+        if self.housing is None:
+            return {}
+        name = self.housing.name
+        return {sensor: self.rows(name, row) for sensor, row in self.housing.sensors.items()}
 
     def at_speed(self, speed: float) -> "CoupledMachine":
         """The machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
@@ -96,7 +108,7 @@ class CoupledMachine:
         Raises
         ------
         CouplingError
-            Where the machine stands still, so that nothing tells how its rotors turn together.
+            Where the machine stands still, which leaves the ratios of its speeds open.
         rotors.RotorError
             Where the speed is beyond the table of a bearing.
         """
@@ -135,7 +147,7 @@ def couple(
     rates: tuple[float, float] = (1.0, 1.0),
     dashpots: Sequence[ShaftDashpots] = (),
 ) -> CoupledMachine:
-    """Tie rotors and housing together and put the loads on.
+    """Assemble the coupled system of components that exist already; :class:`coupling.Machine` makes them of its parts.
 
     Parameters
     ----------
@@ -144,11 +156,12 @@ def couple(
     speeds : dict of str to float
         Signed speed of each rotor [rad/s].
     bearings, meshes, unbalances, bows, torques
-        What ties and drives them.
+        Connectors and loads.
     drives
-        Where the torque comes in that speeds a train up, see :meth:`coupling.loads.LoadedParts.swing`.
+        Stations of the torques that accelerate a train, see
+        :meth:`coupling.loads.MachineCoordinates.acceleration_load`.
     base
-        How the ground moves: under bearings, pedestals and the housing's supports alike.
+        Motion of the ground: under bearings, pedestals and the housing's supports alike.
     gravity
         Acceleration of free fall along x, y, z [m/s²]; none by default.
     dashpots
@@ -167,173 +180,65 @@ def couple(
     rotors.RotorError
         Where a bearing's table does not reach as far as the speeds.
     """
-    components: list[Component] = [*rotors]
-    if housing is not None:
-        components.append(housing)
     pedestals = [
         pedestal_component(mounted.bearing.name, mounted.bearing.pedestal)
         for mounted in bearings
         if mounted.seat is None and mounted.bearing.pedestal is not None
     ]
-    components += pedestals
-    number = {component.name: i for i, component in enumerate(components)}
-    if len(number) < len(components):
+    components: tuple[Component, ...] = (*rotors, *(() if housing is None else (housing,)), *pedestals)
+    if len({component.name for component in components}) < len(components):
         raise CouplingError(f"components named {[part.name for part in components]}; expected each name once")
     without = [rotor.name for rotor in rotors if rotor.name not in speeds]
     if without:
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
-    parts = LoadedParts(components, speeds)
+    coordinates = MachineCoordinates(components, speeds)
 
     require_meshing(meshes, {rotor.name: rotor.start for rotor in rotors}, speeds)
     require_balance(meshes, torques, speeds)
     _require_thrust_carried(rotors, speeds, bearings, meshes, torques)
-    linear, nonlinear = [], []
-    for mounted in bearings:
-        which, rotor = parts.rotor(mounted.rotor)
-        at = mounted.bearing.at
-        law = mounted.bearing.at_speed(speeds[mounted.rotor])
-        table = _over_speed(mounted.bearing, speeds[mounted.rotor], rates)
-        # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
-        held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
-        held = np.union1d(held, [0, 1])
-        if isinstance(mounted.law, RollingLaw):
-            # Its tangent may vanish where its force does not stay zero.
-            held = np.arange(5)
-        if table is not None:
-            ever = np.any(table.stiffness != 0.0, axis=(0, 2)) | np.any(table.damping != 0.0, axis=(0, 2))
-            held = np.union1d(held, np.flatnonzero(ever))
-        relative = np.array([embed(components, which, row) for row in rotor.motions(at)])
-        if mounted.seat is not None:
-            if housing is None or mounted.seat not in housing.seats:
-                raise CouplingError(f"bearing {law.name!r}: no seat {mounted.seat!r} in the housing")
-            seat = housing.seat_motions(mounted.seat, rotor.start + at)
-            relative = relative - [embed(components, number[housing.name], row) for row in seat]
-        elif law.pedestal is not None:
-            foot = next(part for part in pedestals if part.name == law.name)
-            relative[:2] -= [embed(components, number[foot.name], row) for row in foot.motion]
-        among = np.ix_(held, held)
-        if mounted.law is not None:
-            stiffness = law.spatial_stiffness
-            moving = held[np.any(relative[held] != 0.0, axis=1)]
-            nonlinear.append(
-                NonlinearConnector(
-                    law.name,
-                    relative[moving].T,
-                    moving,
-                    mounted.law,
-                    stiffness[np.ix_(moving, moving)],
-                    speeds[mounted.rotor],
-                )
-            )
-        if table is not None:
-            table = SpeedTable(
-                table.rates, *(part[:, held[:, None], held] for part in (table.stiffness, table.damping))
-            )
-        linear.append(
-            LinearConnector(
-                law.name,
-                relative[held].T,
-                law.spatial_stiffness[among],
-                law.spatial_damping[among],
-                over_speed=table,
-                axes=tuple(held.tolist()),
-            )
-        )
-
+    feet = {foot.name: foot for foot in pedestals}
+    held = [_bearing(coordinates, housing, feet, mounted, rates) for mounted in bearings]
     within = []
     for given in dashpots:
-        which, rotor = parts.rotor(given.rotor)
-        rows, law_of_coupling = shaft_dashpots(given, rotor, speeds[given.rotor], rates)
-        within.append(replace(law_of_coupling, directions=np.array([embed(components, which, row) for row in rows]).T))
+        rows, law = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], rates)
+        within.append(replace(law, directions=coordinates.rows(given.rotor, rows).T))
 
     senses = [1 if speeds[mesh.driver.rotor] >= 0.0 else -1 for mesh in meshes]
     phases = mesh_phases(
         [mesh.driver.name for mesh in meshes],
         [mesh.driven.name for mesh in meshes],
         [mesh.geometry for mesh in meshes],
-        [_centre_line_angle(mesh) for mesh in meshes],
+        [mesh.centre_line_angle for mesh in meshes],
         senses,
     )
-    drive, back = [], []
-    for mesh, sense, phase in zip(meshes, senses, phases, strict=True):
-        rate = abs(speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
-        direction, errors = _flank(components, mesh, parts, speeds, sense)
-        name = f"{mesh.driver.name} -> {mesh.driven.name}"
-        sliding = _sliding(components, mesh, mesh.contact, parts, speeds, sense)
-        greatest = _GREATEST_COMPRESSION * mesh.geometry.driver.module
-        drive.append(
-            ContactConnector(
-                name,
-                direction,
-                mesh.contact,
-                phase,
-                rate,
-                errors,
-                sliding=sliding,
-                greatest_compression=greatest,
-            )
-        )
-        if mesh.backlash is not None:
-            direction, errors = _flank(components, mesh, parts, speeds, -sense)
-            law_of_back, offset = mesh.contact.back_flanks, mesh.contact.back_flank_offset - phase
-            back.append(
-                ContactConnector(
-                    f"{name}, back",
-                    direction,
-                    law_of_back,
-                    offset,
-                    -rate,
-                    errors,
-                    mesh.backlash,
-                    drives=False,
-                    sliding=_sliding(components, mesh, law_of_back, parts, speeds, -sense),
-                    greatest_compression=greatest,
-                )
-            )
+    sides = list(zip(meshes, senses, phases, strict=True))
+    with_back = [side for side in sides if side[0].backlash is not None]
+    contacts = [_contact(coordinates, *side) for side in sides]
+    contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
-    loads = Loads(np.zeros(sum(component.size for component in components)))
-    for torque in torques:
-        parts.add_torque(loads, torque)
-    for unbalance in unbalances:
-        parts.add_unbalance(loads, unbalance)
-    for bow in bows:
-        parts.add_bow(loads, bow)
-
-    under = {
-        mounted.bearing.name: (*rotor.axis, rotor.start + mounted.bearing.at)
-        for mounted in bearings
-        for rotor in [parts.rotor(mounted.rotor)[1]]
-    }
-    if base is not None:
-        harmonic, timed = base_loads(components, [speeds.get(part.name, 0.0) for part in components], base, under)
-        loads.harmonic += harmonic
-        loads.timed += timed
-    if gravity is not None:
-        loads.constant += gravity_load(components, gravity, under)
-
+    loads = _loads(coordinates, bearings, unbalances, bows, torques, base, gravity)
     system = CoupledSystem(
-        components=tuple(components),
+        components=components,
         speeds=tuple(speeds.get(component.name, 0.0) for component in components),
-        linear=tuple(linear + within + loads.dashpots),
-        contacts=tuple(drive + back),
+        linear=(*(linear for linear, _ in held), *within, *loads.dashpots),
+        contacts=tuple(contacts),
         load=loads.constant,
         harmonic_loads=tuple(loads.harmonic),
         timed_loads=tuple(loads.timed),
-        swing=parts.swing([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives),
-        nonlinear=tuple(nonlinear),
+        acceleration_load=coordinates.acceleration_load(
+            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives
+        ),
+        nonlinear=tuple(own for _, own in held if own is not None),
     )
-    after = len(drive) + np.cumsum([mesh.backlash is not None for mesh in meshes]) - 1
-    backs = [None if mesh.backlash is None else int(at) for mesh, at in zip(meshes, after, strict=True)]
-    system = with_pressed_flanks(system, backs)
-    sides = [(mesh, sense) for mesh, sense in zip(meshes, senses, strict=True)]
-    sides += [(mesh, -sense) for mesh, sense in sides if mesh.backlash is not None]
-    system = _with_shuttling(system, parts, sides)
+    system = with_pressed_flanks(system, _back_contacts(meshes))
+    flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
+    system = held_at_speed(_with_shuttling(system, coordinates, flanks))
     return CoupledMachine(
         tuple(rotors),
         housing,
         tuple(bearings),
         tuple(meshes),
-        held_at_speed(system),
+        system,
         tuple(unbalances),
         tuple(bows),
         tuple(torques),
@@ -344,20 +249,124 @@ def couple(
     )
 
 
-def _with_shuttling(system: CoupledSystem, parts: LoadedParts, sides: Sequence[tuple[GearMesh, int]]) -> CoupledSystem:
-    """The system with the moments of loads that wander along the face; ``sides`` are its contacts' flanks."""
+def _back_contacts(meshes: Sequence[GearMesh]) -> list[int | None]:
+    """Number of the contact of each mesh's back flanks, which follow all drive flanks; None where they never meet."""
+    after = len(meshes) + np.cumsum([mesh.backlash is not None for mesh in meshes]) - 1
+    return [None if mesh.backlash is None else int(at) for mesh, at in zip(meshes, after, strict=True)]
+
+
+def _bearing(
+    coordinates: MachineCoordinates,
+    housing: HousingComponent | None,
+    feet: dict[str, PedestalComponent],
+    mounted: MountedBearing,
+    rates: tuple[float, float],
+) -> tuple[LinearConnector, NonlinearConnector | None]:
+    """A bearing between its shaft and its seat, pedestal or the ground; with the connector of a law of its own."""
+    rotor, at, speed = coordinates.rotor(mounted.rotor), mounted.bearing.at, coordinates.speeds[mounted.rotor]
+    law = mounted.bearing.at_speed(speed)
+    table = _over_speed(mounted.bearing, speed, rates)
+    # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
+    held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
+    held = np.union1d(held, [0, 1])
+    if isinstance(mounted.law, RollingLaw):
+        # Its tangent may vanish where its force does not stay zero.
+        held = np.arange(5)
+    if table is not None:
+        ever = np.any(table.stiffness != 0.0, axis=(0, 2)) | np.any(table.damping != 0.0, axis=(0, 2))
+        held = np.union1d(held, np.flatnonzero(ever))
+    relative = coordinates.rows(rotor.name, rotor.motions(at))
+    if mounted.seat is not None:
+        if housing is None or mounted.seat not in housing.seats:
+            raise CouplingError(f"bearing {law.name!r}: no seat {mounted.seat!r} in the housing")
+        relative = relative - coordinates.rows(housing.name, housing.seat_motions(mounted.seat, rotor.start + at))
+    elif law.pedestal is not None:
+        relative[:2] -= coordinates.rows(law.name, feet[law.name].motion)
+    nonlinear = None
+    if mounted.law is not None:
+        moving = held[np.any(relative[held] != 0.0, axis=1)]
+        tangent = law.spatial_stiffness[np.ix_(moving, moving)]
+        nonlinear = NonlinearConnector(law.name, relative[moving].T, moving, mounted.law, tangent, speed)
+    if table is not None:
+        table = SpeedTable(table.rates, *(part[:, held[:, None], held] for part in (table.stiffness, table.damping)))
+    among = np.ix_(held, held)
+    stiffness, damping = law.spatial_stiffness[among], law.spatial_damping[among]
+    axes = tuple(held.tolist())
+    return LinearConnector(law.name, relative[held].T, stiffness, damping, over_speed=table, axes=axes), nonlinear
+
+
+def _contact(
+    coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
+) -> ContactConnector:
+    """The drive flanks of a mesh, or its back flanks; the driver turns in the given sense."""
+    rate = abs(coordinates.speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
+    name, law, clearance = mesh.name, mesh.contact, 0.0
+    if back:
+        name, law, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
+        sense, rate, phase = -sense, -rate, mesh.contact.back_flank_offset - phase
+    direction, errors = _flank(coordinates, mesh, sense)
+    return ContactConnector(
+        name,
+        direction,
+        law,
+        phase,
+        rate,
+        errors,
+        clearance,
+        drives=not back,
+        sliding=_sliding(coordinates, mesh, law, sense),
+        greatest_compression=_GREATEST_COMPRESSION * mesh.geometry.driver.module,
+    )
+
+
+def _loads(
+    coordinates: MachineCoordinates,
+    bearings: Sequence[MountedBearing],
+    unbalances: Sequence[Unbalance],
+    bows: Sequence[BowReactions],
+    torques: Sequence[AnyTorque],
+    base: BaseMotion | None,
+    gravity: Sequence[float] | None,
+) -> Loads:
+    """All loads on the coordinates."""
+    loads = Loads(np.zeros(coordinates.size))
+    for torque in torques:
+        coordinates.add_torque(loads, torque)
+    for unbalance in unbalances:
+        coordinates.add_unbalance(loads, unbalance)
+    for bow in bows:
+        coordinates.add_bow(loads, bow)
+    places = {
+        mounted.bearing.name: (*rotor.axis, rotor.start + mounted.bearing.at)
+        for mounted in bearings
+        for rotor in [coordinates.rotor(mounted.rotor)]
+    }
+    components = coordinates.components
+    if base is not None:
+        speeds = [coordinates.speeds.get(part.name, 0.0) for part in components]
+        harmonic, timed = base_loads(components, speeds, base, places)
+        loads.harmonic += harmonic
+        loads.timed += timed
+    if gravity is not None:
+        loads.constant += gravity_load(components, gravity, places)
+    return loads
+
+
+def _with_shuttling(
+    system: CoupledSystem, coordinates: MachineCoordinates, flanks: Sequence[tuple[GearMesh, int]]
+) -> CoupledSystem:
+    """The system with the moments of load shuttling; ``flanks`` are mesh and sense of each of its contacts."""
     if all(contact.contact.faces is None for contact in system.contacts):
         return system
     constant, harmonics = system.load.copy(), list(system.harmonic_loads)
-    for contact, mean, (mesh, sense) in zip(system.contacts, mean_meshes(system), sides, strict=True):
+    for contact, mean, (mesh, sense) in zip(system.contacts, mean_meshes(system), flanks, strict=True):
         if mean is None or mean.force <= 0.0:
             continue
         push, axial = _push(mesh, sense)
         tilting = np.zeros(system.size)
         for mounted, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
-            which, rotor = parts.rotor(mounted.rotor)
-            rows = rotor.motions(mounted.at)
-            tilting += side * embed(system.components, which, push[0] * rows[4] - push[1] * rows[3])
+            rows = coordinates.rotor(mounted.rotor).motions(mounted.at)
+            tilting += side * coordinates.rows(mounted.rotor, push[0] * rows[4] - push[1] * rows[3])
         shifted, moving = shuttling_loads(
             contact.contact, mesh.geometry, mean.force, axial, tilting, contact.phase, contact.rate
         )
@@ -368,7 +377,7 @@ def _with_shuttling(system: CoupledSystem, parts: LoadedParts, sides: Sequence[t
 
 def _push(mesh: GearMesh, sense: int) -> tuple[tuple[float, float], float]:
     """Unit vector e in the x-y plane along which the driver pushes on one side of the teeth, and the axial part."""
-    angle = mesh.geometry.line_of_action_angle(_centre_line_angle(mesh), sense)
+    angle = mesh.geometry.line_of_action_angle(mesh.centre_line_angle, sense)
     return (float(np.cos(angle)), float(np.sin(angle))), -sense * float(np.tan(mesh.geometry.driver.base_helix_angle))
 
 
@@ -379,24 +388,15 @@ def _require_thrust_carried(
     meshes: Sequence[GearMesh],
     torques: Sequence[AnyTorque],
 ) -> None:
+    """Refuse helical gears that push a rotor without an axial coordinate or a bearing that holds it axially."""
     pairs = [
         ThrustPair((mesh.driver.rotor, mesh.driven.rotor), (mesh.driver.name, mesh.driven.name), mesh.geometry)
         for mesh in meshes
     ]
-    held = {
-        mounted.rotor
-        for mounted in bearings
-        if mounted.rotor in speeds and mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0
-    }
+    held = axially_held(bearings, speeds)
     carriers = {rotor.name: rotor.modal.axial is not None and rotor.name in held for rotor in rotors}
     if all(name in carriers for pair in pairs for name in pair.rotors):
         require_thrust_carried(axial_forces(pairs, speeds, constant_torques(torques)), carriers)
-
-
-def _centre_line_angle(mesh: GearMesh) -> float:
-    """Angle from x of the line from the driver's centre to the driven gear's [rad]."""
-    x, y = np.subtract(mesh.driven.axis, mesh.driver.axis)
-    return float(np.arctan2(y, x))
 
 
 def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> SpeedTable | None:
@@ -416,33 +416,21 @@ def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> S
     )
 
 
-def _sliding(
-    components: Sequence[Component],
-    mesh: GearMesh,
-    contact: ToothContact,
-    parts: LoadedParts,
-    speeds: dict[str, float],
-    sense: int,
-) -> Sliding | None:
-    """How one side of the teeth slides, whose law `contact` is; None without friction, or where nothing turns."""
-    gears = (mesh.driver, mesh.driven)
-    if mesh.friction == 0.0 or speeds[mesh.driver.rotor] == 0.0:
+def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothContact, sense: int) -> Sliding | None:
+    """Sliding of one side of the teeth, with the law ``contact``; None without friction, or where nothing turns."""
+    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == 0.0:
         return None
     return sliding_flanks(
-        components,
-        parts,
-        [(gear.rotor, gear.at) for gear in gears],
+        coordinates,
+        [(gear.rotor, gear.at) for gear in (mesh.driver, mesh.driven)],
         mesh.geometry,
         sliding_friction(mesh.geometry, contact, mesh.friction),
-        mesh.geometry.line_of_action_angle(_centre_line_angle(mesh), sense),
+        mesh.geometry.line_of_action_angle(mesh.centre_line_angle, sense),
         sense,
-        [speeds[gear.rotor] for gear in gears],
     )
 
 
-def _flank(
-    components: Sequence[Component], mesh: GearMesh, parts: LoadedParts, speeds: dict[str, float], sense: int
-) -> tuple[FloatArray, FloatArray]:
+def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple[FloatArray, FloatArray]:
     """Direction of compression and the harmonics of the runout error on one side of the teeth.
 
     With e the unit vector along which the driver pushes, δ = s (R_k θ_k + R_i θ_i) + e (u_k - u_i) - e_err. A gear
@@ -459,11 +447,11 @@ def _flank(
     push, thrust = _push(mesh, sense)
     angle = np.arctan2(push[1], push[0])
     towards = line / np.hypot(*line) if np.any(line) else line
-    direction = np.zeros(sum(component.size for component in components))
+    direction = np.zeros(coordinates.size)
     errors = []
     sides = ((driver, mesh.geometry.driver, 1.0), (driven, mesh.geometry.driven, -1.0))
     for (mounted, gear, side), radius in zip(sides, mesh.geometry.working_pitch_radii, strict=True):
-        which, rotor = parts.rotor(mounted.rotor)
+        rotor = coordinates.rotor(mounted.rotor)
         motion = sense * gear.base_radius * rotor.rotation(mounted.at)
         for axis in (0, 1):
             motion = motion + side * push[axis] * rotor.direction(mounted.at, axis)
@@ -471,7 +459,8 @@ def _flank(
             rows = rotor.motions(mounted.at)
             x, y = side * radius * towards
             motion = motion + side * thrust * (rows[2] + y * rows[3] - x * rows[4])
-        direction += embed(components, which, motion)
+        direction += coordinates.rows(mounted.rotor, motion)
         if gear.eccentricity:
-            errors.append([-side * gear.eccentricity, speeds[mounted.rotor], gear.eccentricity_phase - angle])
+            speed = coordinates.speeds[mounted.rotor]
+            errors.append([-side * gear.eccentricity, speed, gear.eccentricity_phase - angle])
     return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)

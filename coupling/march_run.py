@@ -1,37 +1,32 @@
-"""Newmark's march: where a march stands, and how it goes on from there.
+"""Time integration: the driver that carries a coupled system from event to event, whatever method steps it.
 
 Time is cut at every event (a pair of teeth entering or leaving contact), so no step crosses a jump of the mesh
-stiffness. The stretches between are cut into equal steps. The local error of Newmark's method is that of its
-period: one oscillation of circular frequency w advances by (w h)²/12 too little for each radian it turns. Its
-mean over what is moving is measured by the second difference of the acceleration,
-
-    error = |a₁ - 2 a₀ + a₋₁| / (12 |a|),
-
-and stretches are repeated with finer steps until it is below the tolerance. Residual coordinates of the housing have
-no part in this measure: they stand for static compliance, and their own frequencies are not meant to be followed. The
-stiffest of them are not marched at all, see :mod:`coupling.condensation`.
+stiffness. The stretches between events are cut into equal steps by a stepper: Newmark's method
+(:mod:`coupling.newmark_stepper`) or exponential collocation (:mod:`coupling.exact_march`). The driver takes a chunk of
+stretches at a time, accepts it where the stepper's local error is below the tolerance, and repeats it with finer steps
+otherwise.
 """
 
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.boundaries import block_ends, boundaries, coarsest_step, same_time
 from coupling.errors import DeflectionError, TransientError
-from coupling.settings import TransientOutputs, TransientSettings
+from coupling.kernel_arrays import Samples
+from coupling.settings import TransientSettings
 from coupling.statics import coasting_velocity, static_equilibrium
-from coupling.step import KernelArrays, StepCache, cut, kernel_arrays, scratch_room
+from coupling.step import KernelArrays
 from coupling.stored_energy import stored_energy
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
 
-_SEGMENTS_PER_CHUNK = 48  # stretches between two looks at the error
 _FINEST_LEVEL = 24  # 4096 times finer than the coarsest step
 _RUNAWAY = 1e4  # times the motion at rest: beyond, the machine is unstable, not lively
 _GONE = 20.0  # mesh periods without a touch after which teeth that fly off count as lost
@@ -39,7 +34,7 @@ _GONE = 20.0  # mesh periods without a touch after which teeth that fly off coun
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """Where a march stands: all that it needs to go on, bit for bit as if it had never stopped.
+    """State of a time integration between two blocks: the run continues from it bit for bit.
 
     Attributes
     ----------
@@ -50,26 +45,26 @@ class Checkpoint:
     time : float
         [s].
     q, v : ndarray, shape (n,)
-        State of the coordinates that are followed.
+        Coordinates and their rates, of the condensed system.
     stored : float
-        Energy in the teeth, and in the ties where they change with the speed [J].
+        Energy in the teeth, and in the connectors where these change with the speed [J].
     totals : ndarray, shape (5,)
-        Work of the loads, energy lost, work of what turns, the largest kinetic energy, and what friction took from
-        the nominal rotation [J].
+        Work of the loads, energy lost, work of the rotating contacts, the largest kinetic energy, and the energy that
+        friction took from the nominal rotation [J].
     contact_totals : ndarray, shape (c, 4)
         Impulse [N s], time apart [s], largest force [N] since the record began, and time of the last touch [s].
     level : int
-        How fine the steps are.
+        Refinement of the steps: each level is finer by √2.
     steps, rejected, unsettled : int
-        Taken, repeated, and taken with forces that Newton's method left unsettled.
+        Steps taken, repeated, and taken without convergence of Newton's iteration on the contact forces.
     worst : float
-        Largest accepted error measure.
+        Largest accepted local error.
     smallest : float
-        Step [s].
+        Smallest step [s].
     start_energy, energy, highest, lowest : float
         Energy held at the start, now, and at its extremes [J].
     seconds : float
-        Time taken by the stepping [s].
+        Computing time of the steps [s].
     """
 
     block: int
@@ -93,50 +88,105 @@ class Checkpoint:
     seconds: float
 
     def as_arrays(self) -> dict[str, npt.NDArray[Any]]:
-        """Every field as an array, to be kept on file."""
+        """Every field as an array, to be written to a file."""
         return {field.name: np.asarray(getattr(self, field.name)) for field in fields(self)}
 
     @staticmethod
     def from_arrays(arrays: Mapping[str, npt.NDArray[Any]]) -> "Checkpoint":
-        """The checkpoint that gave such arrays."""
+        """The checkpoint of which :meth:`as_arrays` gave these arrays."""
         values: dict[str, Any] = {field.name: np.asarray(arrays[field.name]) for field in fields(Checkpoint)}
         return Checkpoint(**{name: value if value.ndim else value.item() for name, value in values.items()})
 
 
 def sample_times(settings: TransientSettings, first: int, count: int) -> FloatArray:
-    """Times of some samples [s]."""
+    """Times of ``count`` samples from number ``first`` on [s]."""
     return np.asarray(
         settings.record_from + settings.sample_interval * np.arange(first, first + count, dtype=np.float64)
     )
 
 
-class MarchRun:
-    """What stays the same through a march: Newmark's, in steps."""
+@dataclass(frozen=True)
+class Attempt:
+    """Steps through a chunk of stretches, before the driver has accepted them.
 
-    def __init__(
-        self,
-        system: CoupledSystem,
-        settings: TransientSettings,
-        outputs: TransientOutputs,
-        turning: Turning,
-        samples_per_block: int,
-    ) -> None:
-        self.system, self.settings, self.turning = system, settings, turning
-        self.arrays: KernelArrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)
-        self.cache = StepCache(self.arrays, turning)
-        self.base = coarsest_step(system, turning, settings.largest_step)
-        self.ends = block_ends(settings.duration, settings.sample_interval, self.base, samples_per_block)
-        pushing = sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
-        self.pushing = np.linalg.norm(system.load) + np.linalg.norm(pushing)
+    Attributes
+    ----------
+    q, v : ndarray, shape (n,)
+        State at the end.
+    error : float
+        Local error of the steps, relative; infinite where the motion is not finite.
+    steps : int
+    smallest : float
+        Smallest step [s].
+    """
+
+    q: FloatArray
+    v: FloatArray
+    error: float
+    steps: int
+    smallest: float
+
+
+class Stepper(Protocol):
+    """A method of time integration.
+
+    Attributes
+    ----------
+    arrays : KernelArrays
+    system : CoupledSystem
+        As it is stepped.
+    steps_in_one : int
+        Steps of Newmark's method that one step of this method stands for.
+    order : float
+        Power of the step by which the local error falls.
+    coarsen_below : float
+        Local error below which steps may grow.
+    too_fine : str
+        End of the message where the tolerance asks for steps that are too small, with the field ``step`` [s].
+    """
+
+    arrays: KernelArrays
+    system: CoupledSystem
+    steps_in_one: int
+    order: float
+    coarsen_below: float
+    too_fine: str
+
+    def begin_block(self, state: Checkpoint, bounds: FloatArray, samples: Samples, *, compiles: bool) -> None:
+        """Prepare for a block; ``compiles`` where the kernels are to be compiled before the clock starts."""
+
+    def chunk(self, bounds: FloatArray, step: float) -> int:
+        """Number of stretches between ``bounds`` to attempt at once, with steps of at most ``step`` [s]."""
+
+    def attempt(self, state: Checkpoint, bounds: FloatArray, step: float, samples: Samples) -> Attempt:
+        """Step through the stretches between ``bounds``."""
+
+    def accept(self, state: Checkpoint, done: float, samples: Samples) -> Checkpoint:
+        """The state after the last attempt, with its work, contact figures and samples, up to the time ``done`` [s]."""
+
+    def last_touch(self, state: Checkpoint, begin: float, done: float) -> tuple[FloatArray, float]:
+        """Time of the last touch of each contact before a divergence, shape (c,), and the end of what is known [s]."""
+
+
+class Integration:
+    """Driver of a time integration: what stays the same through it, and the loop over chunks of steps."""
+
+    def __init__(self, stepper: Stepper, settings: TransientSettings, turning: Turning, samples_per_block: int) -> None:
+        system = stepper.system
+        self.system, self.settings, self.turning, self.stepper = system, settings, turning, stepper
+        self.arrays = stepper.arrays
+        step = coarsest_step(system, turning, settings.largest_step)
+        self.base = step * stepper.steps_in_one
+        self.ends = block_ends(settings.duration, settings.sample_interval, step, samples_per_block)
         self._cut = -1, np.zeros(0)
         # Nothing that stays together moves so much further than its loads press it.
-        pushed = pushing + np.abs(system.load)
+        pushed = timed_amplitude(system) + np.abs(system.load)
         self.reach = float(_resting(system, turning, pushed, settings.duration).max(initial=0.0))
 
     def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
-        """Static equilibrium under the loads of the start, swinging where nothing resists; or a state that is given."""
+        """Static equilibrium under the initial loads, coasting where nothing resists; or a given state."""
         system, (_, rates, swings) = self.system, self.turning.at(0.0)
-        load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.swing)
+        load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.acceleration_load)
         resting = system if np.array_equal(load, system.load) else replace(system, load=load)
         q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)
@@ -150,66 +200,65 @@ class MarchRun:
             smallest=self.base, start_energy=energy, energy=energy, highest=energy, lowest=energy, seconds=0.0,
         )  # fmt: skip
 
-    def through(self, number: int, before: Checkpoint, samples: Any, progress: Callable[[float], None]) -> Checkpoint:
-        """One block."""
-        from coupling.newmark import march
-
-        settings, cache = self.settings, self.cache
-        bounds = self.bounds(number)
+    def through(
+        self, number: int, before: Checkpoint, samples: Samples, progress: Callable[[float], None]
+    ) -> Checkpoint:
+        """Integrate through one block, its samples written on the way."""
+        settings, stepper, bounds = self.settings, self.stepper, self.bounds(number)
         # An event may stand for the start of the record, when rounding alone holds the two apart.
         first_record = int(np.searchsorted(bounds, settings.record_from - same_time(self.base)))
         if bounds[0] > settings.record_from:
             first_record = -1
-        state, position = before, 0
-        if number == before.block == 0 and before.steps == 0:
-            # Compiled before the clock starts.
-            self._march(march, state, cut(cache, self.turning, bounds[:1], 1.0), samples)
-        # Forces too small to see: below this an acceleration is rounding, and its curvature means nothing.
-        quiet = (1e-9 * float(np.linalg.norm(self.system.stiffness @ state.q) + self.pushing)) ** 2
-        bound = self.limit(number, state)
+        limit = self.limit(number, before)
+        stepper.begin_block(before, bounds, samples, compiles=number == before.block == 0 and before.steps == 0)
         clock = time.perf_counter() - before.seconds
+        state, position = before, 0
         while position < len(bounds) - 1:
-            last = min(position + _SEGMENTS_PER_CHUNK, len(bounds) - 1)
+            step = self.base * 2.0 ** (-0.5 * state.level)
+            last = position + stepper.chunk(bounds[position:], step)
             if position < first_record < last:
                 last = first_record
-            segments = cut(cache, self.turning, bounds[position : last + 1], self.base * 2.0 ** (-0.5 * state.level))
             if position == first_record:
                 fresh = np.column_stack([np.zeros_like(state.contact_totals[:, :3]), state.contact_totals[:, 3]])
                 state = replace(state, contact_totals=fresh)
-            trial, curvature, acceleration = self._march(march, state, segments, samples)
-            steps = int(segments.steps.sum())
-            if not np.isfinite(curvature) or not float(np.abs(trial.q).max(initial=0.0)) < bound:
-                raise TransientError(self.lost(float(bounds[position]), state))
-            error = float(np.sqrt(curvature / (acceleration + quiet * steps + 1e-300))) / 12.0
-            if error > settings.tolerance:
-                level = state.level + max(1, int(np.ceil(np.log2(error / settings.tolerance))))
-                if level > _FINEST_LEVEL:
-                    finest = self.base * 2.0 ** (-0.5 * _FINEST_LEVEL)
-                    raise TransientError(
-                        f"after t = {bounds[position]:.6g} s the tolerance {settings.tolerance:g} asks for steps below "
-                        f"{finest:.1e} s; raise the tolerance or keep fewer high modes"
-                    )
-                state = replace(state, level=level, rejected=state.rejected + steps)
+            begin, done = float(bounds[position]), float(bounds[last])
+            attempt = stepper.attempt(state, bounds[position : last + 1], step, samples)
+            if not (np.isfinite(attempt.error) and float(np.abs(attempt.q).max(initial=0.0)) < limit):
+                raise TransientError(self._divergence(begin, *stepper.last_touch(state, begin, done)))
+            if attempt.error > settings.tolerance:
+                state = self._finer(state, begin, attempt)
                 continue
-            self.require_possible(trial, float(bounds[position]), float(bounds[last]))
-            energy = self.held(trial.q, trial.v) + trial.stored
+            after = stepper.accept(state, done, samples)
+            self._require_possible(attempt.q, after.contact_totals[:, 2], begin, done)
+            energy = self.held(attempt.q, attempt.v) + after.stored
             state = replace(
-                trial,
-                time=float(bounds[last]),
-                steps=state.steps + steps,
-                worst=max(state.worst, error),
-                smallest=min(state.smallest, float(((segments.end - segments.start) / segments.steps).min())),
-                level=max(state.level - 1, 0) if error < settings.tolerance / 3.0 else state.level,
+                after,
+                time=done,
+                q=attempt.q,
+                v=attempt.v,
+                steps=state.steps + attempt.steps,
+                worst=max(state.worst, attempt.error),
+                smallest=min(state.smallest, attempt.smallest),
+                level=max(state.level - 1, 0) if attempt.error < stepper.coarsen_below else state.level,
                 energy=energy,
                 highest=max(state.highest, energy),
                 lowest=min(state.lowest, energy),
             )
             position = last
-            progress(float(bounds[position] / settings.duration))
+            progress(done / settings.duration)
         return replace(state, block=number + 1, seconds=time.perf_counter() - clock)
 
-    def require_possible(self, state: Checkpoint, begin: float, now: float) -> None:
-        """Refuse a motion that presses teeth together further than teeth can be, somewhere between two times [s].
+    def _finer(self, state: Checkpoint, begin: float, attempt: Attempt) -> Checkpoint:
+        """Smaller steps for the next attempt, by the order of the local error."""
+        needed = 2.0 * np.log2(attempt.error / self.settings.tolerance) / self.stepper.order
+        level = state.level + max(1, int(np.ceil(needed)))
+        if level > _FINEST_LEVEL:
+            finest = self.stepper.too_fine.format(step=self.base * 2.0 ** (-0.5 * _FINEST_LEVEL))
+            raise TransientError(f"after t = {begin:.6g} s the tolerance {self.settings.tolerance:g} asks for {finest}")
+        return replace(state, level=level, rejected=state.rejected + attempt.steps)
+
+    def _require_possible(self, q: FloatArray, peaks: FloatArray, begin: float, now: float) -> None:
+        """Refuse a motion that compresses teeth further than teeth can deflect, somewhere between two times [s].
 
         The compression is the larger of that at the end and the one that the largest force so far stands for.
 
@@ -217,11 +266,8 @@ class MarchRun:
         ------
         DeflectionError
         """
-        for contact, figures in zip(self.system.contacts, state.contact_totals, strict=True):
-            pressed = max(
-                float(contact.direction @ state.q) - contact.clearance,
-                float(figures[2]) / contact.contact.mean_stiffness,
-            )
+        for contact, peak in zip(self.system.contacts, peaks.tolist(), strict=True):
+            pressed = max(float(contact.direction @ q) - contact.clearance, peak / contact.contact.mean_stiffness)
             if pressed > contact.greatest_compression:
                 raise DeflectionError(
                     f"the teeth of {contact.name} are pressed together by {1e3 * pressed:.3g} mm between "
@@ -232,44 +278,30 @@ class MarchRun:
                 )
 
     def limit(self, number: int, state: Checkpoint) -> float:
-        """What no coordinate of a machine that holds together passes in a block."""
+        """Bound on every coordinate in a block of a machine that holds together."""
         bound = _RUNAWAY * (float(np.abs(state.q).max(initial=0.0)) + self.reach)
         bound += _RUNAWAY * float(np.linalg.norm(state.v)) * self.settings.duration if number == 0 else 0.0
         return bound if bound > 0.0 else np.inf
 
     def bounds(self, number: int) -> FloatArray:
-        """Where a block is cut into stretches [s]."""
+        """Bounds of the stretches of a block [s]."""
         if number != self._cut[0]:
             ends = float(self.ends[number]), float(self.ends[number + 1])
             self._cut = number, boundaries(self.system, self.turning, *ends, self.base, (self.settings.record_from,))
         return self._cut[1]
 
-    def _march(self, kernel: Any, state: Checkpoint, segments: Any, samples: Any) -> tuple[Checkpoint, float, float]:
-        """The kernel on copies of what it changes."""
-        q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))
-        arrays = self.arrays
-        head = (
-            q, v, arrays.dynamics, arrays.contacts, arrays.bearings, self.cache.matrices, segments, arrays.outputs,
-        )  # fmt: skip
-        sample, stored, curvature, acceleration, unsettled = kernel(
-            *head, samples, state.sample, state.stored, totals, contacts, scratch_room(arrays)
-        )
-        moved = replace(state, q=q, v=v, totals=totals, contact_totals=contacts, sample=sample, stored=stored)
-        return replace(moved, unsettled=state.unsettled + unsettled), curvature, acceleration
-
     def held(self, q: FloatArray, v: FloatArray) -> float:
-        """Energy of motion and of the springs that do not change [J]."""
+        """Kinetic energy and strain energy of the springs that do not change with the speed [J]."""
         dynamics = self.arrays.dynamics
         energy = 0.5 * v @ v + 0.5 * q @ (dynamics.stiffness * q)
-        if len(dynamics.tie_rates) == 1:
-            tied = dynamics.ties @ q
-            energy += 0.5 * tied @ dynamics.tie_stiffness[0] @ tied
+        if len(dynamics.connector_rates) == 1:
+            tied = dynamics.connectors @ q
+            energy += 0.5 * tied @ dynamics.connector_stiffness[0] @ tied
         return float(energy)
 
-    def lost(self, begin: float, state: Checkpoint, now: float | None = None) -> str:
-        """What happened where the motion grows beyond bounds, after a time and until now [s]."""
-        until = begin if now is None else now
-        for contact, last in zip(self.system.contacts, state.contact_totals[:, 3], strict=True):
+    def _divergence(self, begin: float, last_touch: FloatArray, until: float) -> str:
+        """Message about a motion that grows beyond bounds after the time ``begin`` [s]."""
+        for contact, last in zip(self.system.contacts, last_touch, strict=True):
             if contact.drives and (until - last) * abs(contact.rate) > _GONE:
                 return (
                     f"the teeth of {contact.name} came apart at t = {last:.6g} s and did not meet again: nothing "
@@ -281,8 +313,13 @@ class MarchRun:
         )
 
 
-def _resting(system: CoupledSystem, turning: Turning, pushing: FloatArray | float, duration: float) -> FloatArray:
-    """Coordinates that the loads' amplitudes would hold if they stood still, shape (n,); what is free, F t²/2."""
+def timed_amplitude(system: CoupledSystem) -> FloatArray | float:
+    """Largest load on each coordinate from the tables over time, shape (n,); 0 without any."""
+    return sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
+
+
+def _resting(system: CoupledSystem, turning: Turning, pushing: FloatArray, duration: float) -> FloatArray:
+    """Coordinates under the loads' amplitudes at rest, shape (n,); F t²/2 where nothing resists."""
     fastest = max(1.0, float(turning.rates.max())) ** 2
     loads = sum((fastest * np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size)) + pushing
     stiffness = np.abs(np.diag(system.mean_stiffness))

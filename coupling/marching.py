@@ -1,6 +1,7 @@
-"""The march through time, block by block: each block's samples with the state from which the next one goes on.
+"""Time integration in blocks: the samples of each block, with the checkpoint from which the next one continues.
 
-Newmark's steps are in :mod:`coupling.march_run`, the exact march between tooth events in :mod:`coupling.exact_march`.
+The driver is in :mod:`coupling.march_run`; its steppers are in :mod:`coupling.newmark_stepper` and
+:mod:`coupling.exact_march`.
 """
 
 from collections.abc import Callable, Iterator
@@ -12,10 +13,11 @@ import numpy.typing as npt
 from coupling.boundaries import SAMPLES_PER_BLOCK
 from coupling.condensation import condensed
 from coupling.errors import CouplingError
-from coupling.exact_march import ExactRun, exact_part
+from coupling.exact_march import CollocationStepper, exact_part
 from coupling.fingerprint import fingerprint
-from coupling.march_run import Checkpoint, MarchRun, sample_times
-from coupling.settings import TransientOutputs, TransientSettings
+from coupling.march_run import Checkpoint, Integration, sample_times
+from coupling.newmark_stepper import NewmarkStepper
+from coupling.settings import RECORDED, Recorded, TransientOutputs, TransientSettings
 from coupling.step import empty_samples
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
@@ -23,32 +25,20 @@ from coupling.turning import Turning
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Block:
-    """A stretch of the record, s samples, and where the march stands after it.
+@dataclass(frozen=True, eq=False)
+class Block(Recorded):
+    """A block of the record, and the checkpoint after it.
 
     Attributes
     ----------
     first : int
         Number of its first sample.
-    times : ndarray, shape (s,)
-        [s].
-    displacement, velocity, acceleration : ndarray, shapes (s, k)
-        The rows asked for.
-    compression, force : ndarray, shape (s, c)
-        Of each contact [m], [N].
     after : Checkpoint
     count : int
         Blocks of the whole run.
     """
 
     first: int
-    times: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    compression: FloatArray
-    force: FloatArray
     after: Checkpoint
     count: int
 
@@ -64,14 +54,14 @@ def march_blocks(
     samples_per_block: int = SAMPLES_PER_BLOCK,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> Iterator[Block]:
-    """March the coupled system through time and hand its record over block by block.
+    """Integrate the motion of the coupled system, and yield its record block by block.
 
     Parameters
     ----------
     after : Checkpoint, optional
-        Go on from here: the march must be the one that led to it, see :func:`march_key`.
+        Checkpoint to continue from, of the same run; see :func:`march_key`.
     samples_per_block : int
-        About how many a block holds. Time is cut where blocks end, so the last digits of a result depend on it.
+        Approximate length of a block. Time is cut where blocks end, so the last digits of a result depend on it.
 
     Other parameters and errors are those of :func:`coupling.simulate`.
     """
@@ -88,11 +78,7 @@ def march_blocks(
         yield Block(
             first=first,
             times=sample_times(settings, first, state.sample - first),
-            displacement=samples.displacement[written],
-            velocity=samples.velocity[written],
-            acceleration=samples.acceleration[written],
-            compression=samples.compression[written],
-            force=samples.force[written],
+            **{name: getattr(samples, name)[written] for name in RECORDED[1:]},
             after=state,
             count=len(run.ends) - 1,
         )
@@ -107,9 +93,9 @@ def march_key(
     initial: tuple[FloatArray, FloatArray] | None = None,
     samples_per_block: int = SAMPLES_PER_BLOCK,
 ) -> str:
-    """A digest of all that decides how a march goes, so that two with the same key go alike, bit for bit.
+    """Digest of all inputs of a time integration: runs with the same key agree bit for bit.
 
-    It knows nothing of the code and of the processor: whoever keeps checkpoints must note these as well.
+    It does not cover the code and the processor: these must be stored with checkpoints as well.
     """
     run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
     start = run.start(initial).as_arrays()
@@ -123,8 +109,8 @@ def _prepared(
     turning: Turning | None,
     initial: tuple[FloatArray, FloatArray] | None,
     samples_per_block: int,
-) -> tuple[MarchRun, tuple[FloatArray, FloatArray] | None]:
-    """The march of the coordinates that are followed, and their initial state."""
+) -> tuple[Integration, tuple[FloatArray, FloatArray] | None]:
+    """Integration of the condensed coordinates by the method that the settings ask for, and their initial state."""
     if samples_per_block < 1:
         raise CouplingError(f"blocks of {samples_per_block} samples; expected at least one")
     followed = condensed(system)
@@ -132,24 +118,17 @@ def _prepared(
         system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
         outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
         initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
-    return march_run(system, settings, outputs, turning or Turning.steady(), samples_per_block), initial
+    turning = turning or Turning.steady()
+    part = exact_part(system, settings, turning)
+    stepper = (
+        NewmarkStepper(system, settings, outputs, turning)
+        if part is None
+        else CollocationStepper(part, settings, outputs, turning)
+    )
+    return Integration(stepper, settings, turning, samples_per_block), initial
 
 
 def _samples_until(settings: TransientSettings, end: float, first: int, total: int) -> int:
     """Room for the samples up to the end of a block: rounding may let one more or less fall into it."""
     upto = int(np.ceil((end - settings.record_from) / settings.sample_interval)) + 2
     return min(max(upto - first, 0), total - first)
-
-
-def march_run(
-    system: CoupledSystem,
-    settings: TransientSettings,
-    outputs: TransientOutputs,
-    turning: Turning,
-    samples_per_block: int,
-) -> MarchRun:
-    """The march by the method that the settings ask for."""
-    part = exact_part(system, settings, turning)
-    if part is not None:
-        return ExactRun(part, settings, outputs, turning, samples_per_block)
-    return MarchRun(system, settings, outputs, turning, samples_per_block)

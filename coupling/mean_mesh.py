@@ -1,6 +1,6 @@
-"""Mean mesh force of each contact under the constant load, and the mean mesh stiffness under it.
+"""Mean mesh stiffness of each contact under its mean mesh force.
 
-Over a mesh period the teeth that carry change, while the mean force of a contact stays that of the torques. So a
+Over a mesh period the number of loaded teeth changes, while the mean force of a contact stays that of the torques. So a
 contact under its mean force F is replaced by its mean curve δ̄(F), the loaded transmission error's mean over the period,
 and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the torques alone
 give F; where meshes share a torque, their stiffness and deviations divide it.
@@ -19,15 +19,15 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 
 _POINTS = 200  # phases of a mesh period, beside its events
-_SETTLED = 1e-7  # part of the largest force that a step of the iteration may leave
-_ROUNDING = 1e-9  # part of what the coordinates press below which a force is none
-_LOOSE = 1e-12  # part of the largest stiffness below which a motion has none
+_SETTLED = 1e-7  # change of the force in a step of the iteration, relative to the largest force
+_ROUNDING = 1e-9  # part of the contact force by each coordinate below which a force is rounding
+_LOOSE = 1e-12  # part of the largest stiffness below which a stiffness is zero
 _ITERATIONS = 30
 
 
 @dataclass(frozen=True)
 class MeanMesh:
-    """A contact under its mean force over a mesh period.
+    """Mean of a contact over a mesh period under its mean force.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ def mean_mesh(contact: ToothContact, force: float) -> MeanMesh:
     Raises
     ------
     GearError
-        Where at some phase no teeth meet.
+        Where no teeth meet at some phase.
     """
     if contact.hunting_period > 1:
         mesh = hunting_mesh(contact, force)
@@ -73,10 +73,10 @@ def mean_mesh(contact: ToothContact, force: float) -> MeanMesh:
 
 
 def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
-    """Each contact under its mean force; None where it has none or the load cannot be balanced.
+    """Mean mesh of each contact under the constant load; None without a mean force or where the load cannot balance.
 
-    Newton's method on the contacts' mean curves, from their stiffness without load. A contact that the mean load parts
-    while others carry has no force and no stiffness.
+    Newton's method on the contacts' mean curves, from their stiffness without load. A contact that the mean load opens
+    while others carry it has no force and no stiffness.
     """
     nothing: list[MeanMesh | None] = [None] * len(system.contacts)
     driving = [number for number, contact in enumerate(system.contacts) if contact.drives]

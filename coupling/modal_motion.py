@@ -1,4 +1,4 @@
-"""Modal coordinates of a rotor in the coupled motion, by the modes that the sources plot.
+"""Modal coordinates of rotors and housing in a coupled motion.
 
 A component's own coordinates are those of the shaft freed of its bearings. The modes of TM-101442, Eqs. 7 to 10, are
 those on averaged supports: x = Σ A_i φ_i, y = Σ B_i φ_i, and for torsion θ = Σ D_i φ_t,i (Eq. 11) of the free shaft.
@@ -6,8 +6,8 @@ Both span the same motions. With the component's lateral coordinates q, whose sh
 
     A = V q,    V = `RotorComponent.mixture`, orthogonal,
 
-so that a row of V, at the place of the rotor's coordinates, is all that :class:`coupling.TransientOutputs` needs. The
-housing's coordinates are its modes' as they are.
+so a row of V, at the position of the rotor's coordinates, is a row of :class:`coupling.TransientOutputs`. The housing's
+coordinates are those of its modes.
 """
 
 from dataclasses import dataclass, replace
@@ -16,17 +16,15 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError
-from coupling.histories import Recorded
 from coupling.machine import CoupledMachine
-from coupling.settings import TransientOutputs
-from coupling.system import embed
+from coupling.settings import Recorded, TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class ModalRows:
-    """Rows that take a rotor's modal coordinates out of the n coordinates of the machine.
+    """Output rows of a rotor's modal coordinates over the n coordinates of the machine.
 
     Coordinates are in m √kg (lateral) and rad √(kg m²) (torsional): a shape is per unit modal mass.
 
@@ -44,35 +42,28 @@ class ModalRows:
 
 
 def modal_rows(machine: CoupledMachine, rotor: str) -> ModalRows:
-    """The rows of one rotor; stacked into ``TransientOutputs.displacement`` they are recorded as time passes.
+    """Output rows of the modal coordinates of one rotor, for ``TransientOutputs.displacement``.
 
     Raises
     ------
     CouplingError
         Where no rotor has the name.
     """
-    components = machine.system.components
-    found = next((number for number, part in enumerate(machine.rotors) if part.name == rotor), None)
-    if found is None:
+    part = next((part for part in machine.rotors if part.name == rotor), None)
+    if part is None:
         names = ", ".join(part.name for part in machine.rotors)
         raise CouplingError(f"no rotor is named {rotor!r}; there are: {names}")
-    part = machine.rotors[found]
     lateral, torsional = part.modal.lateral, part.modal.torsional
     planar, twisting = lateral.certificate.found, torsional.certificate.found
     own = np.eye(part.size)
     x, y = (part.mixture[:planar] @ own[plane * lateral.count : (plane + 1) * lateral.count] for plane in (0, 1))
     torsion = own[2 * lateral.count : 2 * lateral.count + twisting]
-    return ModalRows(
-        *(
-            np.array([embed(components, found, row) for row in rows]).reshape(-1, machine.system.size)
-            for rows in (x, y, torsion)
-        )
-    )
+    return ModalRows(*(machine.rows(rotor, rows) for rows in (x, y, torsion)))
 
 
 @dataclass(frozen=True)
 class ModalRecord:
-    """Modal motion that was recorded at even spacing, s samples.
+    """Modal motion on record at even spacing, s samples.
 
     Attributes
     ----------
@@ -87,12 +78,12 @@ class ModalRecord:
 
     @property
     def columns(self) -> FloatArray:
-        """Every signal beside the others, shape (s, k)."""
+        """All signals as columns, shape (s, k)."""
         moved = [coordinate[:, None] for coordinate in self.coordinates.values()]
         return np.concatenate([*moved, self.housing_acceleration], axis=1)
 
     def with_columns(self, columns: FloatArray) -> "ModalRecord":
-        """Other samples of the same signals, from what :attr:`columns` gives."""
+        """The same signals with other samples, from columns as in :attr:`columns`."""
         coordinates = {name: columns[:, i] for i, name in enumerate(self.coordinates)}
         return ModalRecord(coordinates, columns[:, len(coordinates) :])
 
@@ -107,9 +98,9 @@ def with_modal_rows(
     machine : CoupledMachine
     outputs : TransientOutputs
     count : int
-        How many of each kind of a rotor's modes, and of the housing's, are to have their displacement recorded.
+        Number of modes of each kind of a rotor, and of the housing, whose displacement is recorded.
     housing : bool
-        Whether the accelerations of the housing's modes are.
+        Whether the accelerations of the housing's modes are recorded.
     """
     accelerations = _housing_rows(machine)[: None if housing else 0]
     rows = np.array(list(_coordinate_rows(machine, count).values())).reshape(-1, machine.system.size)
@@ -121,7 +112,7 @@ def with_modal_rows(
 
 
 def modal_record(machine: CoupledMachine, result: Recorded, count: int = 0, *, housing: bool = True) -> ModalRecord:
-    """Name what a transient with :func:`with_modal_rows` recorded after its other outputs."""
+    """Modal motion by name from the record of a transient with :func:`with_modal_rows`."""
     names = list(_coordinate_rows(machine, count))
     moved = result.displacement[:, result.displacement.shape[1] - len(names) :]
     first = result.acceleration.shape[1] - (len(_housing_rows(machine)) if housing else 0)
@@ -150,8 +141,5 @@ def _housing_rows(machine: CoupledMachine) -> FloatArray:
     """Rows of the housing's modes, without its residual attachments, shape (m, n)."""
     if machine.housing is None:
         return np.zeros((0, machine.system.size))
-    components = machine.system.components
-    number = [part.name for part in components].index(machine.housing.name)
     modes = sum(kind == "housing" for kind in machine.housing.kinds)
-    rows = [embed(components, number, row) for row in np.eye(machine.housing.size)[:modes]]
-    return np.array(rows).reshape(modes, machine.system.size)
+    return machine.rows(machine.housing.name, np.eye(machine.housing.size)[:modes])

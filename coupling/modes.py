@@ -1,4 +1,4 @@
-"""Complex natural modes of the coupled system, about its mean contact or one that is given."""
+"""Complex modes of the coupled system: damped natural frequencies and mode shapes about a linearised contact."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,21 +17,21 @@ ComplexArray = npt.NDArray[np.complex128]
 
 COORDINATE_KINDS = ("housing", "rotor", "torsion", "axial", "pedestal", "residual")
 
-_MESH_SHARE = 0.3  # a mode with more of its strain energy than this in the teeth is called a mesh mode
-_TIED = 1e-6  # shares that differ by less are as large: rounding is not to choose between them
-_WHIRLS = 0.01  # a rotor with less of the kinetic energy in its bending than this has no whirl to speak of
+_MESH_SHARE = 0.3  # a mode with a larger share of its strain energy in the teeth is a mesh mode
+_TIED = 1e-6  # shares that differ by less are equal: rounding must not choose between them
+_WHIRLS = 0.01  # least share of the kinetic energy in a rotor's bending for which its whirl is given
 
 
 @dataclass(frozen=True)
 class ModesCertificate:
-    """What proves the modes.
+    """Certificate of completeness and accuracy of the modes.
 
     Attributes
     ----------
     expected, found : int
-        Eigenvalues, 2 n and all that were found: conjugates, and each zero by its multiplicity.
+        Number of eigenvalues, 2 n and those found: conjugates, and each zero by its multiplicity.
     zeros : int
-        How many of them are zero, found as ranks.
+        Number of zero eigenvalues, from ranks.
     max_residual : float
         Largest |λ² q + λ C q + K q|, as a part of the norm of its terms.
     sum_rule : float
@@ -54,13 +54,13 @@ class CoupledModes:
     eigenvalues : ndarray of complex, shape (m,)
         λ [1/s], with a frequency of |λ| and a damping ratio of -Re λ / |λ|; exactly 0 for rigid motions.
     shapes : ndarray of complex, shape (m, n)
-        Coordinates, of unit norm.
+        Mode shapes in the coordinates, of unit norm.
     left : ndarray of complex, shape (m, n)
         Left vectors p with pᴴ (2 λ I + C) q = 1; NaN for rigid motions, whose double zeros have none such.
     kinds : tuple of str
-        What moves: ``housing``, ``rotor``, ``torsion``, ``axial``, ``pedestal``, ``mesh``, or ``rigid`` where nothing
-        resists; ``residual`` where it is the local compliance that the housing's modes leave out, and the frequency
-        means nothing.
+        Kind of motion: ``housing``, ``rotor``, ``torsion``, ``axial``, ``pedestal``, ``mesh``, or ``rigid`` where
+        nothing resists; ``residual`` for the local compliance beside the housing's modes, whose frequency means
+        nothing.
     where : tuple of str
         The component that moves most in coordinates of that kind; of a mesh mode the contact strained most.
     energy : tuple of dict
@@ -69,7 +69,7 @@ class CoupledModes:
     shares : ModeShares
         By component, bearing and gear mesh.
     whirl : ndarray, shape (m, c)
-        Of each component: 1 where it whirls counter-clockwise about z in circles, -1 clockwise, 0 in a plane; NaN
+        Whirl of each component: 1 where it whirls counter-clockwise about z in circles, -1 clockwise, 0 in a plane; NaN
         where it has no bending or hardly any in the mode.
     certificate : ModesCertificate
     pairs : Eigenpairs
@@ -194,7 +194,7 @@ def _kind(share: dict[str, float]) -> str:
 
 
 def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list[str]:
-    """Where each mode is: see :attr:`CoupledModes.where`; of parts that have as much the first."""
+    """Component or contact of each mode, see :attr:`CoupledModes.where`; the first of equal ones."""
     owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
     labels = np.array(system.kinds)
     places = []
@@ -210,5 +210,5 @@ def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list
 
 
 def _largest(values: FloatArray) -> int:
-    """Index of the largest of some shares; of those that are as large but for rounding the first."""
+    """Index of the largest share; the first of those that are equal but for rounding."""
     return int(np.flatnonzero(values >= values.max() - _TIED)[0])

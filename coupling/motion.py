@@ -1,4 +1,4 @@
-"""Motion of a machine over time, with the names and units of its signals."""
+"""Simulated motion of a machine as a labelled dataset."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Motion:
-    """What a machine does over whole revolutions of its first driver.
+    """Motion of a machine over whole revolutions of its first driver.
 
     Attributes
     ----------

@@ -1,6 +1,7 @@
-"""Bearings and gears where they sit in the machine, and gear pairs in mesh."""
+"""Mounted bearings and gears: their places in the machine, and gear pairs in mesh."""
 
 from dataclasses import dataclass
+from math import atan2
 
 from coupling.bearing_law import BearingLaw
 from coupling.gears import GearPairGeometry, ToothContact
@@ -22,7 +23,7 @@ class MountedBearing:
 
 @dataclass(frozen=True)
 class MountedGear:
-    """Where a gear sits: its rotor, the distance from the rotor's left end and the axis in the x-y plane [m]."""
+    """Place of a gear: its rotor, the distance from the rotor's left end and the axis in the x-y plane [m]."""
 
     name: str
     rotor: str
@@ -53,6 +54,16 @@ class GearMesh:
     friction: float = 0.0
 
     @property
+    def name(self) -> str:
+        """Names of both gears."""
+        return f"{self.driver.name} -> {self.driven.name}"
+
+    @property
+    def centre_line_angle(self) -> float:
+        """Angle from x of the line from the driver's centre to the driven gear's [rad]."""
+        return atan2(self.driven.axis[1] - self.driver.axis[1], self.driven.axis[0] - self.driver.axis[0])
+
+    @property
     def label(self) -> str:
-        """What messages call the pair."""
+        """The pair's name in messages."""
         return f"gear pair {self.driver.name!r} -> {self.driven.name!r}"

@@ -1,4 +1,4 @@
-"""What a step's energy balance is made of, compiled: powers, and the energy that is held in what changes.
+"""Energy balance of a time step, compiled: powers of loads, losses and rotation, and stored energy.
 
 Importing this module imports numba.
 """
@@ -16,12 +16,12 @@ FloatArray = npt.NDArray[np.float64]
 
 @inner(fastmath=SUMS, forceinline=True)
 def stored_in(dynamics: Dynamics, stiffness: FloatArray, scratch: Scratch) -> float:
-    """Energy in the teeth, in what nonlinear bearings hold beside linear ones, and in ties that change with the speed.
+    """Energy in the teeth, in the nonlinear part of bearings, and in connectors that change with the speed [J].
 
     ``stiffness`` (r, r) is K_t.
     """
     energy, tq = scratch.held[0, 0], scratch.tq
-    if dynamics.tie_rates.size > 1:
+    if dynamics.connector_rates.size > 1:
         for i in range(tq.size):
             for j in range(tq.size):
                 energy += 0.5 * tq[i] * stiffness[i, j] * tq[j]
@@ -31,7 +31,7 @@ def stored_in(dynamics: Dynamics, stiffness: FloatArray, scratch: Scratch) -> fl
 
 
 @inner(fastmath=SUMS, forceinline=True)
-def take_powers(
+def evaluate_powers(
     dynamics: Dynamics,
     contacts: Contacts,
     stiffness: FloatArray,
@@ -40,10 +40,10 @@ def take_powers(
     v: FloatArray,
     scratch: Scratch,
 ) -> None:
-    """Power of the loads, lost power, power of what turns, and what friction takes from the nominal rotation [W].
+    """Powers of the loads, of the losses, of the rotation, and of friction from the nominal rotation [W].
 
-    And, last, twice the kinetic energy [J]. With the teeth's energy U(p, δ), δ = dᵀq - e: the turning teeth give
-    ∂U/∂p p' - f e', and the damping takes v C v + c δ'². Together with the loads they change the energy of motion,
+    The last entry is twice the kinetic energy [J]. With the teeth's energy U(p, δ), δ = dᵀq - e: the rotating teeth
+    give ∂U/∂p p' - f e', and the damping takes v C v + c δ'². Together with the loads they change the energy of motion,
     springs and teeth. ``stiffness`` and ``damping`` (r, r) are K_t and C_t.
     """
     tq, tv, laws = scratch.tq, scratch.tv, scratch.laws
@@ -71,10 +71,10 @@ def take_powers(
 
 @inner()
 def _add_friction(contacts: Contacts, speed: float, scratch: Scratch) -> None:
-    """Add to the powers what friction takes from the nominal rotation, and what it gives to the coordinates [W].
+    """Add the powers of friction: from the nominal rotation, and to the coordinates [W].
 
     The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. The former,
-    Σ μ F_j |w_j| and never negative, comes from whatever turns the machine. The latter is small, and shakes the
+    Σ μ F_j |w_j| and never negative, comes from the drive of the machine. The latter is small, and excites the
     coordinates as often as it brakes them.
     """
     push, dv, powers = scratch.push, scratch.dv, scratch.powers

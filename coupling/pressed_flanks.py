@@ -1,4 +1,4 @@
-"""Which side of the teeth the mean load presses: the drive flanks, or the back flanks of a machine that coasts."""
+"""Loaded flanks: drive flanks, or back flanks of a machine that coasts, by the mean mesh force."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,28 +12,28 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROUNDING = 1e-9  # part of what the coordinates press below which a force is none
+_NO_FORCE = 1e-9  # part of the contact force by each coordinate below which a force is rounding
 
 
 def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
-    """Force of each contact that is taken for pressed, by its mean stiffness, under the constant load [N], shape (c,).
+    """Mean mesh force of each drive flank, at its mean stiffness, under the constant load [N], shape (c,).
 
-    Negative where the load pulls its flanks apart. In a train of gears one after the other the torques alone give it.
-    All 0 where the load cannot be balanced.
+    Negative where the load pulls the flanks apart. In a train of gears one after the other it follows from the torques
+    alone. All 0 where the load cannot be balanced.
     """
     forces = np.zeros(len(system.contacts))
     if not system.contacts or not np.any(system.load) or not load_balances(system):
         return forces
     rigid, stiffest = system.unresisted_motions
     q = np.linalg.solve(system.mean_stiffness + stiffest * rigid @ rigid.T, system.load)
-    stiffness = np.array([contact.drives * contact.contact.mean_stiffness for contact in system.contacts])
+    stiffness = system.drive_stiffness
     forces = stiffness * (system.contact_directions.T @ q)
-    rounding = _ROUNDING * stiffness * (np.abs(system.contact_directions.T) @ np.abs(q))
+    rounding = _NO_FORCE * stiffness * (np.abs(system.contact_directions.T) @ np.abs(q))
     return np.where(np.abs(forces) > rounding, forces, 0.0)
 
 
 def with_pressed_flanks(system: CoupledSystem, backs: Sequence[int | None]) -> CoupledSystem:
-    """The system with back flanks in place of the drive flanks that its mean torque pulls apart.
+    """The system with back flanks as its drive flanks where the mean torque pulls the drive flanks apart.
 
     ``backs`` has, for each of the first contacts, the number of its back flanks, or None where these never meet.
     """

@@ -1,10 +1,10 @@
-"""Receptances of the coupled system about a contact state, by solving or by superposing modes.
+"""Receptance of the coupled system about a contact state, by direct solution or by mode superposition.
 
 With q = H(s) f, H(s) = (s² I + s C + K)⁻¹ and s = iw. Superposition uses the expansion of :mod:`coupling.eigenpairs`,
 
     H(s) = X / s² - (Σ q pᴴ) / s + Σ q pᴴ / (s - λ),
 
-over all modes, rigid motions included, so that both routes are one function; nothing is truncated.
+over all modes, rigid-body motions included, so that both ways give one function; nothing is truncated.
 """
 
 import numpy as np
@@ -19,9 +19,9 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_EVEN_POINTS = 600  # across a band, beside those that each resonance in it gets
+_EVEN_POINTS = 600  # across a band, beside those of each resonance
 _AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])  # half-power half-widths
-_SUM_RULE = 1e-6  # how far the modes may be from making up a whole, to be superposed
+_SUM_RULE = 1e-6  # largest error of the modes' sum rule for a superposition
 
 
 def receptance(
@@ -41,11 +41,11 @@ def receptance(
     outputs, inputs : ndarray, shapes (o, n) and (i, n)
         Directions of motion; a motion of a component by :func:`coupling.system.embed`.
     frequencies : ndarray, shape (f,)
-        w [rad/s], not 0; negative is the conjugate's.
+        w [rad/s], not 0; the response at -w is the conjugate.
     contact : ContactState, optional
-        The mean contact where not given.
+        By default the mean contact.
     modes : CoupledModes, optional
-        To be superposed, of the same contact; the system is solved at every frequency where not given.
+        Modes about the same contact, to be superposed; by default the system is solved at every frequency.
 
     Returns
     -------
@@ -57,7 +57,7 @@ def receptance(
     CouplingError
         For directions of another length, or a frequency of 0.
     ModesError
-        Where the modes do not make up a whole, or an undamped mode is driven at its own frequency.
+        Where the modes are not complete, or an undamped mode is driven at its own frequency.
     """
     for what, rows in (("outputs", outputs), ("inputs", inputs)):
         if rows.ndim != 2 or rows.shape[1] != system.size:
@@ -102,7 +102,7 @@ def superposed(
     Raises
     ------
     ModesError
-        Where the eigenpairs do not make up a whole: of a defective or all but defective eigenvalue.
+        Where the eigenpairs fail their sum rule: at a nearly defective eigenvalue.
     """
     if not pairs.sum_rule <= _SUM_RULE:
         raise ModesError(
@@ -123,7 +123,7 @@ def superposed(
 
 
 def resonance_grid(modes: CoupledModes, low: float, high: float) -> FloatArray:
-    """Frequencies of a band that resolve every resonance in it, ascending [rad/s].
+    """Frequency grid of a band that resolves every resonance, ascending [rad/s].
 
     Raises
     ------

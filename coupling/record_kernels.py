@@ -1,4 +1,4 @@
-"""The figures of an exact march's proof, compiled: work, losses and what the contacts come to, from a trace.
+"""Energy balance of exponential collocation, compiled: work, losses and contact figures of a trace.
 
 Importing this module imports numba.
 """
@@ -20,7 +20,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @uncounted()
 def weights_of(trace: Trace, element: int, out: FloatArray) -> None:
-    """Weights [s] at the places (s,) of an integral over an element; Gauss's own where it is all of its size."""
+    """Quadrature weights [s] at the places (s,) over an element; Gauss weights where it is all of its size."""
     part = trace.part[element]
     h = trace.size[element] / part
     for j in range(ORDER):
@@ -38,7 +38,7 @@ def weights_of(trace: Trace, element: int, out: FloatArray) -> None:
 def amplitudes_of(
     steps: Steps, trace: Trace, excess: FloatArray, free: FreeMotion, first: int, room: PowersRoom
 ) -> int:
-    """Amplitudes at the places of a batch of elements, and weights of integrals; returns how many elements it has.
+    """Amplitudes at the places of a batch of elements, and quadrature weights; returns the number of elements.
 
     ``excess`` (e, s c) is the trace's.
     """
@@ -59,7 +59,7 @@ def amplitudes_of(
 
 @inner(fastmath=SUMS, forceinline=True)
 def lost_and_held(loss: FloatArray, rate: FloatArray) -> tuple[float, float]:
-    """Power that damping takes at some rates (n,), and twice their kinetic energy."""
+    """Power loss by damping at some rates (n,), and twice their kinetic energy."""
     lost, held = 0.0, 0.0
     for k in range(rate.size):
         square = rate[k] * rate[k]
@@ -70,7 +70,7 @@ def lost_and_held(loss: FloatArray, rate: FloatArray) -> tuple[float, float]:
 
 @uncounted()
 def add_batch(powers: Powers, room: PowersRoom, count: int, totals: FloatArray) -> None:
-    """Add the powers of a batch whose amplitudes and rates are known, and keep the largest kinetic energy."""
+    """Add the powers of a batch with known amplitudes and rates, and keep the largest kinetic energy."""
     for number in range(count):
         for i in range(ORDER):
             amplitude, rate = room.amplitude[number * ORDER + i], room.rate[number * ORDER + i]
@@ -98,7 +98,7 @@ def add_powers(
     room: PowersRoom,
     totals: FloatArray,
 ) -> None:
-    """Add what the loads give and what damping without the teeth's takes [J], and keep the largest kinetic energy.
+    """Add the work of the loads and the losses without those of the teeth [J], and keep the largest kinetic energy.
 
     ``excess`` (e, s c) is the trace's, ``totals`` (5,) are those of :class:`coupling.march_run.Checkpoint`. Rates of a
     batch of elements are one product, for their rows do not fit the innermost cache beside an element's matrices.
@@ -113,10 +113,10 @@ def add_powers(
 def add_contacts(
     trace: Trace, contacts: Contacts, stored: float, weights: FloatArray, totals: FloatArray, figures: FloatArray
 ) -> float:
-    """Add what the contacts' damping takes, and the work of the turning teeth: ∂U/∂p p' - f e' [J].
+    """Add the losses by the contacts' damping, and the work of the rotating teeth: ∂U/∂p p' - f e' [J].
 
-    ``figures`` (c, 4) are impulse, time apart, largest force and last touch of each contact. Given is what the teeth
-    held before, returned what they hold after: it jumps where pairs come and go.
+    ``figures`` (c, 4) are impulse, time apart, largest force and last touch of each contact. ``stored`` is the energy
+    in the teeth before, the result that after: it jumps where pairs enter or leave contact.
     """
     lost, turned = 0.0, 0.0
     for element in range(trace.start.size):

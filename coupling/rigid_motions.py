@@ -1,8 +1,8 @@
-"""Motions that no spring resists, taken out of the eigenproblem before it is solved.
+"""Rigid-body motions, removed from the quadratic eigenvalue problem before it is solved.
 
 With λ² q + λ C q + K q = 0 every q with K q = 0 is an eigenvector of λ = 0, mostly a double one: an offset, and a
-drift at constant speed. An eigensolver splits such a double root into ± the square root of its rounding, which says
-nothing of the root and hides slow motions beside it. Here ranks decide, of matrices whose rows are brought to one size:
+drift at constant speed. An eigensolver splits such a double root into ± the square root of its rounding, which
+hides the root and slow motions beside it. Here ranks decide, of matrices whose rows are scaled to one size:
 
 - R, the null space of K, and L, that of Kᵀ. Offsets along R are left out of the state: with U the orthogonal
   complement of R and b = Uᵀ q, the state (v = q', b) of order 2n - r obeys v' = -C v - K U b, b' = Uᵀ v, and r zeros
@@ -11,7 +11,7 @@ nothing of the root and hides slow motions beside it. Here ranks decide, of matr
   reduced state still has, each with a conserved momentum; the state is restricted to those without momentum, and s more
   zeros are gone.
 
-What is left, of order 2n - r - s, has no zero; its spectrum is all the rest of the system's.
+The reduced problem, of order 2n - r - s, has no zero; its spectrum is the rest of the system's.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class ReducedState:
     whole : ndarray, shape (2n - r, 2n - r)
         The matrix that acts on that state.
     momenta : ndarray, shape (2n - r, s)
-        Orthonormal basis of its left null space: what `basis` leaves out.
+        Orthonormal basis of its left null space, the complement of ``basis``.
     rigid : ndarray, shape (n, r)
         R, orthonormal.
     drift : ndarray, shape (n, n)
@@ -58,7 +58,7 @@ class ReducedState:
 
 
 def reduce_state(stiffness: FloatArray, damping: FloatArray) -> ReducedState:
-    """Take the zeros out of λ² q + λ C q + K q = 0.
+    """Remove the zero eigenvalues from λ² q + λ C q + K q = 0.
 
     The coordinates b are the principal ones of the symmetric part of K, times the root Ω of its values. A lossless
     system then has a skew matrix, the best conditioned there is, however far its frequencies lie apart.
@@ -114,6 +114,6 @@ def null_space(matrix: FloatArray) -> FloatArray:
 
 
 def _null(matrix: FloatArray, bound: float) -> FloatArray:
-    """Orthonormal basis of what a square matrix shrinks to a bound or less."""
+    """Orthonormal basis of the directions that a square matrix shrinks to a bound or less."""
     _, singular, vectors = np.linalg.svd(matrix)
     return np.asarray(vectors[singular <= bound].T)

@@ -1,6 +1,6 @@
-"""Products with a few rows of numbers, compiled: what most of a step's arithmetic is.
+"""Products with a few rows of a matrix, compiled: most of the arithmetic of a time step.
 
-Importing this module imports numba. Put in place where they are called, for passing arrays on would cost as much again.
+Importing this module imports numba. The functions are inlined, as passing their arrays would cost as much again.
 """
 
 import numpy as np

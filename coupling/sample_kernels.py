@@ -1,4 +1,4 @@
-"""The samples within a step of Newmark's method, compiled.
+"""Samples within a step of Newmark's method, compiled: interpolation of the output rows.
 
 Importing this module imports numba.
 """
@@ -6,7 +6,7 @@ Importing this module imports numba.
 import numpy as np
 import numpy.typing as npt
 
-from coupling.contact_kernels import FORCE, deviation_of, take_law
+from coupling.contact_kernels import FORCE, evaluate_contact, flank_deviation
 from coupling.kernel_arrays import Contacts, Outputs, Samples, Scratch
 from coupling.row_kernels import project
 from rotors.compiled import inner
@@ -24,7 +24,7 @@ def write_samples(
     h: float,
     turned0: float,
     speed0: float,
-    swing: float,
+    alpha: float,
     q: FloatArray,
     v: FloatArray,
     displaced: float,
@@ -54,14 +54,14 @@ def write_samples(
         project(outputs.velocity, y, samples.velocity[row])
         if contacts.phase.size > 0:
             after = s * h
-            speed = speed0 + swing * after
-            turned = turned0 + after * (speed0 + 0.5 * swing * after)
+            speed = speed0 + alpha * after
+            turned = turned0 + after * (speed0 + 0.5 * alpha * after)
             project(teeth, x, samples.compression[row])
             project(teeth, y, work)
             for k in range(contacts.phase.size):
-                gone, slip = deviation_of(contacts.clearance, contacts.errors, k, turned, speed)
+                gone, slip = flank_deviation(contacts.clearance, contacts.errors, k, turned, speed)
                 samples.compression[row, k] -= gone
-                take_law(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws, k)
+                evaluate_contact(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws, k)
                 samples.force[row, k] = laws[k, FORCE]
         for i in range(n):
             x[i] = (1.0 - s) * a[i] + s * a1[i]

@@ -1,6 +1,6 @@
-"""How far and how finely to march, and what to record."""
+"""Settings of a time integration, and its output rows."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal, get_args
 
 import numpy as np
@@ -14,7 +14,7 @@ Method = Literal["newmark", "exact", "auto"]
 
 @dataclass(frozen=True)
 class TransientSettings:
-    """How far and how finely to march.
+    """Settings of a time integration.
 
     Attributes
     ----------
@@ -27,12 +27,12 @@ class TransientSettings:
     largest_step : float
         [s].
     tolerance : float
-        Of the error measure above.
+        Largest local error of a step, relative; see :mod:`coupling.march_run`.
     beta, gamma : float
-        Newmark's parameters; 1/4 and 1/2 are the only pair that neither gains nor loses energy.
+        Newmark's parameters; only with 1/4 and 1/2 the method neither gains nor loses energy.
     method : "newmark", "exact" or "auto"
-        Newmark's steps; the exact march of :mod:`coupling.exact_march` in elements of time, for constant speeds and
-        loads without tables over time; or the exact one where it applies, else Newmark's.
+        Newmark's method; exponential collocation of :mod:`coupling.exact_march`, for constant speeds and loads without
+        tables over time; or the exact method where it applies, else Newmark's.
     """
 
     duration: float
@@ -60,14 +60,41 @@ class TransientSettings:
         return int(np.ceil((self.duration - self.record_from) / self.sample_interval - 1e-6))
 
 
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """Record of a transient or a periodic response at even spacing; s samples, c contacts.
+
+    Attributes
+    ----------
+    times : ndarray, shape (s,)
+        [s].
+    displacement, velocity, acceleration : ndarray, shapes (s, k)
+        The output rows, see :class:`TransientOutputs`.
+    compression : ndarray, shape (s, c)
+        δ of each contact [m].
+    force : ndarray, shape (s, c)
+        Of each contact [N].
+    """
+
+    times: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    compression: FloatArray
+    force: FloatArray
+
+
+RECORDED = tuple(field.name for field in fields(Recorded))
+
+
 @dataclass(frozen=True)
 class TransientOutputs:
-    """Rows to record: each a linear combination of the n coordinates.
+    """Output rows of a time integration: each a linear combination of the n coordinates.
 
     Attributes
     ----------
     displacement, velocity, acceleration : ndarray, shapes (k, n)
-        What is taken of the coordinates, of their rates, and of their accelerations.
+        Rows over the coordinates, their rates, and their accelerations.
     """
 
     displacement: FloatArray

@@ -1,8 +1,8 @@
-"""Dashpots in flexible couplings, which turn with their shaft.
+"""Dashpots of flexible shaft couplings: internal damping, which rotates with the shaft.
 
 A coupling of length L yields by the sway of its right end over its left one, δ = u_r - u_l - L (φ_l + φ_r)/2 across the
 axis, by the tilt φ_r - φ_l, and along and about the axis by the differences of its ends. Dashpots resist the rates of
-these in the turning shaft. Across the axis that is, in the frame at rest and at a speed Ω,
+these in the rotating shaft. Across the axis that is, in the frame at rest and at a speed Ω,
 
     f = c (δ' + Ω (δ_y, -δ_x)),
 
@@ -23,7 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ShaftDashpots:
-    """The dashpots of a coupling in a rotor.
+    """Dashpots of a flexible coupling in a rotor.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ def shaft_dashpots(
     speed : float
         Ω, signed [rad/s].
     rates : two of float
-        The least and the highest speed that the machine will run at, as parts of it: what circulates goes with it.
+        Lowest and highest speed of the run, as parts of Ω: the circulatory stiffness is proportional to the speed.
     """
     left, right = rotor.motions(given.left), rotor.motions(given.right)
     middle = 0.5 * (given.right - given.left) * (left[3:] + right[3:])

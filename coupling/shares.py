@@ -1,6 +1,6 @@
-"""Who moves, who is strained and who damps in a mode: energies by component, bearing and gear mesh.
+"""Modal energy shares: kinetic energy, strain energy and damping of a mode by component, bearing and gear mesh.
 
-A mode λ = σ + iω with shape q takes part in each matrix by a number: m = qᴴ q, c = qᴴ C q and k = qᴴ K q. The
+A mode λ = σ + iω with shape q has a quadratic form in each matrix: m = qᴴ q, c = qᴴ C q and k = qᴴ K q. The
 symmetric parts of C and K give their real parts; gyroscopic terms do no work, and the circulatory part of K, that of
 cross-coupled bearings, gives i k_c. The real part of λ* qᴴ (λ² + λ C + K) q = 0 is the balance of power, so that
 
@@ -25,8 +25,8 @@ from coupling.system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-# Part of an eigenvalue by which its neighbours may differ and their shapes still mix in rounding: by what the
-# eigensolver misses, over this. A round shaft that hardly turns has its forward and backward whirl further apart.
+# Relative distance of eigenvalues within which rounding mixes their shapes: by the eigensolver's error over this.
+# Forward and backward whirl of a round shaft that hardly turns are further apart.
 _SAME = 1e-8
 _INDEPENDENT = 1e-6  # of the largest singular value of a group's shapes, above which a direction is one of theirs
 _NOTHING = 1e-12  # strain or total energy below this part of the kinetic one is none
@@ -34,7 +34,7 @@ _NOTHING = 1e-12  # strain or total energy below this part of the kinetic one is
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the machine that is strained and damps: a component by itself, a connector, or a tooth contact."""
+    """A part of the machine with strain energy and damping: a component, a connector, or a tooth contact."""
 
     kind: Literal["component", "connector", "contact"]
     name: str
@@ -42,22 +42,22 @@ class Part:
 
 @dataclass(frozen=True)
 class ModeShares:
-    """Shares in m modes, of c components and p parts.
+    """Energy shares of m modes, by c components and p parts.
 
     Attributes
     ----------
     parts : tuple of Part
         Components (shafts, housing, pedestals with their own supports), then linear connectors, then contacts.
     moving : ndarray, shape (m, n)
-        Of the kinetic energy, by coordinate.
+        Kinetic energy by coordinate.
     kinetic : ndarray, shape (m, c)
         The same by component.
     strain : ndarray, shape (m, p)
-        Of the strain energy; zeros for a rigid motion, negative where a part's stiffness is.
+        Strain energy by part; zeros for a rigid-body motion, negative where a part's stiffness is.
     damping : ndarray, shape (m, p)
-        Parts of the damping ratio; their sum is the mode's. Negative where a part feeds the mode.
+        Damping ratio by part; the sum is the mode's. Negative where a part feeds energy into the mode.
     stiffness : ndarray, shape (m,)
-        Re qᴴ K q / qᴴ q [1/s²]; negative where the springs as a whole push the mode off.
+        Re qᴴ K q / qᴴ q [1/s²]; negative where the springs as a whole destabilise the mode.
     """
 
     parts: tuple[Part, ...]
@@ -71,7 +71,7 @@ class ModeShares:
 def mode_shares(
     system: CoupledSystem, contact: ContactState, eigenvalues: ComplexArray, shapes: ComplexArray
 ) -> ModeShares:
-    """Shares of modes, shapes (m, n) along the rows, in the order of their frequencies."""
+    """Energy shares of modes, shapes (m, n) along the rows, in the order of their frequencies."""
     groups = _groups(eigenvalues)
     eigenvalues = _over_groups(eigenvalues, groups)
     shapes, means = _bases(shapes, groups)
@@ -98,7 +98,7 @@ def mode_shares(
     size = np.abs(eigenvalues)
     strain = strained.sum(axis=0)
     total = size**2 * mass + strain
-    # Real eigenvalues of an undamped system that a negative stiffness pushes off have no energy in all.
+    # Real eigenvalues of an undamped system with a negative stiffness have no total energy.
     safe = np.where(np.abs(total) > _NOTHING * size**2 * mass, total * np.where(size > 0.0, size, 1.0), np.inf)
     damping_shares = (size**2 * lost + eigenvalues.imag * fed) / safe
     held = np.abs(strained).sum(axis=0)
@@ -126,7 +126,7 @@ def _over_groups(values: ComplexArray, groups: list[slice]) -> ComplexArray:
 
 
 def group_bases(eigenvalues: ComplexArray, shapes: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-    """Vectors that span what groups of modes share, (b, n), and what makes each mode's mean of their numbers, (m, b).
+    """Orthonormal bases of the spaces of groups of modes, (b, n), and the averaging weights of each mode, (m, b).
 
     A quadratic form of the shapes, summed over an orthonormal basis of a group's space, depends on no choice of it.
     """
@@ -134,7 +134,7 @@ def group_bases(eigenvalues: ComplexArray, shapes: ComplexArray) -> tuple[Comple
 
 
 def _bases(shapes: ComplexArray, groups: list[slice]) -> tuple[ComplexArray, FloatArray]:
-    """Shapes with an orthonormal basis (b, n) for those of each group, and what makes means of it, (m, b)."""
+    """Orthonormal basis of each group's shapes, (b, n), and the averaging weights of each mode, (m, b)."""
     bases: list[ComplexArray] = []
     means = np.zeros((len(shapes), 0))
     for one in groups:

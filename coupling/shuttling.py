@@ -1,4 +1,4 @@
-"""Load shuttling: the load on the teeth wanders along the face, and its moment tilts the shafts.
+"""Load shuttling: the centre of the tooth load moves along the face, and its moment tilts the shafts.
 
 The force F of a mesh acts where the load per width q of its contact lines has its centre, not at the middle of the
 face. From the middle of the face along the shafts, and from the pitch point along the line of action, that is
@@ -11,8 +11,8 @@ of the force over F, a force F (e, h) at that place has the moment of the same f
 
     M = F (z̄ - h ξ̄) (-e_y, e_x)
 
-about the driven gear's centre; the driver feels its opposite. Both arms are those of static equilibrium under the mean
-force, which M takes for F: what the dynamic part of the force adds is a product of two small quantities.
+about the driven gear's centre; the moment on the driver is opposite. Both arms are those of static equilibrium under
+the mean force, which stands for F in M: the dynamic part of the force would add a product of two small quantities.
 """
 
 import numpy as np
@@ -30,9 +30,9 @@ _NO_ARM = 1e-9  # part of the face width that is rounding
 
 
 def load_arms(contact: ToothContact, geometry: GearPairGeometry, force: float, phases: npt.ArrayLike) -> FloatArray:
-    """Where the load on a mesh has its centre, z̄ along the face and ξ̄ along the line of action [m], shape (n, 2).
+    """Centre of the load of a mesh, z̄ along the face and ξ̄ along the line of action [m], shape (n, 2).
 
-    Zeros where the contact does not resolve its face: its load then stays in the middle.
+    Zeros where the contact does not resolve its face.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def load_arms(contact: ToothContact, geometry: GearPairGeometry, force: float, p
     Raises
     ------
     GearError
-        Where at some phase no teeth meet, or for a force below 0.
+        Where no teeth meet at some phase, or for a force below 0.
     """
     mesh = static_transmission_error(contact, force, phases)
     arms = np.zeros((mesh.phases.size, 2))
@@ -56,7 +56,7 @@ def load_arms(contact: ToothContact, geometry: GearPairGeometry, force: float, p
     along = (mesh.positions[:, :, None] + shift - geometry.pitch_point_position) * geometry.base_pitch
     shares = mesh.line_loads / mesh.line_loads.sum(axis=(1, 2))[:, None, None]
     arms[:, 0] = (shares * z).sum(axis=(1, 2))
-    # Slots without a pair carry nothing, wherever they are said to be.
+    # Slots without a pair carry nothing, whatever their position.
     arms[:, 1] = np.where(shares > 0.0, shares * along, 0.0).sum(axis=(1, 2))
     return arms
 

@@ -1,4 +1,4 @@
-r"""Friction of the teeth among the coordinates: the direction in which a pair of teeth slides, and who holds the speed.
+r"""Tooth friction in the coupled system: the sliding velocity of a pair of teeth, and the torque that friction takes.
 
 With e the unit vector along which the driver pushes, s its sense of turning and t = s z × e that in which its flank
 moves across the line of action, the flanks of a pair at the position x along the path (in base pitches) slide by
@@ -21,31 +21,27 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.component import Component
 from coupling.connector import ContactConnector, Sliding
 from coupling.gears import GearPairGeometry, SlidingFriction
-from coupling.loads import LoadedParts
-from coupling.system import CoupledSystem, embed
+from coupling.loads import MachineCoordinates
+from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
 
 def sliding_flanks(
-    components: Sequence[Component],
-    parts: LoadedParts,
+    coordinates: MachineCoordinates,
     places: Sequence[tuple[str, float]],
     geometry: GearPairGeometry,
     friction: SlidingFriction,
     angle: float,
     sense: int,
-    speeds: Sequence[float],
 ) -> Sliding:
-    """How the flanks of a gear pair slide.
+    """Sliding velocity of the flanks of a gear pair by the coordinates and the nominal rotation.
 
     Parameters
     ----------
-    components, parts
-        The machine's.
+    coordinates : MachineCoordinates
     places : two of (str, float)
         Rotor of the driver and of the driven gear, and the distance from its left end [m].
     geometry : GearPairGeometry
@@ -54,29 +50,26 @@ def sliding_flanks(
         From x to the line of action along which the driver pushes [rad].
     sense : int
         +1 where the driver turns counter-clockwise as it pushes so, -1 where clockwise.
-    speeds : two of float
-        Signed, of both rotors [rad/s].
     """
     across = sense * np.array([-np.sin(angle), np.cos(angle)])
     gears = (geometry.driver, geometry.driven)
     rolls = (geometry.driver_roll_angle, geometry.driven_roll_angle)
-    directions = np.zeros((sum(component.size for component in components), 2))
+    directions = np.zeros((coordinates.size, 2))
     nominal = np.zeros(2)
-    for (name, at), gear, roll, side, speed in zip(places, gears, rolls, (1.0, -1.0), speeds, strict=True):
-        which, rotor = parts.rotor(name)
+    for (name, at), gear, roll, side in zip(places, gears, rolls, (1.0, -1.0), strict=True):
+        rotor = coordinates.rotor(name)
         begin, end = sense * gear.base_radius * roll(np.array([0.0, 1.0]))
         moved = side * (across[0] * rotor.direction(at, 0) + across[1] * rotor.direction(at, 1))
         turned = rotor.rotation(at)
-        directions[:, 0] += embed(components, which, moved + begin * turned)
-        directions[:, 1] += embed(components, which, (end - begin) * turned)
-        nominal += speed * np.array([begin, end - begin])
+        directions += coordinates.rows(name, np.array([moved + begin * turned, (end - begin) * turned])).T
+        nominal += coordinates.speeds[name] * np.array([begin, end - begin])
     return Sliding(friction, directions, nominal)
 
 
 def friction_of(
     contact: ContactConnector, turned: FloatArray, rates: FloatArray, compression: FloatArray, force: FloatArray
 ) -> FloatArray:
-    """What friction between the teeth of a contact does, sample by sample; zeros where there is none.
+    """Friction force of a contact and the power it takes, sample by sample; zeros without friction.
 
     Parameters
     ----------
@@ -113,7 +106,7 @@ def friction_of(
 
 
 def held_at_speed(system: CoupledSystem) -> CoupledSystem:
-    """The system with friction that does nothing to motions which nothing resists."""
+    """The system with friction orthogonal to the rigid-body motions, whose speed is prescribed."""
     if all(contact.sliding is None for contact in system.contacts):
         return system
     free = system.unresisted_motions[0]

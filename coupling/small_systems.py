@@ -1,4 +1,4 @@
-"""Small dense systems of equations, compiled.
+"""Small dense linear systems, compiled: Gaussian elimination with row exchanges.
 
 Importing this module imports numba.
 """

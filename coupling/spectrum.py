@@ -1,4 +1,4 @@
-"""Spectra of evenly sampled signals.
+"""Amplitude spectrum of evenly sampled signals; lines at given frequencies, averages, peaks.
 
 Amplitudes are peak values throughout: a sine a sin(2πft) has the line a, an rms value of a/√2 and, in decibels, the
 level of that rms value, see :mod:`coupling.signature.levels`. The mean, the d.c. part, is no vibration: it stands alone
@@ -32,7 +32,7 @@ class Spectrum:
         Of the cosine, at the start of the record [rad].
     window : {"uniform", "hann"}
     averages : int
-        Stretches of the record over whose lines the mean was taken, see :func:`averaged_spectrum`.
+        Number of averaged stretches of the record, see :func:`averaged_spectrum`.
     """
 
     frequencies: FloatArray
@@ -63,7 +63,7 @@ class Spectrum:
 
 
 def amplitude_spectrum(signal: FloatArray, interval: float, window: Window = "uniform") -> Spectrum:
-    """Amplitude and phase of the lines of a record.
+    """Amplitude spectrum of a record.
 
     Parameters
     ----------
@@ -79,11 +79,11 @@ def amplitude_spectrum(signal: FloatArray, interval: float, window: Window = "un
 
 
 def averaged_spectrum(stretches: Iterable[FloatArray], interval: float, window: Window = "uniform") -> Spectrum:
-    """Lines of a record that is too long for memory, averaged over stretches of it.
+    """Amplitude spectrum averaged over the stretches of a long record.
 
-    Amplitudes are root mean squares of the stretches' own, so that power adds up whatever the phases; the mean is the
-    mean of the means. Phases are those of the mean of the complex lines: they mean something where the motion repeats
-    with the stretch.
+    Amplitudes are root mean squares over the stretches, so that power adds up whatever the phases; the mean is the
+    mean of the means. Phases are those of the mean complex lines: they are meaningful where the motion repeats with the
+    stretch.
 
     Parameters
     ----------
@@ -120,17 +120,17 @@ def _lines(signal: FloatArray, window: Window) -> npt.NDArray[np.complex128]:
 
 
 def window_weights(count: int, window: Window) -> FloatArray:
-    """Weights of a window's samples, periodic: the one after the last would be the first again, shape (count,)."""
+    """Weights of a periodic window, shape (count,)."""
     if window == "uniform":
         return np.ones(count)
     return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count))
 
 
 def lines_at(signal: FloatArray, interval: float, frequencies: FloatArray, window: Window = "uniform") -> ComplexArray:
-    """Complex amplitudes at any frequencies, not only those that fit the record: shape (..., f).
+    """Complex amplitudes at any frequencies, not only those of the record's lines, shape (..., f).
 
-    2 Σ w (x - mean) e^{-2πift} / Σ w: the height of a sine that stands there, under either window, as far as its
-    neighbours do not leak into it.
+    2 Σ w (x - mean) e^{-2πift} / Σ w: the height of a sine at that frequency, under either window, without leakage from
+    its neighbours.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def lines_at(signal: FloatArray, interval: float, frequencies: FloatArray, windo
 
 @dataclass(frozen=True)
 class SignalParts:
-    """The fixed (d.c.) and the varying (a.c.) part of a signal, each in its unit, shape (...).
+    """Constant (d.c.) and varying (a.c.) part of a signal, each in its unit, shape (...).
 
     Attributes
     ----------
@@ -168,7 +168,7 @@ class SignalParts:
 
     @property
     def fixed_to_varying(self) -> FloatArray:
-        """|d.c.| over the rms of the a.c. part; infinite for a signal that stands still."""
+        """|d.c.| over the rms of the a.c. part; infinite for a constant signal."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.abs(self.mean) / self.rms)
 
@@ -182,7 +182,7 @@ def signal_parts(signal: FloatArray) -> SignalParts:
 
 @dataclass(frozen=True)
 class Peak:
-    """A line that stands out: frequency [Hz] and amplitude in the signal's unit."""
+    """A spectral peak: frequency [Hz] and amplitude in the signal's unit."""
 
     frequency: float
     amplitude: float
@@ -191,14 +191,14 @@ class Peak:
 def spectrum_peaks(
     spectrum: Spectrum, *, count: int = 12, above: float = 0.0, limit: float = np.inf, floor: float = 1e-3
 ) -> list[Peak]:
-    """The highest lines that are higher than both neighbours, highest first.
+    """Spectral peaks: the highest lines that are higher than both neighbours, highest first.
 
     Parameters
     ----------
     spectrum : Spectrum
         Of one signal.
     count : int
-        At most so many.
+        Largest number of peaks.
     above, limit : float
         Between these frequencies [Hz].
     floor : float

@@ -1,4 +1,4 @@
-"""Which modes grow, how fast, and what feeds them."""
+"""Stability of the coupled modes: growing modes, their growth rates, and the parts that feed energy into them."""
 
 from dataclasses import dataclass
 
@@ -7,25 +7,25 @@ import numpy as np
 from coupling.modes import CoupledModes
 from coupling.shares import Part
 
-_NEUTRAL = 1e-9  # damping ratios this small are rounding
-_ROUNDING = 1e-12  # so are eigenvalues this small beside the largest
+_NEUTRAL = 1e-9  # damping ratios below this are rounding
+_ROUNDING = 1e-12  # eigenvalues below this part of the largest are rounding
 
 
 @dataclass(frozen=True)
 class GrowingMode:
-    """A mode that grows from any disturbance until something nonlinear stops it.
+    """An unstable mode, which grows from any disturbance until a nonlinearity limits it.
 
     Attributes
     ----------
     mode : int
-        Its place in the modes.
+        Index among the modes.
     eigenvalue : complex
-        λ [1/s]; real where it runs off without swinging.
+        λ [1/s]; real for a divergence without oscillation.
     kind, where : str
         As in :class:`coupling.CoupledModes`.
     feeders : tuple of (Part, float)
-        Parts that feed it, the strongest first, and what each takes from the damping ratio: negative. Of a mode that
-        runs off because springs push, those parts, and their shares of the strain energy with a minus.
+        Parts that feed energy into it, the strongest first, with their negative parts of the damping ratio. For a
+        divergence by negative stiffness, those parts with minus their shares of the strain energy.
     """
 
     mode: int
@@ -47,14 +47,14 @@ class GrowingMode:
 
 @dataclass(frozen=True)
 class Stability:
-    """The verdict on a set of modes.
+    """Stability of a set of modes.
 
     Attributes
     ----------
     growing : tuple of GrowingMode
         The fastest first; none in a stable system.
     least_damped : int or None
-        Place of the oscillating mode with the lowest damping ratio.
+        Index of the oscillating mode with the lowest damping ratio.
     """
 
     growing: tuple[GrowingMode, ...]
@@ -67,16 +67,16 @@ class Stability:
 
 
 def stability(modes: CoupledModes, tolerance: float = _NEUTRAL) -> Stability:
-    """Judge modes by the sign of their damping.
+    """Stability of modes by the sign of their damping.
 
     Parameters
     ----------
     modes : CoupledModes
     tolerance : float
-        Damping ratios from -tolerance up are not growth, nor is what the largest eigenvalue's rounding makes of none.
+        Damping ratios from -tolerance up are no growth, nor are eigenvalues that are rounding of the largest one.
     """
     ratios = modes.damping_ratios
-    # The ratio of a motion that nothing resists is ±1 however small its eigenvalue.
+    # The damping ratio of a rigid-body motion is ±1 however small its eigenvalue.
     still = np.abs(modes.eigenvalues) <= _ROUNDING * np.abs(modes.eigenvalues).max(initial=0.0)
     growing = [_growing(modes, int(i)) for i in np.flatnonzero((ratios < -tolerance) & ~still)]
     swinging = np.flatnonzero(modes.eigenvalues.imag > 0.0)
@@ -89,7 +89,7 @@ def stability(modes: CoupledModes, tolerance: float = _NEUTRAL) -> Stability:
 def _growing(modes: CoupledModes, i: int) -> GrowingMode:
     shares = modes.shares
     swings = modes.eigenvalues[i].imag != 0.0
-    # What runs off over springs that push does so however it is damped: the dashpots only slow it.
+    # A divergence by negative stiffness is independent of the damping: dashpots only slow it.
     given = shares.damping[i] if swings or shares.stiffness[i] >= 0.0 else -shares.strain[i]
     least = -_NEUTRAL * float(np.abs(given).max(initial=0.0))
     feeders = [(shares.parts[j], float(given[j])) for j in np.argsort(given, kind="stable") if given[j] < least]

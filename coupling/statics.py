@@ -1,4 +1,4 @@
-"""Static equilibrium of the coupled system under its mean loads."""
+"""Static equilibrium of the coupled system under its mean loads, by Newton's method."""
 
 import numpy as np
 import numpy.typing as npt
@@ -10,17 +10,17 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROUNDING = 1e-12  # part of the loads that is rounding of what a motion is
-_PUSHED = 1e-9  # part of a load below which its share in a motion is rounding
+_ROUNDING = 1e-12  # part of the loads that is rounding of the rigid-body motions
+_PUSHED = 1e-9  # part of a load below which its share in a rigid-body motion is rounding
 _STEPS = 60
-_HALVINGS = 12  # of a step that leads away from balance
+_HALVINGS = 12  # of a Newton step that increases the residual
 
 
 def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
-    """Coordinates at rest under the constant load, teeth and rolling elements standing where they are at a time.
+    """Coordinates in static equilibrium under the constant load, at the mesh phases and cage angles of a time.
 
-    Newton's method on K q + Σ d f(dᵀ q) = F, with the friction of teeth that slide as they turn. Motions that no spring
-    resists, such as gears that roll together, must carry no load; they stay at zero.
+    Newton's method on K q + Σ d f(dᵀ q) = F, with the friction of the sliding teeth. Rigid-body motions, such as gears
+    that roll together, must carry no load; they stay at zero.
 
     Returns
     -------
@@ -29,7 +29,7 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     Raises
     ------
     CouplingError
-        Where the load drives a motion that nothing resists: the torques do not balance.
+        Where the load drives a rigid-body motion: the torques do not balance.
     TransientError
         Where teeth or bearings find no equilibrium.
     """
@@ -41,16 +41,16 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
             "supports' stiffness"
         )
     penalty = stiffest * rigid @ rigid.T
-    # Newton's method starts from teeth that touch: deviations and runout may hold them further apart than the load
-    # presses, and from open teeth it would stop at a motion that nothing holds.
+    # Newton's method starts from closed teeth: deviations and runout may exceed the deflection under the load, and from
+    # open teeth the tangent would be singular.
     closing = np.zeros(system.size)
     for contact in system.contacts:
         if contact.drives:
-            first_touch = float(contact.contact.pairs(_phase(contact, time)).deviation.min())
-            gap = first_touch + contact.clearance + _error(contact, time)
+            first_touch = float(contact.contact.pairs(contact.phase_after(time)).deviation.min())
+            gap = first_touch + contact.clearance + contact.runout(time)
             closing += contact.contact.mean_stiffness * gap * contact.direction
     for bearing in system.nonlinear:
-        # Bearings begin where their mean load puts them, for with play they would begin in it, held by nothing.
+        # Bearings begin at their mean load: within their clearance the tangent would be singular.
         about, _ = _bearing(bearing, bearing.law.reference[bearing.axes], time)
         closing += bearing.directions @ (bearing.stiffness @ bearing.law.reference[bearing.axes] - about)
     q: FloatArray = np.asarray(
@@ -75,7 +75,7 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
 
 
 def _require_pressed(system: CoupledSystem, penalty: FloatArray) -> None:
-    """Raise `CouplingError` where the mean torque pulls flanks apart that have no back flanks behind them."""
+    """Raise `CouplingError` where the mean torque opens flanks without back flanks."""
     q = np.linalg.solve(system.mean_stiffness + penalty, system.load)
     for contact in system.contacts:
         force = contact.contact.mean_stiffness * float(contact.direction @ q)
@@ -90,10 +90,10 @@ def _require_pressed(system: CoupledSystem, penalty: FloatArray) -> None:
 
 
 def load_balances(system: CoupledSystem) -> bool:
-    """Whether the constant load does no work in any motion that nothing resists."""
+    """Whether the constant load does no work in any rigid-body motion."""
     rigid, _ = system.unresisted_motions
     driven = rigid.T @ system.load
-    # Beside a load that balances in itself, and beside the rounding of what a motion is.
+    # Relative to the load's entries, and beside the rounding of the motions themselves.
     scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _ROUNDING * np.linalg.norm(system.load)
     return not np.any(np.abs(driven) > scale)
 
@@ -101,18 +101,18 @@ def load_balances(system: CoupledSystem) -> bool:
 def _out_of_balance(
     system: CoupledSystem, penalty: FloatArray, q: FloatArray, time: float
 ) -> tuple[FloatArray, FloatArray]:
-    """F - K q - Σ d f(dᵀ q), shape (n,), and the tangent of what is taken from F, shape (n, n)."""
+    """Residual F - K q - Σ d f(dᵀ q), shape (n,), and tangent stiffness, shape (n, n)."""
     from coupling.gears.kernels import tooth_force
 
     residual = system.load - system.stiffness @ q - penalty @ q
     tangent = system.stiffness + penalty
     for contact in system.contacts:
-        compression = float(contact.direction @ q) - _error(contact, time) - contact.clearance
-        law = contact.contact.kernel_arguments
-        force, slope = tooth_force(_phase(contact, time), compression, 0.0, *law)[:2]
+        compression = float(contact.direction @ q) - contact.runout(time) - contact.clearance
+        phase = contact.phase_after(time)
+        force, slope = tooth_force(phase, compression, 0.0, *contact.contact.kernel_arguments)[:2]
         push, rise = force * contact.direction, slope * contact.direction
         if contact.sliding is not None:
-            rubbing, rising = friction_push(contact, _phase(contact, time), compression, force, slope)
+            rubbing, rising = friction_push(contact, phase, compression, force, slope)
             push, rise = push + rubbing, rise + rising
         residual = residual - push
         tangent = tangent + np.outer(rise, contact.direction)
@@ -127,7 +127,7 @@ def _out_of_balance(
 def friction_push(
     contact: ContactConnector, phase: float, compression: float, force: float, slope: float
 ) -> tuple[FloatArray, FloatArray]:
-    """What the friction of a contact takes from the coordinates, and its slope by the compression, shapes (n,).
+    """Friction force of a contact on the coordinates, to be subtracted, and its slope by the compression, shapes (n,).
 
     ``force`` and ``slope`` are those of the contact.
     """
@@ -156,10 +156,10 @@ def _bearing(connector: NonlinearConnector, deflection: FloatArray, time: float)
 
 
 def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
-    """Rates at t = 0 with which motions that nothing resists swing under harmonic loads and stay where they are, (n,).
+    """Initial rates with which rigid-body motions oscillate under harmonic loads without a drift, shape (n,).
 
-    Such a motion answers Re(F e^{iwt}) by the velocity Re(F e^{iwt} / (iw)). From rest it would drift away beside it,
-    as a train does that a ripple of its torque has pushed once. ``rate`` is the speed as a part of the nominal one.
+    The response of such a motion to Re(F e^{iwt}) has the velocity Re(F e^{iwt} / (iw)). From rest a drift would be
+    added to it. ``rate`` is the speed as a part of the nominal one.
     """
     velocity = np.zeros(system.size)
     for load in system.harmonic_loads:
@@ -171,13 +171,3 @@ def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
         if np.abs(pushed).max(initial=0.0) > _PUSHED * np.linalg.norm(load.amplitude):
             velocity += rigid @ (pushed / (1j * frequency)).real
     return velocity
-
-
-def _phase(contact: ContactConnector, time: float) -> float:
-    """Phase of a contact just after a time [mesh periods]."""
-    return contact.phase + contact.rate * time + 1e-9
-
-
-def _error(contact: ContactConnector, time: float) -> float:
-    """Runout error of a contact [m]."""
-    return float(np.sum(contact.errors[:, 0] * np.cos(contact.errors[:, 1] * time + contact.errors[:, 2])))

@@ -1,6 +1,6 @@
-"""The coupled system as the plain arrays that the time-stepping kernels take."""
+"""Newmark step matrices: the coupled system as arrays for the kernels, and the matrices of each step size."""
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,27 +20,19 @@ from coupling.kernel_arrays import (
     StepMatrices,
 )
 from coupling.low_rank import common_span
+from coupling.settings import TransientOutputs
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_WIDTH = 16  # rows that the compiled loops take at a time
+_WIDTH = 16  # rows of a vectorised loop
 _FOLLOWS = {"time": BY_TIME, "turning": BY_TURNING, "unbalance": BY_UNBALANCE}
 
 
-class _Rows(Protocol):
-    @property
-    def displacement(self) -> FloatArray: ...
-    @property
-    def velocity(self) -> FloatArray: ...
-    @property
-    def acceleration(self) -> FloatArray: ...
-
-
 class KernelArrays(NamedTuple):
-    """Everything that stays the same through a march."""
+    """Arrays that stay the same through a time integration."""
 
     dynamics: Dynamics
     contacts: Contacts
@@ -48,15 +40,15 @@ class KernelArrays(NamedTuple):
     outputs: Outputs
 
 
-def kernel_arrays(system: CoupledSystem, outputs: _Rows, beta: float, gamma: float) -> KernelArrays:
-    """Lay out the system and the rows to record."""
+def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float, gamma: float) -> KernelArrays:
+    """Arrays of the system and of its output rows."""
     rows = (np.ascontiguousarray(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
     bearings = bearing_arrays(system.nonlinear)
     return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))
 
 
 def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: int, count: int) -> Samples:
-    """Room for some samples."""
+    """Zero arrays for some samples."""
     rows, contacts = arrays.outputs, arrays.contacts.phase.size
     return Samples(
         first=first,
@@ -71,8 +63,8 @@ def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: i
 
 
 def scratch_room(arrays: KernelArrays) -> Scratch:
-    """Room for one march."""
-    r, n = arrays.dynamics.ties.shape
+    """Scratch arrays of the kernel."""
+    r, n = arrays.dynamics.connectors.shape
     c, k = arrays.contacts.phase.size, len(arrays.contacts.direction)
     u, b = c + arrays.bearings.axis.size, arrays.bearings.preload.size
     shapes: dict[str, tuple[int, ...]] = {
@@ -88,19 +80,19 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
         "block": (arrays.dynamics.gyroscopic.shape[2],),
     }
     shapes |= dict.fromkeys(("a", "before", "free", "q0", "v0", "load", "pushed", "x", "y"), (n,))
-    shapes |= dict.fromkeys(("tq", "tv", "ta", "tq0", "tv0", "seen", "tie_push", "response", "linked"), (r,))
+    shapes |= dict.fromkeys(("tq", "tv", "ta", "tq0", "tv0", "seen", "connector_force", "response", "linked"), (r,))
     shapes |= dict.fromkeys(("dq", "dv", "da", "dq0", "dv0", "push"), (k,))
     shapes |= dict.fromkeys(("delta", "rate", "delta_free", "rate_free", "slip", "force_before"), (u,))
     return Scratch(**{name: np.zeros(shape) for name, shape in shapes.items()})
 
 
 class StepCache:
-    """The matrices of every step size met so far; see :mod:`coupling.step_kernels` for what they are.
+    """Cache of the matrices of each step size, see :mod:`coupling.step_kernels`.
 
     At steady speed few sizes occur: the stretches between events repeat with the mesh period. Sizes that agree to nine
-    digits are one. Where the speed varies no size occurs twice, and each stretch has its own. Mesh periods that have no
-    common multiple make ever new sizes: beyond a limit all are forgotten, which changes no result, as a size
-    met again is built anew just as it was.
+    digits are one. Where the speed varies no size occurs twice, and each stretch has its own. Mesh periods without a
+    common multiple give ever new sizes: beyond a limit the cache is cleared, which changes no result, as a size is
+    rebuilt just as it was.
     """
 
     _ROOM = 8
@@ -112,13 +104,13 @@ class StepCache:
         self.matrices = _room_for_steps(arrays, self._ROOM)
 
     def make_room(self, count: int) -> None:
-        """Forget all sizes where so many new ones might not find room; their numbers hold until then."""
+        """Clear the cache where ``count`` new sizes might find no room; slots are valid until then."""
         most = self._MOST_BYTES // sum(array[:1].nbytes for array in self.matrices)
         if len(self._kinds) + count > max(most, 2 * count):
             self._kinds.clear()
 
     def kinds(self, sizes: FloatArray, speeds: FloatArray, accelerations: FloatArray) -> IntArray:
-        """The numbers of some step sizes [s], at speeds s' and angular accelerations s'' that count where they vary."""
+        """Slots of some step sizes [s], at speeds s' and angular accelerations s'' that count where they vary."""
         if not self._steady:
             self._build(range(len(sizes)), sizes, speeds, accelerations)
             return np.arange(len(sizes), dtype=np.int64)
@@ -154,20 +146,20 @@ def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> 
 
 
 def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
-    r, n = arrays.dynamics.ties.shape
+    r, n = arrays.dynamics.connectors.shape
     k = len(arrays.contacts.direction)
     g, b = arrays.dynamics.gyroscopic.shape[:2]
     return StepMatrices(
         size=np.zeros(m),
         base=np.zeros((m, n)),
         blocks=np.zeros((m, g, b, b)),
-        tie_stiffness=np.zeros((m, r, r)),
-        tie_damping=np.zeros((m, r, r)),
-        ties=np.zeros((m, r, n)),
+        connector_stiffness=np.zeros((m, r, r)),
+        connector_damping=np.zeros((m, r, r)),
+        connectors=np.zeros((m, r, n)),
         between=np.zeros((m, r, r)),
         link=np.zeros((m, r, r)),
         contact=np.zeros((m, k, n)),
-        contact_ties=np.zeros((m, k, r)),
+        contact_connectors=np.zeros((m, k, r)),
         flexibility=np.zeros((m, k, k)),
     )
 
@@ -175,15 +167,17 @@ def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
 def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
     n = system.size
     starts, sizes, gyroscopic = _gyroscopic_blocks(system)
-    # Components are mostly diagonal; whatever else they hold joins the ties.
+    # Components are mostly diagonal; their other terms join those of the connectors.
     whole = system.own_stiffness, system.own_damping
     diagonals = [matrix.diagonal().copy() for matrix in whole]
     beside = [matrix - np.diag(diagonal) for matrix, diagonal in zip(whole, diagonals, strict=True)]
-    rates = system.tie_rates
-    matrices = [own + tie for rate in rates for own, tie in zip(beside, system.ties(float(rate)), strict=True)]
+    rates = system.connector_rates
+    matrices = [
+        own + tie for rate in rates for own, tie in zip(beside, system.connector_matrices(float(rate)), strict=True)
+    ]
     directions, cores = common_span(matrices)
-    tie_stiffness, tie_damping = np.array(cores[0::2]), np.array(cores[1::2])
-    skew = np.abs(tie_stiffness - tie_stiffness.transpose(0, 2, 1)).max(initial=0.0)
+    connector_stiffness, connector_damping = np.array(cores[0::2]), np.array(cores[1::2])
+    skew = np.abs(connector_stiffness - connector_stiffness.transpose(0, 2, 1)).max(initial=0.0)
     amplitudes = np.array([load.amplitude for load in system.harmonic_loads], dtype=np.complex128).reshape(-1, n)
     longest = max((len(load.times) for load in system.timed_loads), default=0)
     times, values = np.zeros((len(system.timed_loads), longest)), np.zeros((len(system.timed_loads), longest))
@@ -195,13 +189,13 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
         block_start=starts,
         block_size=sizes,
         gyroscopic=gyroscopic,
-        ties=np.ascontiguousarray(directions.T),
-        tie_rates=rates,
-        tie_stiffness=tie_stiffness,
-        tie_damping=tie_damping,
-        has_skew=bool(skew > 1e-12 * np.abs(tie_stiffness).max(initial=0.0)),
+        connectors=np.ascontiguousarray(directions.T),
+        connector_rates=rates,
+        connector_stiffness=connector_stiffness,
+        connector_damping=connector_damping,
+        has_skew=bool(skew > 1e-12 * np.abs(connector_stiffness).max(initial=0.0)),
         constant=system.load,
-        swing=system.swing,
+        acceleration_load=system.acceleration_load,
         frequency=np.array([load.frequency for load in system.harmonic_loads], dtype=np.float64),
         follows=np.array([_FOLLOWS[load.follows] for load in system.harmonic_loads], dtype=np.int64),
         cosine=np.ascontiguousarray(amplitudes.real),
@@ -238,7 +232,7 @@ def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, Float
 
 
 def contact_arrays(system: CoupledSystem) -> Contacts:
-    """The tooth contacts, laid out for the kernels."""
+    """Arrays of the tooth contacts."""
     c = len(system.contacts)
     harmonics = max((len(contact.errors) for contact in system.contacts), default=0)
     errors = np.zeros((c, harmonics, 3))

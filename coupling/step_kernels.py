@@ -1,4 +1,4 @@
-"""The matrices of a step size, compiled: inverses of a diagonal with gyroscopic blocks, corrected for the ties.
+"""Newmark step matrices, compiled: inverse of a diagonal with gyroscopic blocks, corrected for the connectors.
 
 Importing this module imports numba.
 
@@ -25,9 +25,9 @@ IntArray = npt.NDArray[np.int64]
 
 
 @inner()
-def tie_matrices(dynamics: Dynamics, speed: float, stiffness: FloatArray, damping: FloatArray) -> None:
+def connector_laws(dynamics: Dynamics, speed: float, stiffness: FloatArray, damping: FloatArray) -> None:
     """K_t and C_t at a speed, linear between those at which they are given, into two arrays (r, r)."""
-    rates, last = dynamics.tie_rates, dynamics.tie_rates.size - 1
+    rates, last = dynamics.connector_rates, dynamics.connector_rates.size - 1
     at = 0
     while at < last - 1 and speed > rates[at + 1]:
         at += 1
@@ -37,9 +37,9 @@ def tie_matrices(dynamics: Dynamics, speed: float, stiffness: FloatArray, dampin
     after = min(at + 1, last)
     for i in range(stiffness.shape[0]):
         for j in range(stiffness.shape[0]):
-            low, high = dynamics.tie_stiffness[at, i, j], dynamics.tie_stiffness[after, i, j]
+            low, high = dynamics.connector_stiffness[at, i, j], dynamics.connector_stiffness[after, i, j]
             stiffness[i, j] = low + part * (high - low)
-            low, high = dynamics.tie_damping[at, i, j], dynamics.tie_damping[after, i, j]
+            low, high = dynamics.connector_damping[at, i, j], dynamics.connector_damping[after, i, j]
             damping[i, j] = low + part * (high - low)
 
 
@@ -58,7 +58,7 @@ def add_gyroscopic(
 
 @inner(forceinline=True)
 def apply_block(block: FloatArray, x: FloatArray, factor: float, out: FloatArray) -> None:
-    """Factor B x by the rows of Bᵀ, which are of the padded width: loops of sixteen vectorise, shorter ones may not."""
+    """Factor B x by the rows of Bᵀ, which are of the padded width: loops of sixteen vectorise."""
     for i in range(out.size):
         out[i] = 0.0
     add_rows(block, x, factor, out)
@@ -95,8 +95,8 @@ def build_steps(
     slots: IntArray,
     matrices: StepMatrices,
 ) -> None:
-    """Fill slots, each for steps of a size h at a speed s' and an angular acceleration s''."""
-    r, n = dynamics.ties.shape
+    """Fill slots with the matrices of step sizes h at speeds s' and angular accelerations s''."""
+    r, n = dynamics.connectors.shape
     c = contacts.direction.shape[0]
     tied, seen, held = np.zeros(r), np.zeros(c), np.zeros(r)
     column, found, work = np.zeros(n), np.zeros(n), np.zeros(dynamics.gyroscopic.shape[2])
@@ -122,15 +122,15 @@ def build_steps(
                 for j in range(size):
                     matrices.blocks[slot, g, i, j] = inverse[i, j]
 
-        stiffness, damping = matrices.tie_stiffness[slot], matrices.tie_damping[slot]
-        tie_matrices(dynamics, speed, stiffness, damping)
+        stiffness, damping = matrices.connector_stiffness[slot], matrices.connector_damping[slot]
+        connector_laws(dynamics, speed, stiffness, damping)
         for k in range(r):
             for i in range(n):
-                column[i] = dynamics.ties[k, i]
+                column[i] = dynamics.connectors[k, i]
             apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, found, work)
             for i in range(n):
-                matrices.ties[slot, k, i] = found[i]
-            project(dynamics.ties, found, tied)
+                matrices.connectors[slot, k, i] = found[i]
+            project(dynamics.connectors, found, tied)
             for j in range(r):
                 matrices.between[slot, j, k] = tied[j]
         across, link = np.eye(r), np.zeros((r, r))
@@ -149,20 +149,20 @@ def build_steps(
             for i in range(n):
                 column[i] = contacts.direction[k, i]
             apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, found, work)
-            project(dynamics.ties, found, tied)
+            project(dynamics.connectors, found, tied)
             for j in range(r):
                 held[j] = 0.0
                 for i in range(r):
                     held[j] += link[j, i] * tied[i]
             for j in range(r):
                 for i in range(n):
-                    found[i] -= matrices.ties[slot, j, i] * held[j]
+                    found[i] -= matrices.connectors[slot, j, i] * held[j]
                 for i in range(r):
                     tied[i] -= matrices.between[slot, i, j] * held[j]
             for i in range(n):
                 matrices.contact[slot, k, i] = found[i]
             for j in range(r):
-                matrices.contact_ties[slot, k, j] = tied[j]
+                matrices.contact_connectors[slot, k, j] = tied[j]
             project(contacts.direction, found, seen)
             for j in range(c):
                 matrices.flexibility[slot, j, k] = seen[j]

@@ -1,8 +1,9 @@
-"""The energy that a machine holds at rest in what changes with time: asked for once in a march, so in plain Python."""
+"""Stored energy at the start of a time integration, in plain Python as it is evaluated once."""
 
 import numpy as np
 import numpy.typing as npt
 
+from coupling.connector import SpeedTable
 from coupling.kernel_arrays import Bearings, Contacts, Dynamics
 
 FloatArray = npt.NDArray[np.float64]
@@ -11,7 +12,7 @@ FloatArray = npt.NDArray[np.float64]
 def stored_energy(
     dynamics: Dynamics, contacts: Contacts, bearings: Bearings, q: FloatArray, v: FloatArray, turned: float, rate: float
 ) -> float:
-    """What :func:`coupling.newmark.march` calls stored [J]: in teeth, nonlinear bearings, and ties that change.
+    """Energy in teeth, nonlinear bearings and connectors that change with the speed [J], as in the kernel.
 
     Parameters
     ----------
@@ -21,7 +22,7 @@ def stored_energy(
     rate : float
         s'.
     """
-    energy = _of_ties(dynamics, q, rate) if dynamics.tie_rates.size > 1 else 0.0
+    energy = _of_connectors(dynamics, q, rate) if dynamics.connector_rates.size > 1 else 0.0
     c = contacts.phase.size
     delta, moved = contacts.direction @ q, contacts.direction[:c] @ v
     amplitude, w, phase = np.moveaxis(contacts.errors, 2, 0)
@@ -35,13 +36,11 @@ def stored_energy(
     return float(energy)
 
 
-def _of_ties(dynamics: Dynamics, q: FloatArray, rate: float) -> float:
+def _of_connectors(dynamics: Dynamics, q: FloatArray, rate: float) -> float:
     """½ qᵀ U K_t Uᵀ q, K_t linear between the speeds at which it is given."""
-    rates, tied = dynamics.tie_rates, dynamics.ties @ q
-    at = int(np.clip(np.searchsorted(rates, rate) - 1, 0, rates.size - 2))
-    part = float(np.clip((rate - rates[at]) / (rates[at + 1] - rates[at]), 0.0, 1.0))
-    stiffness = (1.0 - part) * dynamics.tie_stiffness[at] + part * dynamics.tie_stiffness[at + 1]
-    return float(0.5 * tied @ stiffness @ tied)
+    law = SpeedTable(dynamics.connector_rates, dynamics.connector_stiffness, dynamics.connector_damping)
+    tied = dynamics.connectors @ q
+    return float(0.5 * tied @ law.at(rate)[0] @ tied)
 
 
 def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, turned: float) -> float:
@@ -55,9 +54,9 @@ def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, turned: 
 
 
 def _of_bearings(bearings: Bearings, first: int, delta: FloatArray, turned: float) -> float:
-    """Beside what their linear parts hold."""
-    from coupling.bearing_kernels import take_bearings
+    """Energy of the nonlinear part of the bearings' forces."""
+    from coupling.bearing_kernels import evaluate_bearings
 
     tangents, held = np.zeros((bearings.preload.size, 5, 5)), np.zeros((8, 5))
-    take_bearings(bearings, first, turned, delta, np.zeros_like(delta), tangents, held)
+    evaluate_bearings(bearings, first, turned, delta, np.zeros_like(delta), tangents, held)
     return float(held[0, 0])

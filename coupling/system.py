@@ -1,4 +1,4 @@
-"""The coupled system: components side by side, tied by connectors, driven by loads."""
+"""Coupled system: components, connectors and loads in one set of coordinates, with its matrices."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ _RIGID = 1e-12  # stiffness below this part of the largest is a motion that noth
 
 @dataclass(frozen=True)
 class HarmonicLoad:
-    """A load F(t) = Re(amplitude e^{i w t}) on the coordinates: unbalance is one for each rotor.
+    """A harmonic load F(t) = Re(amplitude e^{i w t}) on the coordinates, such as an unbalance.
 
     Attributes
     ----------
@@ -28,9 +28,8 @@ class HarmonicLoad:
         w [rad/s], at the nominal speeds.
     amplitude : ndarray of complex, shape (n,)
     follows : "time", "turning" or "unbalance"
-        What becomes of it where the speeds are not the nominal ones, see :mod:`coupling.turning`: it keeps its
-        frequency; it turns with the machine, e^{iws}; or it turns and is what an eccentric mass feels,
-        (s'² - i s''/w) e^{iws}.
+        Dependence on the speed where it is not the nominal one, see :mod:`coupling.turning`: constant frequency; phase
+        that follows the rotation, e^{iws}; or inertia force of an eccentric mass, (s'² - i s''/w) e^{iws}.
     """
 
     frequency: float
@@ -69,8 +68,8 @@ class TimedLoad:
 class CoupledSystem:
     """All components, connectors and loads in one set of coordinates.
 
-    The equation of motion is q'' + C q' + K q + Σ d f(δ, δ', t) = F + Σ Re(F_w e^{iwt}) with the tooth contacts, and
-    what nonlinear bearings differ from linear ones, in the sum; everything linear in C and K.
+    The equation of motion is q'' + C q' + K q + Σ d f(δ, δ', t) = F + Σ Re(F_w e^{iwt}) with the tooth contacts and the
+    nonlinear parts of bearings in the sum; all linear terms are in C and K.
 
     Attributes
     ----------
@@ -84,7 +83,7 @@ class CoupledSystem:
         F, constant; zero by default.
     harmonic_loads : tuple of HarmonicLoad
     timed_loads : tuple of TimedLoad
-    swing : ndarray, shape (n,)
+    acceleration_load : ndarray, shape (n,)
         Load of an angular acceleration s'' = 1/s of the nominal speeds: the shafts' own inertia, and the torque that
         the drive adds to overcome it; zero by default.
     nonlinear : tuple of NonlinearConnector
@@ -97,13 +96,13 @@ class CoupledSystem:
     load: FloatArray = field(default_factory=lambda: np.zeros(0))
     harmonic_loads: tuple[HarmonicLoad, ...] = ()
     timed_loads: tuple[TimedLoad, ...] = ()
-    swing: FloatArray = field(default_factory=lambda: np.zeros(0))
+    acceleration_load: FloatArray = field(default_factory=lambda: np.zeros(0))
     nonlinear: tuple[NonlinearConnector, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.speeds) != len(self.components):
             raise CouplingError(f"{len(self.speeds)} speeds for {len(self.components)} components; expected as many")
-        for what in ("load", "swing"):
+        for what in ("load", "acceleration_load"):
             if getattr(self, what).shape == (0,):
                 object.__setattr__(self, what, np.zeros(self.size))
             if getattr(self, what).shape != (self.size,):
@@ -116,15 +115,15 @@ class CoupledSystem:
 
     @cached_property
     def kinds(self) -> tuple[str, ...]:
-        """What each coordinate moves."""
+        """Kind of each coordinate."""
         return tuple(kind for component in self.components for kind in component.kinds)
 
     @cached_property
     def resolved(self) -> npt.NDArray[np.bool_]:
-        """Coordinates whose own vibration is to be followed in time, shape (n,): all but the residual ones.
+        """Coordinates whose own vibration is resolved in time, shape (n,): all but the residual ones.
 
-        A residual coordinate answers as a spring does. The frequency that its stiffness and mass make is an artefact
-        of the reduction, above every frequency that the component is good for.
+        A residual coordinate responds as a spring. The frequency of its stiffness and mass is an artefact of the
+        reduction, above every valid frequency of the component.
         """
         return np.array([kind != "residual" for kind in self.kinds])
 
@@ -141,12 +140,12 @@ class CoupledSystem:
     @cached_property
     def stiffness(self) -> FloatArray:
         """K without the tooth contacts [1/s²], shape (n, n)."""
-        return self.own_stiffness + self.ties()[0]
+        return self.own_stiffness + self.connector_matrices()[0]
 
     @cached_property
     def damping(self) -> FloatArray:
         """C with the gyroscopic terms and without the tooth contacts [1/s], shape (n, n)."""
-        return self.own_damping + self.gyroscopic + self.ties()[1]
+        return self.own_damping + self.gyroscopic + self.connector_matrices()[1]
 
     @cached_property
     def gyroscopic(self) -> FloatArray:
@@ -155,13 +154,13 @@ class CoupledSystem:
         return self._blocks([speed * component.gyroscopic for component, speed in pairs])
 
     @cached_property
-    def tie_rates(self) -> FloatArray:
-        """Speeds, as parts of the nominal one, between which the linear connectors change linearly, shape (t,)."""
+    def connector_rates(self) -> FloatArray:
+        """Relative speeds between which the linear connectors change linearly, shape (t,)."""
         tables = [connector.over_speed.rates for connector in self.linear if connector.over_speed is not None]
         return np.unique(np.concatenate(tables)) if tables else np.ones(1)
 
-    def ties(self, rate: float = 1.0) -> tuple[FloatArray, FloatArray]:
-        """What the linear connectors add to K and C at a speed, shapes (n, n)."""
+    def connector_matrices(self, rate: float = 1.0) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and damping of the linear connectors at a relative speed, shapes (n, n)."""
         stiffness, damping = np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
         for connector in self.linear:
             law = (connector.stiffness, connector.damping)
@@ -178,38 +177,43 @@ class CoupledSystem:
 
     @property
     def is_smooth(self) -> bool:
-        """Whether neither friction nor a bearing's own law is in it: the tooth contacts are all that is not linear."""
+        """Whether the tooth contacts, without friction, are the only nonlinearity."""
         return not self.nonlinear and all(contact.sliding is None for contact in self.contacts)
+
+    @cached_property
+    def drive_stiffness(self) -> FloatArray:
+        """Mean mesh stiffness of every drive flank, 0 of the others [N/m], shape (c,)."""
+        return np.array([one.contact.mean_stiffness * one.drives for one in self.contacts], dtype=np.float64)
+
+    @cached_property
+    def drive_damping(self) -> FloatArray:
+        """Mesh damping of every drive flank, 0 of the others [N s/m], shape (c,)."""
+        return np.array([one.contact.damping * one.drives for one in self.contacts], dtype=np.float64)
 
     @cached_property
     def mean_stiffness(self) -> FloatArray:
         """K with every drive flank at its mean mesh stiffness [1/s²], shape (n, n)."""
-        return self.stiffness + self._contact_sum([c.contact.mean_stiffness for c in self.contacts])
+        return self.stiffness + (self.contact_directions * self.drive_stiffness) @ self.contact_directions.T
 
     @cached_property
     def mean_damping(self) -> FloatArray:
         """C with every drive flank's damping [1/s], shape (n, n)."""
-        return self.damping + self._contact_sum([c.contact.damping for c in self.contacts])
+        return self.damping + (self.contact_directions * self.drive_damping) @ self.contact_directions.T
 
     @cached_property
     def highest_frequency(self) -> float:
-        """Highest natural frequency of the coordinates that are to be resolved, the residual ones held [rad/s]."""
+        """Highest natural frequency of the resolved coordinates, the residual ones held [rad/s]."""
         stiffness = self.mean_stiffness[np.ix_(self.resolved, self.resolved)]
         return float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max(initial=0.0)))
 
     @cached_property
     def unresisted_motions(self) -> tuple[FloatArray, float]:
-        """Orthonormal motions that no spring resists, in columns, and the largest stiffness [1/s²].
+        """Rigid-body motions: orthonormal motions that no spring resists, in columns; and the largest stiffness [1/s²].
 
         Teeth and nonlinear bearings count with their linear stiffness.
         """
         values, vectors = np.linalg.eigh(0.5 * (self.mean_stiffness + self.mean_stiffness.T))
         return vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)], float(values[-1])
-
-    def _contact_sum(self, values: Sequence[float]) -> FloatArray:
-        """Σ value d dᵀ over the flanks that drive."""
-        touching = np.array([v * c.drives for v, c in zip(values, self.contacts, strict=True)])
-        return np.asarray((self.contact_directions * touching) @ self.contact_directions.T)
 
     def _blocks(self, matrices: Sequence[FloatArray]) -> FloatArray:
         total = np.zeros((self.size, self.size))
@@ -221,9 +225,9 @@ class CoupledSystem:
         return total
 
 
-def embed(components: Sequence[Component], which: int, direction: FloatArray) -> FloatArray:
-    """A component's direction as one of the whole system, shape (n,)."""
-    row = np.zeros(sum(component.size for component in components))
+def embed(components: Sequence[Component], which: int, directions: FloatArray) -> FloatArray:
+    """Directions of one component, shape (..., m), as directions of the whole system, shape (..., n)."""
+    whole = np.zeros((*directions.shape[:-1], sum(component.size for component in components)))
     start = sum(component.size for component in components[:which])
-    row[start : start + components[which].size] = direction
-    return row
+    whole[..., start : start + components[which].size] = directions
+    return whole

@@ -1,4 +1,4 @@
-"""Axial force of helical gears on each rotor, and the bearings that must carry it.
+"""Thrust: axial force of helical gears on each rotor, and the bearings that must carry it.
 
 A pair's force F acts along the normal of the teeth: in the transverse plane along the line of action, and along z by
 F tan β_b. At constant torque the moment about z of every rotor balances, s Σ F R_b = T, which gives the forces; a rotor
@@ -6,20 +6,21 @@ on which their axial parts do not cancel needs a bearing that holds it along its
 coordinate, and the thrust would vanish from the model.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry
+from coupling.mounted import MountedBearing
 
 _CANCELLED = 1e-6  # part of the largest axial force of a gear on the rotor that may be left over
 
 
 @dataclass(frozen=True)
 class ThrustPair:
-    """A gear pair as far as its thrust goes: the rotors and the names of its gears, and their geometry."""
+    """A gear pair in the thrust balance: its rotors, the names of its gears, and their geometry."""
 
     rotors: tuple[str, str]
     gears: tuple[str, str]
@@ -48,6 +49,18 @@ class AxialForces:
         return total if abs(total) > _CANCELLED * max(map(abs, self.forces), default=0.0) else 0.0
 
 
+def axially_held(
+    bearings: Sequence[MountedBearing], speeds: Mapping[str, float], among: Container[str] | None = None
+) -> set[str]:
+    """Rotors that a bearing with axial stiffness holds at their speeds [rad/s]; only ``among`` these are looked at."""
+    return {
+        mounted.rotor
+        for mounted in bearings
+        if mounted.rotor in (speeds if among is None else among)
+        and mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0
+    }
+
+
 def axial_forces(
     pairs: Sequence[ThrustPair], speeds: Mapping[str, float], torques: Mapping[str, float]
 ) -> dict[str, AxialForces]:
@@ -64,7 +77,7 @@ def axial_forces(
 
     Notes
     -----
-    Where several paths share a torque the forces of least squares are taken: alike pairs carry alike parts.
+    Where several paths share a torque the least-squares forces are taken: equal pairs carry equal parts.
     """
     names = list(dict.fromkeys(name for pair in pairs for name in pair.rotors))
     moments = np.zeros((len(names), len(pairs)))

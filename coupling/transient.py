@@ -1,44 +1,45 @@
-"""The transient: from static equilibrium through a time span, its record and the proof of it."""
+"""Transient simulation: time integration from static equilibrium, its record and its energy balance."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import TransientError
 from coupling.march_run import Checkpoint
-from coupling.marching import Block, march_blocks
-from coupling.settings import TransientOutputs, TransientSettings
+from coupling.marching import march_blocks
+from coupling.settings import RECORDED, Recorded, TransientOutputs, TransientSettings
 from coupling.system import CoupledSystem
 from coupling.turning import Turning
 
 FloatArray = npt.NDArray[np.float64]
 
 ENERGY_BOUND = 1e-2
-_ROUNDING = 1e-9  # part of the energy held that a balance cannot speak of
+_ROUNDING = 1e-9  # part of the stored energy that is rounding in a balance
 
 
 @dataclass(frozen=True)
 class EnergyBalance:
-    """Where the energy went [J].
+    """Energy balance of a time integration [J].
 
     Attributes
     ----------
     change : float
-        Of kinetic energy, springs and teeth together.
+        Change of the kinetic energy and of the energy in springs and teeth.
     loads : float
         Work of the loads.
     lost : float
-        To damping.
+        Energy lost to damping.
     teeth : float
-        Work of what turns: the stiffness and shape of the contacts change under load, rolling elements go round, and
-        what slides rubs on the coordinates.
+        Work of the rotation: of contacts whose stiffness and shape change under load, of rolling elements, and of
+        friction on the coordinates.
     scale : float
-        The largest of these, of the swing of the energy held, and of the kinetic energy at any step.
+        The largest of these, of the range of the stored energy, and of the kinetic energy at any step.
     friction : float
-        What friction between the teeth took from the nominal rotation, never negative: nearly all of it turned to heat,
-        the rest came to the coordinates and is in ``teeth``. No part of the balance.
+        Energy that tooth friction took from the nominal rotation, never negative: nearly all of it turned to heat, the
+        rest went to the coordinates and is in ``teeth``. No part of the balance.
     """
 
     change: float
@@ -50,13 +51,13 @@ class EnergyBalance:
 
     @property
     def error(self) -> float:
-        """What does not add up, as a part of the scale."""
+        """Error of the balance, as a part of the scale."""
         return abs(self.change - self.loads + self.lost - self.teeth) / self.scale if self.scale > 0.0 else 0.0
 
 
 @dataclass(frozen=True)
 class TransientFigures:
-    """What a whole run comes to; c contacts.
+    """Figures of a whole run; c contacts.
 
     Attributes
     ----------
@@ -73,7 +74,7 @@ class TransientFigures:
     error : float
         Largest of the accepted error measures.
     seconds : float
-        Time taken by the stepping, compilation apart [s].
+        Computing time of the steps, without compilation [s].
     """
 
     mean_force: FloatArray
@@ -87,28 +88,9 @@ class TransientFigures:
     seconds: float
 
 
-@dataclass(frozen=True)
-class TransientResult(TransientFigures):
-    """Histories at even spacing, and the proof of them; s samples, c contacts.
-
-    Attributes
-    ----------
-    times : ndarray, shape (s,)
-        [s].
-    displacement, velocity, acceleration : ndarray, shapes (s, k)
-        The rows asked for.
-    compression : ndarray, shape (s, c)
-        δ of each contact [m].
-    force : ndarray, shape (s, c)
-        [N].
-    """
-
-    times: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    compression: FloatArray
-    force: FloatArray
+@dataclass(frozen=True, eq=False)
+class TransientResult(TransientFigures, Recorded):
+    """Record of a transient at even spacing, with the figures of the run."""
 
 
 def simulate(
@@ -120,7 +102,7 @@ def simulate(
     initial: tuple[FloatArray, FloatArray] | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> TransientResult:
-    """March the coupled system through time.
+    """Integrate the motion of the coupled system.
 
     Parameters
     ----------
@@ -128,11 +110,11 @@ def simulate(
     settings : TransientSettings
     outputs : TransientOutputs
     turning : Turning, optional
-        Speed over time; by default the nominal one all along.
+        Speed over time; by default the nominal one.
     initial : tuple of ndarray, optional
         Coordinates and rates at t = 0, shape (n,) each; by default static equilibrium at rest.
     progress : callable
-        Told the finished part of the span, from 0 to 1.
+        Called with the finished part of the span, from 0 to 1.
 
     Raises
     ------
@@ -141,31 +123,24 @@ def simulate(
 
     See Also
     --------
-    march_blocks : The same, handing the record over piece by piece, for runs that are long or must be able to go on.
+    march_blocks : The same in blocks, for runs that are long or must be able to continue.
     """
     marched = march_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
     blocks = list(marched)
     figures = transient_figures(settings, blocks[-1].after)
-    return TransientResult(
-        **vars(figures),
-        times=_joined(blocks, "times"),
-        displacement=_joined(blocks, "displacement"),
-        velocity=_joined(blocks, "velocity"),
-        acceleration=_joined(blocks, "acceleration"),
-        compression=_joined(blocks, "compression"),
-        force=_joined(blocks, "force"),
-    )
+    record: dict[str, Any] = {name: np.concatenate([getattr(block, name) for block in blocks]) for name in RECORDED}
+    return TransientResult(**vars(figures), **record)
 
 
 def transient_figures(settings: TransientSettings, end: Checkpoint) -> TransientFigures:
-    """What a march came to at its end.
+    """Figures of a run from its last checkpoint.
 
     Raises
     ------
     TransientError
         Where the energies do not balance.
     """
-    # What rounding can do to the energy held is beyond any balance.
+    # The rounding of the stored energy is no error of the balance.
     held = max(end.highest - end.lowest, _ROUNDING * max(abs(end.highest), abs(end.lowest)))
     balance = _balance(end.energy - end.start_energy, end.totals, held)
     if balance.error > ENERGY_BOUND or end.unsettled > 0.01 * end.steps:
@@ -187,13 +162,8 @@ def transient_figures(settings: TransientSettings, end: Checkpoint) -> Transient
     )
 
 
-def _joined(blocks: list[Block], what: str) -> FloatArray:
-    parts = [getattr(block, what) for block in blocks]
-    return parts[0] if len(parts) == 1 else np.concatenate(parts)
-
-
 def _balance(change: float, totals: FloatArray, held: float) -> EnergyBalance:
     loads, lost, teeth, motion, friction = (float(value) for value in totals)
-    # Free vibration swaps its energy between motion and springs without any of it coming or going.
+    # Free vibration exchanges energy between motion and springs without any work or loss.
     scale = max(abs(loads), abs(lost), abs(teeth), held, motion)
     return EnergyBalance(change, loads, lost, teeth, scale, friction)

@@ -1,4 +1,4 @@
-"""From what excites a machine to what its gears, bearings and sensors feel, over frequency.
+"""Frequency response of a machine: gear forces, bearing loads and sensors under harmonic excitation.
 
 A transmission error e = e^{iwt} at one mesh presses its contact by δ = dᵀq - e. It drives the coordinates with the load
 (k + iwc) d e, and every contact carries F = (k + iwc)(dᵀq - e), the error being its own alone: the dynamic mesh force
@@ -16,7 +16,7 @@ from coupling.errors import CouplingError
 from coupling.machine import CoupledMachine
 from coupling.modes import CoupledModes
 from coupling.receptance import response
-from coupling.system import CoupledSystem, embed
+from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -24,18 +24,18 @@ ComplexArray = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class FrequencyResponse:
-    """Complex amplitudes by a harmonic excitation at f frequencies; real parts of a e^{iwt} are the signals.
+    """Complex amplitudes under a harmonic excitation at f frequencies; the signals are the real parts of a e^{iwt}.
 
     Attributes
     ----------
     excitation : str
-        In words.
+        Name of the excitation.
     unit : str
-        Of the excitation: amplitudes are by one of it.
+        Unit of the excitation, which has the amplitude 1.
     frequencies : ndarray, shape (f,)
         w [rad/s].
     coordinates : ndarray of complex, shape (f, n)
-        Of the whole system.
+        Amplitudes of the whole system.
     sensor_acceleration : dict of str to ndarray of complex, shape (f,)
         Along each sensor [m/s²].
     bearing_load : dict of str to ndarray of complex, shape (f, 5)
@@ -76,9 +76,9 @@ def mesh_error_response(
     mesh : int
         Number of the gear mesh.
     contact : ContactState, optional
-        The mean contact where not given.
+        By default the mean contact.
     modes : CoupledModes, optional
-        To be superposed, of the same contact; the system is solved at every frequency where not given.
+        Modes about the same contact, to be superposed; by default the system is solved at every frequency.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def sensor_force_response(
     contact: ContactState | None = None,
     modes: CoupledModes | None = None,
 ) -> FrequencyResponse:
-    """Response to a unit force along a sensor [1/N], as of a hammer that strikes there.
+    """Response to a unit force along a sensor [1/N], as of a hammer blow.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def sensor_force_response(
     ModesError
         As :func:`coupling.receptance`.
     """
-    rows = sensor_rows(machine)
+    rows = machine.sensor_rows
     if sensor not in rows:
         raise CouplingError(f"no sensor {sensor!r}; there are: {', '.join(rows) or 'none'}")
     state = mean_contact(machine.system) if contact is None else contact
@@ -132,9 +132,9 @@ def unbalance_response(
     rotor: str,
     contact: ContactState | None = None,
 ) -> FrequencyResponse:
-    """Response to all unbalances of a rotor as they are, over the speed of the leading rotor, about the mean contact.
+    """Unbalance response of a rotor with its own unbalances, over the speed of the leading rotor.
 
-    The machine is coupled anew at each speed: gyroscopic terms and bearings with tables follow.
+    The machine is assembled at each speed: gyroscopic terms and bearings with tables follow.
 
     Parameters
     ----------
@@ -143,12 +143,12 @@ def unbalance_response(
         Of the leading rotor [rad/s], none 0.
     rotor : str
     contact : ContactState, optional
-        At every speed; the mean contact under the machine's load where not given.
+        At every speed; by default the mean contact under the machine's load.
 
     Returns
     -------
     FrequencyResponse
-        With w the signed speeds of that rotor: amplitudes turn with it.
+        With w the signed speeds of that rotor: amplitudes rotate with it.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def unbalance_response(
     rows = _rows_of(machine.system, number)
     parts = []
     for one, w in zip(turned, frequencies, strict=True):
-        # Other rotors of the same speed have loads of that frequency too: those act on their own coordinates.
+        # Other rotors of the same speed have loads of that frequency too, on their own coordinates.
         load = sum(
             (each.amplitude for each in one.system.harmonic_loads if each.frequency == w),
             np.zeros(one.system.size, dtype=np.complex128),
@@ -186,16 +186,8 @@ def unbalance_response(
     )
 
 
-def sensor_rows(machine: CoupledMachine) -> dict[str, FloatArray]:
-    """Motion along each sensor by the coordinates of the whole system, shape (n,) each."""
-    if machine.housing is None:
-        return {}
-    number = [part.name for part in machine.system.components].index(machine.housing.name)
-    return {name: embed(machine.system.components, number, row) for name, row in machine.housing.sensors.items()}
-
-
 def _rows_of(system: CoupledSystem, number: int) -> npt.NDArray[np.bool_]:
-    """Which coordinates are a component's, shape (n,)."""
+    """Mask of a component's coordinates, shape (n,)."""
     owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
     return np.asarray(owners == number)
 
@@ -213,7 +205,7 @@ def _named(
     unit: str,
     erring: int | None = None,
 ) -> FrequencyResponse:
-    """What coordinates (f, n) mean at sensors, bearings and meshes; one mesh may have a unit error."""
+    """Response at sensors, bearings and meshes from coordinates (f, n); one mesh may have a unit error."""
     system, rate = machine.system, 1j * frequencies
     loads = {}
     for connector in system.linear[: len(machine.bearings)]:
@@ -232,7 +224,7 @@ def _named(
         unit=unit,
         frequencies=np.asarray(frequencies),
         coordinates=moved,
-        sensor_acceleration={name: -(frequencies**2) * (moved @ row) for name, row in sensor_rows(machine).items()},
+        sensor_acceleration={name: -(frequencies**2) * (moved @ row) for name, row in machine.sensor_rows.items()},
         bearing_load=loads,
         mesh_force=pressed,
     )

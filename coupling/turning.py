@@ -1,8 +1,8 @@
-"""How a machine turns: its angle over time, as the time that a machine at its nominal speeds would need for it.
+"""Speed profile of a run-up: speed over time, and rotation angle as time at the nominal speeds.
 
-All that turns is written for steady nominal speeds: mesh phases, runout, unbalance, gyroscopic terms. A machine that
-runs up or down turns through the same angles at other times. Its *turned time* s(t) is the time at which the machine
-at nominal speeds would have come as far, so that everything that depends on the angle depends on s, and
+Mesh phases, runout, unbalance and gyroscopic terms are written for steady nominal speeds. A machine that runs up or
+down turns through the same angles at other times. Its *turned time* s(t) is the time in which the machine at nominal
+speeds would turn through the same angle, so that all functions of the angle are functions of s, and
 
     s'  is the speed and  s''  the angular acceleration, as parts of the nominal speed.
 
@@ -23,14 +23,14 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Turning:
-    """Speed over time, as a part of the nominal one; linear between k times, and constant before and after them.
+    """Speed over time, relative to the nominal one; linear between k times, and constant before and after them.
 
     Attributes
     ----------
     times : ndarray, shape (k,)
         [s], ascending.
     rates : ndarray, shape (k,)
-        s', not negative: a machine that turned back would load its other flanks.
+        s', not negative: reversed rotation would load the other flanks.
     """
 
     times: FloatArray
@@ -50,17 +50,17 @@ class Turning:
 
     @staticmethod
     def steady() -> "Turning":
-        """At the nominal speeds all along."""
+        """Constant nominal speeds."""
         return Turning(np.zeros(1), np.ones(1))
 
     @property
     def is_steady(self) -> bool:
-        """Whether the speeds are the nominal ones all along."""
+        """Whether the speeds are the nominal ones at all times."""
         return bool(np.all(self.rates == 1.0))
 
     @cached_property
     def _pieces(self) -> FloatArray:
-        """Rows t, s, s' and s'' from which on a piece runs; the first begins in the infinite past."""
+        """Rows t, s, s' and s'' at the start of each piece; the first begins in the infinite past."""
         gaps = np.diff(self.times)
         slopes = np.concatenate([[0.0], np.diff(self.rates) / gaps, [0.0]])
         turned = np.concatenate([[0.0], np.cumsum(0.5 * (self.rates[1:] + self.rates[:-1]) * gaps)])
@@ -82,7 +82,7 @@ class Turning:
         return self._through(self._pieces, np.atleast_1d(np.asarray(times, dtype=np.float64)))
 
     def times_of(self, turned: FloatArray) -> FloatArray:
-        """Times at which the machine has turned so far [s], NaN where it never does, shape (m,)."""
+        """Times at which the turned time has given values [s], NaN where it never has, shape (m,)."""
         pieces = self._pieces
         rows = pieces[1:][np.maximum(np.searchsorted(pieces[1:, 1], turned, side="right") - 1, 0)]
         rows = np.where((turned < pieces[1, 1])[:, None], pieces[0], rows)

@@ -1,11 +1,11 @@
-"""The steady state directly: periodic motions, their stability, and how they change with speed.
+"""Periodic response: the steady state by shooting, its Floquet multipliers, and its continuation over speed.
 
-- :func:`periodic_response` -- the motion that repeats with the excitation, stable or not, as a
+- :func:`periodic_response` -- the motion with the period of the excitation, stable or not, as a
   :class:`PeriodicResponse` with its Floquet multipliers.
-- :func:`response_curve` -- how it changes with speed, through folds, as a :class:`ResponseCurve`.
-- :func:`superposed_response` -- where the excitations have no short common period, the sum of each one's own motion, as
-  a :class:`SuperposedResponse` with the force that it neglects.
-- :func:`common_period` -- after which time all that drives a machine repeats.
+- :func:`response_curve` -- its branch over speed, through folds, as a :class:`ResponseCurve`.
+- :func:`superposed_response` -- for excitations without a short common period, the sum of the motions of each, as a
+  :class:`SuperposedResponse` with the force that it neglects.
+- :func:`common_period` -- the period of all excitations of a machine.
 
 numba is imported only when a response is computed.
 """
@@ -13,7 +13,7 @@ numba is imported only when a response is computed.
 from coupling.periodic.base_period import common_period
 from coupling.periodic.continuation import response_curve
 from coupling.periodic.floquet import FloquetMultipliers
-from coupling.periodic.response import PeriodicRecord, PeriodicResponse
+from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.response_curve import Bifurcation, ResponseCurve
 from coupling.periodic.shooting import periodic_response
 from coupling.periodic.superposition import (
@@ -32,7 +32,6 @@ __all__ = [
     "ExcitationGroup",
     "FloquetMultipliers",
     "GroupMotion",
-    "PeriodicRecord",
     "PeriodicResponse",
     "ResponseCurve",
     "SuperposedResponse",

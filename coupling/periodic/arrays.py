@@ -1,7 +1,7 @@
-"""The plain arrays that the kernels of the periodic response and of the exact march take, by name.
+"""Plain arrays for the kernels of exponential collocation, by name.
 
-Amplitudes are kept as 2 m real numbers, the real parts and then the imaginary ones. c contacts, s places in an element,
-h harmonics, k sizes of elements.
+Amplitudes are kept as 2 m real numbers, the real parts and then the imaginary ones. c contacts, s Gauss points in an
+element, h harmonics, k sizes of elements.
 """
 
 from typing import NamedTuple
@@ -18,14 +18,14 @@ _BY_ONE_THREAD = 2**18  # of numbers: larger products of matrices OpenBLAS share
 
 
 class Reference(NamedTuple):
-    """The linear machine with its teeth at their mean, as the contacts see it.
+    """The linear machine at its mean mesh stiffness, by the motion at its contacts.
 
-    What drives it rides along: after the amplitudes of its modes come those of its own response to the loads, an
-    amplitude e^{iwt} for each harmonic and a constant 1, which no contact changes.
+    The amplitudes of its modes are followed by those of its steady response to the loads, an amplitude e^{iwt} for each
+    harmonic and a constant 1, which no contact changes.
     """
 
     eigenvalue: ComplexArray  # (m,) λ; iw; 0
-    source: ComplexArray  # (m, c) what a force of each contact adds to each amplitude's rate, taken off
+    source: ComplexArray  # (m, c) rate of each amplitude by a force of each contact, to be subtracted
     displacement: FloatArray  # (c, 2 m) compression of each contact: its product with the amplitudes
     rate: FloatArray  # (c, 2 m) its rate
     stiffness: FloatArray  # (c,) of the reference, k̄
@@ -34,27 +34,27 @@ class Reference(NamedTuple):
 
 
 class Steps(NamedTuple):
-    """What an element of each size needs.
+    """Matrices of an element of each size.
 
-    First the sizes that occur, then a ladder, each a part smaller than the one before, so that every other length is
-    nearly one of them; these are filled in when first needed. Rows of compressions and rates: place by place, contact
+    First the sizes that occur, then a geometric ladder of sizes, so that every other length is near one of them; these
+    are filled in when first needed. Rows of compressions and rates: place by place, contact
     by contact.
     """
 
     size: FloatArray  # (k,)
     filled: IntArray  # (k,) whether
-    ladder: IntArray  # (1,) where it begins
+    ladder: IntArray  # (1,) index of its first size
     decay: FloatArray  # (k, 2, m) exp(λ h), real and imaginary part
     felt: FloatArray  # (k, 2 s c, 2 m) compressions at the places from the amplitudes at the start; rates
-    flexibility: FloatArray  # (k, 2 s c, s c) compressions at the places from the forces there, taken off; rates
-    source: FloatArray  # (k, s c, 2 m) amplitudes at the end from the forces, taken off
-    missed: FloatArray  # (k, 2 c, 2 m) and from what their polynomial misses at the start and at the end
-    inner_decay: FloatArray  # (k, s, 2, m) exp(λ h u) at the places; of no sizes where it is not asked for ...
-    inner_source: FloatArray  # (k, s, s c, 2 m) ... nor amplitudes there from the forces, taken off
+    flexibility: FloatArray  # (k, 2 s c, s c) compressions at the places from the forces there, to be subtracted; rates
+    source: FloatArray  # (k, s c, 2 m) amplitudes at the end from the forces, to be subtracted
+    missed: FloatArray  # (k, 2 c, 2 m) the same from the defect of their polynomial at the start and at the end
+    inner_decay: FloatArray  # (k, s, 2, m) exp(λ h u) at the places; of no sizes where not needed ...
+    inner_source: FloatArray  # (k, s, s c, 2 m) ... amplitudes there from the forces, to be subtracted
 
 
 class Trace(NamedTuple):
-    """The motion, element by element; e of them have room."""
+    """Motion by elements, with room for e of them."""
 
     start: FloatArray  # (e,)
     size: FloatArray  # (e,) from the start to the next one's
@@ -68,7 +68,7 @@ class Trace(NamedTuple):
     turning: FloatArray  # (e, s, c) change of the teeth's energy with the phase [J per mesh period]
     energy: FloatArray  # (e, 2) held in the teeth just after the start and just before the end [J]
     apart: FloatArray  # (e, c) 1 where the flanks are apart
-    error: FloatArray  # (e, 2) square of what the amplitudes of the modes err by at the end; square of their own size
+    error: FloatArray  # (e, 2) square of the error of the modes' amplitudes at the end; square of the amplitudes
 
 
 def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
@@ -115,7 +115,7 @@ def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner
 
 
 class FreeMotion(NamedTuple):
-    """r motions that nothing resists, beside the reference's own: uniformly accelerated from a time on."""
+    """r rigid-body motions beside the reference's own: uniformly accelerated from a time on."""
 
     time: FloatArray  # (1,) [s]
     place: FloatArray  # (r,)
@@ -132,9 +132,9 @@ class FreeMotion(NamedTuple):
 
 
 class Powers(NamedTuple):
-    """Rows that turn amplitudes into powers, in the n principal directions of what damps."""
+    """Rows for powers from amplitudes, in the n principal directions of the damping matrix."""
 
-    rate: FloatArray  # (2 m + r, n) rates of the amplitudes, and of what is free
+    rate: FloatArray  # (2 m + r, n) rates of the amplitudes, and of the rigid-body motions
     loss: FloatArray  # (n,) principal values: the squares of the rates times these give the loss
     skew: FloatArray  # (2 m, n) forces of a stiffness that is not symmetric, twice; (0, n) where it is symmetric
     riding: IntArray  # (k,) amplitudes that carry loads ...
@@ -151,6 +151,6 @@ class PowersRoom(NamedTuple):
 
 
 def powers_room(size: int, n: int, s: int) -> PowersRoom:
-    """Room for as many elements, of so many amplitudes each, as BLAS multiplies by one thread."""
+    """Room for as many elements, with ``size`` amplitudes each, as BLAS multiplies in one thread."""
     batch = max(1, min(_LARGEST_BATCH, _BY_ONE_THREAD // (s * size * n)))
     return PowersRoom(np.zeros((batch * s, size)), np.zeros((batch * s, n)), np.zeros(size), np.zeros((batch, s)))

@@ -1,4 +1,4 @@
-"""The time after which everything that drives a machine repeats."""
+"""Common period of the excitations of a machine."""
 
 from fractions import Fraction
 from math import lcm
@@ -9,13 +9,13 @@ from coupling.errors import CouplingError
 from coupling.gears import ToothContact
 from coupling.system import CoupledSystem
 
-_SAME = 1e-9  # relative, by which a frequency may miss a fraction of another
-_LARGEST_NUMBER = 2000  # in the fractions that frequencies make: no pair of gears has more teeth
-_WHOLE = 1e-6  # by which a cycle count over a given period may miss a whole number
+_SAME = 1e-9  # relative tolerance of a frequency ratio
+_LARGEST_NUMBER = 2000  # largest number in a frequency ratio: no gear has more teeth
+_WHOLE = 1e-6  # tolerance of a whole number of cycles in a given period
 
 
 def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
-    """Frequency [Hz] of everything that varies with time, by what it is.
+    """Frequency [Hz] of every excitation, by its name.
 
     A contact whose pairs of teeth differ repeats after its hunting period alone.
     """
@@ -39,7 +39,7 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
     ----------
     system : CoupledSystem
     period : float, optional
-        A multiple of it, which is then checked: subharmonic motions repeat after several.
+        A multiple of it, which is checked: subharmonic motions repeat after several periods.
 
     Raises
     ------
@@ -80,13 +80,13 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
 
 
 def _common_factor(ratios: list[Fraction]) -> int:
-    """How many times all repeat within that."""
+    """Number of times that all repeat within that."""
     cycles = lcm(*(ratio.denominator for ratio in ratios))
     return int(np.gcd.reduce([int(ratio * cycles) for ratio in ratios]))
 
 
 def _varies(contact: ToothContact) -> bool:
-    """Whether a law depends on the phase at all: a mesh that is one unchanging spring repeats after any time."""
+    """Whether a contact law depends on the phase: a mesh with one constant spring does not."""
     if contact.faces is not None or contact.hunting_numbers or contact.variants:
         return True
     start, end = contact.touching_range

@@ -1,7 +1,7 @@
-"""Motions on a branch, and the steps from one to the next: with the speed held, and along the branch.
+"""Branch of periodic motions over speed: corrector steps at a given speed, and by pseudo-arclength.
 
 States are total motions at the nodes of the period, on all coordinates that are followed, rates in the fastest drive's:
-shape (K, 2 k). They are counted in a typical motion and speeds in the range asked for.
+shape (K, 2 k). They are relative to a typical motion, and speeds relative to the speed range.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,14 +24,14 @@ _CLOSED = 1e-10  # closure relative to the motion
 _HIGHEST = 4  # halvings of the elements beyond those that a branch began with
 # Points after which coarser ones are tried again: twice as many after each failure.
 _PATIENCE, _LONGEST_PATIENCE = 3, 48
-_LOWEST = 1  # halvings: with fewer, multipliers err by more than the states that the proof is of
-_TOO_GOOD = 3e-3  # part of the tolerance: elements twice as large err some tens to hundreds of times as much
+_LOWEST = 1  # halvings: with fewer, multipliers err by more than the states
+_TOO_GOOD = 3e-3  # part of the tolerance: elements twice as large err tens to hundreds of times as much
 _DIFFERENCE = 1e-7  # of the speed range, for the derivative by speed: flanks may begin to graze within a hair of it
 
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A motion on the branch.
+    """A periodic motion on the branch.
 
     Attributes
     ----------
@@ -39,17 +39,17 @@ class Point:
     states : ndarray, shape (K, 2 k)
     speed : float
     found : Pass
-        With the pieces of its monodromy.
+        With the pieces of the monodromy.
     response : PeriodicResponse
         With its proof.
     corrections : int
     missed : float
-        By which the prediction missed it.
+        Distance of the prediction.
     branch : Branch
     towards : tuple of ndarray and float, optional
-        The direction of the step that came here, states and speed; by default that of rising speed.
+        Direction of the step to this point, states and speed; by default that of rising speed.
     change : ndarray, optional
-        Derivative of the misses by speed, where it is known, shape (K, 2 N).
+        Derivative of the closure errors by speed, where it is known, shape (K, 2 N).
     """
 
     ready: Problem
@@ -65,7 +65,7 @@ class Point:
 
     @cached_property
     def tangent(self) -> tuple[FloatArray, float]:
-        """Along the branch: states and speed in their units, of norm 1."""
+        """Tangent of the branch: states and speed in their units, of norm 1."""
         branch, found = self.branch, self.found
         change = self.change
         if change is None:
@@ -80,7 +80,7 @@ class Point:
 
 
 class Branch:
-    """What stays the same along a branch, and one step of it."""
+    """Corrector of the branch: settings that hold along it, and its steps."""
 
     def __init__(
         self,
@@ -97,31 +97,31 @@ class Branch:
         self.calm, self.patience = 0, _PATIENCE
 
     def _raise(self) -> None:
-        """Finer elements from here on: where a flank grazes, none are fine enough, and a shorter step passes it."""
+        """Finer elements from here on; past a flank that grazes only shorter steps lead."""
         if self.level < self.highest:
             self.level += 1
             self.patience = min(2 * self.patience, _LONGEST_PATIENCE) if self.calm < self.patience else _PATIENCE
             self.calm = 0
 
-    def settle(self, error: float) -> None:
-        """A point is accepted; after some of them, coarser elements are tried again, or where it is far too good."""
+    def accept(self, error: float) -> None:
+        """Count an accepted point; after some of them, or one of very small error, coarser elements are tried again."""
         self.calm += 1
         if self.level > self.lowest and (self.calm >= self.patience or error < _TOO_GOOD * self.tolerance):
             self.level -= 1
             self.calm = 0
 
     def ready(self, speed: float, like: Problem | None) -> Problem:
-        """The machine at a speed, made ready."""
+        """Shooting problem of the machine at a speed."""
         system = self.system_at(speed)
         period = None if self.periods == 1 else self.periods * problem(system, like=like).period
         return problem(system, period, like)
 
     def distance(self, one: FloatArray, other: FloatArray) -> float:
-        """Between the states of motions, in the branch's unit."""
+        """Distance between the states of two motions, in the branch's unit."""
         return float(np.sqrt(np.mean(np.sum((one - other) ** 2, axis=1)))) / self.unit
 
     def first(self, response: PeriodicResponse, speed: float) -> Point:
-        """The point of a motion that is known."""
+        """Point of a known motion."""
         ready = self.ready(speed, None)
         q, v = response.at_nodes(ready.segments)
         states = np.concatenate([q[:, ready.kept], v[:, ready.kept] / ready.part.rate_unit], axis=1)
@@ -136,10 +136,10 @@ class Branch:
                 )
 
     def hold(self, among: Sequence[Point], speed: float, within: float) -> Point | None:
-        """The point at a speed, predicted by the polynomial through others; None where it is not found near there.
+        """Point at a given speed, predicted by the polynomial through others; None where it is not found near there.
 
-        The last of them is where the step begins. What would move the prediction by more than ``within``, in the
-        branch's unit, is on its way to another branch.
+        The step begins at the last of them. A correction by more than ``within``, in the branch's unit, would lead to
+        another branch.
         """
         here = among[-1]
         try:
@@ -154,10 +154,10 @@ class Branch:
             return None
 
     def _close(self, ready: Problem, predicted: FloatArray, speed: float, within: float) -> Point | None:
-        """A prediction corrected at its speed.
+        """Correct a prediction at its speed.
 
-        Between switches that come and go the misses are all but linear in the states: two corrections by pieces of the
-        prediction's own close most motions, where those of other speeds take many.
+        Between changes of contact the closure errors are nearly linear in the states: two corrections by the
+        prediction's own monodromy close most motions, where those of other speeds take many.
         """
         elements, begin = ready.elements(self.level), below(ready, predicted)
         limit = within * self.unit * np.sqrt(len(predicted))
@@ -182,9 +182,9 @@ class Branch:
         return None
 
     def along(self, here: Point, ds: float) -> Point | None:
-        """The point of the branch a length further; None where the corrections do not come to an end.
+        """Point a length ``ds`` along the branch; None where the corrections do not converge.
 
-        A negative length goes against the tangent; that of the point found goes with the step.
+        A negative length goes against the tangent; the tangent of the point found goes with the step.
         """
         try:
             along, pace = here.tangent
@@ -230,9 +230,9 @@ class Branch:
         return None
 
     def by_speed(self, ready: Problem, states: FloatArray, speed: float, found: Pass, level: int) -> FloatArray:
-        """Derivative of the misses by speed, the states held, shape (K, 2 N).
+        """Derivative of the closure errors by speed, the states held, shape (K, 2 N).
 
-        The elements are those of what was found: others would err by another amount, and that over a tiny difference.
+        The elements are those of ``found``: the error of others would differ, over a tiny difference of speed.
         """
         change = _DIFFERENCE * self.span
         other = self.ready(speed + change, ready)
@@ -251,7 +251,7 @@ class Branch:
         towards: tuple[FloatArray, float] | None = None,
         change: FloatArray | None = None,
     ) -> Point | None:
-        """A corrected point, where elements half as large agree; else finer ones from here on."""
+        """A corrected point, proved by elements half as large; else None, with finer elements from here on."""
         elements: Elements = ready.elements(self.level + 1)
         finer = one_pass(ready.part, ready.contacts, elements, found.starts, varied=False)
         error = float(np.linalg.norm(finer.ends - found.ends)) / ready.scale(found.start)
@@ -264,14 +264,14 @@ class Branch:
 
 
 def interpolation(at: FloatArray, where: float) -> FloatArray:
-    """Weights of values at some places in that of the polynomial through them at another."""
+    """Weights of the Lagrange interpolation from values at some places to another."""
     apart = at[:, None] - at[None, :] + np.eye(len(at))
     others = np.where(np.eye(len(at), dtype=bool), 1.0, where - at[None, :])
     return np.asarray(others.prod(axis=1) / apart.prod(axis=1))
 
 
 def lift(ready: Problem) -> FloatArray:
-    """States on all followed coordinates from those that something resists, shape (2 k, 2 N)."""
+    """Lift of states without rigid-body motions to all condensed coordinates, shape (2 k, 2 N)."""
     k, half = ready.part.basis.shape
     found = np.zeros((2 * k, 2 * half))
     found[:k, :half] = found[k:, half:] = ready.part.basis
@@ -279,12 +279,12 @@ def lift(ready: Problem) -> FloatArray:
 
 
 def below(ready: Problem, states: FloatArray) -> FloatArray:
-    """What total motions are beyond the reference's own, shape (K, 2 N)."""
+    """States relative to the reference's own response, from total motions, shape (K, 2 N)."""
     return np.asarray(states @ lift(ready) - _own(ready))
 
 
 def above(ready: Problem, starts: FloatArray) -> FloatArray:
-    """The total motions again."""
+    """Total motions from states relative to the reference, shape (K, 2 k)."""
     return np.asarray((starts + _own(ready)) @ lift(ready).T)
 
 

@@ -1,4 +1,4 @@
-"""A motion of a branch without its course over time: what is told of it, and where each of its segments starts."""
+"""Summary of a periodic motion on a branch: its figures, and the states at the starts of its segments."""
 
 from dataclasses import dataclass, field
 
@@ -13,9 +13,9 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class BranchMotion:
-    """What a curve keeps of a :class:`coupling.PeriodicResponse`; n coordinates, c contacts, K segments.
+    """Summary of a :class:`coupling.PeriodicResponse`; n coordinates, c contacts, K segments.
 
-    Its course takes a hundred times the room; :meth:`coupling.ResponseCurve.motion` makes it again.
+    The whole motion takes a hundred times the memory; :meth:`coupling.ResponseCurve.motion` computes it again.
 
     Attributes
     ----------
@@ -63,8 +63,8 @@ class BranchMotion:
         return np.asarray(self.velocities[0])
 
 
-def without_course(response: PeriodicResponse, segments: int) -> BranchMotion:
-    """What is kept of a response whose period is marched in some segments."""
+def motion_summary(response: PeriodicResponse, segments: int) -> BranchMotion:
+    """Summary of a response whose period is cut into some segments."""
     displacements, velocities = response.at_nodes(segments)
     return BranchMotion(
         period=response.period,

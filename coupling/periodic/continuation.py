@@ -1,17 +1,17 @@
-"""How the periodic motion changes with speed: its branch, followed through folds.
+"""Continuation of the periodic motion over speed, through folds, by Keller's pseudo-arclength method.
 
 Where contact is lost several motions exist at one speed, and the branch of motions turns back in speed at folds: there
 a machine that is run up or down jumps.
 
-Away from folds the speed is held: the polynomial through the last motions predicts the next one and the pieces of its
-monodromy, which close it; those of its own at the end, exact, are what its stability is of. The order of the polynomial
-is the one that would have predicted the last motion best, and the step follows from what it missed by.
+Away from folds the speed is given: the polynomial through the last motions predicts the next one, and the monodromy of
+the prediction corrects it; the exact monodromy of the corrected motion decides its stability. The order of the
+polynomial is the one that would have predicted the last motion best, and the step follows from its error.
 
-Where that does not get on, the branch is followed along its own length s (Keller's pseudo-arclength): with the tangent
+Where that does not converge, the branch is followed along its own length s (pseudo-arclength): with the tangent
 (x', p') of the states x and the speed p, a step ds along it is corrected by Newton's method on
 
     [ A    r_p ] [Δx]     [ r                                 ]
-    [ x'ᵀ  p'  ] [Δp] = - [ x'ᵀ (x - x₀) + p' (p - p₀) - ds ],     r = misses of all segments,
+    [ x'ᵀ  p'  ] [Δp] = - [ x'ᵀ (x - x₀) + p' (p - p₀) - ds ],     r = closure errors of all segments,
 
 which is regular at folds; A is cyclic in the segments, see :mod:`coupling.periodic.segments`. r_p is a finite
 difference.
@@ -27,7 +27,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError, PeriodicError
 from coupling.periodic.branch import Branch, Point, interpolation
-from coupling.periodic.branch_motion import BranchMotion, without_course
+from coupling.periodic.branch_motion import BranchMotion, motion_summary
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.response_curve import Bifurcation, Ending, Event, ResponseCurve
 from coupling.periodic.shooting import periodic_response, problem
@@ -35,10 +35,10 @@ from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_COARSER = 2  # levels below that of the first motion, which proves its monodromy too
+_COARSER = 2  # levels below that of the first motion, whose monodromy is proved too
 _KEPT = 5  # points that predict the next
-_MISSED = 3e-3  # of a motion, by which a prediction is to miss ...
-_ASIDE = 1.2e-2  # ... and beyond which it is on its way to another branch
+_MISSED = 3e-3  # error aimed at for a prediction, relative to a motion ...
+_ASIDE = 1.2e-2  # ... and largest one, beyond which it leads to another branch
 _FARTHEST = 0.3  # part of a motion by which a step along the branch may change it
 _SHARPEST_TURN = 0.9  # least cosine between tangents of neighbouring points there
 _SMOOTH = 0.97  # and beyond which the next step is longer
@@ -54,7 +54,7 @@ Seen = Callable[[float, PeriodicResponse], None]
 
 
 class _Follower:
-    """The way along a branch. Positions are parts of the speed range, 0 at its start and 1 at its end."""
+    """Continuation along a branch. Positions are parts of the speed range, 0 at its start and 1 at its end."""
 
     def __init__(
         self, branch: Branch, first: Point, start: float, end: float, points: int, most_tries: int, seen: Seen
@@ -71,17 +71,17 @@ class _Follower:
         self._keep(first)
 
     def position(self, speed: float) -> float:
-        """Of a speed in the range."""
+        """Position of a speed in the range."""
         return (speed - self.start) / (self.end - self.start)
 
     def speed(self, position: float) -> float:
-        """At a position."""
+        """Speed at a position."""
         if position in (0.0, 1.0):
             return self.end if position == 1.0 else self.start
         return self.start + position * (self.end - self.start)
 
     def follow(self, most_points: int, progress: Callable[[float], None]) -> Ending:
-        """Step by step, until the range ends or the way does."""
+        """Continue step by step, to an end of the range or of the branch."""
         while True:
             if len(self.speeds) >= most_points:
                 return "points"
@@ -99,7 +99,7 @@ class _Follower:
                 return "end" if position == 1.0 else "start"
 
     def _held(self) -> Point | None:
-        """A step with the speed held."""
+        """A step at a given speed."""
         here = self.recent[-1]
         among = self.recent[-1 - self.order :]
         position = self.position(here.speed) + self.sense * self.stride
@@ -126,7 +126,7 @@ class _Follower:
             try:
                 pace = abs(here.tangent[1])
             except (PeriodicError, np.linalg.LinAlgError):
-                # Beside it is no motion, or it stands at a fold: shorter steps alone are left.
+                # No motion beside it, or a fold: only shorter steps are left.
                 pace = 1.0
             self.turning, self.failures = True, 0
             self.ds = min(self.stride / max(pace, 1e-9), _FARTHEST * self._motion(here))
@@ -160,7 +160,7 @@ class _Follower:
         return there
 
     def _accept(self, there: Point, along: bool) -> bool:
-        """A point of the branch, after what happens on the way there; whether the branch turned."""
+        """Add a point to the branch, after the bifurcation before it; returns whether the branch turned."""
         here = self.recent[-1]
         forwards = np.sign(self.end - self.start)
         turned = False
@@ -173,8 +173,8 @@ class _Follower:
             self.events.append(Bifurcation(len(self.speeds), event, float(between.speed)))
             self._keep(between)
         self._keep(there)
-        # What happens on the way was looked for with the elements of this point.
-        self.branch.settle(there.response.error)
+        # The bifurcation before it was located with the elements of this point.
+        self.branch.accept(there.response.error)
         if turned:
             self.recent = [there]
             return True
@@ -184,13 +184,13 @@ class _Follower:
         return False
 
     def _keep(self, point: Point) -> None:
-        """What the curve tells of a point; its course over time goes with the next points."""
+        """Add the summary of a point to the curve; its whole motion is dropped with the next points."""
         self.seen(point.speed, point.response)
         self.speeds.append(point.speed)
-        self.motions.append(without_course(point.response, point.ready.segments))
+        self.motions.append(motion_summary(point.response, point.ready.segments))
 
     def _best_order(self, there: Point) -> int:
-        """Of the polynomial through the last points that would have predicted this one best."""
+        """Order of the polynomial through the last points that would have predicted this one best."""
         at = np.array([point.speed for point in self.recent])
         best, least = 1, np.inf
         for order in range(1, len(self.recent)):
@@ -207,11 +207,11 @@ class _Follower:
         return max(moving, 1.0)
 
     def _within(self, point: Point) -> float:
-        """By which a prediction from there may miss."""
+        """Largest correction of a prediction from a point."""
         return _ASIDE * self._motion(point)
 
     def _event(self, here: Point, there: Point, turned: bool, along: bool) -> tuple[Event | None, Point | None]:
-        """What happens between two points, and where."""
+        """Bifurcation between two points, and its location."""
         few, many = sorted((here.response.floquet.growing, there.response.floquet.growing))
         if not turned and few == many:
             return None, None
@@ -283,33 +283,33 @@ def response_curve(
     start, end : float
         Speeds between which the branch is followed; ``end`` may be the lower.
     first : tuple of ndarray, or PeriodicResponse, optional
-        To search the first motion from, as ``start`` of :func:`periodic_response`.
+        Start of the search of the first motion, as ``start`` of :func:`periodic_response`.
     points : int
-        On a branch that runs straight; more are taken where it turns.
+        Number of points on a straight branch; more are taken where it turns.
     most_points, most_tries : int
-        Points, and steps tried for them, after which the branch is left.
+        Largest numbers of points and of steps tried for them.
     periods : int
-        In which the motion repeats: 2 follows a motion of twice the excitation's period.
+        Period of the motion in periods of the excitation: 2 follows a motion of twice the excitation's period.
     tolerance : float
-        By which a halving of the elements may move the state after a period, relative.
+        Largest change of the state after a period by a halving of the elements, relative.
     progress : callable
-        Told the part of the speed range that has been reached, from 0 to 1.
+        Called with the part of the speed range that has been reached, from 0 to 1.
     seen : callable
-        Shown the speed and the whole motion of every point of the curve, in its order: the curve keeps no motion's
-        course over time.
+        Called with the speed and the whole motion of every point of the curve, in its order: the curve keeps only a
+        summary of each.
 
     Returns
     -------
     ResponseCurve
         Its first point is at ``start``, its last at ``end``, unless the branch comes back to ``start`` before or is
-        left: its ``ending`` says so, and its ``account`` in words.
+        left: see its ``ending``, and its ``account`` in words.
 
     Raises
     ------
     CouplingError
         Where the speeds are the same.
     PeriodicError
-        Where no motion is found to begin with, or none beside it.
+        Where no first motion is found, or none beside it.
     """
     span = end - start
     if not (np.isfinite(span) and span != 0.0 and points > 1 and min(most_points - 1, most_tries, periods) > 0):

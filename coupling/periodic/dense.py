@@ -1,4 +1,4 @@
-"""The motion between the places of the elements, compiled: dense output of a trace.
+"""Dense output of exponential collocation, compiled: the motion between the Gauss points of a trace.
 
 Importing this module imports numba.
 """
@@ -26,8 +26,8 @@ _EVEN = 1e-6  # part of the spacing by which times at even spacing may miss it
 def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> FloatArray:
     """Amplitudes at ascending times, shape (t, 2 m).
 
-    Times at even spacing follow each other within an element by the exponentials of the spacing, which are the same
-    for all of them, and the excess expanded anew about each.
+    At even spacing the amplitudes within an element follow from each other by the exponentials of the spacing, equal
+    for all of them, with the excess expanded about each time.
     """
     c, m = reference.stiffness.size, reference.eigenvalue.size
     out = np.empty((times.size, 2 * m))
@@ -78,7 +78,7 @@ def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> Floa
 def forces_at(
     contacts: Contacts, times: FloatArray, delta: FloatArray, rate: FloatArray, work: Work, out: FloatArray
 ) -> None:
-    """The law's force at times, compressions and rates; all but the times of shape (t, c)."""
+    """Force of the contact law at times (t,), compressions and rates (t, c), into ``out`` (t, c)."""
     row = work.laws.shape[0] - 1
     for i in range(times.size):
         for a in range(contacts.phase.size):

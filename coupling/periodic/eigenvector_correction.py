@@ -1,10 +1,10 @@
-r"""Eigenvectors of a matrix from those of a neighbouring one.
+r"""Eigenvector perturbation: eigenvectors of a matrix from those of a neighbouring one.
 
 With right vectors X and left ones Y = X⁻¹ of the neighbour, B = Y A X is all but diagonal, and to the first order
 
     X ← X (1 + E),    Y ← (1 + E)⁻¹ Y,        E_ij = B_ij / (B_jj - B_ii),    i ≠ j,
 
-which squares the error each time. Where eigenvalues come too near each other for that, nothing is found.
+which squares the error each time. Where eigenvalues are too close for that, the correction fails.
 
 - G. W. Stewart, J. Sun, *Matrix Perturbation Theory*, 1990, chapter V.
 """
@@ -15,17 +15,17 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_LARGEST = 0.05  # of E, beyond which it is not small
+_LARGEST = 0.05  # of E for which it is small
 _SMALLEST = 1e-8  # of E: its square is rounding
 _ROUNDING = 1e-13  # of the largest eigenvalue
 _STEPS = 5
-_MISSED = 1e-12  # by which X and Y may miss the matrix, relative to the sizes that they sum
+_MISSED = 1e-12  # residual of X and Y, relative to the sizes that they sum
 
 
 def corrected_eigenvectors(
     matrix: FloatArray, values: ComplexArray, right: ComplexArray, left: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray] | None:
-    """Eigenvalues and vectors of a real matrix (2 N, 2 N), or None where the given ones are too far from them.
+    """Eigenvalues and vectors of a real matrix (2 N, 2 N); None where the given ones are too far from them.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def corrected_eigenvectors(
         turned = y @ (matrix @ x)
         found = np.diagonal(turned)
         apart = found[None, :] - found[:, None] + identity
-        # Of eigenvalues that are one any two vectors will do: what couples them is rounding.
+        # Any vectors serve for a multiple eigenvalue: their coupling is rounding.
         coupled = (identity == 0.0) & (np.abs(turned) > _ROUNDING * np.abs(found).max())
         move = np.where(coupled, turned / np.where(apart == 0.0, 1e-300, apart), 0.0)
         size = float(np.abs(move).max())
@@ -69,7 +69,7 @@ def corrected_eigenvectors(
     if size >= _SMALLEST or np.any(missed > _MISSED * sizes.max()) or np.any(found[: len(values)][turning].imag <= 0.0):
         return None
     kept, vectors, rows = found[: len(values)], x[:, : len(values)], y[: len(values)]
-    # What belongs to a real eigenvalue is real but for rounding.
+    # Vectors of a real eigenvalue are real but for rounding.
     kept[~turning], vectors[:, ~turning], rows[~turning] = (
         part[...].real for part in (kept[~turning], vectors[:, ~turning], rows[~turning])
     )

@@ -1,4 +1,4 @@
-r"""One element of time, compiled: the contacts' forces at its places, and what their polynomial misses.
+r"""Collocation element of time, compiled: contact forces at its Gauss points, and the defect of their polynomial.
 
 Importing this module imports numba.
 """
@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, take_law
+from coupling.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, evaluate_contact
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.collocation import AT_ENDS, BARYCENTRIC, INSIDE, MONOMIALS, ORDER, PLACES, POINTS
@@ -24,13 +24,13 @@ _NEWTON_STEPS = 40
 
 @uncounted(forceinline=True)
 def law(contacts: Contacts, a: int, time: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
-    """The law of one contact, into a row."""
-    take_law(contacts, a, time, delta, rate, laws, row)
+    """Evaluate the law of one contact into a row."""
+    evaluate_contact(contacts, a, time, delta, rate, laws, row)
 
 
 @uncounted(fastmath=SUMS)
 def product(row: FloatArray, a: int, z: FloatArray) -> float:
-    """A row of a matrix times the amplitudes."""
+    """Product of a row of a matrix with the amplitudes."""
     total = 0.0
     for i in range(z.size):
         total += row[a, i] * z[i]
@@ -39,7 +39,7 @@ def product(row: FloatArray, a: int, z: FloatArray) -> float:
 
 @uncounted(fastmath={"contract"})
 def advance(decay: FloatArray, source: FloatArray, z: FloatArray, excess: FloatArray, end: FloatArray) -> None:
-    """Amplitudes at the end, or at a place, from those at the start and the excess forces."""
+    """Amplitudes at the end or a place from those at the start and the excess forces."""
     count = decay.shape[1]
     # Rows by names of their own: through indices the compiler does not see that it may take several numbers at once.
     u, v, x, y, real, imag = decay[0], decay[1], z[:count], z[count:], end[:count], end[count:]
@@ -67,7 +67,7 @@ def interpolated(values: FloatArray, a: int, u: float) -> float:
 def solve_element(
     reference: Reference, contacts: Contacts, steps: Steps, slot: int, time: float, z: FloatArray, work: Work
 ) -> bool:
-    """Excess forces at the places, compressions and rates there and at both ends of a slot's size."""
+    """Newton's method for the excess forces at the places; compressions and rates there and at both ends."""
     c, h = reference.stiffness.size, steps.size[slot]
     n = ORDER * c
     base, excess, move, laws = work.base, work.excess, work.move, work.laws
@@ -95,7 +95,7 @@ def solve_element(
             law(contacts, a, time + PLACES[i] * h, x, v, laws, row)
             force, tangent = laws[row, FORCE], laws[row, TANGENT]
             slope[row] = tangent - reference.stiffness[a]
-            # Held at zero, what the law returns is a loss and no slope.
+            # Where the law holds the force at zero, it returns a loss and no slope.
             held = force == 0.0 and tangent == 0.0
             rate_slope[row] = (0.0 if held else laws[row, DAMPING]) - reference.damping[a]
             right[row, 0] = force - reference.stiffness[a] * x - reference.damping[a] * v - excess[row]
@@ -130,11 +130,11 @@ def solve_element(
 
 @uncounted(fastmath=SUMS, forceinline=True)
 def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: FloatArray, modes: int, work: Work) -> None:
-    """What the polynomial of the excess misses, carried to the end: squares of error and amplitudes.
+    """Defect of the polynomial of the excess, carried to the end: squares of error and amplitudes.
 
-    Between the places it misses what vanishes there; of the rest of its shape both ends tell. An element that ends at
-    a part of its size has the law's branch at its start alone for that; and besides what is missed over the whole, the
-    triangle between there and the end, which no cancellation takes away.
+    The defect vanishes at the places; its values at both ends give the rest of its shape. In an element that ends at a
+    part of its size only the value at its start is on the law's branch; added is the triangle between the last place
+    and the end, which does not cancel.
     """
     c = reference.stiffness.size
     n = ORDER * c
@@ -162,7 +162,7 @@ def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: Floa
                 error[count + m] += triangle * reference.source[m, a].imag
         for i in range(error.size):
             error[i] += steps.missed[slot, a, i] * first + steps.missed[slot, c + a, i] * last
-    # What rides along has no source, and so no error.
+    # The reference's own amplitudes have no source, and so no error.
     wrong, size = 0.0, 0.0
     for i in range(error.size):
         wrong += error[i] * error[i]
@@ -173,7 +173,7 @@ def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: Floa
 
 @uncounted()
 def held_energy(laws: FloatArray, first: int, count: int) -> float:
-    """In the teeth, by rows of the laws [J]."""
+    """Energy held in the teeth, by rows of the laws [J]."""
     total = 0.0
     for row in range(first, first + count):
         total += laws[row, ENERGY]

@@ -1,4 +1,4 @@
-r"""The matrices of an element of time, compiled: exponentials, and their integrals with the polynomials of its places.
+r"""Matrices of a collocation element, compiled: exponentials and their integrals with the element's polynomials.
 
 Importing this module imports numba.
 """
@@ -49,7 +49,7 @@ def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
 def end_matrices(
     reference: Reference, h: float, part: float, decay: FloatArray, source: FloatArray, integral: ComplexArray
 ) -> None:
-    """From the amplitudes at the start of an element of size h to those at a part of it, and from its forces."""
+    """Matrices from an element's start and from its forces to the amplitudes at a part of its size h."""
     c, count = reference.stiffness.size, reference.eigenvalue.size
     for m in range(count):
         z = reference.eigenvalue[m] * h * part
@@ -113,7 +113,7 @@ def carry_on(
 ) -> None:
     """As :func:`advance_to`, where the amplitudes at the end of the element are known already, for a part near 1.
 
-    From there on by their power series, of as many terms as the fastest mode asks for.
+    From there on by their power series, of as many terms as the fastest mode needs.
     """
     c, count = reference.stiffness.size, reference.eigenvalue.size
     beyond, fastest = h * (part - 1.0), 0.0
@@ -131,7 +131,7 @@ def carry_on(
             for j in range(ORDER):
                 coefficient[k, b] += power * AT_END[j, k] * excess[j * c + b]
         power *= part - 1.0
-    # The force adds to the first terms; each goes on from there.
+    # The force adds to the first terms of the series.
     terms, size = ORDER, 1.0
     while size > 1e-17:
         terms += 1
@@ -157,7 +157,7 @@ def carry_on(
 
 @uncounted()
 def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexArray, values: ComplexArray) -> None:
-    """Fill in what an element of a slot's size needs."""
+    """Fill in the matrices of an element of a slot's size."""
     c, h, count = reference.stiffness.size, steps.size[slot], reference.eigenvalue.size
     n = ORDER * c
     for row in range(2 * n):

@@ -1,4 +1,4 @@
-"""Room that an element's kernels work in."""
+"""Scratch arrays of a collocation element."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ IntArray = npt.NDArray[np.int64]
 
 
 class Work(NamedTuple):
-    """n = s c unknown forces of an element, m amplitudes, c contacts, s places."""
+    """Scratch arrays: n = s c unknown forces of an element, m amplitudes, c contacts, s places."""
 
     base: FloatArray  # (2 n,) compressions and rates without the excess forces
     excess: FloatArray  # (n,)
@@ -21,7 +21,7 @@ class Work(NamedTuple):
     delta: FloatArray  # (s + 2, c) compressions at the places and both ends
     rate: FloatArray  # (s + 2, c)
     looked: FloatArray  # (4, c) compressions and rates just after the start, and just before the end
-    laws: FloatArray  # (n + 2 c + 1, 6) at the places, just after the start, at the end, and one to try with
+    laws: FloatArray  # (n + 2 c + 1, 6) at the places, just after the start, at the end, and one for trials
     matrix: FloatArray  # (n, n)
     right: FloatArray  # (n, 1)
     end: FloatArray  # (2 m,) amplitudes
@@ -34,15 +34,15 @@ class Work(NamedTuple):
     coefficient: FloatArray  # (s, c) of the excess as a power series
     term: FloatArray  # (2 m,) of the amplitudes' power series
     shares: FloatArray  # (n, 2 n) of the slopes in the forces
-    feedback: FloatArray  # (n, 2 m) forces that disturbances change; of no rows where there are none ...
-    sent: FloatArray  # (n, 2 m) ... what these send to the end ...
+    feedback: FloatArray  # (n, 2 m) forces by disturbances; of no rows without disturbances ...
+    sent: FloatArray  # (n, 2 m) ... amplitudes at the end by these forces ...
     decay: FloatArray  # (2, m) ... and the decay of the disturbances
     moved: FloatArray  # (n,)
     active: IntArray  # (n,) rows of forces that disturbances change
 
 
 def element_work(m: int, s: int, c: int, *, varied: bool = False) -> Work:
-    """Room for elements of some shape, and for their disturbances."""
+    """Scratch arrays for elements of some shape, and for their disturbances."""
     n = s * c
     rows = n if varied else 0
     return Work(

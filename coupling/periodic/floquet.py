@@ -1,4 +1,4 @@
-"""Floquet's theory: what becomes of a small disturbance of a periodic motion."""
+"""Floquet multipliers: stability of a periodic motion."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -11,7 +11,7 @@ ComplexArray = npt.NDArray[np.complex128]
 Loss = Literal["fold", "period doubling", "Neimark-Sacker"]
 
 STABLE_WITHIN = 1e-7
-"""A multiplier may stand this far beyond one: rounding of an undamped motion does."""
+"""Tolerance of a stable multiplier beyond one, for the rounding of an undamped motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,15 +47,15 @@ class FloquetMultipliers:
 
     @property
     def growing(self) -> int:
-        """How many multipliers are outside the unit circle."""
+        """Number of multipliers outside the unit circle."""
         return int(np.count_nonzero(np.abs(self.values) > 1.0 + STABLE_WITHIN))
 
     @property
     def leaving(self) -> Loss | None:
-        """How the motion is unstable, by where its largest multiplier stands: on which side it left the unit circle.
+        """Kind of instability, by the place where the largest multiplier left the unit circle; None if stable.
 
-        At +1 the motion has a fold and jumps; at -1 it is taken over by one of twice the period; a pair elsewhere
-        brings a second frequency (Neimark and Sacker). None where it is stable.
+        At +1 the motion has a fold and jumps; at -1 a motion of twice the period replaces it; a pair elsewhere brings a
+        second frequency (Neimark and Sacker).
         """
         if self.stable:
             return None

@@ -1,4 +1,4 @@
-r"""The march from element to element, compiled: exponential collocation with exactly placed switches.
+r"""Exponential collocation from element to element, compiled, with exactly placed switches of contact.
 
 Importing this module imports numba.
 
@@ -7,7 +7,7 @@ the whole machine is
 
     z' = λ z - b g,        g = f(δ, δ', t) - k̄ δ - c̄ δ',        δ = Re Σ d z,
 
-the reference's own response to the loads riding along in amplitudes that no contact changes. Over an element of size h
+the reference's own response to the loads being amplitudes that no contact changes. Over an element of size h
 the excess forces g are the polynomial through their values at the Gauss places, with which the equation is solved
 exactly:
 
@@ -17,9 +17,9 @@ so no mode is too stiff for a step; only the excess has to be resolved. The valu
 method on the law.
 
 Where the law changes its branch within an element (teeth meet or part, another pair takes load), the element ends at
-that moment, found to rounding. Up to there and a little beyond, the motion is as smooth as if nothing happened: so a
-size of the ladder serves whose last place is just before the switch, and the same integral to a part of it, which
-may be a little more than 1, gives the state at the switch.
+that moment, found to rounding. Up to there and a little beyond, the motion is smooth: so a size of the ladder serves
+whose last place is just before the switch, and the same integral to a part of it, which may be a little more than 1,
+gives the state at the switch.
 """
 
 import math
@@ -47,15 +47,15 @@ from rotors.compiled import uncounted
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_MOST_CUTS = 40  # of one element; beyond, the flanks graze each other and the cuts gain nothing
+_MOST_CUTS = 40  # of one element; with more, the flanks graze each other and cuts gain nothing
 _TRIES = 10  # sizes for one switch
-_BEYOND = 0.06  # part of a size by which its motion is carried on past its end
+_BEYOND = 0.06  # part of a size by which its motion is extended past its end
 NO_BALANCE, NO_ROOM = 1, 2
 
 
 @uncounted()
 def rung(reference: Reference, steps: Steps, length: float, work: Work) -> int:
-    """The slot of the ladder's size that a length is nearest to, filled in."""
+    """Slot of the ladder's size nearest to a length, filled in."""
     first, last = steps.ladder[0], steps.size.size - 1
     ratio = math.log(steps.size[first] / steps.size[first + 1])
     slot = int(min(max(first + round(math.log(steps.size[first] / length) / ratio), first), last))
@@ -78,7 +78,7 @@ def write_element(
     count: int,
     work: Work,
 ) -> None:
-    """An element that is accepted, into the trace."""
+    """Write an accepted element into the trace."""
     c, h = reference.stiffness.size, steps.size[slot]
     n = ORDER * c
     part = length / h
@@ -97,7 +97,7 @@ def write_element(
     trace.energy[count, 0] = held_energy(work.laws, n, c)
     u = part - INSIDE
     for a in range(c):
-        # Just before the end, which a switch may have moved since the laws were looked at.
+        # Just before the end, which a switch may have moved since the laws were evaluated.
         x, v = interpolated(work.delta, a, u), interpolated(work.rate, a, u)
         law(contacts, a, time + u * h, x, v, work.laws, n + c + a)
         work.looked[2, a], work.looked[3, a] = x, v
@@ -108,7 +108,7 @@ def write_element(
 
 
 @uncounted()
-def march(
+def integrate_elements(
     reference: Reference,
     contacts: Contacts,
     steps: Steps,
@@ -122,10 +122,10 @@ def march(
     held: int,
     work: Work,
 ) -> tuple[int, int, int]:
-    """Carry the amplitudes z and their disturbances through elements, each of a slot's size or, at -1, of any.
+    """Integrate the amplitudes z and their disturbances through elements, each of a slot's size or, at -1, of any.
 
-    Disturbances as in :mod:`coupling.periodic.variations`. The trace holds ``held`` elements already. Returns how many
-    it holds then, how many cuts there were, and 0, ``NO_BALANCE`` or ``NO_ROOM``.
+    Disturbances as in :mod:`coupling.periodic.variations`. The trace holds ``held`` elements before. Returns the number
+    of elements after, the number of cuts, and 0, ``NO_BALANCE`` or ``NO_ROOM``.
     """
     c = reference.stiffness.size
     count, cuts = held, 0
@@ -143,7 +143,8 @@ def march(
             while True:
                 solved = solve_element(reference, contacts, steps, slot, time, z, work)
                 h = steps.size[slot]
-                # Of a size that occurs, the element is all of it; beyond a size's end only so far as was looked.
+                # An element of a size that occurs is all of it; beyond a size's end it reaches only as far as
+                # evaluated.
                 part = 1.0 if slot < steps.ladder[0] else left / h
                 furthest = min(part - INSIDE, 1.0 + _BEYOND)
                 if part >= 1.0 + _BEYOND:
@@ -155,7 +156,7 @@ def march(
                     which = -1
                 if which < 0 or at > PLACES[ORDER - 1] or tries == _TRIES:
                     break
-                # Some places stand beyond the switch: again with a size that ends near it.
+                # Some places lie beyond the switch: again with a size that ends near it.
                 closer = rung(reference, steps, at * h, work)
                 if closer == slot:
                     break

@@ -1,4 +1,4 @@
-"""The machine with its teeth at their mean: eigenvalues, and its own periodic response to the loads.
+"""Linear part of the machine: eigenvalues at the mean mesh stiffness, and the steady response to the loads.
 
 With K̄ and C̄ those of the system and of every drive flank at its mean stiffness and damping, and the runout errors
 e and clearances taken to the loads, the reference
@@ -31,15 +31,15 @@ _DEFECT = 1e-7  # by which eigenvalues and vectors may miss the matrix they are 
 
 @dataclass(frozen=True, eq=False)
 class LinearPart:
-    """Reference of a system whose motion repeats; n coordinates, N of them not rigid, m eigenvalues, h harmonics.
+    """Linear reference of a system; n coordinates, N of them without rigid-body motions, m eigenvalues, h harmonics.
 
     Attributes
     ----------
     system : CoupledSystem
     rate_unit : float
-        Rates are counted in it, so that they compare with displacements [1/s].
+        Unit of the rates, in which they compare with displacements [1/s].
     basis, rigid : ndarray, shapes (n, N) and (n, n - N)
-        Orthonormal: all motions that something resists, and those that nothing does.
+        Orthonormal: all motions that something resists, and the rigid-body motions, which nothing does.
     eigenvalues : ndarray of complex, shape (m,)
         [1/s]; one of each conjugate pair.
     right : ndarray of complex, shape (2 N, m)
@@ -78,7 +78,7 @@ class LinearPart:
         return self.mean + turned.real.sum(axis=0), -(self.frequencies[:, None] * turned.imag).sum(axis=0)
 
     def state(self, displacement: FloatArray, velocity: FloatArray, time: float = 0.0) -> FloatArray:
-        """What a motion is beyond the reference's own, shape (2 N,)."""
+        """State of a motion relative to the reference's own, shape (2 N,)."""
         q, v = self.own_response(time)
         return np.concatenate([self.basis.T @ (displacement - q), self.basis.T @ (velocity - v) / self.rate_unit])
 
@@ -89,43 +89,43 @@ class LinearPart:
         return q + self.basis @ state[:half], v + self.rate_unit * (self.basis @ state[half:])
 
     def amplitudes_of(self, state: FloatArray, time: float | FloatArray = 0.0) -> FloatArray:
-        """A state as the kernels march it, with what rides along, shape (2 M,); or (K, 2 M) of states at K times."""
+        """Amplitudes of a state and of the loads, as in the kernels, shape (2 M,); or (K, 2 M) of states at K times."""
         own = np.exp(np.multiply.outer(time, self.reference.eigenvalue[len(self.eigenvalues) :]))
         whole = np.concatenate([state @ self.left.T, own], axis=-1)
         return np.concatenate([whole.real, whole.imag], axis=-1)
 
     @cached_property
     def to_amplitudes(self) -> FloatArray:
-        """Amplitudes of a state, real parts and then the imaginary ones that there are, shape (2 N, 2 N)."""
+        """Matrix to the amplitudes of a state, real parts and then nonzero imaginary ones, shape (2 N, 2 N)."""
         turning = self.eigenvalues.imag > 0.0
         return np.concatenate([self.left.real, self.left.imag[turning]])
 
     @cached_property
     def from_amplitudes(self) -> FloatArray:
-        """The inverse: states of such amplitudes, shape (2 N, 2 N)."""
+        """Inverse matrix: states of such amplitudes, shape (2 N, 2 N)."""
         turning = self.eigenvalues.imag > 0.0
         return np.concatenate([self.right.real, -self.right.imag[:, turning]], axis=1)
 
     @cached_property
     def displacement_rows(self) -> FloatArray:
-        """All coordinates from the amplitudes, what rides along included, shape (n, 2 M)."""
+        """Rows of all coordinates over the amplitudes, those of the loads included, shape (n, 2 M)."""
         return self._rows(self.basis @ self.right[: self.states // 2], self.amplitudes.T, self.mean)
 
     @cached_property
     def velocity_rows(self) -> FloatArray:
-        """Their rates from the amplitudes, shape (n, 2 M)."""
+        """Rows of their rates over the amplitudes, shape (n, 2 M)."""
         moving = self.rate_unit * (self.basis @ self.right[self.states // 2 :])
         return self._rows(moving, (1j * self.frequencies[:, None] * self.amplitudes).T, np.zeros_like(self.mean))
 
     def _rows(self, modes: ComplexArray, harmonics: ComplexArray, mean: FloatArray) -> FloatArray:
-        # Runout errors ride along too, and move nothing themselves.
+        # Runout errors have amplitudes too, and move nothing themselves.
         count = len(self.reference.eigenvalue) - modes.shape[1] - harmonics.shape[1] - 1
         none = np.zeros((len(mean), count))
         return real_rows(np.concatenate([modes, harmonics, none, mean[:, None]], axis=1))
 
     @cached_property
     def reference(self) -> Reference:
-        """What the contacts see of it."""
+        """The reference by the motion at its contacts."""
         contacts, half = self.system.contacts, self.states // 2
         directions = self.basis.T @ self.system.contact_directions
         frequencies = list(self.frequencies)
@@ -136,7 +136,6 @@ class LinearPart:
                 for other, row in enumerate(phasors):
                     row.append(-amplitude * np.exp(1j * phase) if other == k else 0.0)
         mean = self.mean @ self.system.contact_directions - [contact.clearance for contact in contacts]
-        stiffness = _reference_values(self.system, [contact.contact.mean_stiffness for contact in contacts])
         phasor = np.array(phasors, dtype=np.complex128).reshape(len(contacts), len(frequencies))
         turning = 1j * np.array(frequencies)
         own = np.zeros((len(frequencies) + 1, len(contacts)))
@@ -148,21 +147,21 @@ class LinearPart:
             source=np.concatenate([self.left[:, half:] @ directions / self.rate_unit, own]),
             displacement=real_rows(np.concatenate(displacement, axis=1)),
             rate=real_rows(np.concatenate(rate, axis=1)),
-            stiffness=stiffness,
-            damping=_reference_values(self.system, [contact.contact.damping for contact in contacts]),
+            stiffness=self.system.drive_stiffness,
+            damping=self.system.drive_damping,
             full_damping=np.array([contact.contact.damping for contact in contacts], dtype=np.float64),
         )
 
 
 def real_rows(rows: ComplexArray) -> FloatArray:
-    """Rows d whose Re(d z) is wanted, as those that multiply Re z and then Im z, shape (k, 2 m)."""
+    """Real rows over Re z and then Im z whose product is Re(d z), of complex rows d, shape (k, 2 m)."""
     return np.concatenate([rows.real, -rows.imag], axis=1)
 
 
 def linear_part(
     system: CoupledSystem, rate_unit: float, like: LinearPart | None = None, *, repeats: bool = True
 ) -> LinearPart:
-    """Split a system into its linear reference and what its teeth add.
+    """Linear reference of a system, at the mean mesh stiffness.
 
     Parameters
     ----------
@@ -170,24 +169,22 @@ def linear_part(
     rate_unit : float
         See :class:`LinearPart`.
     like : LinearPart, optional
-        Of the same machine at another speed: its basis serves again where nothing resists the same motions, its
-        eigenvectors where its matrices are the same.
+        Of the same machine at another speed: its basis is reused where the rigid-body motions are the same, its
+        eigenvectors where its matrices are.
     repeats : bool
-        Whether the motion is to repeat, and the loads on what nothing resists to balance. They have no part in
-        the reference in either case.
+        Whether the motion is periodic, so that the loads on rigid-body motions must balance. They have no part in the
+        reference in either case.
 
     Raises
     ------
     CouplingError
-        Where the motion is to repeat and a load drives a motion that nothing resists.
+        Where the motion is periodic and a load drives a rigid-body motion.
     PeriodicError
         Where the reference has a load at an undamped natural frequency, or eigenvectors that do not separate.
     """
     directions = system.contact_directions
-    k_mean = _reference_values(system, [contact.contact.mean_stiffness for contact in system.contacts])
-    c_mean = _reference_values(system, [contact.contact.damping for contact in system.contacts])
-    stiffness = system.stiffness + (directions * k_mean) @ directions.T
-    damping = system.damping + (directions * c_mean) @ directions.T
+    k_mean, c_mean = system.drive_stiffness, system.drive_damping
+    stiffness, damping = system.mean_stiffness, system.mean_damping
     same = like is not None and all(map(np.array_equal, like.matrices, (stiffness, damping)))
     if like is not None and (same or _splits(like, stiffness, damping, directions)):
         basis, rigid = like.basis, like.rigid
@@ -238,14 +235,8 @@ def linear_part(
     )
 
 
-def _reference_values(system: CoupledSystem, values: list[float]) -> FloatArray:
-    """Of the drive flanks; the others are apart in the reference."""
-    pairs = zip(values, system.contacts, strict=True)
-    return np.array([value if contact.drives else 0.0 for value, contact in pairs], dtype=np.float64)
-
-
 def _split(stiffness: FloatArray, damping: FloatArray, directions: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Orthonormal bases of what something resists and of what nothing does, shapes (n, N) and (n, n - N)."""
+    """Orthonormal bases of the resisted motions and of the rigid-body motions, shapes (n, N) and (n, n - N)."""
     parts = [stiffness, stiffness.T, damping, damping.T]
     scaled = [part / (np.abs(part).max() or 1.0) for part in parts]
     scaled.append((directions / (np.abs(directions).max(initial=0.0) or 1.0)).T)
@@ -256,7 +247,7 @@ def _split(stiffness: FloatArray, damping: FloatArray, directions: FloatArray) -
 
 
 def _splits(like: LinearPart, stiffness: FloatArray, damping: FloatArray, directions: FloatArray) -> bool:
-    """Whether what nothing resists at another speed is so here too; what is more shows in the stiffness of the rest."""
+    """Whether the rigid-body motions at another speed are such here too; others show in the stiffness of the rest."""
     if like.rigid.shape[0] != len(stiffness):
         return False
     for part in (stiffness, stiffness.T, damping, damping.T, directions.T):
@@ -268,7 +259,7 @@ def _splits(like: LinearPart, stiffness: FloatArray, damping: FloatArray, direct
 def _eigenvectors(
     stiffness: FloatArray, damping: FloatArray, rate_unit: float, like: LinearPart | None = None
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Eigenvalues, one of each pair, with right vectors that count for both, and left ones."""
+    """Eigenvalues, one of each conjugate pair, with right vectors that count for both, and left vectors."""
     half = len(stiffness)
     state = np.block([[np.zeros((half, half)), rate_unit * np.eye(half)], [-stiffness / rate_unit, -damping]])
     if like is not None and len(like.right) == len(state):

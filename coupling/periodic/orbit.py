@@ -1,5 +1,4 @@
-"""One pass over the period: from the states at the starts of its segments to those at their ends, and the pieces of the
-monodromy on the way."""
+"""Period map: integration over one period, segment by segment, with the monodromy of each segment."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,7 +28,7 @@ _RUNGS = 100  # ... so down to a ten-thousandth of the largest
 
 @dataclass(frozen=True, eq=False)
 class Elements:
-    """The period cut at every event of the teeth, and the stretches between into equal elements.
+    """Elements of a period: cut at every tooth event, with equal elements between.
 
     Attributes
     ----------
@@ -38,7 +37,7 @@ class Elements:
     sizes : ndarray, shape (e,)
         [s].
     slots : ndarray of int, shape (e,)
-        Which size each has.
+        Slot of each one's size.
     steps : Steps
     nodes : ndarray of int, shape (K + 1,)
         The first element of each segment; e.
@@ -53,7 +52,7 @@ class Elements:
 
 @dataclass(frozen=True, eq=False)
 class Pass:
-    """A period of motion, segment by segment.
+    """Motion over one period, segment by segment.
 
     Attributes
     ----------
@@ -61,12 +60,12 @@ class Pass:
     starts, ends : ndarray, shape (K, 2 N)
         States, see :class:`coupling.periodic.linear_part.LinearPart`.
     pieces : ndarray, shape (K, 2 N, 2 N)
-        Of each end by its start, both in amplitudes, as :attr:`LinearPart.to_amplitudes` gives them; of no segments
-        where they were not asked for.
+        Derivative of each end by its start, both in amplitudes, as :attr:`LinearPart.to_amplitudes` gives them; of no
+        segments without disturbances.
     trace : Trace
         Cut to the elements that it holds.
     switches : int
-        How often a contact changed its branch.
+        Number of changes of the branch of a contact law.
     """
 
     part: LinearPart
@@ -78,36 +77,36 @@ class Pass:
 
     @property
     def start(self) -> FloatArray:
-        """At t = 0, shape (2 N,)."""
+        """State at t = 0, shape (2 N,)."""
         return np.asarray(self.starts[0])
 
     @property
     def end(self) -> FloatArray:
-        """After the period, shape (2 N,)."""
+        """State after the period, shape (2 N,)."""
         return np.asarray(self.ends[-1])
 
     @cached_property
     def turn(self) -> FloatArray:
-        """The monodromy of amplitudes, with the same eigenvalues, shape (2 N, 2 N)."""
+        """Monodromy of amplitudes, with the same eigenvalues, shape (2 N, 2 N)."""
         return product(self.pieces)
 
     @cached_property
     def monodromy(self) -> FloatArray:
-        """Of the end by the start, shape (2 N, 2 N)."""
+        """Monodromy: derivative of the end by the start, shape (2 N, 2 N)."""
         return np.asarray(self.part.from_amplitudes @ self.turn @ self.part.to_amplitudes)
 
     @cached_property
     def misses(self) -> FloatArray:
-        """By which each end misses the next start, the last the first, shape (K, 2 N)."""
+        """Closure errors: each end less the next start, of the last one the first, shape (K, 2 N)."""
         return self.ends - np.roll(self.starts, -1, axis=0)
 
     @property
     def missing(self) -> float:
-        """Norm of all of them."""
+        """Norm of the closure errors."""
         return float(np.linalg.norm(self.misses))
 
     def correction(self, misses: FloatArray | None = None, *, least: bool = False) -> FloatArray:
-        """What closes this motion, or one nearby by its own misses, to the first order, shape (K, 2 N).
+        """Newton correction that closes this motion, or one nearby with other closure errors, shape (K, 2 N).
 
         See :func:`coupling.periodic.segments.correction`.
         """
@@ -117,7 +116,7 @@ class Pass:
     def bordered_correction(
         self, misses: FloatArray, by_speed: FloatArray, along: FloatArray, along_speed: float, behind: float
     ) -> tuple[FloatArray, float]:
-        """What also moves it along a direction; see :func:`coupling.periodic.segments.bordered_correction`."""
+        """Newton correction along a direction, see :func:`coupling.periodic.segments.bordered_correction`."""
         there, back = self.part.to_amplitudes.T, self.part.from_amplitudes
         moves, change = bordered_correction(
             self.pieces, self.turn, misses @ there, by_speed @ there, along @ back, along_speed, behind
@@ -126,9 +125,9 @@ class Pass:
 
 
 def event_times(system: CoupledSystem, nodes: FloatArray) -> FloatArray:
-    """Every time at which a pair of teeth comes or goes or a relief begins, and the nodes [s].
+    """Times at which a pair of teeth enters or leaves contact or a relief begins, and the nodes [s].
 
-    The last node is the period. What is all but a node is it.
+    The last node is the period. An event next to a node is that node.
     """
     period = float(nodes[-1])
     times: FloatArray = np.unique(
@@ -142,7 +141,7 @@ def event_times(system: CoupledSystem, nodes: FloatArray) -> FloatArray:
 
 
 def coarsest_element(system: CoupledSystem, period: float) -> float:
-    """Size to begin with [s]."""
+    """Coarsest size of an element [s]."""
     rates = [abs(contact.rate) for contact in system.contacts]
     rates += [abs(load.frequency) / (2.0 * np.pi) for load in system.harmonic_loads]
     return min(period, 1.0 / max([*rates, 1.0 / period])) / _PER_CYCLE
@@ -157,7 +156,7 @@ def cut_period(part: LinearPart, period: float, largest: float, segments: int = 
     counts = np.maximum(np.ceil(lengths / largest - 1e-9), 1.0).astype(np.int64)
     size = np.repeat(lengths / counts, counts)
     within = np.arange(len(size)) - np.repeat(np.cumsum(counts) - counts, counts)
-    # What rounding alone holds apart is one size.
+    # Sizes that differ by rounding are one.
     _, first, slots = np.unique(np.rint(size / (_SAME_SIZE * largest)), return_index=True, return_inverse=True)
     steps = element_sizes(part, size[first], float(size.max()))
     nodes = np.concatenate([[0], np.cumsum(counts)])[np.searchsorted(bounds, marks)]
@@ -175,27 +174,27 @@ def element_sizes(part: LinearPart, values: FloatArray, largest: float, *, inner
 def one_pass(
     part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, *, varied: bool = True
 ) -> Pass:
-    """March through the period from a state at t = 0, shape (2 N,), or each segment from its own, shape (K, 2 N).
+    """Integrate over the period from a state at t = 0, shape (2 N,), or each segment from its own, shape (K, 2 N).
 
     Raises
     ------
     PeriodicError
-        Where the teeth's forces are not found, or the motion grows beyond all bounds.
+        Where the contact forces do not converge, or the motion grows beyond all bounds.
     """
     room = max(_ROOM_FOR_CUTS, len(elements.starts))
     while True:
         found = _pass_within(part, contacts, elements, start, room, varied=varied)
         if found is not None:
             return found
-        # Long periods of many teeth and slices of their faces change branches often: that alone is no fault.
+        # Long periods with many teeth and slices of their faces change branches often, which is no fault.
         room *= 4
 
 
 def _pass_within(
     part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, room: int, *, varied: bool
 ) -> Pass | None:
-    """The march with room for some changes of contact; None where they are more."""
-    from coupling.periodic.kernels import NO_ROOM, march
+    """Integration with room for some changes of contact; None where there are more."""
+    from coupling.periodic.kernels import NO_ROOM, integrate_elements
 
     modes, count = len(part.eigenvalues), len(elements.nodes) - 1
     m, c = part.reference.eigenvalue.size, len(part.system.contacts)
@@ -217,7 +216,7 @@ def _pass_within(
         here = slice(elements.nodes[k], elements.nodes[k + 1])
         z = part.amplitudes_of(starts[k], float(times[k])) if amplitudes is None else amplitudes[k]
         columns[:] = begun
-        held, cuts, wrong = march(
+        held, cuts, wrong = integrate_elements(
             part.reference,
             contacts,
             elements.steps,
@@ -242,7 +241,7 @@ def _pass_within(
         switches += int(cuts)
     if not np.all(np.isfinite(ends)):
         raise PeriodicError("the motion grew beyond all bounds within a period; look for unstable coupled modes")
-    # What is kept has no room to spare.
+    # The result has no room to spare.
     kept = Trace._make(values.copy() for values in first_elements(trace, length))
     return Pass(part, starts, ends, pieces, kept, switches)
 

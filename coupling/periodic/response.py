@@ -1,4 +1,4 @@
-"""A periodic motion: what it is, how sure, and what sensors, gears and bearings show of it."""
+"""Periodic response: the motion over one period with its proof, and its record at sensors, gears and bearings."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,42 +13,18 @@ from coupling.periodic.collocation import MONOMIALS, ORDER, weights_to
 from coupling.periodic.element_work import element_work
 from coupling.periodic.floquet import FloquetMultipliers
 from coupling.periodic.linear_part import LinearPart
-from coupling.settings import TransientOutputs
+from coupling.settings import Recorded, TransientOutputs
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
 _LOOKS = 16  # at each element for the peak
-_MAY_MISS = 0.02  # part of its range in an element by which the polynomial of a force may miss its peak there
-
-
-@dataclass(frozen=True, eq=False)
-class PeriodicRecord:
-    """One period at even spacing, s samples from t = 0, the last one spacing before the period; c contacts.
-
-    Attributes
-    ----------
-    times : ndarray, shape (s,)
-        [s].
-    displacement, velocity, acceleration : ndarray, shapes (s, k)
-        The rows asked for.
-    compression : ndarray, shape (s, c)
-        δ of each contact [m].
-    force : ndarray, shape (s, c)
-        [N].
-    """
-
-    times: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    compression: FloatArray
-    force: FloatArray
+_MAY_MISS = 0.02  # error of the peak of a force's polynomial, relative to its range in an element
 
 
 @dataclass(frozen=True, eq=False)
 class PeriodicResponse:
-    """A motion that repeats; n coordinates, c contacts.
+    """A periodic motion; n coordinates, c contacts.
 
     Attributes
     ----------
@@ -56,17 +32,16 @@ class PeriodicResponse:
     period : float
         [s].
     displacement, velocity : ndarray, shape (n,)
-        At t = 0. Motions that nothing resists stand at a mean of zero.
+        At t = 0. Rigid-body motions have a mean of zero.
     floquet : FloquetMultipliers
         Stability.
     residual : float
-        By which the state after the period misses that at its start, relative to the motion; and the state after each
-        of its segments that at the start of the next.
+        Closure error of the period and of its segments, relative to the motion.
     error : float
-        By which the last halving of the elements changed state or monodromy, relative; elements as they are now err
-        by much less.
+        Change of state or monodromy by the last halving of the elements, relative; the error of the present elements is
+        much smaller.
     elements, switches : int
-        Elements of time in the period, and how often a law changed its branch at a moment of its own.
+        Number of elements in the period, and of changes of a contact law's branch between events.
     level : int
         Halvings of the coarsest element.
     newton_steps : int
@@ -95,17 +70,17 @@ class PeriodicResponse:
 
     @cached_property
     def mean_force(self) -> FloatArray:
-        """Of each contact over the period [N], shape (c,)."""
+        """Mean force of each contact over the period [N], shape (c,)."""
         return self._mean(self.trace.force)
 
     @cached_property
     def mean_compression(self) -> FloatArray:
-        """Of each contact over the period [m], shape (c,)."""
+        """Mean compression of each contact over the period [m], shape (c,)."""
         return self._mean(self.trace.compression)
 
     @cached_property
     def rms_compression(self) -> FloatArray:
-        """Root mean square about the mean [m], shape (c,)."""
+        """Root mean square of the compression about its mean [m], shape (c,)."""
         return np.sqrt(self._mean((self.trace.compression - self.mean_compression) ** 2))
 
     @property
@@ -123,7 +98,7 @@ class PeriodicResponse:
         _, force = self._contacts(times, self._amplitudes(times))
         return np.asarray(np.maximum(force.max(axis=0, initial=0.0), trace.force.max(axis=(0, 1))))
 
-    def record(self, outputs: TransientOutputs, samples: int) -> PeriodicRecord:
+    def record(self, outputs: TransientOutputs, samples: int) -> Recorded:
         """Rows of coordinates, rates and accelerations over the period, and the contacts.
 
         Parameters
@@ -131,7 +106,7 @@ class PeriodicResponse:
         outputs : TransientOutputs
             As for the transient.
         samples : int
-            At even spacing; lines of spectra up to half of them are then exact but for what folds from above.
+            Number of samples at even spacing; spectral lines up to half of it are exact but for aliasing from above.
         """
         if samples < 1:
             raise CouplingError(f"{samples} samples of a period; expected at least one")
@@ -144,7 +119,7 @@ class PeriodicResponse:
         a = system.load - q @ system.stiffness.T - v @ system.damping.T - force @ system.contact_directions.T
         for load in system.harmonic_loads:
             a = a + (np.exp(1j * load.frequency * times)[:, None] * load.amplitude).real
-        return PeriodicRecord(
+        return Recorded(
             times=times,
             displacement=q @ (outputs.displacement @ self.recovery).T,
             velocity=v @ (outputs.velocity @ self.recovery).T,
@@ -154,7 +129,7 @@ class PeriodicResponse:
         )
 
     def at_nodes(self, count: int) -> tuple[FloatArray, FloatArray]:
-        """Displacements and rates at as many even times from t = 0 on, shape (count, n) each."""
+        """Displacements and rates at ``count`` evenly spaced times from t = 0 on, shape (count, n) each."""
         amplitudes = self._amplitudes(self.period * np.arange(count) / count)
         q, v = (
             amplitudes @ rows.T @ self.recovery.T for rows in (self.part.displacement_rows, self.part.velocity_rows)
@@ -198,7 +173,7 @@ class PeriodicResponse:
 def _near_peaks(trace: Trace) -> npt.NDArray[np.int64]:
     """Elements that may hold the largest force of any contact: by the polynomials through its values at the places."""
     top, bottom = trace.force.max(axis=1), trace.force.min(axis=1)
-    # Between and beside the places a force goes no farther than it does among them; what stays the same has no peak.
+    # Between and beside the places a force varies no more than among them; a constant force has no peak.
     near = np.flatnonzero(np.any(2.0 * top - bottom > top.max(axis=0), axis=1))
     inner = (np.arange(_LOOKS) + 0.5) / _LOOKS
     powers = (trace.part[near, None] * inner)[:, :, None] ** np.arange(ORDER)

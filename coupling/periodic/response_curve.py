@@ -1,4 +1,4 @@
-"""Periodic motions over speed: one branch, with what happens along it."""
+"""Response curve: a branch of periodic motions over speed, with its bifurcations."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.periodic.branch_motion import BranchMotion
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.shooting import made_again, response_near
+from coupling.periodic.shooting import integrated_again, response_near
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -20,12 +20,12 @@ Event = Literal["fold", "period doubling", "Neimark-Sacker", "branch point"]
 
 @dataclass(frozen=True)
 class Bifurcation:
-    """Where a branch turns back in speed, or its stability changes.
+    """Bifurcation: a fold of the branch, or a change of its stability.
 
     Attributes
     ----------
     index : int
-        Of its point on the curve.
+        Index of its point on the curve.
     kind : str
         ``fold`` where the branch turns back and a real machine jumps; ``period doubling`` where a multiplier passes
         -1, ``Neimark-Sacker`` where a pair leaves the unit circle, ``branch point`` where one passes +1 on a branch
@@ -48,13 +48,13 @@ class ResponseCurve:
     speeds : ndarray, shape (p,)
         In the unit that ``system_at`` takes.
     responses : tuple of BranchMotion
-        What is told of each motion; :meth:`motion` gives its course over time.
+        Summary of each motion; :meth:`motion` computes its course over time.
     bifurcations : tuple of Bifurcation
     ending : str
-        ``end`` where the branch came to the speed it was followed to, ``start`` where it came back to where it began;
-        ``lost`` where no next point was found, ``points`` and ``tries`` where it was left after as many as allowed.
+        ``end`` where the branch reached the given speed, ``start`` where it came back to its start; ``lost`` where no
+        next point was found, ``points`` and ``tries`` at the largest number of these.
     aim : float
-        The speed it was followed to.
+        Speed to which the branch was to be followed.
     """
 
     speeds: FloatArray
@@ -67,11 +67,11 @@ class ResponseCurve:
 
     @property
     def account(self) -> str:
-        """What was followed and what not, in a sentence; speeds in the curve's own unit."""
+        """Followed range and ending of the branch, in a sentence; speeds in the curve's own unit."""
         return self.told()
 
     def told(self, unit: float = 1.0, name: str = "") -> str:
-        """The same with speeds divided by a unit that has a name."""
+        """The same with speeds divided by a named unit."""
         start, last, aim = (value / unit for value in (self.speeds[0], self.speeds[-1], self.aim))
         name = name and f" {name}"
         way = f"followed from {start:.6g} to {last:.6g}{name}: {len(self.speeds)} points, {len(self.folds)} folds"
@@ -99,12 +99,12 @@ class ResponseCurve:
 
     @property
     def rms_compression(self) -> FloatArray:
-        """Of every contact about its mean [m], shape (p, c)."""
+        """Root mean square of every contact's compression about its mean [m], shape (p, c)."""
         return np.array([response.rms_compression for response in self.responses])
 
     @property
     def peak_force(self) -> FloatArray:
-        """Of every contact [N], shape (p, c)."""
+        """Largest force of every contact [N], shape (p, c)."""
         return np.array([response.peak_force for response in self.responses])
 
     @property
@@ -113,9 +113,9 @@ class ResponseCurve:
         return np.array([response.contact_loss for response in self.responses])
 
     def motion(self, index: int) -> PeriodicResponse:
-        """The whole motion of a point, marched again from where its segments start."""
+        """The whole motion of a point, integrated again from the starts of its segments."""
         kept = self.responses[index]
-        return made_again(self.system_at(float(self.speeds[index])), self._period(kept.period), kept)
+        return integrated_again(self.system_at(float(self.speeds[index])), self._period(kept.period), kept)
 
     def at(self, speed: float, tolerance: float = 1e-8) -> list[PeriodicResponse]:
         """Every motion of the branch at a speed, in the branch's order.

@@ -1,14 +1,14 @@
-r"""Newton's correction of a motion that is cut into segments: condensed to the state at its start.
+r"""Multiple shooting: Newton's correction of a motion in segments, condensed to the state at its start.
 
-A period of many mesh periods is marched segment by segment, each from a state of its own (multiple shooting). With
-the pieces A_k = ∂(end of segment k) / ∂(its start) and the misses r_k = end of k - start of k + 1, the corrections d_k
+A period of many mesh periods is integrated segment by segment, each from a state of its own. With the pieces
+A_k = ∂(end of segment k) / ∂(its start) and the closure errors r_k = end of k - start of k + 1, the corrections d_k
 of the starts and a change p of the speed have
 
     d_{k+1} = A_k d_k + r_k + s_k p,        d_K = d_0,
 
-s_k the change of the misses by speed. Followed through the period that is d_K = M d_0 + R + S p with the monodromy
-M = A_{K-1} ... A_0. What is unstable grows over one segment only before it is corrected, so motions are found that
-a march over the whole period would leave at once.
+s_k the derivative of the closure errors by speed. Over the period that is d_K = M d_0 + R + S p with the monodromy
+M = A_{K-1} ... A_0. An unstable disturbance grows over one segment only before it is corrected, so motions are found
+from which an integration over the whole period would depart at once.
 
 - U. M. Ascher, R. M. M. Mattheij, R. D. Russell, *Numerical Solution of Boundary Value Problems for Ordinary
   Differential Equations*, 1988, chapter 4.
@@ -38,14 +38,14 @@ def carried(pieces: FloatArray, first: FloatArray, sources: FloatArray) -> Float
 
 
 def correction(pieces: FloatArray, misses: FloatArray, monodromy: FloatArray, *, least: bool = False) -> FloatArray:
-    """What closes a motion at its speed, to the first order, shape (K, 2 N).
+    """Newton correction that closes a motion at its speed, shape (K, 2 N).
 
-    The least one where a multiplier is 1, if so asked for; else
+    With ``least``, the smallest one where a multiplier is 1.
 
     Raises
     ------
     numpy.linalg.LinAlgError
-        there.
+        Where a multiplier is 1, without ``least``.
     """
     zero = np.zeros(misses.shape[1])
     rest = carried(pieces, zero, misses)[-1]
@@ -63,7 +63,7 @@ def bordered_correction(
     along_speed: float,
     behind: float,
 ) -> tuple[FloatArray, float]:
-    """What closes a motion and moves it along a direction, to the first order.
+    """Newton correction that closes a motion and moves it along a direction.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def bordered_correction(
     along_speed : float
         The direction among the states and the speed.
     behind : float
-        By which Σ along · d + along_speed p is to grow.
+        Required growth of Σ along · d + along_speed p.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def bordered_correction(
     Raises
     ------
     numpy.linalg.LinAlgError
-        Where neither closure nor direction says where to go.
+        Where the bordered system is singular.
     """
     size = misses.shape[1]
     zero = np.zeros(size)
@@ -100,7 +100,7 @@ def bordered_correction(
     matrix[:size, size] = change[-1]
     matrix[size, :size], matrix[size, size] = row, float(np.sum(along * change[:-1])) + along_speed
     right = np.append(-rest[-1], behind - float(np.sum(along * rest[:-1])))
-    # What grows over the period would drown the row of the direction.
+    # Growth over the period would swamp the row of the direction.
     scale = np.abs(matrix).max(axis=1)
     found = np.linalg.solve(matrix / scale[:, None], right / scale)
     move = float(found[size])

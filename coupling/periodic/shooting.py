@@ -1,13 +1,13 @@
-"""The periodic motion of a coupled system, directly: Newton's method on the state after a period.
+"""Shooting method: periodic motion of a coupled system by Newton's method on the state after a period.
 
-A motion repeats where the state x(T) after the period is the state x(0) at its start. With the monodromy
-M = ∂x(T)/∂x(0), which the march of :mod:`coupling.periodic.kernels` carries along exactly, switches of contact
-included, Newton's step solves
+A motion is periodic where the state x(T) after the period is the state x(0) at its start. With the monodromy
+M = ∂x(T)/∂x(0), which :mod:`coupling.periodic.kernels` integrates exactly, switches of contact included, Newton's step
+solves
 
     (M - I) Δ = x(0) - x(T).
 
-A period of many mesh periods is marched in segments, each from a state of its own, and all of them are corrected
-at once; see :mod:`coupling.periodic.segments`.
+A period of many mesh periods is integrated in segments, each from a state of its own, and all of them are corrected at
+once; see :mod:`coupling.periodic.segments`.
 
 While the same teeth touch the machine is linear with coefficients that vary in time, and one step is enough. Unstable
 motions are found as well as stable ones.
@@ -36,32 +36,32 @@ FloatArray = npt.NDArray[np.float64]
 _NEWTON_STEPS = 25
 _SHORTEST_STEP = 1.0 / 64.0
 _MOST_SEGMENTS = 32
-_ROUNDING = 1e-11  # closure relative to the motion that is called closed
+_ROUNDING = 1e-11  # closure error of a closed motion, relative
 _FINEST = 12  # halvings of the coarsest element
-_ROUNDS = 6  # of settling in time before giving up ...
-_PERIODS = 8  # ... of so many periods each, doubled every time
+_ROUNDS = 6  # of time integration before giving up ...
+_PERIODS = 8  # ... periods in the first of them, doubled every time
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A system made ready for the search of its periodic motion.
+    """Shooting problem: a system prepared for the search of its periodic motion.
 
     Attributes
     ----------
     system : CoupledSystem
         As given.
     recovery : ndarray, shape (n, k)
-        Its coordinates from those that are followed.
+        Its coordinates from the condensed ones.
     kept : ndarray of int, shape (k,)
-        Which of them these are.
+        Numbers of the condensed coordinates.
     period : float
         [s].
     part : LinearPart
-        Of the system that is followed.
+        Of the condensed system.
     contacts : Contacts
-        What the kernels take of them.
+        Contacts as arrays for the kernels.
     segments : int
-        Of equal length, in which the period is marched.
+        Number of segments of equal length in the period.
     """
 
     system: CoupledSystem
@@ -74,29 +74,29 @@ class Problem:
 
     @property
     def nodes(self) -> FloatArray:
-        """Where the segments start, shape (K,) [s]."""
+        """Starts of the segments, shape (K,) [s]."""
         return np.asarray(self.period * np.arange(self.segments) / self.segments)
 
     def elements(self, level: int) -> Elements:
-        """The period cut into elements, halved so many times."""
+        """Elements of the period, the coarsest ones halved ``level`` times."""
         largest = coarsest_element(self.system, self.period) / 2.0**level
         return cut_period(self.part, self.period, largest, self.segments)
 
     def scale(self, state: FloatArray) -> float:
-        """A motion that is not small, in the units of a state."""
+        """Size of a motion, in the units of a state."""
         response = np.linalg.norm(self.part.mean) + np.abs(self.part.amplitudes).sum()
         return float(np.linalg.norm(state) + response) or 1e-300
 
 
 def problem(system: CoupledSystem, period: float | None = None, like: Problem | None = None) -> Problem:
-    """Make a system ready: its period, its linear part, the teeth.
+    """Shooting problem of a system: its period, linear part and contacts.
 
-    Of ``like``, the same machine at another speed, is taken what has not changed.
+    Unchanged parts are taken from ``like``, the same machine at another speed.
 
     Raises
     ------
     PeriodicError
-        Where the system has laws that the search does not know.
+        Where the system has laws that the method does not know.
     """
     if not system.is_smooth:
         what = "nonlinear bearings" if system.nonlinear else "friction between its teeth"
@@ -106,7 +106,7 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
         )
     length = common_period(system, period)
     followed = _followed(system)
-    # Rates are counted in the fastest drive's, so that a long period does not make them weigh more.
+    # Rates are relative to the fastest excitation, so that a long period does not give them more weight.
     fastest = max([*driving_frequencies(system).values(), 1.0 / length])
     part = linear_part(followed.system, 2.0 * np.pi * fastest, None if like is None else like.part)
     contacts = contact_arrays(followed.system)
@@ -114,13 +114,13 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
 
 
 def _segments(system: CoupledSystem, period: float) -> int:
-    """A mesh period each, or some of them where they are many."""
+    """Number of segments: a mesh period each, or several where there are many."""
     cycles = round(period * max([abs(contact.rate) for contact in system.contacts], default=0.0))
     return max(1, math.ceil(cycles / math.ceil(cycles / _MOST_SEGMENTS))) if cycles else 1
 
 
 def _followed(system: CoupledSystem) -> Condensed:
-    """Without the coordinates that the transient holds too; see :mod:`coupling.condensation`."""
+    """The condensed system, as in the transient; see :mod:`coupling.condensation`."""
     if system.resolved.all():
         return Condensed(system, np.arange(system.size), np.eye(system.size))
     return condensed(system)
@@ -133,7 +133,7 @@ def periodic_response(
     start: tuple[FloatArray, FloatArray] | PeriodicResponse | None = None,
     tolerance: float = 1e-8,
 ) -> PeriodicResponse:
-    """The motion of a system that repeats with its excitation.
+    """Periodic motion of a system with the period of its excitation.
 
     Parameters
     ----------
@@ -143,11 +143,11 @@ def periodic_response(
         [s]; by default the shortest common one of mesh phases, runout errors and harmonic loads. A multiple of it
         finds subharmonic motions too.
     start : tuple of ndarray, or PeriodicResponse, optional
-        Displacements and rates at t = 0 to search from, shape (n,) each, or at the starts of all segments of the
+        Start of the search: displacements and rates at t = 0, shape (n,) each, or at the starts of all segments of the
         period, shape (K, n); or a motion of a neighbouring system. Where contact is lost several motions may exist, and
-        this says which is meant. By default the response with the teeth at their mean stiffness.
+        the start selects one. By default the response at the mean mesh stiffness.
     tolerance : float
-        Of state and monodromy, relative: elements of time are halved until another halving changes neither by more.
+        Of state and monodromy, relative: elements are halved until another halving changes neither by more.
 
     Returns
     -------
@@ -170,7 +170,7 @@ def periodic_response(
 
 
 def _states(ready: Problem, start: tuple[FloatArray, FloatArray] | PeriodicResponse) -> FloatArray:
-    """To begin from: at t = 0, shape (2 N,), or at all nodes, shape (K, 2 N)."""
+    """Start states: at t = 0, shape (2 N,), or at all nodes, shape (K, 2 N)."""
     size = ready.system.size
     if isinstance(start, PeriodicResponse):
         if start.system.size != size:
@@ -191,12 +191,12 @@ def _states(ready: Problem, start: tuple[FloatArray, FloatArray] | PeriodicRespo
 def response_near(
     system: CoupledSystem, period: float | None, start: tuple[FloatArray, FloatArray], level: int, tolerance: float
 ) -> PeriodicResponse:
-    """The motion next to states at the starts of all segments, unstable ones too, with elements that are known to do.
+    """The motion next to states at the starts of all segments, unstable ones too, with elements of a known level.
 
     Raises
     ------
     PeriodicError
-        Where Newton's method alone does not find it: a march in time would leave an unstable motion.
+        Where Newton's method alone does not find it: time integration would depart from an unstable motion.
     """
     ready = problem(system, period)
     found = close(ready, ready.elements(level), _states(ready, start))
@@ -205,8 +205,8 @@ def response_near(
     return refined(ready, found[0], level, tolerance, found[1], near=True)
 
 
-def made_again(system: CoupledSystem, period: float | None, kept: BranchMotion) -> PeriodicResponse:
-    """The course of a motion over time, from the starts of its segments."""
+def integrated_again(system: CoupledSystem, period: float | None, kept: BranchMotion) -> PeriodicResponse:
+    """The whole motion again, integrated from the starts of its segments."""
     ready = problem(system, period)
     states = _states(ready, (kept.displacements, kept.velocities))
     found = one_pass(ready.part, ready.contacts, ready.elements(kept.level), states)
@@ -218,7 +218,7 @@ def refined(
 ) -> PeriodicResponse:
     """Halve the elements until neither state nor monodromy changes by more than the tolerance.
 
-    What is to stay ``near`` is not looked for by a march in time.
+    A motion that must stay ``near`` is not searched by time integration.
     """
     while level < _FINEST:
         finer = close(ready, ready.elements(level + 1), found.starts)
@@ -245,7 +245,7 @@ def refined(
 
 
 def response_of(ready: Problem, found: Pass, level: int, error: float, steps: int) -> PeriodicResponse:
-    """What was found, with its proof."""
+    """Response of a closed motion, with its proof."""
     q, v = ready.part.motion(found.start)
     return PeriodicResponse(
         system=ready.system,
@@ -267,7 +267,7 @@ def response_of(ready: Problem, found: Pass, level: int, error: float, steps: in
 
 
 def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, int] | None:
-    """Newton's method on the closure; None where it stands still."""
+    """Newton's method on the closure error, with step halving; None where it stagnates."""
     here = one_pass(ready.part, ready.contacts, elements, state)
     best = here.missing
     for step in range(_NEWTON_STEPS):
@@ -282,14 +282,14 @@ def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, 
                 break
             part *= 0.5
             if part < _SHORTEST_STEP:
-                # What is left may be rounding, which no step takes away.
+                # The rest may be rounding, which no step removes.
                 return (here, step) if best <= 1e3 * _ROUNDING * ready.scale(here.start) else None
         here, best = there, missing
     return None
 
 
 def _search(ready: Problem, level: int, state: FloatArray) -> tuple[Pass, int]:
-    """Newton's method, and where it stands still some periods of marching before it is tried again."""
+    """Newton's method; where it stagnates, some periods of time integration before it is tried again."""
     elements = ready.elements(level)
     found = close(ready, elements, state)
     here = state if state.ndim == 1 else state[0]

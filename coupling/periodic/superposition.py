@@ -1,4 +1,4 @@
-r"""Steady motion of a machine whose excitations have no short common period: each excitation's own motion, superposed.
+r"""Superposition of periodic motions: steady state for excitations without a short common period.
 
 Meshes of a train, and shafts with unbalance or runout, drive the machine at frequencies whose common period is that of
 hunting teeth: thousands of mesh periods, or none. The motion is then a function of several independent phases. To the
@@ -57,7 +57,7 @@ class ExcitationGroup:
     Attributes
     ----------
     meshes : tuple of int
-        Numbers of the drive flanks' contacts in the system, each with its back flanks.
+        Numbers of the drive flanks' contacts in the system; their back flanks belong to them.
     frequencies : tuple of float
         Circular frequencies of harmonic loads and runout errors [rad/s].
     """
@@ -68,7 +68,7 @@ class ExcitationGroup:
 
 @dataclass(frozen=True, eq=False)
 class GroupMotion:
-    """The motion that one group of excitations makes, the other meshes linear about their mean load.
+    """Motion by one group of excitations, the other meshes linear about their mean load.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class SuperposedResponse:
 
     @cached_property
     def _sampled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Compression, force by the law and force as it was assumed over the phases of all, shape (s, c) each."""
+        """Compression, force by the law and assumed force over the phases of all groups, shape (s, c) each."""
         from coupling.periodic.dense import forces_at
         from coupling.periodic.element_work import element_work
 
@@ -162,7 +162,7 @@ class SuperposedResponse:
 
     @property
     def neglected_force(self) -> FloatArray:
-        """Root mean square of the force r of each contact that the sum leaves out [N], shape (c,)."""
+        """Root mean square of the neglected force r of each contact [N], shape (c,)."""
         _, force, assumed = self._sampled
         return np.asarray(np.sqrt(np.mean((force - assumed) ** 2, axis=0)))
 
@@ -183,10 +183,10 @@ def common_cycles(system: CoupledSystem) -> float:
 
 
 def excitation_groups(system: CoupledSystem, longest: float = LONGEST_COMMON_PERIOD) -> tuple[ExcitationGroup, ...]:
-    """Excitations together as far as their common period holds at most a number of the fastest one's cycles.
+    """Groups of excitations whose common period holds at most a number of the fastest one's cycles.
 
-    Meshes are gathered first, the fastest first, then loads and runout errors; each joins the group with which its
-    common period is the shortest, or begins one. What does not vary is in none.
+    Meshes are grouped first, the fastest first, then loads and runout errors; each joins the group with which its
+    common period is the shortest, or begins one. Constant loads are in none.
 
     Parameters
     ----------
@@ -252,7 +252,7 @@ def superposed_response(
 
 
 def _atoms(system: CoupledSystem) -> list[ExcitationGroup]:
-    """Each mesh that varies, the fastest first, then each frequency of loads and runout errors, the highest first."""
+    """Each varying mesh, the fastest first, then each frequency of loads and runout errors, the highest first."""
     drives = [i for i, contact in enumerate(system.contacts) if contact.drives]
     meshes = [i for i in drives if driving_frequencies(_driven_by(system, ExcitationGroup((i,))))]
     meshes.sort(key=lambda i: -abs(system.contacts[i].rate))
@@ -312,11 +312,11 @@ def _rest_position(linear: CoupledSystem) -> FloatArray:
 
 
 def _name_of(system: CoupledSystem, group: ExcitationGroup) -> str:
-    """What a group's excitations are, for people."""
+    """Name of a group, of its excitations."""
     names = [f"mesh {system.contacts[i].name}" for i in group.meshes]
     rates = [2.0 * np.pi * abs(system.contacts[i].rate) for i in group.meshes]
     for frequency in group.frequencies:
-        # Harmonics of a mesh, such as those of a load that wanders along its face, go without saying.
+        # Harmonics of a mesh, such as those of load shuttling, are not listed.
         if any(
             abs(frequency / rate - max(round(frequency / rate), 1)) <= _SAME_FREQUENCY * frequency / rate
             for rate in rates

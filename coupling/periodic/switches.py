@@ -1,4 +1,4 @@
-"""Where a law changes its branch within an element of time, compiled.
+"""Switches of contact within an element of time, compiled: root finding on the branches of the contact law.
 
 Importing this module imports numba.
 """
@@ -6,7 +6,7 @@ Importing this module imports numba.
 import numpy as np
 import numpy.typing as npt
 
-from coupling.contact_kernels import DAMPING, FORCE, TANGENT, TOUCHING, nearness_of
+from coupling.contact_kernels import DAMPING, FORCE, TANGENT, TOUCHING, penetration
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference
 from coupling.periodic.collocation import INSIDE, ORDER, PLACES
@@ -16,15 +16,15 @@ from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
-_NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is found, and to which one is told of
+_NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is located, finely and roughly
 _ALMOST = 1.0 - 1e-14
-# A branch is four times the number of touching pairs, and what their damping does.
+# A branch is four times the number of touching pairs, plus the state of their damping.
 _PAIR, _HELD, _FADING, _FULL = 4, 1, 2, 3
 
 
 @uncounted()
 def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
-    """Which smooth branch a law is on: the number of touching pairs, and what the damping does."""
+    """Smooth branch of a contact law: the number of touching pairs and the state of the damping."""
     touching = int(laws[row, TOUCHING])
     if touching == 0:
         return 0
@@ -45,9 +45,9 @@ def by_pairs(old: int, new: int) -> bool:
 
 @uncounted()
 def next_part(x: float, other: float, third: float, f: float, f_other: float, f_third: float, near: float) -> float:
-    """Where to look next for a zero, as a part of the way from one bound to the other.
+    """Next trial of a root search, as a part of the way from one bound to the other.
 
-    By inverse quadratic interpolation where it can be trusted, else half-way: T. R. Chandrupatla, Advances in
+    By inverse quadratic interpolation where it is safe, else bisection: T. R. Chandrupatla, Advances in
     Engineering Software 28 (1997) 145-149.
     """
     part = 0.5
@@ -55,14 +55,14 @@ def next_part(x: float, other: float, third: float, f: float, f_other: float, f_
     if change * change < way and (1.0 - change) * (1.0 - change) < 1.0 - way:
         part = f / (f_other - f) * f_third / (f_other - f_third)
         part += (third - x) / (other - x) * f / (f_third - f) * f_other / (f_third - f_other)
-    # A look at least so far from a bound that the zero falls between both at last.
+    # At least this far from a bound, so that the bounds close in on the root.
     least = min(0.5 * near / abs(x - other), 0.5)
     return float(min(max(part, least), 1.0 - least))
 
 
 @uncounted()
 def has_left(old: int, reference: Reference, contacts: Contacts, a: int, at: float, u: float, work: Work) -> bool:
-    """Whether a contact's law at a place u, passed at the time ``at``, is on another branch than the old one."""
+    """Whether a contact's law at a place u, at the time ``at``, is on another branch than the old one."""
     trial = work.laws.shape[0] - 1
     law(contacts, a, at, interpolated(work.delta, a, u), interpolated(work.rate, a, u), work.laws, trial)
     return branch(reference, a, work.laws, trial) != old
@@ -78,14 +78,14 @@ def touching_changes(
     x and other are places on either side of it; the place on the side of x is returned first. Without a change between
     x and other, these are returned.
     """
-    f = nearness_of(contacts, a, min(time + x * h, stop), interpolated(work.delta, a, x), rank)
-    f_other = nearness_of(contacts, a, min(time + other * h, stop), interpolated(work.delta, a, other), rank)
+    f = penetration(contacts, a, min(time + x * h, stop), interpolated(work.delta, a, x), rank)
+    f_other = penetration(contacts, a, min(time + other * h, stop), interpolated(work.delta, a, other), rank)
     if f * f_other >= 0.0:
         return x, other
     touches, swapped, third, f_third, part = f > 0.0, False, other, f_other, 0.5
     while abs(x - other) > near:
         u = x + part * (other - x)
-        value = nearness_of(contacts, a, min(time + u * h, stop), interpolated(work.delta, a, u), rank)
+        value = penetration(contacts, a, min(time + u * h, stop), interpolated(work.delta, a, u), rank)
         if ((value > 0.0) == touches) != swapped:
             third, f_third = x, f
         else:
@@ -110,16 +110,16 @@ def placed(
     near: float,
     work: Work,
 ) -> float:
-    """Where a contact leaves its old branch, as a part of h: beyond that by ``near`` at most.
+    """Location at which a contact leaves its old branch, as a part of h, too late by ``near`` at most.
 
-    It does so between two places. Where a pair begins or ceases to touch, how near its flanks are tells where, in few
-    looks; all else is found by halving.
+    It lies between two places. Where a pair begins or ceases to touch, it is the root of the pair's penetration; other
+    switches are found by bisection.
     """
     if by_pairs(old, new):
         rank = old // _PAIR + 1 if new > old else old // _PAIR
         outside, inside = touching_changes(contacts, a, time, h, stop, after, before, rank, near, work)
-        # A motion that turns back may have left the branch before, and for another reason; and within rounding the
-        # law may be on its old branch still.
+        # A motion that turns back may have left the branch before, for another reason; and within rounding the law may
+        # still be on its old branch.
         if inside > before and has_left(old, reference, contacts, a, min(time + inside * h, stop), inside, work):
             after = inside
         elif outside == after or has_left(old, reference, contacts, a, min(time + outside * h, stop), outside, work):
@@ -139,9 +139,9 @@ def placed(
 def first_switch(
     reference: Reference, contacts: Contacts, time: float, h: float, stop: float, furthest: float, work: Work
 ) -> tuple[float, int]:
-    """Where a law first changes its branch, as a part of h, and of which contact; beyond ``furthest`` where none does.
+    """First switch of a contact law, as a part of h, and its contact; beyond ``furthest`` without any.
 
-    No law is looked at later than ``stop``. The laws just after the start are left in the rows behind those of the
+    No law is evaluated later than ``stop``. The laws just after the start are left in the rows behind those of the
     places.
     """
     c = reference.stiffness.size
@@ -168,7 +168,7 @@ def first_switch(
                 if not at_place:
                     break
                 continue
-            # Before the last place it is to be found again, with places that stand before it.
+            # A switch before the last place is located again, with places before it.
             near = _NEAR if u > PLACES[ORDER - 1] else _ROUGHLY
             new = branch(reference, a, laws, i * c + a if at_place else row)
             found = placed(reference, contacts, a, time, h, stop, before, u, old, new, near, work)

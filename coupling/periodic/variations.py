@@ -1,4 +1,4 @@
-r"""What becomes of small disturbances of a motion, compiled: over an element, and over a moment where a force steps.
+r"""Variational equations, compiled: small disturbances over an element, and over a step of a contact force.
 
 Importing this module imports numba.
 
@@ -7,8 +7,8 @@ ones. Over an element the forces at its places follow the disturbance z of its s
 
     (I + S F) g = S f z,
 
-f its compressions and rates there, F those of the forces, S the slopes of the law; and z becomes e^{λh} z - b g. What
-the small system makes of S f serves all disturbances, of which each is then read and written once.
+f its compressions and rates there, F those of the forces, S the slopes of the law; and z becomes e^{λh} z - b g. The
+solution of the small system for S f serves all disturbances, of which each is then read and written once.
 """
 
 import math
@@ -16,7 +16,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.contact_kernels import DAMPING, FORCE, TOUCHING, nearness_of
+from coupling.contact_kernels import DAMPING, FORCE, TOUCHING, penetration
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference, Steps
 from coupling.periodic.element import law
@@ -28,17 +28,17 @@ from rotors.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
-_UNROLLED = 5  # forces that :func:`carry` is written for: as many as one contact has with elements of order 5
+_UNROLLED = 5  # number of forces in :func:`carry`: those of one contact in elements of order 5
 
 
 @uncounted()
 def feed_back(steps: Steps, slot: int, work: Work) -> int:
-    """Rows that give the forces of a disturbance; how many forces there are, ``work.active`` says which."""
+    """Rows of the forces by a disturbance; returns their number, with their indices in ``work.active``."""
     n, size = work.excess.size, steps.felt.shape[2]
     matrix, shares, felt = work.matrix, work.shares, work.feedback
     active = 0
     for row in range(n):
-        # Flanks that are apart, in the reference too, have no slope: no disturbance changes their force.
+        # Flanks that are apart, also in the reference, have no slope: no disturbance changes their force.
         if work.slope[row] != 0.0 or work.rate_slope[row] != 0.0:
             work.active[active] = row
             active += 1
@@ -64,7 +64,7 @@ def feed_back(steps: Steps, slot: int, work: Work) -> int:
 
 @uncounted()
 def send(decay: FloatArray, source: FloatArray, slot: int, active: int, work: Work) -> None:
-    """Rows that the forces of an element send to its end, and how what was there at its start decays."""
+    """Rows of the amplitudes at an element's end by its forces, and the decay of those at its start."""
     for i in range(active):
         row = work.active[i]
         for m in range(work.sent.shape[1]):
@@ -121,7 +121,7 @@ def carry_any(
 
 @uncounted()
 def vary(reference: Reference, steps: Steps, slot: int, part: float, columns: FloatArray, work: Work) -> None:
-    """Carry the disturbances over an element of a slot's size, or over a part of it."""
+    """Propagate the disturbances over an element of a slot's size, or over a part of it."""
     active = feed_back(steps, slot, work)
     if part == 1.0:
         send(steps.decay, steps.source, slot, active, work)
@@ -137,7 +137,7 @@ def vary(reference: Reference, steps: Steps, slot: int, part: float, columns: Fl
 
 @uncounted(fastmath=SUMS)
 def cross(reference: Reference, a: int, jump: float, columns: FloatArray) -> None:
-    """Carry the disturbances over a moment at which the force of a contact steps: the sooner, the longer it acts."""
+    """Propagate the disturbances over a step of a contact force: the sooner it comes, the longer it acts."""
     modes = columns.shape[1] // 2
     for k in range(columns.shape[0]):
         moved = 0.0
@@ -161,7 +161,7 @@ def jump_at(
     laws: FloatArray,
     row: int,
 ) -> float:
-    """Step in the force of a contact over the speed of crossing, where its flanks meet or part."""
+    """Step of a contact force over the speed of crossing, where its flanks meet or part."""
     law(contacts, a, time - inside, delta - rate * inside, rate, laws, row)
     before, force, damping = laws[row, TOUCHING] > 0.0, laws[row, FORCE], laws[row, DAMPING]
     law(contacts, a, time + inside, delta + rate * inside, rate, laws, row)
@@ -172,9 +172,9 @@ def jump_at(
         force, damping, sign = laws[row, FORCE], laws[row, DAMPING], 1.0
     if force == 0.0 or damping < reference.full_damping[a] * (1.0 - 1e-14):
         return 0.0  # held at zero by the law, or its damping only fades in: no step
-    # Flanks first touch by as much less compression as the nearest are pressed together.
-    later = delta - nearness_of(contacts, a, time + inside, delta, 1)
-    sooner = delta - nearness_of(contacts, a, time - inside, delta, 1)
+    # Flanks first touch at the compression less the largest penetration.
+    later = delta - penetration(contacts, a, time + inside, delta, 1)
+    sooner = delta - penetration(contacts, a, time - inside, delta, 1)
     crossing = rate - (later - sooner) / (2.0 * inside)
     # The springs start from nothing; only the damping can step.
     return sign * damping * rate / crossing if math.isfinite(crossing) and crossing != 0.0 else 0.0

@@ -1,11 +1,11 @@
-"""Vibration signatures: what the lines of a spectrum are, where they come from and how they change with speed.
+"""Vibration signals: spectra, levels, order tracking, sidebands, names of spectral lines, transfer paths.
 
 - :mod:`coupling.signature.levels` -- peak, rms and decibels, by one convention.
-- :func:`power_density`, :func:`spectrogram` -- averages over a long record, and spectra along it.
-- :func:`order_resampled`, :func:`order_map` -- signals of a run-up by turned angle, and their orders over speed.
-- :func:`sidebands` -- what a shaft does to the harmonics of a gear mesh.
-- :func:`line_names` -- which harmonic, order, sideband or mode a line is.
-- :func:`housing_paths` -- what each bearing, and each mode of the housing, puts into a sensor's lines.
+- :func:`power_density`, :func:`spectrogram` -- Welch's average over a long record, and spectra along it.
+- :func:`order_resampled`, :func:`order_map` -- signals of a run-up by rotation angle, and their orders over speed.
+- :func:`sidebands` -- amplitude and phase modulation of mesh harmonics by a shaft.
+- :func:`line_names` -- harmonic, order, sideband or mode of a spectral line.
+- :func:`housing_paths` -- contributions of bearings and housing modes to a sensor's lines.
 """
 
 from coupling.signature.averages import PowerDensity, Spectrogram, power_density, spectrogram

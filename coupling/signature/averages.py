@@ -1,7 +1,7 @@
-"""Long records by short stretches: the power density by Welch's averages, and the spectrogram along the record.
+"""Power spectral density by Welch's method, and the spectrogram of a record.
 
 Welch (1967) averages the squares of the spectra of windowed, overlapping stretches: lines of a steady sine keep their
-height, and noise, whose spectra never settle by themselves, comes to its density.
+height, and the average of noise converges to its density.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class PowerDensity:
     density : ndarray, shape (..., m)
         Square of the signal's unit by Hz: its integral is the mean square.
     stretches : int
-        How many were averaged.
+        Number of averaged stretches.
     window : {"uniform", "hann"}
     """
 
@@ -39,7 +39,7 @@ class PowerDensity:
 
     @property
     def amplitude(self) -> FloatArray:
-        """Peak amplitude of the sine that would raise a line so high, shape (..., m): true for sines, not for noise."""
+        """Peak amplitude of a sine whose line has this height, shape (..., m); meaningless for noise."""
         bandwidth = _NOISE_BANDWIDTH[self.window] * self.frequencies[0]
         return np.asarray(np.sqrt(2.0 * self.density * bandwidth))
 
@@ -71,19 +71,18 @@ def power_density(
     CouplingError
         For a length or an overlap that the record does not allow.
     """
-    starts = _starts(signal.shape[-1], length, round(length * (1.0 - overlap)))
-    spectra = (amplitude_spectrum(signal[..., start : start + length], interval, window) for start in starts)
-    squares = 0.5 / len(starts) * np.asarray(sum(spectrum.amplitude[..., 1:] ** 2 for spectrum in spectra))
-    frequencies = np.asarray(np.fft.rfftfreq(length, interval)[1:], dtype=np.float64)
-    if length % 2 == 0:
-        squares[..., -1] *= 2.0  # the line at half the sampling rate alternates: its mean square is its own square
-    density = squares / (_NOISE_BANDWIDTH[window] * frequencies[0])
-    return PowerDensity(frequencies, density, len(starts), window)
+    from scipy.signal import welch
+
+    step = round(length * (1.0 - overlap))
+    stretches = len(_starts(signal.shape[-1], length, step))
+    shape = "boxcar" if window == "uniform" else window
+    frequencies, density = welch(signal, 1.0 / interval, shape, length, length - step, detrend="constant")
+    return PowerDensity(frequencies[1:], density[..., 1:], stretches, window)
 
 
 @dataclass(frozen=True)
 class Spectrogram:
-    """Spectra along a record, t stretches.
+    """Spectrogram: spectra along a record, t stretches.
 
     Attributes
     ----------
@@ -105,7 +104,7 @@ class Spectrogram:
 def spectrogram(
     signal: FloatArray, interval: float, length: int, step: int, *, start: float = 0.0, window: Window = "hann"
 ) -> Spectrogram:
-    """Amplitude spectra of stretches along a record: a waterfall over time, or over the speed at those times.
+    """Amplitude spectra of stretches along a record: a waterfall over time, or over the speed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Amplitudes by one convention: peak values of sines in SI, their rms, and levels in decibels.
+"""Levels in decibels, peak and rms values of sines, by one convention.
 
 A level is 20 lg of an *rms* value over a reference (ISO 80000-8, ISO 1683), so a sine of peak amplitude a has the level
 20 lg(a / (√2 a₀)): one of 1 m/s² peak stands at 117.0 dB re 1 µm/s², not at 120.

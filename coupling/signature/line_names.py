@@ -1,8 +1,8 @@
-"""Names of lines: which harmonic of which mesh, which order of which shaft, which sideband, or which mode ringing.
+"""Names of spectral lines: mesh harmonic, shaft order, sideband, or free vibration of a mode.
 
-A line at a frequency that the turning machine excites is named after what excites it, the simplest cause first: a mesh
-harmonic, a low order of a shaft, a sideband, any other whole order. A line that stands at none of these is free
-vibration: it is named after the mode that rings there. Either may be near a mode, which is told apart from the cause.
+A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
+low order of a shaft, a sideband, any other whole order. A line at none of these is free vibration, named after its
+mode. Either may be near a mode, which is given apart from the cause.
 """
 
 from collections.abc import Sequence
@@ -18,14 +18,14 @@ from coupling.modes import CoupledModes
 
 LineKind = Literal["mean", "mesh", "shaft", "sideband", "mode", "other"]
 
-_SHAFT_ORDERS = 4  # that go before a sideband of the same frequency
+_SHAFT_ORDERS = 4  # that take precedence over a sideband of the same frequency
 _SIDEBANDS = 4
-_HALF_POWER_WIDTHS = 2.0  # within which a line is near a mode
+_HALF_POWER_WIDTHS = 2.0  # distance within which a line is near a mode
 
 
 @dataclass(frozen=True)
 class LineName:
-    """What a line is.
+    """Name and cause of a spectral line.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class LineName:
     name : str
         Such as ``1× pinion -> wheel``, several joined by commas where they coincide.
     order : float
-        Cycles each turn of the leading shaft.
+        Cycles per revolution of the leading shaft.
     mode : int or None
         Of the coupled modes, the nearest one, where the line lies within two half-power widths of it.
     """
@@ -48,7 +48,7 @@ class LineName:
 def line_names(
     machine: CoupledMachine, frequencies: Sequence[float], tolerance: float, modes: CoupledModes | None = None
 ) -> list[LineName]:
-    """Name lines of a machine that turns at its nominal speeds.
+    """Names of spectral lines of a machine at its nominal speeds.
 
     Parameters
     ----------
@@ -56,8 +56,8 @@ def line_names(
     frequencies : sequence of float
         [Hz].
     tolerance : float
-        How far a line of the spectrum may be from what it shows [Hz]: a little of the spacing where the record holds
-        whole periods, half of it otherwise.
+        Largest distance of a line from the frequency of its cause [Hz]: a small part of the spacing where the record
+        holds whole periods, half of it otherwise.
     modes : CoupledModes, optional
         About the mean contact.
 
@@ -112,7 +112,7 @@ def _label(modes: CoupledModes, mode: int) -> str:
 
 
 def _near(modes: CoupledModes | None, frequency: float, tolerance: float) -> int | None:
-    """The mode nearest to a frequency, where it is near; local compliance has no frequency of its own."""
+    """Number of the mode nearest to a frequency; None where none is near. Local compliance is no mode."""
     if modes is None:
         return None
     w = 2.0 * np.pi * frequency
@@ -124,7 +124,7 @@ def _near(modes: CoupledModes | None, frequency: float, tolerance: float) -> int
 
 
 def _nearest(names: list[str]) -> list[str]:
-    """Sidebands that are fewest steps from their carrier."""
+    """Sidebands with the fewest steps from their carrier."""
     steps = [int(name.rsplit("×", 1)[0].rsplit(" ", 1)[1]) for name in names]
     return [name for name, step in zip(names, steps, strict=True) if step == min(steps)]
 
@@ -134,7 +134,7 @@ def _whole_order(machine: CoupledMachine, frequency: float, tolerance: float) ->
     found = []
     for name, speed in machine.speeds.items():
         each = abs(speed) / (2.0 * np.pi)
-        # A shaft so slow that every line is near some multiple says nothing.
+        # Every line is near some multiple of a very slow shaft.
         if each > 2.5 * tolerance and abs(frequency - round(frequency / each) * each) <= tolerance:
             found.append((round(frequency / each), f"{round(frequency / each)}× {name}"))
     return min(found)[1] if found else None

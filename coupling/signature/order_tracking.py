@@ -1,7 +1,7 @@
-"""Order tracking: signals of a machine that runs up or down, sampled anew by the angle that it has turned through.
+"""Order tracking: signals of a run-up resampled by rotation angle, and their order spectra.
 
-What repeats with every turn is a line at its order, however fast the machine turns: over time such a line is smeared
-across all frequencies that it passes. A tachometer would have to be interpolated for this (Potter 1990); here
+A component that repeats with every revolution is a line at its order, whatever the speed; over time such a line is
+smeared across all frequencies that it passes. A tachometer would have to be interpolated for this (Potter 1990); here
 :class:`coupling.Turning` gives the angle exactly. Only the signal is interpolated, by splines of the fifth degree,
 whose error falls with the sixth power of the sampling interval.
 """
@@ -25,19 +25,19 @@ _DEGREE = 5
 
 @dataclass(frozen=True)
 class TurnedSignal:
-    """A signal at even spacing in turns of the machine's leading shaft, s samples.
+    """A signal at even spacing in revolutions of the machine's leading shaft, s samples.
 
     Attributes
     ----------
     turns : ndarray, shape (s,)
-        Since t = 0, from whole ones on.
+        Revolutions since t = 0, beginning with a whole one.
     times : ndarray, shape (s,)
         [s].
     speeds : ndarray, shape (s,)
-        In turns each second [Hz].
+        Revolutions per second [Hz].
     values : ndarray, shape (..., s)
     per_turn : int
-        Samples.
+        Samples per revolution.
     """
 
     turns: FloatArray
@@ -55,7 +55,7 @@ def order_resampled(
     *,
     per_turn: int | None = None,
 ) -> TurnedSignal:
-    """Sample a signal anew by turned angle, over the whole turns in its record.
+    """Resample a signal by rotation angle, over the whole revolutions in its record.
 
     Parameters
     ----------
@@ -63,12 +63,12 @@ def order_resampled(
     times : ndarray, shape (s,)
         [s], evenly spaced, s at least 6.
     turning : Turning
-        Of the machine: its speed over time as a part of the nominal one.
+        Speed of the machine over time, relative to the nominal one.
     turns_per_second : float
         Nominal speed of the leading shaft [Hz], positive.
     per_turn : int, optional
-        Samples each turn. By default as many as there are in time at the lowest speed, so that nothing folds back;
-        where fewer are asked for, the signal must be free of orders above half of them.
+        Samples per revolution. By default as many as in time at the lowest speed, which excludes aliasing; with fewer,
+        the signal must be free of orders above half of them.
 
     Raises
     ------
@@ -112,27 +112,27 @@ def order_resampled(
 
 
 def order_spectrum(turned: TurnedSignal, window: Window = "uniform") -> Spectrum:
-    """Amplitudes by order, over all turns: ``frequencies`` are in cycles each turn of the leading shaft."""
+    """Amplitude spectrum by order, over all revolutions: ``frequencies`` are cycles per revolution."""
     return amplitude_spectrum(turned.values, 1.0 / turned.per_turn, window)
 
 
 @dataclass(frozen=True)
 class OrderMap:
-    """Order spectra along a run-up, w windows of whole turns.
+    """Order spectra along a run-up, w windows of whole revolutions.
 
     Attributes
     ----------
     times : ndarray, shape (w,)
         Of the middle turn [s].
     speeds : ndarray, shape (w,)
-        Of the leading shaft, turns by time over each window [Hz].
+        Mean speed of the leading shaft over each window [Hz].
     orders : ndarray, shape (m,)
-        Cycles each turn of the leading shaft.
+        Cycles per revolution of the leading shaft.
     amplitude : ndarray, shape (w, m)
         Peak amplitudes in the signal's unit; the mean at order 0.
     window : {"uniform", "hann"}
     followed : dict of float to ndarray, shape (w,)
-        Amplitudes of orders that were asked for, lines of the windows or not.
+        Amplitudes of given orders, whether lines of the windows or not.
     """
 
     times: FloatArray
@@ -148,8 +148,8 @@ class OrderMap:
         Raises
         ------
         CouplingError
-            Where it was not asked for and the windows do not hold whole cycles of it, or it is beyond half the samples
-            of a turn.
+            Where it was not followed and the windows do not hold whole cycles of it, or it is beyond half the samples
+            of a revolution.
         """
         if order in self.followed:
             return self.followed[order]
@@ -171,11 +171,11 @@ def order_map(
     ----------
     turned : TurnedSignal
     turns, step : int
-        Of a window, and from one to the next.
+        Length of a window, and distance to the next, in revolutions.
     window : {"uniform", "hann"}
     follow : sequence of float
-        Orders whose amplitude is found in every window, whole cycles or not: a shaft that turns 27/29 times for each
-        turn of the leading one has no line where windows hold whole turns of that one. Under Hann's window each must
+        Orders whose amplitude is evaluated in every window, whole cycles or not: a shaft at 27/29 of the leading speed
+        has no line where windows hold whole revolutions of the leading shaft. Under Hann's window each must
         be more than 2 / turns from any other that the signal has, and from 0.
 
     Raises

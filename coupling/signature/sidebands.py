@@ -1,4 +1,4 @@
-"""Sidebands: lines at either side of a mesh harmonic at the distance of a shaft's speed, and what they say of the mesh.
+"""Sidebands of a mesh harmonic at a shaft's frequency: amplitude and phase modulation of the mesh.
 
 A harmonic whose strength and phase vary with the shaft's turn, Re C (1 + a(t)) e^{i(wt + b(t))} with small a = m cos(Ωt
 + ..) and b = β cos(Ωt + ..), has the lines C u at w + Ω and C l at w - Ω. The envelope is 1 + u e^{iΩt} + l e^{-iΩt} ≈
@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Sideband:
-    """A pair of lines around a carrier.
+    """A pair of sidebands of a carrier.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ def sidebands(
     carriers : sequence of float
         Mesh frequency and harmonics [Hz].
     modulating : float
-        Speed of a shaft [turns a second].
+        Frequency of a shaft [Hz].
     count : int
         Pairs for each carrier. Those that would reach 0 Hz or half the sampling rate are left out.
     window : {"uniform", "hann"}
@@ -80,7 +80,7 @@ def sidebands(
     Raises
     ------
     CouplingError
-        Where the modulating frequency is not positive, or the record too short to tell the lines apart.
+        Where the modulating frequency is not positive, or the record is too short to separate the lines.
     """
     length = signal.shape[-1] * interval
     apart = 1.0 if window == "uniform" else 2.0

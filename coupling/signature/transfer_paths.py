@@ -1,14 +1,14 @@
-"""Transfer paths: what each bearing, and each mode of the housing, puts into a sensor's lines.
+"""Transfer path analysis: contributions of bearings and housing modes to a sensor's spectral lines.
 
-The housing knows of the rotors only what its bearings press on it. With the force f of a connector on its other side,
-by the convention of :mod:`coupling.connector`, a line of frequency w has
+The rotors act on the housing by the bearing forces alone. With the force f of a connector on its other side, by the
+convention of :mod:`coupling.connector`, a line of frequency w has
 
     a(w) = - w² (K - w² + iwC)⁻¹ Σ_b (-D_b f_b(w)),
 
 K, C and D the housing's own: a sum over bearings, coordinate by coordinate. A sensor's line is r a with its row r, so
 it is a table of bearings by modes whose every sum is exact in steady motion: transfer path analysis with forces and
-receptances that are known rather than measured (Plunt 2005; van der Seijs, de Klerk & Rixen 2016). What a record shows
-beyond that, its *rest*, is free vibration that has not died away, and the error of the steps in time.
+receptances that are known rather than measured (Plunt 2005; van der Seijs, de Klerk & Rixen 2016). The *rest* of a
+record is free vibration that has not decayed, and the error of the time integration.
 """
 
 from collections.abc import Mapping
@@ -27,14 +27,14 @@ ComplexArray = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class SensorPaths:
-    """Parts of a sensor's lines, complex amplitudes of acceleration [m/s²]; l lines, b bearings, m housing modes.
+    """Contributions to a sensor's lines, complex amplitudes of acceleration [m/s²]; l lines, b bearings, m modes.
 
     Attributes
     ----------
     sensor : str
     bearings : tuple of str
     table : ndarray of complex, shape (l, b, m + 1)
-        By each bearing through each housing mode, and last through the local compliance that the modes leave out.
+        By each bearing through each housing mode, and last through the residual compliance.
     """
 
     sensor: str
@@ -43,32 +43,32 @@ class SensorPaths:
 
     @property
     def by_bearing(self) -> ComplexArray:
-        """Shape (l, b)."""
+        """Contributions of the bearings, shape (l, b)."""
         return np.asarray(self.table.sum(axis=2))
 
     @property
     def by_mode(self) -> ComplexArray:
-        """Shape (l, m + 1), the local compliance last."""
+        """Contributions of the modes, shape (l, m + 1), the residual compliance last."""
         return np.asarray(self.table.sum(axis=1))
 
     @property
     def total(self) -> ComplexArray:
-        """Shape (l,)."""
+        """Sum of all contributions, shape (l,)."""
         return np.asarray(self.table.sum(axis=(1, 2)))
 
 
 @dataclass(frozen=True)
 class HousingPaths:
-    """How the housing's coordinates answer the bearings at l frequencies.
+    """Response of the housing's coordinates to the bearing forces at l frequencies.
 
     Attributes
     ----------
     frequencies : ndarray, shape (l,)
         w [rad/s].
     bearings : tuple of str
-        Those that stand on the housing, b of them.
+        Bearings on the housing, b of them.
     modes : int
-        m: how many of the n coordinates are modes; the rest stand for local compliance.
+        m: number of the n coordinates that are modes; the others are residual compliance.
     acceleration : ndarray of complex, shape (l, b, n)
         Of the housing's coordinates by each bearing's force.
     sensors : mapping of str to ndarray, shape (n,)
@@ -82,7 +82,7 @@ class HousingPaths:
     sensors: Mapping[str, FloatArray]
 
     def at(self, sensor: str) -> SensorPaths:
-        """The parts of a sensor's lines.
+        """Contributions to a sensor's lines.
 
         Raises
         ------
@@ -97,9 +97,9 @@ class HousingPaths:
 
 
 def mode_parts(housing: HousingComponent, sensor: str, modal: ComplexArray, lines: ComplexArray) -> ComplexArray:
-    """Parts of a sensor's lines by recorded motion of the housing's modes, free vibration included, shape (l, m + 1).
+    """Contributions of recorded housing modes to a sensor's lines, free vibration included, shape (l, m + 1).
 
-    The last is what the lines have beyond the modes: local compliance. The sum is the line.
+    The last is the residual compliance, the line less its modes. The sum is the line.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def mode_parts(housing: HousingComponent, sensor: str, modal: ComplexArray, line
 
 
 def housing_paths(machine: CoupledMachine, frequencies: FloatArray, forces: Mapping[str, ComplexArray]) -> HousingPaths:
-    """Follow the bearings' forces through the housing.
+    """Response of the housing to the bearing forces, path by path.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def housing_paths(machine: CoupledMachine, frequencies: FloatArray, forces: Mapp
         w [rad/s], above 0.
     forces : mapping of str to ndarray of complex, shape (l, d)
         Complex amplitudes of each connector's force in its d directions [N, N m]: that of the shaft on its bearing.
-        Connectors that do not stand on the housing are passed over.
+        Connectors without the housing are ignored.
 
     Raises
     ------

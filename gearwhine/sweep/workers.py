@@ -208,11 +208,13 @@ def _main_module_unseen() -> Iterator[None]:
     """
     main = sys.modules["__main__"]
     hidden = {name: main.__dict__[name] for name in ("__file__", "__spec__") if name in main.__dict__}
-    main.__dict__.update(dict.fromkeys(hidden))
+    for name in hidden:
+        setattr(main, name, None)
     try:
         yield
     finally:
-        main.__dict__.update(hidden)
+        for name, value in hidden.items():
+            setattr(main, name, value)
 
 
 @contextmanager

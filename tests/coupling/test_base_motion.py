@@ -134,7 +134,7 @@ def test_one_mass_on_a_shaken_base() -> None:
 @pytest.mark.parametrize("about", ["x", "y"])
 @pytest.mark.parametrize("table", [False, True])
 def test_tilting_base_feels_the_spin(about: str, table: bool) -> None:
-    """dL/dt = ω × I_p Ω: on a slowly tilting base a shaft loads its bearings with a couple I_p Ω ω."""
+    """dL/dt = ω × I_p Ω: on a slowly tilting base a shaft loads its bearings with a moment I_p Ω ω."""
     spin, rate = 500.0, 0.02
     column = 3 if about == "x" else 4
     stiffness = 1e8 * np.eye(2)

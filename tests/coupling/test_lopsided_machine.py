@@ -175,9 +175,9 @@ def test_a_machine_at_another_speed_is_the_one_built_there(speed: float) -> None
         assert (one.rate, one.phase) == pytest.approx((other.rate, other.phase))
         np.testing.assert_allclose(one.errors, other.errors, rtol=1e-12)
         np.testing.assert_allclose(one.direction, other.direction, rtol=1e-12)
-    assert (turned.system.swing is None) == (built.system.swing is None)
-    if built.system.swing is not None:
-        np.testing.assert_allclose(turned.system.swing, built.system.swing, rtol=1e-12)
+    assert (turned.system.acceleration_load is None) == (built.system.acceleration_load is None)
+    if built.system.acceleration_load is not None:
+        np.testing.assert_allclose(turned.system.acceleration_load, built.system.acceleration_load, rtol=1e-12)
 
 
 def test_runout_of_both_gears_moves_them_along_the_line_of_action() -> None:

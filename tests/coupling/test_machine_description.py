@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
+from coupling import CouplingError, HousingComponent, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
 from coupling.gear_train import GearedShafts, gear_train
 from coupling.gears import ConstantStiffness, Gear, GearError
 from coupling.gears.gear_pair import GearPair
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial
+from rotors import Bearing, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 MODULE, LENGTH = 3e-3, 0.25
@@ -98,6 +98,7 @@ def test_outputs_share_the_torque_as_they_say() -> None:
     assert machine.pair_torques == pytest.approx((40.0, 60.0), rel=1e-12)
 
 
+PAIRS = [GearPair("a", "b", ConstantStiffness(2e8)), GearPair("c", "d", ConstantStiffness(3e8))]
 CHANGES: list[tuple[str, dict[str, Any], str]] = [
     ("axes", {"shafts": [shaft("fast", 0.0), shaft("middle", 0.2), shaft("slow", 0.2825)]}, "lose contact|too far|200"),
     ("idle shaft", {"gear_pairs": [GearPair("a", "b")]}, "no gear pair leads from shaft 'fast'.*'slow'"),
@@ -107,13 +108,75 @@ CHANGES: list[tuple[str, dict[str, Any], str]] = [
     ("some torques", {"outputs": [Output("slow", 96.0), Output("middle")]}, "expected all or none"),
     ("nowhere", {"outputs": [Output("x", 96.0)]}, "an output: no shaft 'x'"),
     ("no shafts", {"shafts": []}, "a machine without shafts"),
+    (
+        "pair twice",
+        {"gear_pairs": [*PAIRS, GearPair("d", "c")]},
+        "is given twice; expected gears that are not yet",
+    ),
+    ("output at input", {"outputs": [Output("fast", 40.0)]}, "a shaft other than 'fast', where the torque comes in"),
+    (
+        "names swapped",
+        {"gear_pairs": [PAIRS[0], GearPair("d", "c")], "outputs": [Output("slow", 96.0)]},
+        "expected power to flow from driver to driven; swap the two names",
+    ),
+    ("brake", {"torque": -40.0}, "'a' -> 'b': expected a backlash: the torque is negative"),
+    ("nothing takes it", {"gears": [], "gear_pairs": []}, "a torque of 40 N m that nothing takes"),
+    (
+        "no path",
+        {"gears": [], "gear_pairs": [], "outputs": [Output("fast", 30.0), Output("slow", 10.0)]},
+        "'fast' takes in 40 N m and gives out 30 N m; expected torques that balance on shaft 'fast'",
+    ),
+    ("gear off the end", {"gears": [ShaftGear(gear("a", 20), "fast", 0.3)], "gear_pairs": []}, "gear 'a' position"),
+    ("output off the end", {"outputs": [Output("slow", 96.0, 0.3)]}, "an output position"),
+    ("input off the end", {"torque_at": -0.01}, "the input torque position"),
 ]
 
 
 @pytest.mark.parametrize(("changes", "words"), [case[1:] for case in CHANGES], ids=[case[0] for case in CHANGES])
 def test_what_cannot_be_a_machine_is_refused(changes: dict[str, Any], words: str) -> None:
-    with pytest.raises((CouplingError, GearError), match=words):
+    with pytest.raises((CouplingError, GearError, RotorError), match=words):
         two_stages(**changes)
+
+
+def test_senses_and_ratios_cannot_be_given_wrong() -> None:
+    """Equal gears turn at 1 : -1, whatever the speed; axes 200 mm apart are no place for gears that need 88.9 mm."""
+    equal = [Gear(name, 28, 3.175e-3, math.radians(20.0), 6.35e-3) for name in ("pinion", "wheel")]
+
+    def rig(distance: float) -> Machine:
+        return Machine(
+            [shaft("input", 0.0), shaft("output", distance)],
+            gears=[ShaftGear(equal[0], "input", 0.1), ShaftGear(equal[1], "output", 0.1)],
+            gear_pairs=[GearPair("pinion", "wheel", ConstantStiffness(2e8))],
+            speed=-575.0,
+            torque=71.77,
+        )
+
+    machine = rig(28 * 3.175e-3)
+    assert machine.speeds == {"input": -575.0, "output": 575.0}
+    assert [torque.value for torque in machine.constant_torques] == pytest.approx([-71.77, -71.77], rel=1e-12)
+    with pytest.raises(GearError, match="200"):
+        rig(0.2)
+
+
+def test_a_bearing_needs_a_seat_on_its_shaft_and_no_pedestal_in_it() -> None:
+    modes, seat = np.zeros((0, 6)), {"front": np.zeros((0, 6))}
+    none = np.zeros((0, 0))
+    for centre, words in (((0.0, 0.0), None), ((0.001, 0.0), "seat 'front' is 1 mm off the axis of shaft 'fast'")):
+        housing = HousingComponent(
+            "housing", (), none, none, none, seats=seat, seat_z={"front": 0.0}, sensors={}, participation=modes,
+            seat_axes={"front": centre},
+        )  # fmt: skip
+        machine = two_stages()
+        seated = [replace(machine.bearings[0], seat="front"), *machine.bearings[1:]]
+        if words is None:
+            two_stages(bearings=seated, housing=housing)
+            foot = Pedestal(1e8 * np.eye(2), np.zeros((2, 2)), 2.0)
+            standing = replace(seated[0], bearing=replace(seated[0].bearing, pedestal=foot))
+            with pytest.raises(CouplingError, match="expected no pedestal under a bearing in seat 'front'"):
+                two_stages(bearings=[standing, *seated[1:]], housing=housing)
+            continue
+        with pytest.raises(CouplingError, match=words):
+            two_stages(bearings=seated, housing=housing)
 
 
 def test_gears_that_do_not_fit_each_other_are_refused() -> None:

@@ -217,5 +217,5 @@ def test_starts_in_equilibrium_with_the_loads_of_the_start() -> None:
     system = replace(shaft(), harmonic_loads=(), timed_loads=())
     settings = TransientSettings(1.0, 0.0, 0.1, 0.02)
     result = simulate(system, settings, OUTPUTS, turning=RUN_UP)
-    pressed = replace(system, load=system.load + (1.1 - 0.9) / 6.0 * system.swing)
+    pressed = replace(system, load=system.load + (1.1 - 0.9) / 6.0 * system.acceleration_load)
     np.testing.assert_allclose(result.displacement[0], static_equilibrium(pressed), rtol=1e-12)
