@@ -37,10 +37,10 @@ class Ailment:
 def ailment(
     name: str, severity: Severity, what: str, advice: str, count: int, place: FloatArray, *, which: str = "the first at"
 ) -> Ailment:
-    """An ailment whose message says what, where one of them is, and what to do."""
+    """Make a defect whose message names the fault, one place, and the remedy."""
     return Ailment(name, severity, f"{what}, {which} {place_text(place)}; {advice}", int(count), place)
 
 
 def place_text(place: FloatArray) -> str:
-    """A place as messages write it."""
+    """Write a place for a message."""
     return f"({place[0]:.6g}, {place[1]:.6g}, {place[2]:.6g}) m"

@@ -112,7 +112,7 @@ def _edge_neighbors(facets: Facets) -> IntArray:
 
 
 def across(vectors: FloatArray, axis: FloatArray) -> FloatArray:
-    """The part of each vector at right angles to a unit vector, shape (n, 3)."""
+    """Component of each vector at right angles to a unit vector, shape (n, 3)."""
     return np.asarray(vectors - (vectors @ axis)[:, None] * axis)
 
 

@@ -16,7 +16,7 @@ _LISTED = 5  # bodies told one by one
 
 
 def bodies(mesh: Mesh) -> IntArray:
-    """The body that each element belongs to, from 0 for the largest: elements that share a node are of one body.
+    """Body of each element, 0 the largest; elements that share a node are of one body.
 
     Returns
     -------
@@ -26,7 +26,7 @@ def bodies(mesh: Mesh) -> IntArray:
 
 
 def connection_ailments(mesh: Mesh) -> Iterator[Ailment]:
-    """What is wrong or doubtful in how the elements hang together."""
+    """Find the defects of a mesh's connectivity."""
     yield from _faces(mesh)
     body = bodies(mesh)
     mismatches = [*_conformity(mesh, body)]

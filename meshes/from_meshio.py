@@ -37,7 +37,7 @@ def load_meshio() -> Any:
 
 
 def content_from_meshio(content: Any, path: Path) -> MeshContent:
-    """What meshio has read.
+    """Convert the content that meshio has read.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def _flagged_faces(content: Any, number: int, block: ElementBlock) -> Iterator[t
 
 
 def _tagged(content: Any, key: str, word: str, number: int, dimension: int) -> Iterator[tuple[str, IntArray]]:
-    """Groups that a cell array tells by numbers; zero is none."""
+    """Yield the groups numbered by a cell array; zero is no group."""
     if key not in content.cell_data:
         return
     tags = np.asarray(content.cell_data[key][number]).ravel()

@@ -13,5 +13,5 @@ def plausible(length: float) -> bool:
 
 
 def length_text(length: float) -> str:
-    """A length [m] as messages write it: in mm, from a metre on in m."""
+    """Write a length [m] for a message: in mm, from a metre on in m."""
     return f"{1e3 * length:.3g} mm" if length < 1.0 else f"{length:.4g} m"

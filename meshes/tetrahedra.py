@@ -144,7 +144,7 @@ class Tetrahedra:
     volumes: Mapping[str, IntArray]
 
     def mesh(self) -> Mesh:
-        """The mesh of these arrays.
+        """Make the mesh of these arrays.
 
         Raises
         ------
@@ -155,7 +155,7 @@ class Tetrahedra:
 
 
 def _nearby(cells: IntArray, n_nodes: int) -> IntArray:
-    """An order of the nodes in which those of an element are near each other (Cuthill and McKee 1969, reversed).
+    """Reverse Cuthill-McKee order of the nodes (1969), in which the nodes of an element are near each other.
 
     gmsh numbers faces before solids and corners before middle nodes; what runs over elements or over the rows of a
     matrix then jumps through the whole memory.

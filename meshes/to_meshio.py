@@ -17,7 +17,7 @@ _LOST = {".med": ("hexahedron27",)}
 
 
 def meshio_from_mesh(mesh: Mesh, ending: str) -> Any:
-    """meshio's form of a mesh for files of an ending, with the regions as they can carry them.
+    """Convert a mesh for files of an ending, with regions in the form that the format can hold.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def _check_xdmf(mesh: Mesh) -> None:
 
 
 def _face_flags(mesh: Mesh, name: str) -> IntArray:
-    """A bit for each face of an element that is in a surface: meshio reads no facets beside solids of order 2."""
+    """Bits of the faces of each element that are in a surface: meshio reads no facets beside solids of order 2."""
     flags = np.zeros(mesh.n_elements, dtype=np.int64)
     for block in mesh.surfaces[name]:
         found = find_faces(mesh, corner_rows(block))
@@ -121,7 +121,7 @@ def _one_volume_each(inside: dict[str, Any], n_elements: int) -> IntArray:
 def _with_families(
     content: Any, names: list[str], inside: dict[str, Any], ends: IntArray, owner: list[IntArray]
 ) -> Any:
-    """The mesh with its regions as MED's families: negative numbers, each for elements of the same groups."""
+    """Add the regions as MED's families: negative numbers, each for elements of the same groups."""
     for name in (*names, *inside):
         if len(name) > _NAME_LENGTH or not name.isascii():
             raise GeometryError(

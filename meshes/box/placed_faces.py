@@ -59,6 +59,7 @@ def on_cylinders(
 
 
 def check_faces(box: BoxGeometry) -> None:
+    """Refuse a box with fillets or bolt circles, whose faces do not follow from its dimensions alone."""
     if box.fillets.inside or box.fillets.outside:
         raise MorphError("a box with rounded edges: its mesh is not moved, its dimensions cannot be fitted")
     if box.bolts or (box.feet is not None and box.feet.bolt_patch is not None):
@@ -66,7 +67,7 @@ def check_faces(box: BoxGeometry) -> None:
 
 
 def parts_of(box: BoxGeometry) -> tuple[object, ...]:
-    """What two geometries must share for one to be the other's mesh, moved."""
+    """Features that two geometries must share so that the mesh of one can be morphed to the other."""
     bores = tuple((bore.name, box.end_wall(bore), bore.boss is None) for bore in box.bores)
     ribs = tuple((rib.face, rib.along, rib.side, rib.start is None, rib.end is None) for rib in box.ribs)
     cover = None if box.cover is None else (box.cover.face, box.cover.flange is None, box.cover.bonded)
@@ -84,6 +85,7 @@ def _blocks(box: BoxGeometry) -> list[Block]:
 
 
 def planes_of(box: BoxGeometry) -> list[Plane]:
+    """Return the plane faces of the blocks and bosses of a box."""
     planes = []
     for block in _blocks(box):
         low, high = np.array(block.low), np.array(block.high)
@@ -103,6 +105,7 @@ def planes_of(box: BoxGeometry) -> list[Plane]:
 
 
 def cylinders_of(box: BoxGeometry) -> list[Cylinder]:
+    """Return the cylinders of the bores and bosses of a box."""
     cylinders = []
     for bore in box.bores:
         center, span = np.array(bore.center[:2]), box.bore_span(bore)
