@@ -120,7 +120,7 @@ def _take_elements(deck: _Deck, card: Card) -> None:
 
 
 def _kind(name: str) -> str | None:
-    """The kind of solid element of a type, ``shell`` for plane elements that can name a surface, None for the rest."""
+    """Map an element type of the deck to a solid kind, ``shell`` for plane elements of a surface, None for the rest."""
     name = name.upper()
     solid = _SOLID_TYPE.match(name)
     if solid:
@@ -146,7 +146,7 @@ def _members(card: Card, sets: dict[str, list[int]]) -> list[int]:
 
 
 def _numbers(part: str, sets: dict[str, list[int]]) -> list[int]:
-    """A number, or the members of the set of that name; the instance before a point is passed over."""
+    """Return a number, or the members of a named set; the instance before a point is ignored."""
     part = part if part.isdecimal() else part.rpartition(".")[2]
     if part.isdecimal():
         return [int(part)]

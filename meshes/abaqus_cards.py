@@ -31,7 +31,7 @@ class Card:
 
 
 def read_cards(path: Path) -> Iterator[Card]:
-    """The keywords of a file and of those it includes, comments left out.
+    """Yield the keyword cards of a file and of those it includes, without comments.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def _cards(path: Path, depth: int) -> Iterator[Card]:
 
 
 def _resolved(card: Card, path: Path, depth: int) -> Iterator[Card]:
-    """The card itself, or those of the file that it includes."""
+    """Yield the card itself, or the cards of the file that it includes."""
     if card.keyword != "INCLUDE":
         yield card
         return

@@ -161,13 +161,13 @@ def joined_by_span(
 
 
 def describe(bore: CylindricalBore) -> str:
-    """A bore in words: diameter, middle and length in mm."""
+    """Describe a bore in words: diameter, middle and length in mm."""
     place = ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in bore.center)
     return f"{1e3 * bore.diameter:.5g} mm at ({place}) mm, {1e3 * bore.length:.4g} mm long"
 
 
 def unit_vector(axis: Sequence[float] | FloatArray) -> FloatArray:
-    """An axis of length 1.
+    """Normalise an axis to length 1.
 
     Raises
     ------
@@ -182,7 +182,7 @@ def unit_vector(axis: Sequence[float] | FloatArray) -> FloatArray:
 
 
 def _bore(mesh: Mesh, facets: Facets, center: FloatArray, axis: FloatArray) -> CylindricalBore:
-    """The bore of some facets, its circle fitted to their corners."""
+    """Fit the cylindrical bore of some facets to their corners."""
     arms = mesh.points[facet_corners(facets)] - center
     first, second = plane_axes(axis)
     (u, v), radius = fit_circle(np.stack([arms @ first, arms @ second], axis=1))
@@ -216,7 +216,7 @@ def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, first: FloatArray
 
 
 def _connected(facets: Facets) -> IntArray:
-    """Number of the connected part that each facet belongs to; facets that share a node are connected."""
+    """Label the connected part of each facet; facets that share a node are connected."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

@@ -37,7 +37,7 @@ class MeshContent:
     node_sets: Mapping[str, IntArray] = field(default_factory=dict)
 
     def mesh(self, unit: float = 1.0) -> Mesh:
-        """The mesh, in metres where ``unit`` is the file's unit of length [m].
+        """Make the mesh, in metres where ``unit`` is the file's unit of length [m].
 
         Nodes that no solid uses are left out and left-handed elements turned. A set of facets becomes the surface of
         that name, each facet as its element has it: with its middle nodes, seen from outside. Sets of facets that bound
@@ -85,7 +85,7 @@ def right_handed(points: FloatArray, block: ElementBlock) -> ElementBlock:
 
 
 def find_faces(mesh: Mesh, corners: IntArray) -> IntArray:
-    """The face of each set of corners in the mesh's table of faces, -1 where there is none.
+    """Find the face of each set of corners in the mesh's table of faces, -1 where there is none.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def find_faces(mesh: Mesh, corners: IntArray) -> IntArray:
 
 
 def corner_rows(block: ElementBlock) -> IntArray:
-    """The corners of facets as rows of four, -1 for the fourth of triangles."""
+    """Return the corners of facets as rows of four, -1 for the fourth of triangles."""
     rows = np.full((len(block), 4), NO_NODE, dtype=np.int64)
     rows[:, : block.of.n_corners] = block.corners
     return rows

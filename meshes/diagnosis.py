@@ -72,7 +72,7 @@ def _elements(mesh: Mesh) -> Iterator[Ailment]:
 
 
 def _least_determinant(mesh: Mesh, nodes: IntArray, kind: str, places: FloatArray) -> FloatArray:
-    """The least determinant of each element's map at some reference places, shape (n_elements,)."""
+    """Compute the least Jacobian determinant of each element at some reference places, shape (n_elements,)."""
     gradients = shape_functions(kind, places)[1]
     return np.asarray(determinants(jacobians(mesh.points, nodes, gradients)).min(axis=1))
 

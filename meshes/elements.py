@@ -87,7 +87,7 @@ class ElementKind:
         return _FACET_OF[len(nodes)], np.array(nodes)
 
     def _middle(self, corners: Sequence[int]) -> int:
-        """The node in the middle of some corners."""
+        """Find the node in the middle of some corners."""
         middle = np.mean([self.places[corner] for corner in corners], axis=0)
         return int(np.flatnonzero(np.all(np.isclose(np.array(self.places), middle), axis=1))[0])
 
@@ -163,6 +163,7 @@ class ElementBlock:
     nodes: IntArray
 
     def __post_init__(self) -> None:
+        """Check the kind and the number of nodes of an element."""
         if self.kind not in KINDS:
             raise GeometryError(f"no elements of kind {self.kind!r}; known kinds: {', '.join(KINDS)}")
         if self.nodes.ndim != 2 or self.nodes.shape[1] != self.of.n_nodes:
@@ -181,7 +182,7 @@ class ElementBlock:
         return self.nodes[:, : self.of.n_corners]
 
     def __len__(self) -> int:
-        """Number of elements."""
+        """Return the number of elements."""
         return len(self.nodes)
 
 
@@ -224,7 +225,7 @@ def facets_of(nodes: IntArray) -> Facets:
 
 
 def merged(blocks: Iterable[ElementBlock]) -> tuple[ElementBlock, ...]:
-    """The same elements with one block for each kind, in the order in which the kinds first come."""
+    """Merge the blocks of each kind into one, in the order in which the kinds first come."""
     parts: dict[str, list[IntArray]] = {}
     for block in blocks:
         parts.setdefault(block.kind, []).append(block.nodes)
@@ -232,17 +233,17 @@ def merged(blocks: Iterable[ElementBlock]) -> tuple[ElementBlock, ...]:
 
 
 def facet_nodes(facets: Facets) -> IntArray:
-    """The node numbers of some facets, ascending, each once."""
+    """Return the node numbers of some facets, ascending, each once."""
     return _unique(block.nodes for block in facets)
 
 
 def facet_corners(facets: Facets) -> IntArray:
-    """The node numbers of the corners of some facets, ascending, each once."""
+    """Return the node numbers of the corners of some facets, ascending, each once."""
     return _unique(block.corners for block in facets)
 
 
 def facet_centers(points: FloatArray, facets: Facets) -> FloatArray:
-    """The mean of each facet's corners [m], shape (n_facets, 3), block after block."""
+    """Compute the mean of each facet's corners [m], shape (n_facets, 3), block after block."""
     return np.concatenate([np.empty((0, 3)), *(points[block.corners].mean(axis=1) for block in facets)])
 
 
@@ -266,7 +267,7 @@ def pick_facets(facets: Facets, chosen: npt.NDArray[np.bool_]) -> Facets:
 
 
 def count(blocks: Iterable[ElementBlock]) -> int:
-    """Number of elements or facets in some blocks."""
+    """Count the elements or facets in some blocks."""
     return sum(len(block) for block in blocks)
 
 

@@ -122,7 +122,7 @@ def _flagged_faces(content: Any, number: int, block: ElementBlock) -> Iterator[t
 
 
 def _tagged(content: Any, key: str, word: str, number: int, dimension: int) -> Iterator[tuple[str, IntArray]]:
-    """Groups numbered by a cell array; zero is no group."""
+    """Yield the groups numbered by a cell array; zero is no group."""
     if key not in content.cell_data:
         return
     tags = np.asarray(content.cell_data[key][number]).ravel()

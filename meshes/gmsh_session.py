@@ -45,7 +45,7 @@ def load_gmsh() -> Any:
 
 @contextmanager
 def gmsh_session(name: str) -> Iterator[Any]:
-    """A gmsh model that is finalised at the end; gmsh's own failures become :class:`GeometryError`.
+    """Open a gmsh model that is finalised at the end; gmsh's own failures become :class:`GeometryError`.
 
     The session runs on one thread so that the same geometry gives the same mesh, bit for bit.
     """

@@ -32,7 +32,7 @@ def jacobians(points: FloatArray, nodes: IntArray, gradients: FloatArray) -> Flo
 
 
 def determinants(jacobian: FloatArray) -> FloatArray:
-    """Determinants of Jacobians of solids, shape (3, 3, ...) to (...)."""
+    """Compute the determinants of Jacobians of solids, shape (3, 3, ...) to (...)."""
     a, b, c = jacobian
     return np.asarray(
         a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])

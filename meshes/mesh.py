@@ -43,6 +43,7 @@ class Mesh:
     volumes: Mapping[str, IntArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        """Check the points, the numbers of nodes and elements, and the volumes of the elements."""
         if self.points.ndim != 2 or self.points.shape[1] != 3:
             raise GeometryError(f"mesh points have shape {self.points.shape}; expected (n_nodes, 3)")
         if not np.isfinite(self.points).all():
@@ -73,7 +74,7 @@ class Mesh:
         surfaces: Mapping[str, IntArray] | None = None,
         volumes: Mapping[str, IntArray] | None = None,
     ) -> "Mesh":
-        """A mesh of tetrahedra of one order from plain arrays.
+        """Make a mesh of tetrahedra of one order from plain arrays.
 
         Parameters
         ----------
@@ -101,7 +102,7 @@ class Mesh:
         return cls(points, (ElementBlock(kind, cells),), named, volumes or {})
 
     def rotated(self, rotation: FloatArray) -> "Mesh":
-        """The mesh turned about the origin.
+        """Rotate the mesh about the origin.
 
         Parameters
         ----------
@@ -190,7 +191,7 @@ class Mesh:
         return np.flatnonzero(used)
 
     def surface(self, name: str) -> Facets:
-        """The facets of a named surface.
+        """Return the facets of a named surface.
 
         Raises
         ------

@@ -12,7 +12,7 @@ _FIELD = 8 * " "
 
 
 def framed_deck(text: str) -> str:
-    """A deck whose bulk data stand between BEGIN BULK and ENDDATA, with a plus sign before each continuation.
+    """Frame the bulk data of a deck by BEGIN BULK and ENDDATA, with a plus sign before each continuation.
 
     gmsh and others write bulk data alone, as for an INCLUDE; and a continuation may begin with a blank field, which
     meshio takes for one only where the line before it is filled up to 80 letters.
@@ -27,7 +27,7 @@ def framed_deck(text: str) -> str:
 
 @contextmanager
 def framed_file(path: Path) -> Iterator[Path]:
-    """A copy of a deck in this form, as long as it is needed; files of other formats as they are."""
+    """Write a temporary copy of a deck in this form; files of other formats are given as they are."""
     if path.suffix.lower() not in ENDINGS:
         yield path
         return

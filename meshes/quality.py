@@ -56,7 +56,7 @@ def edge_lengths(points: FloatArray, block: ElementBlock) -> FloatArray:
 
 
 def shape_numbers(mesh: Mesh) -> FloatArray:
-    """A number for each element's shape, 1 for the ideal and 0 for a flat one, shape (n_elements,).
+    """Compute the shape number of each element, 1 for the ideal and 0 for a flat one, shape (n_elements,).
 
     The mean ratio 3 det(S)^(2/3) / |S|² (Liu and Joe 1994; Knupp 2001 for bricks and wedges), S the map from the
     ideal element -- regular tetrahedron, cube, prism on an equilateral triangle -- and |S| its Frobenius norm; the

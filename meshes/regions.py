@@ -126,7 +126,7 @@ def cylinder_facets(
     axis: Sequence[float] = (0.0, 0.0, 1.0),
     length: float | None = None,
 ) -> Facets:
-    """The facets of the bore nearest to a place.
+    """Find the facets of the bore nearest to a place.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def with_bore(
     *,
     axis: Sequence[float] = (0.0, 0.0, 1.0),
 ) -> Mesh:
-    """The mesh with a bore as a surface of that name; unchanged where it has one of that name already.
+    """Return the mesh with a bore as a named surface; unchanged where it has a surface of that name already.
 
     Parameters and errors are those of :func:`cylinder_facets`.
     """

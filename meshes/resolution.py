@@ -38,7 +38,7 @@ class WaveCarrier:
     frequency: float
 
     def shortest_wave(self, thickness: float) -> float:
-        """The shortest wavelength in a wall of a thickness [m], both in metres.
+        """Compute the shortest wavelength [m] in a wall of a thickness [m].
 
         Bending waves are the slowest, λ = 2π (E t² / (12 (1 - ν²) ρ))^(1/4) / √ω of Kirchhoff's plate, until in thick
         walls or at high frequencies shear waves are, λ = 2π √(G / ρ) / ω (Cremer, Heckl, Petersson: Structure-Borne
@@ -51,7 +51,7 @@ class WaveCarrier:
 
 
 def wall_thickness(mesh: Mesh) -> float:
-    """A mean wall thickness [m]: twice the volume over the surface, exact for a wide plate."""
+    """Estimate the mean wall thickness [m]: twice the volume over the surface, exact for a wide plate."""
     area = 0.0
     for block in mesh.boundary:
         corners = mesh.points[block.corners]

@@ -106,7 +106,7 @@ def _element(kind: str) -> tuple[Any, list[int]]:
 
 
 def _wedge15() -> Any:
-    """The quadratic serendipity wedge as an element in scikit-fem's form, nodes in VTK's order.
+    """Make the quadratic serendipity wedge as an element in scikit-fem's form, nodes in VTK's order.
 
     With the triangle's coordinates L = (1 - x - y, x, y), the bottom 1 - z and the top z, its functions are
 

@@ -144,7 +144,7 @@ class Tetrahedra:
     volumes: Mapping[str, IntArray]
 
     def mesh(self) -> Mesh:
-        """The mesh of these arrays.
+        """Make the mesh of these arrays.
 
         Raises
         ------

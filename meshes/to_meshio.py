@@ -121,7 +121,7 @@ def _one_volume_each(inside: dict[str, Any], n_elements: int) -> IntArray:
 def _with_families(
     content: Any, names: list[str], inside: dict[str, Any], ends: IntArray, owner: list[IntArray]
 ) -> Any:
-    """The mesh with its regions as MED's families: negative numbers, each for elements of the same groups."""
+    """Add the regions as MED's families: negative numbers, each for elements of the same groups."""
     for name in (*names, *inside):
         if len(name) > _NAME_LENGTH or not name.isascii():
             raise GeometryError(

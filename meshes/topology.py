@@ -63,7 +63,7 @@ def face_table(blocks: tuple[ElementBlock, ...]) -> FaceTable:
 
 
 def group_rows(rows: IntArray) -> IntArray:
-    """Number rows of integers so that equal rows, and only they, have equal numbers."""
+    """Assign numbers to rows of integers so that equal rows, and only they, have equal numbers."""
     order = np.lexsort(rows.T)
     ordered = rows[order]
     fresh = np.ones(len(rows), dtype=np.int64)
@@ -74,7 +74,7 @@ def group_rows(rows: IntArray) -> IntArray:
 
 
 def faces_as_facets(blocks: tuple[ElementBlock, ...], table: FaceTable, chosen: IntArray) -> Facets:
-    """Some faces of a table with all their nodes, outward; a block for each kind, in the order of ``chosen``."""
+    """Return the faces ``chosen`` of a table with all their nodes, outward, one block for each kind, in that order."""
     parts: dict[str, list[tuple[IntArray, IntArray]]] = {}
     source = table.source[chosen]
     for number, block in enumerate(blocks):

@@ -154,7 +154,6 @@ def foot_at_slope(gear: Gear, slope: float) -> float:
     The tangent there is ``dx/dy = -tan(slope)``; at the foot of the fillet it leans by a right angle less half the
     tooth's angle on the root circle.
     """
-
     step = 1e-6
 
     def above(gamma: float) -> float:
@@ -167,7 +166,7 @@ def foot_at_slope(gear: Gear, slope: float) -> float:
 
 
 def _on_fillet(gear: Gear, above: Callable[[float], float]) -> float:
-    """The parameter where `above`, growing from foot to flank, is zero; the end nearer to it where it has no zero."""
+    """Find the fillet parameter [rad] where `above`, rising from foot to flank, is zero, or the end nearest to it."""
     deep, shallow = ROOT_CIRCLE, gear.fillet_end
     if above(deep) >= 0.0:
         return deep

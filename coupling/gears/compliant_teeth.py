@@ -120,6 +120,7 @@ class CompliantTeeth(ABC):
     force: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
+        """Check the contact model and the force."""
         if self.contact not in ("yang-sun", "weber"):
             raise StiffnessModelError(
                 f"stiffness model {self.name!r}: contact must be 'yang-sun' or 'weber', got {self.contact!r}"

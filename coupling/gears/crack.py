@@ -54,6 +54,7 @@ class ToothCrack:
     angle: float = math.radians(70.0)
 
     def __post_init__(self) -> None:
+        """Check the tooth number, the depth and the angle."""
         check_tooth_number("crack", self.tooth)
         require_finite("crack depth", self.depth, minimum=0.0)
         if not 0.0 < self.angle <= math.pi / 2.0:

@@ -57,5 +57,5 @@ def tooth_coupling(gear: Gear, radius: float) -> float:
 
 
 def _summed(values: FloatArray) -> FloatArray:
-    """Running sum from zero, (n + 1,)."""
+    """Sum `values` (n,) cumulatively from zero, (n + 1,)."""
     return np.concatenate([[0.0], np.cumsum(values)])

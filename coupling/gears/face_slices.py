@@ -164,7 +164,7 @@ def tooth_stiffness(slices: FaceSlices, stiffness: FloatArray) -> FloatArray:
 def load_faces(
     slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, compression: FloatArray
 ) -> FaceLoads:
-    """Loads of p pairs at given compressions.
+    """Solve the load distribution across the faces of p tooth pairs at given compressions.
 
     Parameters
     ----------
@@ -294,7 +294,7 @@ def _touching_alone(
 def _loads(
     slices: FaceSlices, gap: FloatArray, touching: BoolArray, deep: FloatArray, fixed: FloatArray, rising: FloatArray
 ) -> FaceLoads:
-    """Loads of faces with known fields, at compressions `deep` (p, 1)."""
+    """Evaluate the face loads from known deflections, ``w = fixed + deep * rising``, at compressions `deep` (p, 1)."""
     load = np.where(touching, slices.flattening * (deep - gap - (fixed + deep * rising)), 0.0)
     tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
     return FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
@@ -303,7 +303,7 @@ def _loads(
 def _fields(
     slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
-    """w = fixed + compression * rising of every pair, (p, n) both, with given slices touching."""
+    """Solve the deflection ``w = fixed + compression * rising`` of each pair for given touching slices, (p, n) both."""
     n = slices.z.size
     flat = np.where(touching, slices.flattening, 0.0)
     link = slices.coupling / slices.width**2

@@ -144,7 +144,7 @@ def face_table(
 
 
 def _breaks(kinds: tuple[PairCurves, ...], reach: float, others: Sequence[float]) -> FloatArray:
-    """Ends of the positions, and between them those where corners enter and leave the face, `reach` from its middle."""
+    """Find the positions where corners enter or leave the face, `reach` from its middle, with the ends of the range."""
     start, end = kinds[0].stiffness.knots[[0, -1]]
     curves = [curve for kind in kinds for curve in (kind.stiffness, kind.deviation)]
     corners = np.concatenate([*(corners_of(curve) for curve in curves), others])

@@ -42,6 +42,7 @@ class Wear:
     shape: Literal["sliding", "uniform"] = "sliding"
 
     def __post_init__(self) -> None:
+        """Check the tooth number, the depth and the shape."""
         check_tooth_number("wear", self.tooth)
         require_finite("wear depth", self.depth, minimum=0.0)
         if self.shape not in ("sliding", "uniform"):
@@ -64,7 +65,7 @@ class Wear:
         return np.zeros_like(roll_angle)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
-        """The pitch point."""
+        """Return the roll angle of the pitch point [rad], where wear in proportion to the sliding has a corner."""
         return () if self.shape == "uniform" else (pitch_roll_angle,)
 
 
@@ -94,6 +95,7 @@ class Spall:
     width: float | None = None
 
     def __post_init__(self) -> None:
+        """Check the tooth number and the dimensions."""
         check_tooth_number("spall", self.tooth)
         for quantity in ("start_roll_angle", "end_roll_angle", "depth"):
             require_finite(f"spall {quantity}", getattr(self, quantity), minimum=0.0)
@@ -155,6 +157,7 @@ class MissingTooth:
     tooth: int
 
     def __post_init__(self) -> None:
+        """Check the tooth number."""
         check_tooth_number("missing tooth", self.tooth)
 
     def require_fit(self, gear: Gear) -> None:

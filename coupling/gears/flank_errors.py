@@ -49,6 +49,7 @@ class ProfileDeviation:
     table: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
+        """Check the deviations and the table."""
         for quantity in ("slope", "phase", "crowning"):
             require_finite(f"profile deviation {quantity}", getattr(self, quantity))
         for quantity in ("form", "waves"):
@@ -98,6 +99,7 @@ class HelixDeviation:
     end_relief_length: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check the deviations and the end relief."""
         for quantity in ("slope", "crowning"):
             require_finite(f"helix deviation {quantity}", getattr(self, quantity))
         for quantity in ("end_relief", "end_relief_length"):

@@ -29,7 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 def friction_shares(
     phase: float, compression: float, law: FloatArray, at: int, by_slices: bool, pitch_point: float, path_end: float
 ) -> tuple[float, float, float, float]:
-    """A, B and their slopes by the compression [1/m]; zeros where no pair touches.
+    """Compute the friction shares A and B and their derivatives by the compression [1/m]; zeros where no pair touches.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def friction_history(
     pitch_point: float,
     path_end: float,
 ) -> FloatArray:
-    """A and B of `friction_shares` at every sample of a history, shape (t, 2); phases and compressions (t,)."""
+    """Compute A and B of `friction_shares` at every sample, shape (t, 2), from phases and compressions (t,)."""
     history = np.empty((phase.size, 2))
     for i in range(phase.size):
         history[i, 0], history[i, 1], _, _ = friction_shares(

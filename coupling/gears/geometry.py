@@ -164,6 +164,7 @@ class Gear:
     allow_undercut: bool = False
 
     def __post_init__(self) -> None:
+        """Check the dimensions, the body, the rack, the flank and the modifications."""
         _check_numbers(self)
         _check_body(self)
         _check_rack(self)

@@ -48,7 +48,7 @@ class HarrisMap:
 
 
 def harris_map(contact: ToothContact, forces: npt.ArrayLike, phases: npt.ArrayLike | None = None) -> HarrisMap:
-    """Static transmission error at every load.
+    """Compute the static transmission error over the mesh period at every load (Harris map).
 
     Parameters
     ----------

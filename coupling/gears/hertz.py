@@ -101,7 +101,7 @@ class LineContact:
 
 
 def line_contact(geometry: GearPairGeometry, position: npt.ArrayLike) -> LineContact:
-    """The contact of a pair of teeth at positions on the path of contact.
+    """Compute the line contact of a tooth pair at positions along the path of contact.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ PRECISE, _NEAR_ENOUGH = 1e-9, 1e-4
 
 @inner(inline="always")
 def number_at(law: FloatArray, index: int) -> float:
-    """Number of the law at an index that is not negative."""
+    """Return the number of the contact law at a non-negative index."""
     value: float = law[np.uint64(index)]
     return value
 

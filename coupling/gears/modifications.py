@@ -47,6 +47,7 @@ class TipRelief:
     shape: ReliefShape = "linear"
 
     def __post_init__(self) -> None:
+        """Check the amount and the start."""
         _check("tip relief", self)
 
     def start(self, tip_roll_angle: float, base_radius: float) -> float:
@@ -75,6 +76,7 @@ class RootRelief:
     shape: ReliefShape = "linear"
 
     def __post_init__(self) -> None:
+        """Check the amount and the start."""
         _check("root relief", self)
 
     def start(self, form_roll_angle: float, base_radius: float) -> float:

@@ -71,6 +71,7 @@ class WeightedHarmonics:
     weights: Mapping[int, float]
 
     def __post_init__(self) -> None:
+        """Check the multiples of the mesh frequency and their weights."""
         for multiple, weight in self.weights.items():
             if not 1 <= multiple <= _HIGHEST:
                 raise GearError(f"relief aim: multiples of the mesh frequency must be 1 to {_HIGHEST}, got {multiple}")

@@ -117,7 +117,7 @@ def pair_outlines(
 
 
 def _tooth_and_space(gear: Gear, points: int) -> npt.NDArray[np.complex128]:
-    """The outline from the root of the tooth on the x axis to the root of the next one, in complex coordinates."""
+    """Return the outline of the tooth on the x axis and of the space after it, in complex coordinates [m]."""
     across, along = tooth_side(gear, points)
     side = along + 1j * across
     arc = np.linspace(-1.0, 1.0, max(3, points // 4))[1:-1]

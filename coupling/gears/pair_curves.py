@@ -96,7 +96,7 @@ def pair_kinds(
 
 
 def behind_shared(curves: PairCurves, shared: float) -> PairCurves:
-    """The same pair without the compliance that it shares with others, `shared` [m/N]: ``1/k' = 1/k - C``."""
+    """Remove from a pair's compliance the part C shared with other pairs, `shared` [m/N]: ``1/k' = 1/k - C``."""
     if shared == 0.0:
         return curves
     alone = curves.stiffness

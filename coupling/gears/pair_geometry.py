@@ -63,6 +63,7 @@ class GearPairGeometry:
     centre_distance: float | None = None
 
     def __post_init__(self) -> None:
+        """Check that the gears match, the centre distance and the contact ratio."""
         _check_match(self)
         _check_distance(self)
         _check_contact(self)

@@ -51,7 +51,7 @@ class PathOfContact:
 
 
 def path_of_contact(pair: GearPairGeometry) -> PathOfContact:
-    """The named points of a pair's path of contact.
+    """Compute the points `POINTS_OF_CONTACT` of a gear pair's path of contact.
 
     With a contact ratio of two or more no tooth carries alone: LPSTC and HPSTC are still where the pair before leaves
     (one base pitch before the end) and where the next pair enters (one after the start).

@@ -42,6 +42,7 @@ class PiecewiseCubic:
     coefficients: FloatArray = field(repr=False)
 
     def __post_init__(self) -> None:
+        """Check the shapes, the knots and the coefficients."""
         if self.knots.ndim != 1 or self.coefficients.shape != (self.knots.size - 1, 4):
             raise GearError(
                 f"a piecewise cubic needs n + 1 knots and (n, 4) coefficients, "
@@ -68,7 +69,7 @@ class PiecewiseCubic:
         return float(self._polynomial.integrate(start, end)) / (end - start)
 
     def on_knots(self, knots: FloatArray) -> PiecewiseCubic:
-        """The same function with more knots, or on a wider range, where its ends are held.
+        """Return the same function on more knots, or on a wider range with its end values held constant.
 
         Parameters
         ----------
@@ -118,12 +119,12 @@ def with_corners(knots: FloatArray, corners: npt.ArrayLike, apart: float) -> Flo
 
 
 def constant(value: float, length: float) -> PiecewiseCubic:
-    """The same value on ``[0, length]``."""
+    """Return the constant function `value` on ``[0, length]``."""
     return PiecewiseCubic(np.array([0.0, length]), np.array([[value, 0.0, 0.0, 0.0]]))
 
 
 def quadratic(start: float, middle: float, end: float, length: float) -> PiecewiseCubic:
-    """The parabola through three values at 0, ``length / 2`` and ``length``."""
+    """Return the parabola through three values at 0, ``length / 2`` and ``length``."""
     linear, square = -3.0 * start + 4.0 * middle - end, 2.0 * start - 4.0 * middle + 2.0 * end
     return PiecewiseCubic(np.array([0.0, length]), np.array([[start, linear, square, 0.0]]))
 

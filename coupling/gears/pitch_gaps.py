@@ -41,7 +41,7 @@ def pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
 
 
 def back_flank_pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
-    """The same for the idle flanks, by the phase at which their pairs enter, ``back_flank_offset - p``."""
+    """Return the gap of each pair of idle flanks [m], by its phase of entering, ``back_flank_offset - p``."""
     return _lead(geometry, *geometry.meeting_back_teeth(hunting_numbers(geometry)))
 
 

@@ -76,7 +76,7 @@ class BasicRack:
         return self.dedendum * self.module - self.corner_radius * (1.0 - math.sin(self.pressure_angle))
 
     def corner(self, profile_shift: float) -> RackCorner:
-        """The corner in the transverse plane, the rack drawn back by `profile_shift` modules."""
+        """Return the tip corner in the transverse plane, the rack withdrawn by `profile_shift` modules."""
         depth = self.dedendum * self.module - self.corner_radius
         across = (
             math.pi * self.module / 4.0

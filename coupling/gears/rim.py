@@ -140,7 +140,7 @@ def _kolosov(gear: Gear, state: PlaneState) -> float:
 
 
 def _rings(gear: Gear) -> tuple[Annulus, ...]:
-    """The body from where it is held to the root circle.
+    """Divide the gear body into annuli, from the radius where it is held to the root circle.
 
     Raises
     ------

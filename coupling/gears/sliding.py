@@ -127,7 +127,7 @@ def _reverses_by_slices(contact: ToothContact) -> bool:
 
 
 def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:
-    """The three integrals as numbers in the layout of a contact law."""
+    """Tabulate the three friction integrals over a line of contact, in the layout of a contact law."""
     faces = contact.faces
     assert faces is not None
 

@@ -182,7 +182,7 @@ def _require_teeth(states: PairStates, at: FloatArray) -> None:
 
 
 def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArray, states: PairStates) -> StaticMesh:
-    """Loaded mesh with an uneven load across the face."""
+    """Solve the static mesh with an uneven load across the face."""
     assert states.faces is not None
     rows, columns = np.nonzero(states.present)
     base, meeting = states.faces.base, states.faces.meeting

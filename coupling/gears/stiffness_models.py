@@ -85,6 +85,7 @@ class SquareStiffness:
     contact_ratio: float | None = None
 
     def __post_init__(self) -> None:
+        """Check the stiffness and the contact ratio."""
         _require_positive(self)
         if self.contact_ratio is not None and not 1.0 <= self.contact_ratio < math.inf:
             raise StiffnessModelError(
@@ -104,6 +105,7 @@ class ConstantStiffness:
     value: float
 
     def __post_init__(self) -> None:
+        """Check the stiffness."""
         _require_positive(self)
 
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
@@ -130,6 +132,7 @@ class TableStiffness:
     stiffness: FloatArray
 
     def __post_init__(self) -> None:
+        """Check the columns of the table."""
         position, stiffness = self.position, self.stiffness
         if position.ndim != 1 or position.size < 2 or position.shape != stiffness.shape:
             raise StiffnessModelError(

@@ -111,7 +111,7 @@ def chordal_thickness(gear: Gear, radius: float | None = None) -> ChordalThickne
 
 
 def span_measurement(gear: Gear, teeth: int | None = None) -> SpanMeasurement:
-    """Base tangent length ``W_k = (k - 1) p_bn + s_bn``: normal base pitches and one normal base thickness.
+    """Compute the base tangent length over k teeth, ``W_k = (k - 1) p_bn + s_bn`` (normal base pitch and thickness).
 
     Parameters
     ----------

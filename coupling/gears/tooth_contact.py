@@ -156,6 +156,7 @@ class ToothContact:
     shared_compliance: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check the values, the curves of the pairs, the pitch gaps and the indices of variants."""
         if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
             raise GearError(f"tooth contact: contact_ratio must be at least 1, got {self.contact_ratio!r}")
         if not (math.isfinite(self.damping) and self.damping >= 0.0):
@@ -358,7 +359,7 @@ class ToothContact:
         )
 
     def with_damping(self, damping: float, depth: float = 0.0) -> ToothContact:
-        """The same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
+        """Return the same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
         return replace(self, damping=damping, damping_depth=depth)
 
     def pair_positions(self, phases: npt.ArrayLike) -> PairPlaces:

@@ -22,7 +22,7 @@ from coupling.gears.rack import RackCorner
 
 
 def fillet_end(corner: RackCorner, pitch_radius: float, pressure_angle: float, base_half_angle: float) -> float:
-    """The fillet's parameter gamma [rad] where trochoid and involute cross.
+    """Find the fillet parameter gamma [rad] at which trochoid and involute intersect.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ Test = Callable[[str, FloatArray], bool]
 
 
 def named_faces(gmsh: Any, box: BoxGeometry, solid: BoxSolid) -> dict[str, list[int]]:
-    """The faces of the current gmsh model that make up each named surface.
+    """Find the faces of the current gmsh model that make up each named surface.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def named_faces(gmsh: Any, box: BoxGeometry, solid: BoxSolid) -> dict[str, list[
 
 
 def _outer_tests(box: BoxGeometry) -> dict[str, Test]:
-    """Tests for the surfaces that are found by their places alone."""
+    """Make the tests for the surfaces that are found by their places alone."""
     outer, slack = layout.outer_block(box), _slack(box)
     tests: dict[str, Test] = {
         face: _on_plane(axis, (outer.high if way > 0 else outer.low)[axis], slack)
@@ -82,7 +82,7 @@ def _slack(box: BoxGeometry) -> float:
 
 
 def _around(center: tuple[float, float, float], radius: float, axis: tuple[float, float, float]) -> Block:
-    """The block around a circle."""
+    """Return the bounding block of a circle."""
     low = [c - radius * (1.0 - abs(a)) for c, a in zip(center, axis, strict=True)]
     size = [2 * radius * (1.0 - abs(a)) for a in axis]
     return Block((low[0], low[1], low[2]), (size[0], size[1], size[2]))

@@ -55,7 +55,7 @@ def _fillet_sizes(box: Box) -> Iterator[Misfit]:
 
 
 def _corner_misfits(box: Box) -> Iterator[Misfit]:
-    """A rounding outside that leaves too little of a sharper corner inside."""
+    """Yield an outer fillet that leaves too little wall at a sharper corner inside."""
     if box.fillets.outside == 0.0:
         return
     faces = [face for face in FACES if box.cover is None or face != box.cover.face]
@@ -84,7 +84,7 @@ def _corner_thickness(walls: tuple[float, float], outside: float, inside: float)
 
 
 def _rib_misfits(box: Box, index: int) -> Iterator[Misfit]:
-    """A rib whose numbers make no rib on its wall."""
+    """Yield the dimensions of a rib that do not fit its wall."""
     rib, location = box.ribs[index], ("ribs", index)
     normal, _ = FACES[rib.face]
     if "xyz".index(rib.along) == normal:
@@ -135,7 +135,7 @@ def _rib_clashes(box: Box) -> Iterator[Misfit]:
 
 
 def _bore_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
-    """A bore that a part obstructs, or that crosses the joint of the cover."""
+    """Yield a bore that a part obstructs, or that crosses the joint of the cover."""
     start, end = box.bore_span(bore)
     radius = bore.diameter / 2
     x, y, _ = bore.center

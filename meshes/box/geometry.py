@@ -63,6 +63,7 @@ class BoxGeometry:
     fillets: Fillets = field(default_factory=Fillets)
 
     def __post_init__(self) -> None:
+        """Check the dimensions, and that the parts fit the box."""
         wall = self.wall
         pairs = ((wall.left, wall.right), (wall.bottom, wall.top), (wall.back, wall.front))
         for axis, length, (low, high) in zip("xyz", self.size, pairs, strict=True):
@@ -103,7 +104,7 @@ class BoxGeometry:
         return 0.0 if self.cover is None else layout.rim_width(self, self.cover)
 
     def end_wall(self, bore: Bore) -> Literal["back", "front"]:
-        """The wall that a bore goes through.
+        """Return the end wall that a bore goes through.
 
         Raises
         ------

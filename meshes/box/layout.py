@@ -31,7 +31,7 @@ class Block:
         )
 
     def replaced(self, axis: int, low: float | None = None, high: float | None = None) -> Block:
-        """The same block with other ends along one axis."""
+        """Return the block with other ends along one axis."""
         lows, lengths = list(self.low), list(self.size)
         if low is not None:
             lows[axis] = low
@@ -40,7 +40,7 @@ class Block:
         return Block((lows[0], lows[1], lows[2]), (lengths[0], lengths[1], lengths[2]))
 
     def widened(self, axes: tuple[int, int], by: float) -> Block:
-        """The same block with both ends along some axes moved outward."""
+        """Return the block with both ends along some axes moved outward."""
         block = self
         for axis in axes:
             block = block.replaced(axis, self.low[axis] - by, self.high[axis] + by)
@@ -48,13 +48,13 @@ class Block:
 
 
 def outer_block(box: Box) -> Block:
-    """The outside of the walls."""
+    """Return the outer block of the walls."""
     width, _, depth = box.size
     return Block((-width / 2, 0.0, -depth / 2), box.size)
 
 
 def cavity_block(box: Box) -> Block:
-    """The inside of the walls."""
+    """Return the cavity inside the walls."""
     (x, y, z), (width, height, depth), wall = outer_block(box).low, box.size, box.wall
     return Block(
         (x + wall.left, y + wall.bottom, z + wall.back),
@@ -63,12 +63,12 @@ def cavity_block(box: Box) -> Block:
 
 
 def body_block(box: Box) -> Block:
-    """The outside of the walls without the cover."""
+    """Return the outer block of the walls without the cover."""
     return outer_block(box) if box.cover is None else _beside(box, outer_block(box), box.cover, plate=False)
 
 
 def plate_block(box: Box, cover: Cover) -> Block:
-    """The cover's plate, extended over an outside flange."""
+    """Return the cover's plate, extended over an outside flange."""
     plate = _beside(box, outer_block(box), cover, plate=True)
     if cover.flange is not None and cover.flange.side == "outside":
         return plate.widened(plane_axes(cover.face), cover.flange.width)
@@ -83,14 +83,14 @@ def parting_plane(box: Box, face: Face) -> float:
 
 
 def _beside(box: Box, block: Block, cover: Cover, *, plate: bool) -> Block:
-    """The part of a block on the cover's side of the parting plane, or on the body's."""
+    """Cut a block at the parting plane: the part on the cover's side, or on the body's."""
     normal, way = FACES[cover.face]
     plane = parting_plane(box, cover.face)
     return block.replaced(normal, low=plane) if (way > 0) == plate else block.replaced(normal, high=plane)
 
 
 def opening_block(box: Box, cover: Cover) -> Block:
-    """Opening below the cover: the cavity up to its rim, without an inside flange."""
+    """Return the opening below the cover: the cavity up to its rim, without an inside flange."""
     cavity = cavity_block(box)
     if cover.flange is not None and cover.flange.side == "inside":
         return cavity.widened(plane_axes(cover.face), -cover.flange.width)
@@ -98,7 +98,7 @@ def opening_block(box: Box, cover: Cover) -> Block:
 
 
 def flange_block(box: Box, cover: Cover) -> Block | None:
-    """The layer in which the flange lies, as far as it reaches outward; None where there is none."""
+    """Return the layer of the flange, up to its outer edges; None without a flange."""
     if cover.flange is None:
         return None
     normal, way = FACES[cover.face]
@@ -109,7 +109,7 @@ def flange_block(box: Box, cover: Cover) -> Block | None:
 
 
 def flange_sides(box: Box, cover: Cover) -> tuple[Block, ...]:
-    """The four sides of the flange beyond the walls, outward or inward; they overlap in the corners."""
+    """Return the four sides of the flange beyond the walls, outward or inward; they overlap in the corners."""
     layer = flange_block(box, cover)
     if layer is None or cover.flange is None:
         return ()
@@ -130,7 +130,7 @@ def _within(block: Block, limits: Block, axes: tuple[int, int]) -> Block:
 
 
 def foot_blocks(box: Box) -> tuple[Block, ...]:
-    """The feet in the order foot-1 (−x −z), foot-2 (+x −z), foot-3 (+x +z), foot-4 (−x +z)."""
+    """Return the feet in the order foot-1 (−x −z), foot-2 (+x −z), foot-3 (+x +z), foot-4 (−x +z)."""
     if box.feet is None:
         return ()
     body = body_block(box)
@@ -154,7 +154,7 @@ def rib_range(box: Box, rib: Rib) -> Block:
 
 
 def rib_block(box: Box, rib: Rib) -> Block:
-    """A rib from the wall it stands on to its top."""
+    """Return a rib from the wall that it stands on to its top."""
     normal, way = FACES[rib.face]
     along = "xyz".index(rib.along)
     across = 3 - normal - along
@@ -171,7 +171,7 @@ def rib_block(box: Box, rib: Rib) -> Block:
 
 
 def sunk_rib_block(box: Box, rib: Rib) -> Block:
-    """A rib with its roots: reaching into its own wall and, inside, into every wall at which it ends."""
+    """Extend a rib by its roots, into its own wall and, inside, into every wall at which it ends."""
     block, cavity = rib_block(box, rib), cavity_block(box)
     if rib.side == "outside" or on_cover(box, rib):
         normal, way = FACES[rib.face]
@@ -197,7 +197,7 @@ def rim_width(box: Box, cover: Cover) -> float:
 
 
 def cover_bolts(box: Box) -> tuple[Bolt, ...]:
-    """The bolts of the cover in order: rows go round the rim from its lowest corner; none where it is bonded."""
+    """Place the bolts of the cover in order: rows go round the rim from its lowest corner; none where it is bonded."""
     cover = box.cover
     if cover is None or cover.bonded or cover.bolts is None:
         return ()

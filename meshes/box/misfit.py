@@ -22,10 +22,11 @@ class Misfit:
     expected: str
 
     def __str__(self) -> str:
+        """Write the misfit as a message."""
         place = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in self.location)
         return f"box: {place.lstrip('.')}: expected {self.expected}"
 
 
 def mm(length: float) -> str:
-    """A length [m] in mm, for a message."""
+    """Write a length [m] in mm for a message."""
     return f"{1e3 * length:.6g} mm"

@@ -107,7 +107,7 @@ class BoxMorph:
         return moved
 
     def moved(self, geometry: BoxGeometry) -> Mesh:
-        """The mesh at another geometry.
+        """Return the mesh morphed to another geometry.
 
         Raises
         ------

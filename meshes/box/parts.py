@@ -24,7 +24,7 @@ FOOT_NAMES = ("foot-1", "foot-2", "foot-3", "foot-4")
 
 
 def plane_axes(face: Face) -> tuple[int, int]:
-    """The two axes in the plane of a face, in the order x, y, z."""
+    """Return the two axes in the plane of a face, in the order x, y, z."""
     normal, _ = FACES[face]
     first, second = (axis for axis in range(3) if axis != normal)
     return first, second
@@ -43,7 +43,7 @@ class WallThickness:
 
     @classmethod
     def uniform(cls, thickness: float) -> "WallThickness":
-        """The same thickness [m] all round."""
+        """Make walls of the same thickness [m] all round."""
         return cls(thickness, thickness, thickness, thickness, thickness, thickness)
 
     def of(self, face: Face) -> float:
@@ -273,7 +273,7 @@ class Box(Protocol):
         ...
 
     def end_wall(self, bore: Bore) -> Literal["back", "front"]:
-        """The wall that a bore goes through."""
+        """Return the end wall that a bore goes through."""
         ...
 
     def bore_span(self, bore: Bore) -> tuple[float, float]:

@@ -59,6 +59,7 @@ def on_cylinders(
 
 
 def check_faces(box: BoxGeometry) -> None:
+    """Refuse a box with fillets or bolt circles, whose faces do not follow from its dimensions alone."""
     if box.fillets.inside or box.fillets.outside:
         raise MorphError("a box with rounded edges: its mesh is not moved, its dimensions cannot be fitted")
     if box.bolts or (box.feet is not None and box.feet.bolt_patch is not None):
@@ -84,6 +85,7 @@ def _blocks(box: BoxGeometry) -> list[Block]:
 
 
 def planes_of(box: BoxGeometry) -> list[Plane]:
+    """Return the plane faces of the blocks and bosses of a box."""
     planes = []
     for block in _blocks(box):
         low, high = np.array(block.low), np.array(block.high)
@@ -103,6 +105,7 @@ def planes_of(box: BoxGeometry) -> list[Plane]:
 
 
 def cylinders_of(box: BoxGeometry) -> list[Cylinder]:
+    """Return the cylinders of the bores and bosses of a box."""
     cylinders = []
     for bore in box.bores:
         center, span = np.array(bore.center[:2]), box.bore_span(bore)

@@ -77,7 +77,7 @@ def _body(gmsh: Any, box: BoxGeometry) -> Entities:
 
 
 def _cavity(gmsh: Any, box: BoxGeometry) -> Entities:
-    """The cavity less the parts inside it; below a cover it is open, and reaches beyond the joint."""
+    """Make the cavity less the parts inside it; below a cover it is open, and reaches beyond the joint."""
     block = layout.cavity_block(box)
     cover = box.cover
     if cover is not None:
@@ -99,7 +99,7 @@ def _cavity(gmsh: Any, box: BoxGeometry) -> Entities:
 
 
 def _inside_flange(gmsh: Any, box: BoxGeometry, cover: Cover) -> Entities:
-    """The frame inside the walls, its hole rounded as the cavity is."""
+    """Make the frame of an inside flange, its hole rounded as the cavity is."""
     layer = layout.flange_block(box, cover)
     assert layer is not None
     normal, way = FACES[cover.face]
@@ -115,7 +115,7 @@ def _inside_flange(gmsh: Any, box: BoxGeometry, cover: Cover) -> Entities:
 
 
 def _plate(gmsh: Any, box: BoxGeometry, cover: Cover) -> Entities:
-    """The cover with its bosses and ribs, less the bores."""
+    """Make the cover with its bosses and ribs, less the bores."""
     occ = gmsh.model.occ
     plate = [_rounded(gmsh, layout.plate_block(box, cover), box.fillets.outside, cover.face, sides_only=True)]
     additions = [_block(gmsh, layout.sunk_rib_block(box, rib)) for rib in box.ribs if layout.on_cover(box, rib)]
@@ -132,7 +132,7 @@ def _plate(gmsh: Any, box: BoxGeometry, cover: Cover) -> Entities:
 
 
 def _bores(gmsh: Any, box: BoxGeometry, cover: Cover | None = None) -> Entities:
-    """The cylinders that the bores cut out: all of them, or those in the cover."""
+    """Make the cylinders that the bores cut out: all of them, or those in the cover."""
     cuts = []
     for bore in box.bores:
         if cover is None or box.end_wall(bore) == cover.face:
@@ -162,7 +162,7 @@ def _block(gmsh: Any, block: Block) -> tuple[int, int]:
 def _rounded(
     gmsh: Any, block: Block, radius: float, sharp_face: str | None, *, sides_only: bool = False
 ) -> tuple[int, int]:
-    """A block with rounded edges, except those around one face; or only those at right angles to that face."""
+    """Make a block with rounded edges, except those around one face; or only those at right angles to that face."""
     entity = _block(gmsh, block)
     if radius == 0.0:
         return entity
@@ -194,6 +194,6 @@ def _bolt_circles(gmsh: Any, box: BoxGeometry, cover: Cover) -> Entities:
 
 
 def _imprinted(gmsh: Any, solid: Entities, circles: Entities) -> Entities:
-    """The solid with circles on its surface as faces of their own."""
+    """Imprint circles on the surface of a solid as separate faces."""
     _, pieces = gmsh.model.occ.fragment(solid, circles)
     return [entity for entity in pieces[0] if entity[0] == 3]

@@ -163,7 +163,7 @@ def _work(folder: Path, path: Path, reading_limit: float, time_limit: float) -> 
 
 
 def _errors_of(worker: subprocess.Popen[bytes], folder: Path, reading_limit: float, time_limit: float) -> bytes:
-    """Standard error of a worker that ends within the time limits; each stage is timed from its beginning."""
+    """Return the error output of a worker that ends within the time limits, each stage timed from its beginning."""
     begin = time.monotonic()
     since = {"": begin}
     while True:
@@ -193,7 +193,7 @@ def _stage(folder: Path) -> str:
 
 
 def _load(folder: Path, names: list[str]) -> Tetrahedra:
-    """The mesh from the arrays that the worker wrote, in the order of their names."""
+    """Load the mesh from the arrays that the worker wrote, in the order of their names."""
     arrays = {name: np.load(folder / f"{number}.npy", allow_pickle=False) for number, name in enumerate(names)}
     return Tetrahedra(
         points=arrays["points"],

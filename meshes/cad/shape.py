@@ -110,7 +110,7 @@ def _sewn(gmsh: Any, path: str, kind: str, n_faces: int) -> list[int]:
 
 
 def _shells(gmsh: Any, n_faces: int) -> list[list[int]]:
-    """The faces of the model in sets that are connected by their edges."""
+    """Group the faces of the model in shells, connected by their edges."""
     edges = {
         face: [edge for _, edge in gmsh.model.getBoundary([(2, face)], oriented=False)]
         for _, face in gmsh.model.getEntities(2)
@@ -208,13 +208,13 @@ def _overlapping(first: str, second: str, volume: float) -> GeometryError:
 
 
 def _label(gmsh: Any, dimension: int, tag: int) -> str:
-    """The entity's own name in the file: the last part of gmsh's path of labels; empty where it is a placeholder."""
+    """Return an entity's own name in the file, the last part of gmsh's path of labels; empty for a placeholder."""
     label = str(gmsh.model.getEntityName(dimension, tag)).rpartition("/")[2].strip()
     return "" if _UNNAMED.fullmatch(label) else label
 
 
 def _unique(names: list[str]) -> list[str]:
-    """The same names with numbers on those that stand for several solids."""
+    """Append numbers to the names that stand for several solids."""
     counts, seen = Counter(names), Counter[str]()
     result = []
     for name in names:

@@ -23,7 +23,7 @@ class ChosenUnit:
 
 
 def stated_unit(path: Path, kind: str) -> float | None:
-    """The unit of length that a STEP or IGES file itself states [m]; None where it states none, or several."""
+    """Read the unit of length that a STEP or IGES file states [m]; None where it states none, or several."""
     if kind == "brep":
         return None
     text = path.read_text(encoding="latin-1")
@@ -31,7 +31,7 @@ def stated_unit(path: Path, kind: str) -> float | None:
 
 
 def _step_unit(text: str) -> float | None:
-    """The length unit that the file's geometry is measured in, if there is but one.
+    """Read the unit of length of a STEP file's geometry [m]; None unless there is exactly one.
 
     An inch is itself defined by way of a millimetre, so that converted units, where there are any, decide.
     """
