@@ -37,7 +37,7 @@ def connection_ailments(mesh: Mesh) -> Iterator[Ailment]:
 
 
 def _parts(mesh: Mesh, shared: sparse.csr_array) -> IntArray:
-    """Connected parts of the mesh, numbered from the largest down.
+    """Label the connected parts of the mesh, from the largest down.
 
     ``shared`` is the incidence of elements and nodes, or of elements and faces, by which they are connected.
     """

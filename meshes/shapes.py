@@ -91,7 +91,7 @@ def reference_element(kind: str) -> Any:
 
 
 def node_order(kind: str) -> list[int]:
-    """Number in scikit-fem's element of each node in VTK's order."""
+    """Return the number in scikit-fem's element of each node in VTK's order."""
     return _element(kind)[1]
 
 

@@ -84,7 +84,7 @@ def _face_flags(mesh: Mesh, name: str) -> IntArray:
 
 
 def _positions(mesh: Mesh, solids: tuple[ElementBlock, ...]) -> IntArray:
-    """Number in the mesh of each element to write: merging puts the elements of one kind together."""
+    """Return the number in the mesh of each element to write: merging puts the elements of one kind together."""
     if solids is mesh.blocks:
         return np.arange(mesh.n_elements)
     first = np.cumsum([0, *(len(block) for block in mesh.blocks)])

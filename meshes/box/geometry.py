@@ -125,7 +125,7 @@ class BoxGeometry:
         )
 
     def bore_span(self, bore: Bore) -> tuple[float, float]:
-        """Ends of the bore's surface along z, boss included [m]."""
+        """Return the ends of the bore's surface along z, boss included [m]."""
         half = self.size[2] / 2
         length = bore.boss.length if bore.boss else 0.0
         if self.end_wall(bore) == "back":

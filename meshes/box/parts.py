@@ -277,5 +277,5 @@ class Box(Protocol):
         ...
 
     def bore_span(self, bore: Bore) -> tuple[float, float]:
-        """Ends of the bore's surface along z, boss included [m]."""
+        """Return the ends of the bore's surface along z, boss included [m]."""
         ...
