@@ -24,11 +24,11 @@ from .exact_roots import refine_each
 from .harmonic import finite_values
 from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
-from .projection import Projection, basis_for
+from .projection import Projection
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, retied, whirl_chain, whirl_reach
+from .spatial_chain import SpatialChain, retied, whirl_reach
 from .spatial_ties import block_sets
-from .whirl import START_REACH, is_undriven
+from .whirl import START_REACH, WhirlSolver
 from .whirl_certificate import NO_OSCILLATION
 
 FloatArray = npt.NDArray[np.float64]
@@ -36,7 +36,7 @@ ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
 
 # A crossing whose root lies further off than this, as a part of it, belongs to another branch.
-LONGEST_JUMP = 0.1
+CROSSING_JUMP = 0.1
 CROSSING_STEPS = 30
 CROSSING_TOLERANCE = 1e-11
 
@@ -97,8 +97,7 @@ class Campbell:
     direction: FloatArray
     axial_share: FloatArray
     proved: BoolArray
-    rotor: Rotor = field(repr=False)
-    bearings: tuple[Bearing, ...] = field(repr=False)
+    solver: WhirlSolver = field(repr=False)
     blocks: tuple[tuple[int, ...], ...] = field(repr=False)
 
     @property
@@ -145,11 +144,11 @@ class Campbell:
         for _ in range(CROSSING_STEPS):
             part = weight[0] / (weight[0] - weight[1])
             speed = low + part * (high - low)
-            tied = retied(chain, self.bearings, speed)
+            tied = retied(chain, self.solver.bearings, speed)
             start = np.array([below + part * (above - below)])
             root = refine_each(tied, start, np.array([speed]))
             value = complex(root.eigenvalues[0])
-            if root.residuals[0] > ACCEPTED or abs(value - start[0]) > LONGEST_JUMP * abs(value):
+            if root.residuals[0] > ACCEPTED or abs(value - start[0]) > CROSSING_JUMP * abs(value):
                 break
             direction, along = characters(tied, root, np.array([speed]))[0].tolist()
             gap = value.imag - order * abs(speed)
@@ -166,8 +165,8 @@ class Campbell:
 
     def _chain(self, branch: int, highest: float, speed: float) -> SpatialChain:
         sets = self.blocks[branch]
-        constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.bearings]
-        return whirl_chain(self.rotor, constant, sets, whirl_reach(START_REACH * highest, speed))
+        constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.solver.bearings]
+        return self.solver.equations(constant, sets, whirl_reach(START_REACH * highest, speed))
 
 
 def campbell(
@@ -179,6 +178,7 @@ def campbell(
     count: int | None = None,
     basis: LateralModes | None = None,
     prove_all: bool = False,
+    solver: WhirlSolver | None = None,
 ) -> Campbell:
     """Exact whirl modes over a range of speeds.
 
@@ -196,6 +196,8 @@ def campbell(
         From `rotors.whirl_basis`, to spare building it.
     prove_all
         Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
+    solver
+        A `rotors.WhirlSolver` of the same rotor and bearings, to share what it holds.
 
     Raises
     ------
@@ -206,7 +208,10 @@ def campbell(
     """
     turning = finite_values("speeds", speeds)
     require(bool((np.diff(turning) > 0.0).all()), "speeds", turning.tolist(), "ascending speeds")
-    chosen = basis_for(rotor, bearings, frequency_limit, count, basis)
+    shared = WhirlSolver(rotor, bearings, basis) if solver is None else solver
+    same = shared.rotor is rotor and shared.bearings == tuple(bearings)
+    require(same, "rotor of the solver", shared.rotor.name, f"{rotor.name}, on the same bearings")
+    chosen = shared.planar_basis(frequency_limit, count)
     tabled = any(bearing.speeds is not None for bearing in bearings)
     at_speeds = [[b.at_speed(float(s)) for b in bearings] for s in turning] if tabled else [list(bearings)]
     sets = block_sets([bearing for row in at_speeds for bearing in row])
@@ -223,13 +228,13 @@ def campbell(
         starts.append(np.where(oscillates, values, np.nan))
     limits = limits_behind(starts, frequency_limit, wanted)
     least = NO_OSCILLATION * chosen.floor
-    undriven = is_undriven(rotor, [bearing for row in at_speeds for bearing in row])
+    undriven = shared.is_undriven([bearing for row in at_speeds for bearing in row])
     highest = max(whirl_reach(START_REACH * r, float(s)) for r, s in zip(limits, turning, strict=True))
     branches: list[Branch] = []
     owners: list[tuple[int, ...]] = []
     proved = np.ones(turning.size, dtype=np.bool_)
     for blocks, values in zip(sets, starts, strict=True):
-        chain = whirl_chain(rotor, at_speeds[0], blocks, highest)
+        chain = shared.equations(at_speeds[0], blocks, highest)
         chains = [retied(chain, row, 0.0) for row in at_speeds] if tabled else [chain] * turning.size
         roots = roots_at_speeds(chains, values, turning, limits)
         proved &= proved_at(chains, roots, turning, least, limits, undriven, prove_all)
@@ -245,8 +250,7 @@ def campbell(
         direction=np.stack([branches[k].direction for k in order], axis=1) if order else empty,
         axial_share=np.stack([branches[k].axial_share for k in order], axis=1) if order else empty,
         proved=proved,
-        rotor=rotor,
-        bearings=tuple(bearings),
+        solver=shared,
         blocks=tuple(owners[k] for k in order),
     )
 

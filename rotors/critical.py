@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from .bearing import Bearing, undamped
 from .campbell import campbell
-from .certificate import ACCEPTED
+from .certificate import ACCEPTED, ModeCertificate
 from .errors import require
 from .exact_roots import SYNCHRONOUS
 from .lateral import LateralModes
@@ -16,8 +16,8 @@ from .planar_basis import DEFAULT_COUNT
 from .projection import Projection, basis_for
 from .shaft import Rotor
 from .spatial_ties import block_sets
-from .whirl import MOSTLY_AXIAL, WhirlRoots, certified_whirl
-from .whirl_certificate import NO_OSCILLATION, WhirlCertificate
+from .whirl import MOSTLY_AXIAL, WhirlRoots, WhirlSolver, certified_whirl
+from .whirl_certificate import NO_OSCILLATION
 
 # Speeds at which tables are looked at for critical ones, and how far beyond them branches are followed.
 TABLE_SPEEDS = 60
@@ -45,7 +45,7 @@ class CriticalSpeeds:
     speeds: FloatArray
     direction: FloatArray
     axial_share: FloatArray
-    certificate: WhirlCertificate
+    certificate: ModeCertificate
 
     @property
     def lateral(self) -> "CriticalSpeeds":
@@ -122,17 +122,17 @@ def _tabled_critical_speeds(
     )
     found = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
     speeds = np.array([crossing.speed for crossing in found])
-    proof = WhirlCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
+    proof = ModeCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
     direction = np.array([crossing.direction for crossing in found])
     return CriticalSpeeds(speeds, direction, np.array([crossing.axial_share for crossing in found]), proof)
 
 
 def certified_criticals(
     rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[Projection], limit: float | None, count: int | None
-) -> tuple[WhirlRoots, WhirlCertificate]:
+) -> tuple[WhirlRoots, ModeCertificate]:
     """Synchronous whirl of undamped bearings below a limit, or the lowest few, for some sets of tied motions."""
     return certified_whirl(
-        rotor,
+        WhirlSolver(rotor, bearings),
         bearings,
         [(one.blocks, one.critical(bearings)) for one in sets],
         SYNCHRONOUS,

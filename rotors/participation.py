@@ -13,10 +13,9 @@ import numpy.typing as npt
 
 from .axial import AxialModes
 from .lateral import LateralModes
-from .lumped import station_inertias
 from .quadrature import gauss_rule
 from .segment import Segment
-from .shaft import Rotor
+from .shaft import Rotor, station_inertias
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -8,18 +8,17 @@ import numpy.typing as npt
 
 from .bearing import Bearing, undamped
 from .buckling import require_unbuckled
-from .certificate import ModeCertificate
+from .certificate import ModeCertificate, combined_certificate
 from .chain import Chain
 from .errors import require, require_count, require_finite
 from .lines import Line, cut_together
 from .planar_basis import DEFAULT_COUNT
 from .projection import slowest
 from .root_count import counts_below, isolate
-from .rotor_lines import FreeLines, bending_lines
+from .rotor_lines import bending_lines
 from .search import chain_that_holds, limit_above, proved_modes
 from .shaft import Rotor
 from .whirl import solve_whirl
-from .whirl_certificate import WhirlCertificate
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -44,7 +43,7 @@ class RestFrequencies:
 
     frequencies: FloatArray
     axial_share: FloatArray
-    certificate: ModeCertificate | WhirlCertificate
+    certificate: ModeCertificate
 
 
 def rest_frequencies(
@@ -94,7 +93,7 @@ def rest_frequencies(
         expected = counts_below(chains, limit)
         found = [isolate(chain, number, limit) for chain, number in zip(chains, expected, strict=True)]
     else:
-        chains, shares = _shares(rotor.once(FreeLines).bending, lines, wanted or DEFAULT_COUNT)
+        chains, shares = _shares(lines, wanted or DEFAULT_COUNT)
         if alike:
             chains, shares = chains[:1], shares[:1]
         found = [isolate(chain, share, chain.highest) for chain, share in zip(chains, shares, strict=True)]
@@ -111,15 +110,9 @@ def rest_frequencies(
         if number
     ]
     if alike:
-        solved, expected = solved * 2, expected * 2
+        solved = solved * 2
     frequencies = np.sort(np.concatenate([modes.frequencies for modes in solved] or [np.zeros(0)]))
-    certificate = ModeCertificate(
-        limit=limit,
-        expected=sum(expected),
-        found=frequencies.size,
-        max_residual=max((modes.certificate.max_residual for modes in solved), default=0.0),
-        orthonormality=max((modes.certificate.orthonormality for modes in solved), default=0.0),
-    )
+    certificate = combined_certificate([modes.certificate for modes in solved], limit, "wittrick-williams")
     return RestFrequencies(frequencies, np.zeros(frequencies.size), certificate)
 
 
@@ -129,17 +122,17 @@ def _is_planar(bearing: Bearing) -> bool:
     return bearing.pedestal is None and np.count_nonzero(stiffness) == np.count_nonzero(stiffness.diagonal())
 
 
-def _shares(bare: Line, lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
+def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
     """Chains of the planes, and how many modes each gives to the lowest ``count`` of both.
 
     Of a lumped rotor that has fewer, all.
     """
     # Distributed mass has no end of modes; of lumped ones, constraints take some in one plane or the other.
-    available = [line.available_modes for line in lines] if bare.available_modes < np.inf else [np.inf]
+    available = [line.available_modes for line in lines] if lines[0].available_modes < np.inf else [np.inf]
     if sum(available) <= count:
         most = [int(number) for number in available]
         return [chain_that_holds(line, number) for line, number in zip(lines, most, strict=True)], most
-    low, high = 0.0, bare.likely_frequency((count + 1) // 2)
+    low, high = 0.0, lines[0].likely_frequency((count + 1) // 2)
     while True:
         chains = cut_together(lines, high)
         shares = counts_below(chains, high)

@@ -101,28 +101,13 @@ def basis_for(
 ) -> PlanarBasis:
     """From the given basis if it fits the bearings, or a new one; checks the limit and the count."""
     require_count("count of modes", count)
+    for bearing in bearings:
+        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
     if basis is None:
-        return rotor.once(_basis_of_bearings, tuple(bearings), frequency_limit, count)
-    return rotor.once(_basis_of_modes, tuple(bearings), basis)
-
-
-def _basis_of_bearings(
-    rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
-) -> PlanarBasis:
-    _require_on_shaft(rotor, bearings)
-    return planar_basis(rotor, bearings, frequency_limit, count)
-
-
-def _basis_of_modes(rotor: Rotor, bearings: Sequence[Bearing], basis: LateralModes) -> PlanarBasis:
-    _require_on_shaft(rotor, bearings)
+        return planar_basis(rotor, bearings, frequency_limit, count)
     expected = mean_supports(bearings)
     require(basis.supports == expected, "supports of the basis", basis.supports, f"{expected}, the bearings'")
     return PlanarBasis.of_modes(basis, bearings)
-
-
-def _require_on_shaft(rotor: Rotor, bearings: Sequence[Bearing]) -> None:
-    for bearing in bearings:
-        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
 
 
 def slowest(bearing: Bearing) -> float:

@@ -259,14 +259,13 @@ def spatial_chain(
 
 
 def whirl_chain(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
-    """The equations of `spatial_chain` in runs, which the rotor holds."""
-    # In steps, so that the next speed asks for the same.
-    steps = math.ceil(REACH_STEPS * math.log2(highest))
-    return rotor.once(_chain_in_runs, tuple(bearings), blocks, 2.0 ** (steps / REACH_STEPS))
+    """The equations of `spatial_chain` in runs, for whirl up to a planar frequency of ``highest`` rad/s."""
+    return spatial_chain(rotor, bearings, blocks, reach_step(highest)).in_runs()
 
 
-def _chain_in_runs(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
-    return spatial_chain(rotor, bearings, blocks, highest).in_runs()
+def reach_step(highest: float) -> float:
+    """The next of the frequencies (rad/s) that equations are made for, so that those of near speeds are the same."""
+    return 2.0 ** (math.ceil(REACH_STEPS * math.log2(highest)) / REACH_STEPS)
 
 
 def retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:

@@ -8,29 +8,32 @@ and their number is proved (`rotors.whirl_certificate`).
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from .bearing import Bearing
+from .certificate import ModeCertificate, combined_certificate
 from .coalesced_roots import refine_roots
 from .errors import require_finite
 from .exact_roots import ExactRoots, Speed, constant_speed
 from .lateral import LateralModes
-from .planar_basis import DEFAULT_COUNT
-from .projection import basis_for, pencils
+from .planar_basis import DEFAULT_COUNT, PlanarBasis
+from .projection import Pencil, basis_for, pencils
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, whirl_chain, whirl_reach
+from .spatial_chain import SpatialChain, reach_step, whirl_chain, whirl_reach
 from .spatial_field import SpatialMotion
-from .whirl_certificate import NO_OSCILLATION, WhirlCertificate, certified_roots, oscillating
+from .whirl_certificate import NO_OSCILLATION, certified_roots, oscillating
 from .whirl_count import is_conservative
 from .whirl_energy import StrainShares, strain_shares
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+Made = TypeVar("Made")
 
 # How far beyond the limit starting values are still followed: the projection's lie above the roots.
 START_REACH = 1.2
@@ -42,6 +45,8 @@ WIDE_GAP = 0.01
 MOSTLY_AXIAL = 0.9
 # A limit in a gap narrower than this would be too near a root to count by.
 LEAST_GAP = 1e-6
+# Number of results that a solver holds, those made last.
+MOST_HELD = 16
 
 
 @dataclass(frozen=True)
@@ -64,7 +69,7 @@ class WhirlModes:
 
     speed: float
     eigenvalues: ComplexArray
-    certificate: WhirlCertificate
+    certificate: ModeCertificate
     bearings: tuple[Bearing, ...] = field(repr=False)
     roots: "WhirlRoots" = field(repr=False)
 
@@ -149,6 +154,82 @@ class WhirlModes:
         return np.asarray(np.divide(forward - backward, total, out=np.zeros_like(total), where=total > 0.0))
 
 
+@dataclass(frozen=True, eq=False)
+class WhirlSolver:
+    """Whirl of one rotor on its bearings at many speeds.
+
+    The planar basis, the projected systems and the exact equations do not change with the speed: the solver makes them
+    when they are first needed and holds them.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and its bearings; tables over speed are read at each speed.
+    basis
+        From `rotors.whirl_basis`, of the same rotor and bearings; without it the solver makes its own.
+
+    Examples
+    --------
+    >>> solver = WhirlSolver(shaft, bearings)                         # doctest: +SKIP
+    >>> modes = [solver.modes(speed, count=8) for speed in speeds]    # doctest: +SKIP
+    """
+
+    rotor: Rotor
+    bearings: Sequence[Bearing]
+    basis: LateralModes | None = None
+    _held: dict[tuple[Hashable, ...], object] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "bearings", tuple(self.bearings))
+
+    def modes(self, speed: float, *, frequency_limit: float | None = None, count: int | None = None) -> WhirlModes:
+        """Complex modes at a speed of rotation (rad/s), certified complete; arguments and errors of `solve_whirl`."""
+        require_finite("speed", speed)
+        basis = self.planar_basis(frequency_limit, count)
+        constant = tuple(bearing.at_speed(speed) for bearing in self.bearings)
+        turning = np.array([speed])
+        roots, certificate = certified_whirl(
+            self,
+            constant,
+            [(one.blocks, one.eigenvalues(turning)[0]) for one in self._pencils(constant, basis)],
+            constant_speed(speed),
+            speed,
+            NO_OSCILLATION * basis.floor,
+            frequency_limit,
+            None if frequency_limit is not None else count or DEFAULT_COUNT,
+        )
+        return WhirlModes(speed, roots.eigenvalues, certificate, constant, roots)
+
+    def planar_basis(self, frequency_limit: float | None, count: int | None) -> PlanarBasis:
+        """Planar basis for whirl below a limit (rad/s), or for the lowest ``count`` modes."""
+        return self._hold(
+            ("basis", frequency_limit, count),
+            lambda: basis_for(self.rotor, self.bearings, frequency_limit, count, self.basis),
+        )
+
+    def equations(self, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
+        """Exact equations of some tied motions on bearings of constant coefficients; see `whirl_chain`."""
+        return self._hold(
+            ("equations", tuple(bearings), blocks, reach_step(highest)),
+            lambda: whirl_chain(self.rotor, bearings, blocks, highest),
+        )
+
+    def is_undriven(self, bearings: Sequence[Bearing]) -> bool:
+        """Whether roots may be counted by inertia: nothing damps or drives, and all stiffness is positive."""
+        return self._hold(("undriven", tuple(bearings)), lambda: is_undriven(self.rotor, bearings))
+
+    def _pencils(self, bearings: tuple[Bearing, ...], basis: PlanarBasis) -> list[Pencil]:
+        return self._hold(("pencils", bearings, basis), lambda: pencils(self.rotor, bearings, basis))
+
+    def _hold(self, key: tuple[Hashable, ...], make: Callable[[], Made]) -> Made:
+        if key not in self._held:
+            made = make()
+            if len(self._held) >= MOST_HELD:
+                self._held.pop(next(iter(self._held)), None)
+            self._held[key] = made
+        return cast(Made, self._held[key])
+
+
 def solve_whirl(
     rotor: Rotor,
     bearings: Sequence[Bearing],
@@ -159,6 +240,8 @@ def solve_whirl(
     basis: LateralModes | None = None,
 ) -> WhirlModes:
     """Complex modes of the turning rotor on grounded bearings or pedestals, certified complete.
+
+    For several speeds of one rotor a `WhirlSolver` holds what they share.
 
     Parameters
     ----------
@@ -171,7 +254,7 @@ def solve_whirl(
     count
         How many modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with less has less.
     basis
-        From `rotors.whirl_basis`, of the same rotor and bearings; without it the rotor makes and holds one of its own.
+        From `rotors.whirl_basis`, of the same rotor and bearings; without it one is made.
 
     Raises
     ------
@@ -180,22 +263,7 @@ def solve_whirl(
     IncompleteModesError
         The modes fail their own proof, or the basis does.
     """
-    require_finite("speed", speed)
-    chosen = basis_for(rotor, bearings, frequency_limit, count, basis)
-    constant = tuple(bearing.at_speed(speed) for bearing in bearings)
-    turning = np.array([speed])
-    wanted = None if frequency_limit is not None else count or DEFAULT_COUNT
-    roots, certificate = certified_whirl(
-        rotor,
-        constant,
-        [(one.blocks, one.eigenvalues(turning)[0]) for one in rotor.once(pencils, constant, chosen)],
-        constant_speed(speed),
-        speed,
-        NO_OSCILLATION * chosen.floor,
-        frequency_limit,
-        wanted,
-    )
-    return WhirlModes(speed, roots.eigenvalues, certificate, constant, roots)
+    return WhirlSolver(rotor, bearings, basis).modes(speed, frequency_limit=frequency_limit, count=count)
 
 
 @dataclass(frozen=True)
@@ -236,7 +304,7 @@ class WhirlRoots:
 
 
 def certified_whirl(
-    rotor: Rotor,
+    solver: WhirlSolver,
     bearings: Sequence[Bearing],
     starts: Sequence[tuple[tuple[int, ...], ComplexArray]],
     speed: Speed,
@@ -244,8 +312,10 @@ def certified_whirl(
     least: float,
     limit: float | None,
     count: int | None,
-) -> tuple[WhirlRoots, WhirlCertificate]:
-    """Every motion below a limit, or the lowest ``count``, from starting values for every set of tied motions.
+) -> tuple[WhirlRoots, ModeCertificate]:
+    """Every motion below a limit, or the lowest ``count``, on bearings of constant coefficients.
+
+    ``starts`` are starting values for every set of tied motions.
 
     ``turning`` is the speed at which pieces must be short enough, rad/s; None where it follows the frequency.
     """
@@ -260,7 +330,7 @@ def certified_whirl(
         reach = START_REACH * limit
     highest = max(START_REACH * reach, 10.0 * least)
     highest = whirl_reach(highest, highest if turning is None else turning)
-    chains = [whirl_chain(rotor, bearings, blocks, highest) for blocks, _ in starts]
+    chains = [solver.equations(bearings, blocks, highest) for blocks, _ in starts]
     near = [bisect_right(own, reach) for own in sizes]
     refined = [refine_roots(chain, values[:k], speed) for chain, values, k in zip(chains, kept, near, strict=True)]
     if limit is None:
@@ -268,7 +338,7 @@ def certified_whirl(
         sector = oscillating(least, _limit_behind(refined, least, count))
     else:
         sector = oscillating(least, limit)
-    conservative = rotor.once(is_undriven, tuple(bearings))
+    conservative = solver.is_undriven(bearings)
     parts = [
         certified_roots(chain, roots, speed, sector, conservative, values[k:])
         for chain, roots, values, k in zip(chains, refined, kept, near, strict=True)
@@ -276,13 +346,7 @@ def certified_whirl(
     found = _all([roots.eigenvalues for roots, _ in parts])
     order = np.lexsort((found.imag, np.abs(found)))[:count]
     proofs = [proof for _, proof in parts]
-    certificate = WhirlCertificate(
-        sector.most,
-        sum(proof.expected for proof in proofs),
-        sum(proof.found for proof in proofs),
-        max(proof.max_residual for proof in proofs),
-        proofs[0].method,
-    )
+    certificate = combined_certificate(proofs, sector.most, proofs[0].method)
     return WhirlRoots(chains, [roots for roots, _ in parts], speed, order), certificate
 
 

@@ -1,10 +1,9 @@
 """Whirl modes of one chain, complete by proof: refined, counted, and searched for again where one is missing."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
+from .certificate import ModeCertificate
 from .coalesced_roots import refine_roots, with_circle
 from .errors import IncompleteModesError
 from .exact_roots import ExactRoots, Speed, distinct
@@ -21,37 +20,6 @@ MOST_CUTS = 24
 MOST_NUDGES = 6
 
 
-@dataclass(frozen=True)
-class WhirlCertificate:
-    """Proof that a set of whirl modes is complete.
-
-    Attributes
-    ----------
-    limit
-        rad/s: every oscillating motion with |λ| below it is claimed.
-    expected
-        How many there are by the count.
-    found
-        How many independent roots of the exact equations are held there.
-    max_residual
-        The largest last correction of a root, as a part of it.
-    method
-        ``"inertia"``: negative eigenvalues of the Hermitian dynamic stiffness (`rotors.whirl_count`), or
-        ``"winding"``: turns of the determinant round the region (`rotors.winding`).
-    """
-
-    limit: float
-    expected: int
-    found: int
-    max_residual: float
-    method: str
-
-    @property
-    def complete(self) -> bool:
-        """Whether every motion below the limit is held."""
-        return self.found == self.expected
-
-
 def oscillating(least: float, most: float) -> Sector:
     """The sector of motions that oscillate, stable or not."""
     return Sector(least, most, NO_OSCILLATION, np.pi - NO_OSCILLATION)
@@ -64,7 +32,7 @@ def certified_roots(
     sector: Sector,
     conservative: bool,
     beyond: ComplexArray = NONE,
-) -> tuple[ExactRoots, WhirlCertificate]:
+) -> tuple[ExactRoots, ModeCertificate]:
     """All roots in a sector, starting from those known, and the proof; near values of others spare it some work.
 
     Raises
@@ -78,7 +46,7 @@ def certified_roots(
     if held.eigenvalues.size < expected:
         held = search(chain, roots, speed, sector)
     found = held.eigenvalues.size
-    certificate = WhirlCertificate(sector.most, expected, found, max(held.residuals.tolist(), default=0.0), method)
+    certificate = ModeCertificate(sector.most, expected, found, max(held.residuals.tolist(), default=0.0), method)
     if not certificate.complete:
         raise IncompleteModesError(
             f"{found} whirl modes are found below {sector.most:g} rad/s, but the exact equations have {expected} "
