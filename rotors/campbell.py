@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .bearing import Bearing
+from .branch_following import BranchPoint, refined_crossing
 from .branches import Branch, characters, followed
 from .campbell_roots import limits_behind, proved_at, roots_at_speeds
 from .certificate import ACCEPTED
@@ -34,6 +35,8 @@ from .whirl_certificate import NO_OSCILLATION
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
+# With whirl direction and axial share in place of the shape.
+Point = BranchPoint[tuple[float, float]]
 
 # A crossing whose root lies further off than this, as a part of it, belongs to another branch.
 CROSSING_JUMP = 0.1
@@ -133,35 +136,32 @@ class Campbell:
         return tuple(sorted(found, key=lambda crossing: abs(crossing.speed)))
 
     def _crossing(self, branch: int, left: int, order: float) -> Crossing:
-        """Regula falsi with Illinois' halving, each λ refined exactly from between its neighbours."""
-        low, high = (float(speed) for speed in self.speeds[left : left + 2])
-        ends = self.eigenvalues[left : left + 2, branch]
-        gaps = ends.imag - order * np.abs(self.speeds[left : left + 2])
-        below, above = complex(ends[0]), complex(ends[1])
-        weight = [float(gaps[0]), float(gaps[1])]
-        chain = self._chain(branch, float(np.abs(ends).max()), max(abs(low), abs(high)))
-        direction, along = float(self.direction[left, branch]), float(self.axial_share[left, branch])
-        for _ in range(CROSSING_STEPS):
-            part = weight[0] / (weight[0] - weight[1])
-            speed = low + part * (high - low)
+        """The crossing between two neighbouring speeds, each λ on the way refined from between its neighbours."""
+        speeds, ends = self.speeds[left : left + 2].tolist(), self.eigenvalues[left : left + 2, branch]
+        chain = self._chain(branch, float(np.abs(ends).max()), max(abs(speeds[0]), abs(speeds[1])))
+
+        def solve(part: float, low: Point, high: Point) -> Point | None:
+            speed = low.speed + part * (high.speed - low.speed)
             tied = retied(chain, self.solver.bearings, speed)
-            start = np.array([below + part * (above - below)])
+            start = np.array([low.eigenvalue + part * (high.eigenvalue - low.eigenvalue)])
             root = refine_each(tied, start, np.array([speed]))
             value = complex(root.eigenvalues[0])
             if root.residuals[0] > ACCEPTED or abs(value - start[0]) > CROSSING_JUMP * abs(value):
-                break
+                return None
             direction, along = characters(tied, root, np.array([speed]))[0].tolist()
-            gap = value.imag - order * abs(speed)
-            if abs(gap) <= CROSSING_TOLERANCE * abs(value):
-                return Crossing(speed, value, order, direction, branch, along)
-            if (gap > 0.0) == (weight[0] > 0.0):
-                low, below, weight = speed, value, [gap, 0.5 * weight[1]]
-            else:
-                high, above, weight = speed, value, [0.5 * weight[0], gap]
-        raise IncompleteModesError(
-            f"the crossing of order {order:g} between {self.speeds[left]:g} and {self.speeds[left + 1]:g} rad/s does "
-            "not settle; ask for more speeds about there"
-        )
+            return BranchPoint(speed, value, value.imag - order * abs(speed), (direction, along))
+
+        points = [
+            BranchPoint(speed, complex(value), float(value.imag - order * abs(speed)), (np.nan, np.nan))
+            for speed, value in zip(speeds, ends, strict=True)
+        ]
+        found = refined_crossing(points[0], points[1], solve, tolerance=CROSSING_TOLERANCE, steps=CROSSING_STEPS)
+        if found is None:
+            raise IncompleteModesError(
+                f"the crossing of order {order:g} between {speeds[0]:g} and {speeds[1]:g} rad/s does "
+                "not settle; ask for more speeds about there"
+            )
+        return Crossing(found.speed, found.eigenvalue, order, found.shape[0], branch, found.shape[1])
 
     def _chain(self, branch: int, highest: float, speed: float) -> SpatialChain:
         sets = self.blocks[branch]

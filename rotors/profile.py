@@ -9,6 +9,7 @@ piece for every change of a diameter by about a third.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -65,6 +66,11 @@ class Profile:
     coefficients: FloatArray
     extremes: FloatArray
     uniform: npt.NDArray[np.bool_]
+
+    @cached_property
+    def mean_bending_stiffness(self) -> float:
+        """Geometric mean of the spans' least EI, N·m²."""
+        return float(np.exp(np.log(self.extremes[self.kind, 1]).mean()))
 
 
 def profile_of(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Profile:

@@ -22,7 +22,7 @@ def free_bending_shaft(rotor: Rotor) -> Line:
     """A rotor's bending in one plane without supports."""
     profile, length = rotor.profile, rotor.length
     stiffness = profile.extremes[:, :2]
-    force = float(np.exp(np.log(stiffness[profile.kind, 1]).mean())) / length**2
+    force = profile.mean_bending_stiffness / length**2
     distributed = float(rotor.mass_model == "distributed")
     units = [force, force * length**2, distributed * length**2 / force, distributed / force, 1.0, 1.0 / force]
     per_node = np.array([length / force, 1.0 / (force * length)])
