@@ -5,9 +5,9 @@
 The rotor is that of Friswell's example 5.9.2 with damped bearings, once for each number of ROSS's elements; it has a
 segment for each of them, so that both programs are given the same file. Of the plain shaft we make few pieces, as equal
 segments are one; of the stepped shaft, on which every diameter is another by up to two parts in a hundred, as many as
-ROSS does. Both are warm: compiled code is compiled, a solver holds what the speed does not change, as ROSS's rotor holds
-its matrices, and every call has a speed of its own, because ROSS keeps what it solved before. One row has a rotor of ours
-that is new in every call, while ROSS's is not.
+ROSS does. Both are warm: compiled code is compiled, a solver holds what the speed does not change, as the rotor of ROSS
+does its matrices, and every call has a speed of its own, because ROSS keeps what it solved before. One row has a rotor
+of ours that is new in every call, while the one of ROSS is not.
 
 Times are processor times, of runs in turn; each that counts follows two of the same that do not, as the other program
 leaves nothing of it in the caches; but for ROSS's Campbell diagram, which takes seconds. Shown are the medians of both,

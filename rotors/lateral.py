@@ -121,6 +121,11 @@ class LateralModes:
         return lengths / whole, supports / whole
 
     @property
+    def free_stiffness(self) -> FloatArray:
+        """diag(ω²) less the supports: stiffness of the shaft alone, (m, m), 1/s²."""
+        return np.diag(self.frequencies**2) - self.support_matrix
+
+    @property
     def support_matrix(self) -> FloatArray:
         """Φᵀ k Φ of the finite supports, (m, m), N/m per unit modal mass."""
         total = np.zeros((self.count, self.count))

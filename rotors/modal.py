@@ -70,7 +70,7 @@ class ModalRotor:
     @property
     def gyroscopic(self) -> FloatArray:
         """J ⊗ G over (q_x, q_y), (2 b, 2 b): times the speed of rotation [rad/s] it joins the damping."""
-        return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), self.lateral.polar_inertia_matrix)
+        return gyroscopic_matrix(self.lateral.polar_inertia_matrix)
 
     @property
     def compensation(self) -> FloatArray:
@@ -99,23 +99,65 @@ class ModalRotor:
         shares = (self.lateral.evaluate(self.ports)[0] / frequencies[:, None]) ** 2
         return float((shares[proper:].sum(axis=0) / shares.sum(axis=0)).max())
 
+    @property
+    def size(self) -> int:
+        """Number of coordinates n: two planes of bending, torsion, and motion along the axis, in this order."""
+        return 2 * self.lateral.count + self.torsional.count + (0 if self.axial is None else self.axial.count)
+
+    def motions(self, at: float) -> FloatArray:
+        """Motion of the section at a place (m): x, y, z, rotations about x and y, by all coordinates, (5, n)."""
+        bending = 2 * self.lateral.count
+        along = np.zeros((0, 1)) if self.axial is None else self.axial.evaluate([at])
+        (section,) = section_motions(*self.lateral.evaluate([at]), along)
+        rows = np.zeros((5, self.size))
+        rows[:, :bending] = section[:, :bending]
+        rows[:, bending + self.torsional.count :] = section[:, bending:]
+        return rows
+
+    def rotation(self, at: float) -> FloatArray:
+        """Rotation about the axis of the section at a place (m), by all coordinates, (n,)."""
+        row, first = np.zeros(self.size), 2 * self.lateral.count
+        row[first : first + self.torsional.count] = self.torsional.evaluate([at])[:, 0]
+        return row
+
     def _bearing_sum(self, what: str, chosen: FloatArray) -> FloatArray:
         """Σ of the chosen entries, (2, 2), of the bearings' matrices, on displacements and on slopes."""
         size = 2 * self.lateral.count
         total = np.zeros((size, size))
+        # The plane that x, y and the rotations about x and y belong to; z moves no bending coordinate.
+        plane = np.array([0, 1, 0, 1, 0])
         for bearing in self.bearings:
-            spatial = bearing.spatial_stiffness if what == "stiffness" else bearing.spatial_damping
-            displacement, slope = (part[:, 0] for part in self.lateral.evaluate([bearing.at]))
-            # Motions x, y, rotation about x (minus the slope in y) and about y (the slope in x), by plane.
-            none = np.zeros_like(displacement)
-            motions = np.array([[displacement, none], [none, displacement], [none, -slope], [slope, none]]).reshape(
-                4, size
-            )
-            kept = spatial[np.ix_([0, 1, 3, 4], [0, 1, 3, 4])]
-            # The plane that each of the four motions belongs to.
-            plane = np.array([0, 1, 1, 0])
-            total += motions.T @ (kept * chosen[np.ix_(plane, plane)]) @ motions
+            matrix = bearing.spatial_stiffness if what == "stiffness" else bearing.spatial_damping
+            motions = self.motions(bearing.at)[:, :size]
+            total += motions.T @ (matrix * chosen[np.ix_(plane, plane)]) @ motions
         return total
+
+
+def gyroscopic_matrix(polar_inertia: FloatArray) -> FloatArray:
+    """J ⊗ G over the coordinates (q_x, q_y) of both planes, (2 b, 2 b), of G (b, b): per rad/s of the speed."""
+    return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), polar_inertia)
+
+
+def section_motions(displacement: FloatArray, slope: FloatArray, along: FloatArray) -> FloatArray:
+    """Motions of sections by the coordinates of both planes and of the axis, (p, 5, 2 b + a).
+
+    Rows are x, y, z and the rotations about x and y: the slope in x is the rotation about y, the slope in y minus that
+    about x.
+
+    Parameters
+    ----------
+    displacement, slope
+        (b, p): of the planar motions at p places.
+    along
+        (a, p): displacements of the axial motions.
+    """
+    b, places = displacement.shape
+    rows = np.zeros((places, 5, 2 * b + along.shape[0]))
+    rows[:, 0, :b] = rows[:, 1, b : 2 * b] = displacement.T
+    rows[:, 2, 2 * b :] = along.T
+    rows[:, 3, b : 2 * b] = -slope.T
+    rows[:, 4, :b] = slope.T
+    return rows
 
 
 def modal_rotor(

@@ -69,7 +69,7 @@ class PlanarBasis:
             displacement, slope = modes.evaluate([bearing.at for bearing in bearings])
         moving = modes.frequencies[modes.frequencies > 0.0]
         return cls(
-            stiffness=np.diag(modes.frequencies**2) - modes.support_matrix,
+            stiffness=modes.free_stiffness,
             polar_inertia=modes.polar_inertia_matrix,
             displacement=displacement,
             slope=slope,

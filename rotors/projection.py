@@ -25,6 +25,7 @@ from .axial import solve_axial_modes
 from .bearing import Bearing
 from .errors import require, require_count, require_finite
 from .lateral import LateralModes, solve_lateral_modes
+from .modal import gyroscopic_matrix, section_motions
 from .planar_basis import (
     BASIS_REACH,
     LEAST_MODES,
@@ -170,8 +171,7 @@ class Projection:
         else:
             stiffness[:b, :b] += self.basis.stiffness
             stiffness[b : 2 * b, b : 2 * b] += self.basis.stiffness
-            gyroscopic[:b, b : 2 * b] = self.basis.polar_inertia
-            gyroscopic[b : 2 * b, :b] = -self.basis.polar_inertia
+            gyroscopic[: 2 * b, : 2 * b] = gyroscopic_matrix(self.basis.polar_inertia)
             axial = np.arange(2 * b, 2 * b + a)
             stiffness[axial, axial] += self.axial_frequencies**2
         for bearing, coordinates, directions in feet:
@@ -243,17 +243,11 @@ class Projection:
             feet.append((k, order + np.arange(len(directions)), directions))
             order += len(directions)
         relative = np.zeros((len(bearings), held.shape[-1], order))
-        displacement, slope = self.basis.displacement.T, self.basis.slope.T
-        if bearings:
-            relative[:, 0, :b] = displacement
-            if alone:
-                relative[:, 1, :b] = slope
-            else:
-                relative[:, 1, b : 2 * b] = displacement
-                relative[:, 2, 2 * b : shaft] = self.axial_shapes.T
-                # The slope in y is minus the rotation about x.
-                relative[:, 3, b : 2 * b] = -slope
-                relative[:, 4, :b] = slope
+        displacement, slope = self.basis.displacement, self.basis.slope
+        if bearings and alone:
+            relative[:, 0, :b], relative[:, 1, :b] = displacement.T, slope.T
+        elif bearings:
+            relative[:, :, :shaft] = section_motions(displacement, slope, self.axial_shapes)
         for k, coordinates, directions in feet:
             relative[k, directions, coordinates] -= 1.0
         return (
