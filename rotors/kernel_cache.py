@@ -27,7 +27,7 @@ import numpy as np
 _PACKAGES = ("rotors", "coupling")
 _UNUSED = 30 * 86400.0
 """Age of a folder that is removed [s]."""
-_KERNELS = re.compile(rb"^from (?:rotors)?\.compiled import", re.MULTILINE)
+_KERNELS = re.compile(rb"^from [\w.]*\.compiled import", re.MULTILINE)
 _IMPORT = re.compile(rb"^from ((?:rotors|coupling)?\.?[\w.]*) import", re.MULTILINE)
 
 
@@ -83,7 +83,7 @@ def sources_digest(root: Path) -> str:
 @cache
 def cache_folder() -> str:
     """Folder of this process's kernels, made where it can be; empty where there is none to write to."""
-    root = Path(__file__).resolve().parents[1]
+    root = next(folder for folder in Path(__file__).resolve().parents if folder.name == "rotors").parent
     name = f"kernels-{sources_digest(root)}"
     given = str(numba.config.CACHE_DIR)  # type: ignore[attr-defined]  # set by numba from its environment variables
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "gearwhine"
