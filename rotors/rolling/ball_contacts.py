@@ -17,7 +17,6 @@ for δ > 0 and nothing otherwise. The length of a vector is convex, and so is an
 energy is convex in q. Friction is left out.
 """
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -32,12 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 
 def ball_kinematics(row: BallRow, azimuths: FloatArray) -> tuple[FloatArray, FloatArray]:
     """v₀, (2,), and B, (balls, 2, 5)."""
-    angle, sense = row.contact_angle, row.direction
-    radial = row.groove_distance * math.cos(angle) - 0.5 * row.clearance
-    start = np.array([radial, sense * (row.groove_distance * math.sin(angle) + row.axial_offset)])
-    arm = (row.inner_groove - 0.5) * row.ball_diameter
-    radius = 0.5 * row.pitch_diameter + arm * math.cos(angle)
-    place = row.position + sense * arm * math.sin(angle)
+    radius, place = row.inner_groove_centre
     cosine, sine, zero = np.cos(azimuths), np.sin(azimuths), np.zeros_like(azimuths)
     motion = np.array(
         [
@@ -45,7 +39,7 @@ def ball_kinematics(row: BallRow, azimuths: FloatArray) -> tuple[FloatArray, Flo
             [zero, zero, zero + 1.0, radius * sine, -radius * cosine],
         ]
     )
-    return start, np.moveaxis(motion, 2, 0)
+    return np.array(row.groove_offset), np.moveaxis(motion, 2, 0)
 
 
 @dataclass(frozen=True)
@@ -75,11 +69,7 @@ class BallsAtRest:
         start, motion = self._kinematics
         moved = motion @ q
         v, nominal = start + moved, self.row.groove_distance
-        # |v₀|² − A² by its terms: |v| − A itself would lose the digits that A has and δ has not.
-        angle, clearance, offset = self.row.contact_angle, self.row.clearance, self.row.axial_offset
-        before = 0.25 * clearance**2 - nominal * clearance * math.cos(angle)
-        before += 2.0 * nominal * offset * math.sin(angle) + offset**2
-        excess = before + 2.0 * moved @ start + (moved**2).sum(axis=1)
+        excess = self.row.groove_excess + 2.0 * moved @ start + (moved**2).sum(axis=1)
         return v, motion, excess / (np.linalg.norm(v, axis=1) + nominal)
 
 

@@ -69,6 +69,10 @@ class RollerRow:
         """Of the rollers, m."""
         return self.roller_diameter
 
+    def cage_speed(self, speed: float) -> float:
+        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − D/D_pw) Ω, rad/s."""
+        return 0.5 * (1.0 - self.roller_diameter / self.pitch_diameter) * speed
+
     @property
     def stiffness(self) -> float:
         """c of one straight roller between both raceways, Q = c δ^{10/9}, N/m^{10/9}.
