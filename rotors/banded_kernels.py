@@ -1,4 +1,4 @@
-"""Compiled elimination of banded complex matrices; the layout is that of `rotors.banded`.
+"""Compiled LU factorization of banded complex matrices, stored as in `rotors.banded`.
 
 Importing this module imports numba.
 """

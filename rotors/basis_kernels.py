@@ -1,4 +1,4 @@
-"""Compiled orthonormalisation of fields in mass, for `rotors.planar_basis`.
+"""Compiled Gram-Schmidt orthonormalisation of shaft fields in mass, for `rotors.planar_basis`.
 
 Importing this module imports numba.
 """

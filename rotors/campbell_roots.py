@@ -1,4 +1,4 @@
-"""Exact whirl roots at many speeds at once, from starting values to their proof; for `rotors.campbell`."""
+"""Whirl eigenvalues of a Campbell diagram: exact roots at many speeds at once, and their proof."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Roots that coalesce, where Newton's method crawls: all roots inside a circle by contour integrals.
+"""Coalescing eigenvalues, where Newton's method slows down: all roots inside a circle by contour integrals (Beyn).
 
 Where cross-coupling is just as large as the bearings' anisotropy allows, forward and backward whirl meet in one root
 with one shape: a defective pair, at which each root moves as the square root of any perturbation, but their mean as

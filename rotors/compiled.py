@@ -1,4 +1,4 @@
-"""How the kernels are compiled: :func:`counted`, :func:`uncounted` or :func:`inner`.
+"""Compilation of kernels by numba: the decorators :func:`counted`, :func:`uncounted` and :func:`inner`.
 
 Importing this module imports numba.
 

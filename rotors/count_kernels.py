@@ -1,4 +1,4 @@
-"""Compiled root count of a chain; the derivation is in `rotors.root_count`.
+"""Compiled Wittrick-Williams root count of a discretised shaft; the derivation is in `rotors.root_count`.
 
 Importing this module imports numba. The arrays of a chain come in one order throughout: lengths and coefficients
 of the pieces that differ, which of them each piece is, and stiffness and inertia of the nodes.

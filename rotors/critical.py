@@ -1,4 +1,4 @@
-"""Critical speeds of a rotor: where its whirl meets its rotation."""
+"""Critical speeds of a rotor: speeds of rotation equal to a whirl frequency."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Compiled quadrature of a chain's fields: what their energies are sums of squares of, and the weights of these.
+"""Compiled quadrature of kinetic and strain energy along a discretised shaft.
 
 Importing this module imports numba. The arrays of a chain come in the order of `rotors.count_kernels`.
 """

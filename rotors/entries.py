@@ -1,4 +1,4 @@
-"""The equations of `rotors.spatial_chain` as a table, from which compiled code makes their entries for any λ.
+"""Shooting matrix of the whirl equations: a table from which compiled code makes its entries for any λ.
 
 Beside the transfer matrices of runs of pieces every entry is, with Ω the speed of rotation and s the unit of force,
 

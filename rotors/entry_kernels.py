@@ -1,4 +1,4 @@
-"""Compiled entries of the equations of `rotors.spatial_chain`, and their determinants; laid out by `rotors.entries`.
+"""Compiled shooting matrix of whirl: its entries, determinant and node states, as laid out by `rotors.entries`.
 
 Importing this module imports numba.
 """

@@ -1,4 +1,4 @@
-"""What can go wrong in this room: a wrong input, or a result that fails its own proof."""
+"""Errors of the package, and the checks of arguments that raise them."""
 
 import math
 import numbers

@@ -1,4 +1,4 @@
-"""Eigenvalues refined on the exact equations, with their vectors; clusters together, duplicates recognised.
+"""Whirl eigenvalues by Newton's method on the exact equations: clusters refined together, duplicates recognised.
 
 With the equations N(λ) x = 0 of `rotors.spatial_chain`, let X and Y span the right and left singular vectors of the
 k smallest singular values of N(σ), k the number of roots near σ. Projected on them the equations are

@@ -1,4 +1,4 @@
-"""Steady response of a turning rotor to harmonic loads, by the exact equations of both planes.
+"""Harmonic response of a turning rotor, by the exact equations of both planes.
 
 A load Re[F e^{iωt}] at a node stands on the right of the equations of `rotors.spatial_chain` at λ = iω, with a
 negative sign in the node's force balance. No modes are summed, so nothing is truncated.

@@ -1,4 +1,4 @@
-"""Where compiled kernels are cached: one folder for each state of their sources and of what compiles them.
+"""Kernel cache: one folder of compiled kernels for each state of their sources and of the compiler.
 
 numba stamps a cached kernel by the file that it stands in. Machine code holds more than that: the kernels that it calls
 and the constants that it reads, from other files. A kernel that is cached by its own file alone goes on with old code

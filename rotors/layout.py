@@ -1,4 +1,4 @@
-"""Where the unknowns and the equations of `rotors.spatial_chain` stand.
+"""Order of the unknowns (columns) and equations (rows) of the shooting matrix.
 
 Elimination goes from left to right, and its price is that of what it fills in. At every node the unknowns of ties come
 first, then those of one block after another, displacements before forces; the equations of a node stand in the order

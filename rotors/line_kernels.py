@@ -1,4 +1,4 @@
-"""Compiled cutting of a line's spans into pieces; the rule is that of `rotors.lines`.
+"""Compiled discretisation of a shaft: spans cut into elements by the rule of `rotors.lines`.
 
 Importing this module imports numba.
 """

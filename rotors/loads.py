@@ -1,4 +1,4 @@
-"""What acts on a rotor from outside: unbalance, residual bow, harmonic forces."""
+"""Loads of a rotor: unbalance, residual bow, harmonic forces."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Compiled Newton steps of `rotors.exact_roots`, each root by itself.
+"""Compiled Newton iteration for whirl eigenvalues, each root by itself; see `rotors.exact_roots`.
 
 Importing this module imports numba.
 """

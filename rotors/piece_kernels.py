@@ -1,4 +1,4 @@
-"""Compiled transfer matrices of pieces of shaft; the equations are those of `rotors.timoshenko`.
+"""Compiled transfer matrices of Timoshenko beam and rod elements; the equations are those of `rotors.timoshenko`.
 
 Importing this module imports numba. All functions take real or complex ω².
 """

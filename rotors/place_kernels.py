@@ -1,4 +1,4 @@
-"""Compiled questions about where eigenvalues lie: which oscillate, and which lie apart.
+"""Compiled tests of eigenvalues: oscillating or not, separated or not, inside a sector or not.
 
 Importing this module imports numba.
 """

@@ -1,4 +1,4 @@
-"""Planar motions that whirl is projected on: modes, and the static answers to loads where bearings and discs act.
+"""Planar basis of whirl: modes of one plane, and static responses to loads at bearings and discs.
 
 `rotors.whirl_basis` gives the same as certified modes, to be looked at and held. A single solution needs less: any
 mass-orthonormal basis of the same space gives the same starting values, and the roots have a proof of their own. Here

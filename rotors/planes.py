@@ -1,4 +1,4 @@
-"""A rotor on its bearings at rest: the frequencies of both planes."""
+"""Natural frequencies of a rotor at rest, in both planes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ from .whirl import solve_whirl
 
 FloatArray = npt.NDArray[np.float64]
 
-# Bisections after which roots of both planes that are not parted yet are one.
+# Bisections after which roots of both planes that are not separated count as one.
 MOST_HALVINGS = 50
 
 
@@ -35,10 +35,10 @@ class RestFrequencies:
     frequencies
         (m,): ascending, rad/s; an isotropic root stands twice.
     axial_share
-        (m,): part of the kinetic energy along the axis, as in `rotors.WhirlModes`; 0 where the bearings do not tie it
-        to the others.
+        (m,): share of the kinetic energy along the axis, as in `rotors.WhirlModes`; 0 where the bearings do not couple
+        axial and lateral motion.
     certificate
-        Proof of completeness over both planes, and the axis where it is tied to them.
+        Proof of completeness over both planes, and over axial motion where it is coupled to them.
     """
 
     frequencies: FloatArray
@@ -55,17 +55,17 @@ def rest_frequencies(
 ) -> RestFrequencies:
     """Undamped natural frequencies of both planes of a rotor that does not turn.
 
-    Where bearings do not tie the planes, each is solved with its own k_xx or k_yy; otherwise both go together, as
-    in `rotors.solve_whirl` at no speed.
+    Where bearings do not couple the planes, each is solved with its own k_xx or k_yy; otherwise both are solved
+    together, as in `rotors.solve_whirl` at zero speed.
 
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; no bearings leave it free. Of tables the lowest speed is taken.
+        The rotor and its bearings, none for a free rotor. Tables over speed are read at their lowest speed.
     frequency_limit
         rad/s: all frequencies strictly below.
     count
-        How many over both planes, instead of a limit; with neither, 12. Multiple roots stay whole.
+        Number of frequencies over both planes, instead of a limit; with neither, 12. Multiple roots stay whole.
 
     Raises
     ------
@@ -117,15 +117,15 @@ def rest_frequencies(
 
 
 def _is_planar(bearing: Bearing) -> bool:
-    """Whether each plane has its own springs, and the ground behind them."""
+    """Whether the bearing is rigidly mounted and its stiffness is diagonal."""
     stiffness = bearing.stiffness
     return bearing.pedestal is None and np.count_nonzero(stiffness) == np.count_nonzero(stiffness.diagonal())
 
 
 def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
-    """Chains of the planes, and how many modes each gives to the lowest ``count`` of both.
+    """Discretised shafts of the planes, and the number of modes of each among the lowest ``count`` of both.
 
-    Of a lumped rotor that has fewer, all.
+    A lumped rotor with fewer modes gives all of them.
     """
     # Distributed mass has no end of modes; of lumped ones, constraints take some in one plane or the other.
     available = [line.available_modes for line in lines] if lines[0].available_modes < np.inf else [np.inf]
@@ -140,7 +140,7 @@ def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
             break
         low, high = high, 2.0 * high
     for _ in range(MOST_HALVINGS):
-        # One too many costs less than the search for the gap between the last two.
+        # A superfluous mode costs less than the search for the gap between the last two.
         if sum(shares) <= count + 1:
             break
         middle = 0.5 * (low + high)

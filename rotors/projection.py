@@ -1,4 +1,4 @@
-"""Whirl on a basis of planar modes: starting values for the exact roots.
+"""Modal projection of whirl on planar modes: starting values for the exact roots.
 
 Both planes share the modes at averaged bearing stiffness, X = Φᵀ q_x and Y = Φᵀ q_y. With Λ = diag(ω²),
 G the polar inertia matrix and Φ_b the modes' displacements at bearing b,

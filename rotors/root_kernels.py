@@ -1,4 +1,4 @@
-"""Compiled search for the natural frequencies of a chain inside brackets of its root count.
+"""Compiled search for natural frequencies inside brackets of the Wittrick-Williams root count.
 
 Importing this module imports numba. The arrays of a chain come in the order of `rotors.count_kernels`.
 """

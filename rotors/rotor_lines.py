@@ -113,7 +113,7 @@ def bending_lines(rotor: Rotor, planes: Sequence[Sequence[RadialSupport]]) -> li
 
 
 def bending_chain(rotor: Rotor, supports: Sequence[RadialSupport], highest: float) -> Chain:
-    """Chain of a rotor's bending in one plane, good up to ``highest`` rad/s."""
+    """A rotor's bending in one plane on springs, discretised for frequencies up to ``highest`` rad/s."""
     return bending_line(rotor, supports).cut(highest)
 
 
@@ -127,9 +127,9 @@ def rod_line(rotor: Rotor, springs: Sequence[AxisSpring], motion: RodMotion) -> 
 
 
 def axial_chain_on(rotor: Rotor, bending: Chain) -> Chain:
-    """Chain of a rotor's axial motion with the nodes, and the units of length and force, of a chain of its bending.
+    """A rotor's axial motion, discretised with the nodes and the units of length and force of its bending.
 
-    It has no springs, and no other mass at its nodes than the bending chain has.
+    It has no springs, and the same nodal masses as the bending shaft.
     """
     free = free_rod_shaft(rotor, "axial").with_nodes(bending.nodes)
     # A displacement unit squared is the reciprocal of a unit of stiffness, by which compliance and inertia are scaled.

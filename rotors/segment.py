@@ -1,4 +1,4 @@
-"""A straight round piece of shaft."""
+"""Shaft segment: a straight round length of shaft, cylindrical or conical."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The rotor as the user describes it: round segments end to end, and rigid discs on them."""
+"""Rotor: round shaft segments end to end with rigid discs on them, and its lumped and distributed inertias."""
 
 import math
 from bisect import bisect_left

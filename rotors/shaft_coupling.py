@@ -1,4 +1,4 @@
-"""A flexible coupling between two shafts on one axis."""
+"""Flexible coupling between two shafts on one axis."""
 
 from dataclasses import dataclass
 

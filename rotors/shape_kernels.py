@@ -1,4 +1,4 @@
-"""Compiled multiple shooting on a chain: its banded equations, and their null vectors.
+"""Compiled multiple shooting on a discretised shaft: banded equations and their null vectors, the mode shapes.
 
 Importing this module imports numba. The equations are those of `rotors.shapes`; the arrays of a chain come in
 the order of `rotors.count_kernels`.

@@ -1,4 +1,4 @@
-"""Compiled inertias of complex motions, for `rotors.spatial_field`.
+"""Compiled kinetic-energy shares of complex motions, for `rotors.spatial_field`.
 
 Importing this module imports numba.
 """

@@ -1,4 +1,4 @@
-"""Both planes of a turning shaft together, exactly: the transfer equations for any complex frequency.
+"""Whirl equations: the exact transfer-matrix equations of both planes of a turning shaft at any complex frequency.
 
 A motion e^{λt} of a disc turning at Ω obeys I_d λ²β_x + Ω I_p λ β_y = M_x and I_d λ²β_y − Ω I_p λ β_x = M_y
 (`rotors.whirl`). In the circular coordinates of `rotors.spatial_ties` these part into

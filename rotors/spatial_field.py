@@ -1,4 +1,4 @@
-"""Exact motion of a whole shaft in both planes at a complex frequency, from the states at its nodes to any place."""
+"""Complex motion of a shaft in both planes, continued exactly from the states at its nodes to any place."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property

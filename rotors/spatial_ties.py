@@ -1,4 +1,4 @@
-"""Bearings and pedestals in circular coordinates: what ties the forward and the backward motion of a shaft.
+"""Circular coordinates of forward and backward whirl, and bearings and pedestals in them.
 
 With x, y and the slopes β_x, β_y of both planes, where β_x is the rotation about y and β_y minus the
 rotation about x, circular coordinates are

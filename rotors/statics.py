@@ -1,4 +1,4 @@
-"""Static deflection of a rotor under its weight and given forces, and what its bearings carry.
+"""Static deflection and bearing loads of a rotor under its weight and given forces.
 
 The weight along a piece enters exactly, whatever its taper and axial force. With y' = (A₀ + ω²B) y
 (`rotors.timoshenko`), y(0) = (1, 0, 0, 0) gives at ω = 0 the rigid translation y = (1, 0, 0, 0); its derivative with

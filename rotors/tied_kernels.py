@@ -1,4 +1,4 @@
-"""Compiled first and second order of damping, for `rotors.tied_planes`.
+"""Compiled second-order perturbation of whirl eigenvalues by damping, for `rotors.tied_planes`.
 
 Importing this module imports numba.
 """

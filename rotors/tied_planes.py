@@ -1,4 +1,4 @@
-"""Eigenvalues of a projected rotor whose bearings tie x to y by the gyroscopic moment alone, and damp it lightly.
+"""Lightly damped whirl of a projected rotor whose planes are coupled by the gyroscopic moment alone.
 
 Let Λ_x and Λ_y be the squared frequencies of both planes at rest, and all matrices be those of their modes. With
 states p = (Λ_x^½ q_x, q̇_y) and s = (q̇_x, −Λ_y^½ q_y), undamped motion at the speed Ω is

@@ -1,4 +1,4 @@
-"""Steady torsional response of a rotor to harmonic torques, by the exact transfer matrices of its pieces.
+"""Torsional response of a rotor to harmonic torques, by exact transfer matrices.
 
 Material damping is a complex shear modulus G (1 + 2iζ): at every frequency a piece loses the part of its energy
 that a mode of damping ratio ζ loses. With c = 1 + 2iζ a piece's equations θ' = τ/(c GJ), τ' = −ω²ρJ θ are those of

@@ -1,4 +1,4 @@
-"""Response to unbalance and to residual bow, exactly, with amplitude and phase.
+"""Unbalance response and residual bow: exact synchronous motion with amplitude and phase.
 
 An unbalance m e at the angle φ on the rotor is the force m e Ω² e^{iφ} that turns with it: x + i y of the force is
 m e Ω² e^{i(Ωt + φ)}, which in circular coordinates loads r+ alone, by √2 m e Ω² e^{iφ}, and what anisotropic

@@ -1,4 +1,4 @@
-"""Damped, gyroscopic whirl of a rotor on its bearings: exact, and complete by proof.
+"""Whirl modes: damped, gyroscopic modes of a rotor on its bearings, exact and complete by proof.
 
 Speed Ω is positive counter-clockwise from +z; motion e^{λt} whirls forward, with the rotation for Ω > 0, when y
 lags x by a quarter turn. Starting values come from a projection on planar modes (`rotors.projection`); each
@@ -138,7 +138,7 @@ class WhirlModes:
         Parameters
         ----------
         edges
-            (e + 1,): ascending positions that part the shaft, m: `Rotor.joints` for its segments.
+            (e + 1,): ascending positions that divide the shaft, m: `Rotor.joints` for its segments.
 
         Raises
         ------

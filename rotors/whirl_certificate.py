@@ -1,4 +1,4 @@
-"""Whirl modes of one chain, complete by proof: refined, counted, and searched for again where one is missing."""
+"""Completeness of whirl modes: roots counted, and searched for again where one is missing."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,4 +1,4 @@
-"""How many whirl frequencies lie below a frequency, where nothing damps or drives the whirl.
+"""Inertia count of whirl frequencies below a frequency, for rotors without damping or driving forces.
 
 Let stiffness be Hermitian and positive semidefinite and damping absent. At λ = iω the dynamic stiffness of the
 turning rotor over both planes is the Hermitian D(ω) = K − ω²M + ωG, with G Hermitian in circular coordinates and

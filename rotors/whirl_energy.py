@@ -1,4 +1,4 @@
-"""Where whirl strains a rotor: the strain energy of complex modes in lengths of shaft, bearings and pedestals.
+"""Strain energy of whirl modes in lengths of shaft, bearings and pedestals.
 
 In motion Re[q̂ e^{λt}] strain energy swings at twice the frequency about a mean. Meant here is the mean over one turn of
 the phase, with the growth or decay e^{Re λ t} left out, ¼ Re(q̂ᴴ K q̂): of the shaft

@@ -1,4 +1,4 @@
-"""How many roots of the exact equations lie in a region, by the argument principle; and where a missing one is.
+"""Argument principle: the number of roots of the exact equations in a region, and estimates of missing roots.
 
 The determinant f(λ) of `rotors.spatial_chain` is entire, so that the number of its zeros inside a closed contour
 is the number of turns that f makes about zero along it. The contour here bounds a rectangle in the plane of

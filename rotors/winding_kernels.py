@@ -1,4 +1,4 @@
-"""Compiled sampling of the determinant along a contour, for `rotors.winding`.
+"""Compiled argument principle: the determinant sampled along a contour, for `rotors.winding`.
 
 Importing this module imports numba.
 """

@@ -1,4 +1,4 @@
-"""Rows of balls set against each other: double-row and paired bearings."""
+"""Bearing arrangements: double-row and paired ball bearings, back to back, face to face or in tandem."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The elastic energy of a row of balls and its derivatives.
+"""Contact energy of a row of balls, its gradient and its Hessian.
 
 At the azimuth ψ the centre of the inner groove's curvature stands from that of the outer one by the vector v in the
 ball's own plane (radial, axial), v = v₀ + B q, with σ the row's direction, A the distance of the centres when a ball

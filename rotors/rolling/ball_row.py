@@ -1,4 +1,4 @@
-"""A row of balls by its geometry."""
+"""Ball row of a rolling bearing, by its geometry."""
 
 import math
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Balls thrown outwards by their turning about the bearing.
+"""Centrifugal force on balls: contact equilibrium of balls that orbit in a bearing.
 
 A turning ball is thrown outwards by F_c, and its two contacts stand at two angles (Jones 1960; Harris and Kotzalas
 2006). With f the force of the inner contact, the outer one carries f + F_c r, r the radial direction. A contact under

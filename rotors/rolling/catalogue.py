@@ -1,4 +1,4 @@
-"""Rolling bearings by their main dimensions: what lies inside, estimated from the usual proportions.
+"""Internal geometry of a rolling bearing estimated from its catalogue dimensions.
 
 Catalogues print bore d, outer diameter D and width B, but not what is between. The pitch circle lies near the middle,
 (d + D)/2. Design practice (Changsen 1991; the bounds of Gupta, Tiwari and Nair, Mechanism and Machine Theory 42, 2007)

@@ -1,4 +1,4 @@
-"""What every kind of row tells the equilibrium: its elastic energy, and what its elements carry."""
+"""Contact energy and element loads: the common form of ball and roller rows."""
 
 from dataclasses import dataclass
 from typing import Protocol

@@ -1,4 +1,4 @@
-"""The place that the inner ring of a rolling bearing takes under a load.
+"""Static equilibrium of a rolling bearing: displacement of the inner ring under a load.
 
 With the energy φ(q) of all elements and the load f, the potential
 

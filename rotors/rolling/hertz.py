@@ -1,4 +1,4 @@
-"""Hertz's elliptic contact of two smooth bodies, with the integrals solved and not approximated.
+"""Hertz's elliptic contact of two smooth bodies, by the exact elliptic integrals.
 
 Two bodies touch at a point with the principal relative curvatures Σρ_y ≥ Σρ_x (1/m). Under a load Q the contact is an
 ellipse of semi-axes a ≥ b, κ = a/b, with m = 1 − 1/κ² the parameter of the complete elliptic integrals K and E

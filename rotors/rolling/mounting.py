@@ -1,4 +1,4 @@
-"""From a rolling bearing under its load to the linear bearing that a rotor turns on, and formulas for a first guess."""
+"""Linear bearing from a loaded rolling bearing, and Krämer's stiffness formulas for a first estimate."""
 
 import math
 

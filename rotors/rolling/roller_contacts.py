@@ -1,4 +1,4 @@
-"""The elastic energy of a row of cylindrical rollers and its derivatives.
+"""Contact energy of a row of cylindrical rollers, its gradient and its Hessian.
 
 Slice k of the roller at ψ, at the place z_k along the axis, is pressed between the raceways by
 

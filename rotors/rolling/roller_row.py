@@ -1,4 +1,4 @@
-"""A row of cylindrical rollers by its geometry."""
+"""Roller row of a cylindrical-roller bearing, by its geometry."""
 
 from dataclasses import dataclass
 from typing import Literal

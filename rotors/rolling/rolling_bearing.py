@@ -1,4 +1,4 @@
-"""A rolling bearing: rows that share their rings.
+"""Rolling bearing: rows of balls or rollers that share their rings.
 
 The inner ring moves by q = (x, y, z, rotation about x, rotation about y) against the outer, taken at the bearing's
 centre. A row's own direction is +1 where pushing the inner ring towards +z loads its contacts, −1 where −z does.

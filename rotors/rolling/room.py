@@ -1,4 +1,4 @@
-"""Whether the elements of a row find room on their circle."""
+"""Check that the elements of a row fit on the pitch circle."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What a rolling bearing does under a load."""
+"""State of a rolling bearing under a load: displacement, tangent stiffness, element loads."""
 
 from dataclasses import dataclass, field
 

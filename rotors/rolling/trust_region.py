@@ -1,4 +1,4 @@
-"""Minimum of a convex function with its exact Hessian, from any start."""
+"""Trust-region Newton method: the minimum of a convex function with its exact Hessian, from any start."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

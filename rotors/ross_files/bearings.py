@@ -1,4 +1,4 @@
-"""The bearings and seals of a rotor on file, and the supports that some of them stand on."""
+"""Bearings, seals and their supports in a ROSS file."""
 
 import re
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Reads a rotor that ROSS saved."""
+"""Reading of a rotor that ROSS saved."""
 
 import os
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""What one side of an exchange has and the other has no place for, said once for all the elements it holds of."""
+"""Remarks on properties that a file format cannot hold, each made once for all elements concerned."""
 
 from collections import defaultdict
 

@@ -1,4 +1,4 @@
-"""The shaft of a rotor on file: its elements in a row, cylinders, cones and couplings, and its nodes."""
+"""Shaft elements in a ROSS file: cylinders, cones and couplings in a row, and their nodes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The shear coefficients that ROSS knows, and how ours are told to it.
+"""Shear coefficients of ROSS, and their counterparts here.
 
 ROSS has two formulas for the shear coefficient κ. Its ``cowper`` is Cowper's, as in `rotors.shear_coefficient`. Its
 ``hutchinson`` has the denominator of Hutchinson (J. Appl. Mech. 68, 2001) but a factor 1 + ν less in the numerator,

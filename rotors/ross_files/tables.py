@@ -1,4 +1,4 @@
-"""A rotor saved by ROSS as it stands on file: one table for each element, its keys read with their place in mind.
+"""Element tables of a ROSS file, read with messages that name the file and the key.
 
 ``rotor.save("x.toml")`` of ROSS 2 writes ``ross_version``, a table ``parameters``, and for each element a table named
 by its class and its tag, such as ``["ShaftElement_Shaft Element 0"]``, that holds the arguments of its constructor in

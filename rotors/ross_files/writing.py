@@ -1,4 +1,4 @@
-"""Writes a rotor so that ROSS loads it."""
+"""Writing of a rotor as a file that ROSS loads."""
 
 import math
 import os
