@@ -66,7 +66,7 @@ def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArra
     branches = []
     for column in table.T:
         values, way = np.full(speeds.size, complex(np.nan, np.nan)), np.full((speeds.size, 2), np.nan)
-        for k in np.flatnonzero(column >= 0):
+        for k in np.flatnonzero(column >= 0).tolist():
             values[k], way[k] = roots[k].eigenvalues[column[k]], ways[k][column[k]]
         branches.append(Branch(values, way[:, 0], way[:, 1]))
     return branches

@@ -2,11 +2,11 @@
 
 Starting values at every speed come from one projection on planar modes, reduced once; the roots are then refined
 on the exact equations, all speeds in one batch. Branches are followed from speed to speed by the eigenvalue that
-continues them and the shape that resembles theirs; motions that the bearings do not tie to each other, as forward and
-backward whirl in isotropic ones, are followed apart, so that they cannot be confused where they cross.
+continues them and the likeness of shapes. Motions that the bearings do not couple, such as forward and backward whirl
+in isotropic ones, are followed separately, so that they cannot be confused where they cross.
 
-Where nothing damps, the number of roots is proved at every speed (`rotors.whirl_count`). Elsewhere a proof costs a
-contour at each speed: it is made at a few, and at all where asked.
+Without damping the number of roots is proved at every speed (`rotors.whirl_count`). With damping a proof costs a
+contour integral at each speed: it is made at a few speeds, or at all on request.
 """
 
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ BoolArray = npt.NDArray[np.bool_]
 # With whirl direction and axial share in place of the shape.
 Point = BranchPoint[tuple[float, float]]
 
-# A crossing whose root lies further off than this, as a part of it, belongs to another branch.
+# A root further from its starting value than this part of it belongs to another branch.
 CROSSING_JUMP = 0.1
 CROSSING_STEPS = 30
 CROSSING_TOLERANCE = 1e-11
@@ -79,7 +79,7 @@ class Crossing:
 
 @dataclass(frozen=True)
 class Campbell:
-    """Whirl over speed, one column for each branch; NaN where a branch does not oscillate or is out of range.
+    """Whirl over speed, one column for each branch; NaN where a branch does not oscillate or is outside the range.
 
     Attributes
     ----------
@@ -185,19 +185,19 @@ def campbell(
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; tables are read at each speed.
+        The rotor and its bearings; tables over speed are read at each speed.
     speeds
         (s,): Ω, rad/s, ascending.
     frequency_limit
         rad/s: branches below it at some speed.
     count
-        How many, the lowest at every speed, instead of a limit; with neither, 12.
+        Number of branches, the lowest at every speed, instead of a limit; with neither, 12.
     basis
-        From `rotors.whirl_basis`, to spare building it.
+        From `rotors.whirl_basis`, to avoid building it.
     prove_all
         Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
     solver
-        A `rotors.WhirlSolver` of the same rotor and bearings, to share what it holds.
+        A `rotors.WhirlSolver` of the same rotor and bearings, whose basis and equations are used.
 
     Raises
     ------

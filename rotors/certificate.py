@@ -12,7 +12,7 @@ FloatArray = npt.NDArray[np.float64]
 
 ENERGY_TOLERANCE = 1e-8
 ORTHONORMALITY_TOLERANCE = 1e-8
-# Of a root refined on the exact equations: its relative residual, and how far it still moves when it is done.
+# Accepted relative residual of a root of the exact equations, and relative correction at which it has converged.
 ACCEPTED = 1e-11
 SETTLED = 2e-14
 MOST_STEPS = 14  # of Newton's method

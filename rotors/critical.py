@@ -49,7 +49,7 @@ class CriticalSpeeds:
 
     @property
     def lateral(self) -> "CriticalSpeeds":
-        """Those of whirl: without motions that are for the most part along the axis, which no unbalance drives."""
+        """The critical speeds of lateral motion, without mostly axial ones, which no unbalance drives."""
         kept = self.axial_share <= MOSTLY_AXIAL
         return replace(
             self, speeds=self.speeds[kept], direction=self.direction[kept], axial_share=self.axial_share[kept]
@@ -84,13 +84,13 @@ def critical_speeds(
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it.
+        The rotor and its bearings.
     speed_limit
         rad/s: all critical speeds strictly below.
     count
-        How many, instead of a limit; with neither, 12.
+        Number of critical speeds, instead of a limit; with neither, 12.
     basis
-        From `rotors.whirl_basis`, to spare building it.
+        From `rotors.whirl_basis`, to avoid building it.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def _tabled_critical_speeds(
 def certified_criticals(
     rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[Projection], limit: float | None, count: int | None
 ) -> tuple[WhirlRoots, ModeCertificate]:
-    """Synchronous whirl of undamped bearings below a limit, or the lowest few, for some sets of tied motions."""
+    """Synchronous whirl in undamped bearings below a limit, or the lowest roots, for some sets of coupled motions."""
     return certified_whirl(
         WhirlSolver(rotor, bearings),
         bearings,

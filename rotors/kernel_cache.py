@@ -32,7 +32,7 @@ _IMPORT = re.compile(rb"^from ((?:rotors|coupling)?\.?[\w.]*) import", re.MULTIL
 
 
 def kernel_sources(root: Path) -> list[Path]:
-    """Every source that reaches machine code: files with kernels, and the files that these import from.
+    """Sources of the machine code: files with kernels, and the files that these import from.
 
     Parameters
     ----------

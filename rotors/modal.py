@@ -11,9 +11,9 @@ with the gyroscopic matrix G = ∫ Φ' dI_p Φ'ᵀ and, summed over the bearings
 
 and the cross-coupling K_c = Σ [[0, k_xy], [k_yx, 0]] ⊗ Φ_b Φ_bᵀ (TM-104434 Eqs. 11 to 15). A bearing's tilt stiffness
 enters in the same way with the slopes. The modes are followed by residual attachment modes for every load that a
-bearing or a gear puts on the shaft: a lateral force at each of them, a moment and an axial force where a bearing resists
-these motions or a gear has thrust, and a torque at every gear. They are the static response of the truncated modes
-(Craig 2000), without which the shaft is too stiff at gears and bearings.
+bearing or a gear puts on the shaft: a lateral force at each of them, a moment and an axial force where a bearing
+resists these motions or a gear has thrust, and a torque at every gear. They are the static response of the truncated
+modes (Craig 2000), without which the shaft is too stiff at gears and bearings.
 """
 
 from collections.abc import Sequence

@@ -20,8 +20,8 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 MassModel = Literal["distributed", "lumped"]
 
-# Two positions closer than this fraction of the rotor's length are one station: sums of printed
-# segment lengths differ from printed positions by rounding alone.
+# Two positions closer than this fraction of the rotor's length are one station: sums of printed segment lengths differ
+# from printed positions by rounding alone.
 STATION_TOLERANCE = 1e-9
 
 
@@ -66,7 +66,7 @@ class Rotor:
     Parameters
     ----------
     name
-        What messages call it.
+        Name in messages.
     segments
         At least one `Segment`, from the left end; a `Coupling` may stand between them.
     discs
@@ -156,7 +156,7 @@ class Rotor:
 
 @dataclass(frozen=True)
 class ShaftSpans:
-    """A rotor between the places where its section changes or an inertia sits: what all its motions share.
+    """A rotor's spans between the places where its section changes or an inertia sits.
 
     Attributes
     ----------
@@ -205,8 +205,8 @@ def station_index(stations: FloatArray, at: float) -> int:
 def shaft_spans(rotor: Rotor) -> ShaftSpans:
     """Spans of a rotor; neighbours of one uniform kind with nothing between them are one.
 
-    A file that gives a plain shaft in sixty elements so costs what the shaft costs. The transfer matrix of a uniform
-    span is exact at any length, and what is asked for inside it is found by the exact field.
+    So a plain shaft given in sixty elements costs no more than one given whole. The transfer matrix of a uniform span
+    is exact at any length, and the field inside it is exact too.
     """
     profile = rotor.profile
     edges = profile.edges
@@ -234,10 +234,10 @@ def shaft_spans(rotor: Rotor) -> ShaftSpans:
 
 
 def station_inertias(rotor: Rotor, stations: FloatArray) -> FloatArray:
-    """Inertias that sit at the stations themselves.
+    """Lumped inertias at the stations (Myklestad–Prohl).
 
-    Discs always do, and half of a coupling at each of its ends. In the lumped model each segment also gives its
-    own to its two ends: mass in the shares that keep its centre of mass where it is, polar inertia in
+    They are those of the discs, and half of a coupling at each of its ends. In the lumped model each segment also gives
+    its own inertia to its two ends: mass in the shares that keep its centre of mass where it is, polar inertia in
     those that keep its centre, and the diametral inertia about its own centre of mass,
     I_p/2 + m l²/12 of a cylinder, as the mass. A cylinder is thus halved; in the seven-station table of the
     RAPPID example this rule gives the printed 0.020568 kg·m² at a plain station and 0.010284 kg·m² at an end.

@@ -35,15 +35,15 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 Made = TypeVar("Made")
 
-# How far beyond the limit starting values are still followed: the projection's lie above the roots.
+# Starting values up to this multiple of the limit are refined: the projection's lie above the roots.
 START_REACH = 1.2
-# Behind the modes asked for, starting values are followed to the first that lies this far from the one before it: the
-# proof's limit finds its gap there.
+# Beyond the modes wanted, starting values are refined up to the first gap of this relative width, in which the proof's
+# limit is placed.
 WIDE_GAP = 0.01
-# Part of a motion's kinetic energy above which it is called axial. One with less along the axis is still driven by
-# unbalance, by the root of what is left for the motion across it.
+# Share of axial kinetic energy above which a motion is called axial. Unbalance still drives one with less, in
+# proportion to the root of its lateral share.
 MOSTLY_AXIAL = 0.9
-# A limit in a gap narrower than this would be too near a root to count by.
+# In a narrower gap a limit would be too close to a root for the count.
 LEAST_GAP = 1e-6
 # Number of results that a solver holds, those made last.
 MOST_HELD = 16
@@ -51,7 +51,7 @@ MOST_HELD = 16
 
 @dataclass(frozen=True)
 class WhirlModes:
-    """Complex modes at one speed of rotation, ascending in frequency; overdamped motions are left out.
+    """Complex modes at one speed of rotation, ascending in frequency, without overdamped motions.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class WhirlModes:
     certificate
         Proof that none is missing.
     bearings
-        What the shapes stand on, with the coefficients of this speed.
+        The bearings, with their coefficients at this speed.
     roots
         The same eigenvalues as roots of the exact equations, with their vectors, of which `motion` makes the shapes.
     """
@@ -75,13 +75,13 @@ class WhirlModes:
 
     @cached_property
     def motion(self) -> SpatialMotion:
-        """The exact shapes, of unit norm in the inertias of shaft and nodes, m per √kg; made when first asked for."""
+        """The exact mode shapes, of unit norm in the inertias of shaft and nodes, m per √kg."""
         motion = self.roots.motion
         return motion.scaled(1.0 / np.sqrt(motion.shares.sum(axis=1)).astype(np.complex128))
 
     @property
     def direction(self) -> FloatArray:
-        """How circular the whirl is, the inertia-weighted mean over the shaft, (w,).
+        """Direction and circularity of the whirl, the inertia-weighted mean over the shaft, (w,).
 
         1 is circular and counter-clockwise (forward for positive speed), −1 circular and clockwise, 0 planar.
         """
@@ -89,7 +89,7 @@ class WhirlModes:
 
     @property
     def axial_share(self) -> FloatArray:
-        """Part of the kinetic energy that is along the axis, (w,): 0 where no bearing ties it to the others."""
+        """Share of the kinetic energy along the axis, (w,): 0 where no bearing couples axial and lateral motion."""
         return self.roots.motion.axial_share
 
     @property
@@ -130,10 +130,10 @@ class WhirlModes:
         return self.motion.section_loads(z)
 
     def strain_energy_shares(self, edges: npt.ArrayLike) -> StrainShares:
-        """Parts of every mode's strain energy, in the mean of a cycle, in lengths of shaft and what holds it.
+        """Shares of every mode's mean strain energy in lengths of shaft, bearings and pedestals.
 
-        The mean is that of the swinging ¼ q̂ᴴKq̂ with growth or decay left out; of a bearing the symmetric part of its
-        stiffness stores energy (`rotors.whirl_energy`).
+        The mean over a cycle is ¼ q̂ᴴKq̂ without growth or decay; of a bearing's stiffness the symmetric part stores
+        energy (`rotors.whirl_energy`).
 
         Parameters
         ----------
@@ -246,13 +246,13 @@ def solve_whirl(
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; tables over speed are read at ``speed``.
+        The rotor and its bearings; tables over speed are read at ``speed``.
     speed
         Ω, rad/s; negative is clockwise.
     frequency_limit
         rad/s: modes whose natural frequency |λ| is below it.
     count
-        How many modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with less has less.
+        Number of modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with fewer gives all.
     basis
         From `rotors.whirl_basis`, of the same rotor and bearings; without it one is made.
 
@@ -268,16 +268,16 @@ def solve_whirl(
 
 @dataclass(frozen=True)
 class WhirlRoots:
-    """Whirl as roots of the exact equations of every set of tied motions, from which shapes are made.
+    """Whirl as roots of the exact equations of every set of coupled motions.
 
     Attributes
     ----------
     chains, parts
         The equations of the sets, and their roots.
     speed
-        Of rotation.
+        Speed of rotation.
     order
-        (w,): where each root stands among all, one set after another.
+        (w,): index of each root among the roots of all sets.
     """
 
     chains: Sequence[SpatialChain]
@@ -292,7 +292,7 @@ class WhirlRoots:
 
     @cached_property
     def motion(self) -> SpatialMotion:
-        """The exact motion of every root, as it comes; made when first asked for."""
+        """The exact motion of every root, without normalisation."""
         motions = [
             SpatialMotion.of(chain, one.eigenvalues, self.speed(one.eigenvalues), one.solutions, one.scales)
             for chain, one in zip(self.chains, self.parts, strict=True)
@@ -315,7 +315,7 @@ def certified_whirl(
 ) -> tuple[WhirlRoots, ModeCertificate]:
     """Every motion below a limit, or the lowest ``count``, on bearings of constant coefficients.
 
-    ``starts`` are starting values for every set of tied motions.
+    ``starts`` are starting values for every set of coupled motions.
 
     ``turning`` is the speed at which pieces must be short enough, rad/s; None where it follows the frequency.
     """
@@ -357,7 +357,7 @@ def is_undriven(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
 
 
 def _reach_behind(ascending: Sequence[float], count: int) -> float:
-    """The size of starting values that holds the lowest ``count``, their twins, and one behind them."""
+    """Modulus below which lie the lowest ``count`` starting values, multiples of the last, and one more."""
     if not ascending:
         return 1.0
     last = min(count, len(ascending) - 1)
@@ -367,7 +367,7 @@ def _reach_behind(ascending: Sequence[float], count: int) -> float:
 
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
-    """A frequency in a gap behind the lowest ``count`` roots, or behind all there are."""
+    """A frequency in a gap above the lowest ``count`` roots, or above all of them."""
     from .place_kernels import ascending
 
     sizes = np.abs(ascending(_all([roots.eigenvalues for roots in refined]), least, NO_OSCILLATION)).tolist()

@@ -33,12 +33,12 @@ def certified_roots(
     conservative: bool,
     beyond: ComplexArray = NONE,
 ) -> tuple[ExactRoots, ModeCertificate]:
-    """All roots in a sector, starting from those known, and the proof; near values of others spare it some work.
+    """All roots in a sector, starting from the known ones, and the proof; approximate roots ``beyond`` reduce its work.
 
     Raises
     ------
     IncompleteModesError
-        The count and the roots do not agree even after a search of their own.
+        The count and the roots do not agree even after a search.
     """
     method = "inertia" if conservative else "winding"
     held = roots.take(sector.holds(roots.eigenvalues))
@@ -59,7 +59,7 @@ def certified_roots(
 def count_roots(
     chain: SpatialChain, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
 ) -> int:
-    """Roots in a sector: by inertia where all lie on the imaginary axis, else by winding, cheaper with known roots."""
+    """Number of roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
     if conservative:
         edges = np.array([sector.least, sector.most])
         low, high = negative_count(chain, edges, speed).tolist()
@@ -68,7 +68,7 @@ def count_roots(
 
 
 def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
-    """All roots in a sector: those known, and by winding and power sums those that are not."""
+    """All roots in a sector: the known ones, and the missing ones by the argument principle and power sums."""
     roots, waiting, cuts = known, [sector], 0
     while waiting:
         part = waiting.pop()
@@ -94,7 +94,7 @@ def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector)
 
 
 def _cut(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
-    """Two parts of a sector with no root on the cut."""
+    """Two parts of a sector without a root on their common side."""
     for nudge in range(MOST_NUDGES):
         halves = sector.halves(0.5 + 0.037 * nudge)
         try:

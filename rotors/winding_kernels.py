@@ -20,16 +20,16 @@ ComplexArray = npt.NDArray[np.complex128]
 # A safe interval: the steepest slopes of ln q, and the largest misfit of its change.
 STEEPEST = 1.5
 MISFIT = 0.3
-# Sides are sampled at so many places, both ends included.
+# Number of samples on each side at first, both ends included.
 SIDE_SAMPLES = 4
-# Known roots nearer to the contour than this, in ln λ, are not divided out.
+# Known roots closer to the contour than this, in ln λ, are not divided out.
 TOO_NEAR = 1e-4
 # The second step of a sample, as a part of the interval it was put into.
 SLOPE_PART = 1e-3
 # An interval of ln λ still unsafe at this length passes through a root to rounding.
 SHORTEST = 1e-10
 MOST_SAMPLES = 40_000
-# Points that may wait beside those of the sides: two for each halving down to the shortest.
+# Most points that wait beside those of the sides: two for each halving down to the shortest interval.
 MOST_WAITING = 2 * math.ceil(-math.log2(SHORTEST)) + 16
 # Factors are gathered up to these sizes before their logarithm is taken.
 SMALL, LARGE = 1e-100, 1e100
@@ -72,7 +72,7 @@ def _put_edge(bounds: FloatArray, edge: ComplexArray) -> None:
 def _divide(
     known: ComplexArray, mirrored: bool, bounds: FloatArray, divided: ComplexArray, left: ComplexArray
 ) -> tuple[int, int, int]:
-    """Sort known roots into those divided out and those left inside; how many each, and how many of the former inside.
+    """Sort known roots into those divided out and those left inside; numbers of both, and of the former inside.
 
     ``mirrored`` roots have conjugates that are roots.
     """
@@ -104,14 +104,13 @@ def walk(
     table: Table,
     pattern: Pattern,
 ) -> tuple[int, int, int, ComplexArray, ComplexArray]:
-    """Follow ln q along the edge of a sector: how many points that took, how many determinants, and what was found.
+    """Follow ln q along the edge of a sector, with adaptive sampling.
 
-    That is how many roots are inside, the known ones of them that are not divided out, and (3, s), of which as many
-    columns as there are points hold them, ln q and d ln q/dw; no points where the path does not settle.
+    Returns the number of points (0 where the path does not converge) and of determinants, the number of roots inside,
+    the known roots inside that are not divided out, and (3, s): the points, ln q and d ln q/dw.
 
     ``bounds`` are as of `rotors.place_kernels.edge_distance`, Ω = ``speed[0]`` + ``speed[1]`` λ, and ``mass`` gives the
-    unit of force. An interval that is not safe is halved: what its ends know of it does not depend on what was found
-    elsewhere.
+    unit of force. An interval that is not safe is halved.
     """
     edge = np.empty(4 * (SIDE_SAMPLES - 1) + 1, dtype=np.complex128)
     _put_edge(bounds, edge)
