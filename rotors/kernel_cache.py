@@ -1,10 +1,9 @@
 """Kernel cache: one folder of compiled kernels for each state of their sources and of the compiler.
 
-numba stamps a cached kernel by the file that it stands in. Machine code holds more than that: the kernels that it calls
-and the constants that it reads, from other files. A kernel that is cached by its own file alone goes on with old code
-when one of those changes. Here the folder's name is a digest of all sources that reach machine code and of the
-versions of numba, llvmlite and NumPy, so that changed sources find an empty folder. numba itself keeps apart Python
-versions and processors.
+numba stamps a cached kernel with its own source file only. Its machine code also holds the kernels that it calls and
+the constants that it reads from other files, and would stay outdated when one of those changes. Here the folder's name
+is a digest of all sources of machine code and of the versions of numba, llvmlite and NumPy, so that changed sources
+find an empty folder. numba itself separates Python versions and processors.
 
 The folder stands below ``NUMBA_CACHE_DIR`` where that is set, else beside the sources, else, where these are read-only,
 in the user's cache. Folders that no process has used for a month are removed.

@@ -17,27 +17,27 @@ from .place_kernels import edge_distance, logarithm
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-# A safe interval: the steepest slopes of ln q, and the largest misfit of its change.
+# A safe interval: largest slope of ln q, and largest error of its change.
 STEEPEST = 1.5
 MISFIT = 0.3
 # Number of samples on each side at first, both ends included.
 SIDE_SAMPLES = 4
 # Known roots closer to the contour than this, in ln λ, are not divided out.
 TOO_NEAR = 1e-4
-# The second step of a sample, as a part of the interval it was put into.
+# Step of the difference for slopes, as a part of the interval.
 SLOPE_PART = 1e-3
-# An interval of ln λ still unsafe at this length passes through a root to rounding.
+# An interval of ln λ still unsafe at this length passes through a root.
 SHORTEST = 1e-10
 MOST_SAMPLES = 40_000
 # Most points that wait beside those of the sides: two for each halving down to the shortest interval.
 MOST_WAITING = 2 * math.ceil(-math.log2(SHORTEST)) + 16
-# Factors are gathered up to these sizes before their logarithm is taken.
+# Factors are multiplied up to these sizes before their logarithm is taken.
 SMALL, LARGE = 1e-100, 1e100
 
 
 @inner(error_model="python")
 def _logarithm_of_product(at: complex, divided: ComplexArray) -> complex:
-    """ln Π (λ − μ_k), but for whole turns."""
+    """ln Π (λ − μ_k), up to multiples of 2πi."""
     total, product = 0.0j, 1.0 + 0.0j
     for k in range(divided.size):
         product *= at - divided[k]
@@ -60,7 +60,7 @@ def _put_edge(bounds: FloatArray, edge: ComplexArray) -> None:
     """Points on the sides of a sector, counter-clockwise from its first corner and back to it."""
     part, sizes, angles = edge.size // 4, bounds[:2], bounds[2:]
     for side in range(4):
-        # Which end of ln |λ| and of arg λ the side begins and ends at.
+        # The ends of ln |λ| and of arg λ at which the side begins and ends.
         start = complex(sizes[(side + 1) // 2 % 2], angles[side // 2])
         end = complex(sizes[(side + 2) // 2 % 2], angles[(side + 1) % 4 // 2])
         for k in range(part):
@@ -125,18 +125,18 @@ def walk(
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
     both = np.empty(2, dtype=np.complex128)
     found = np.empty((3, 64), dtype=np.complex128)
-    # Behind the last point of ``found`` that is safe to go on from, points to come wait, the nearest at the end.
+    # Points beyond the last safe one of ``found`` wait here, the nearest at the end.
     waiting = np.empty((3, corners + 1 + MOST_WAITING), dtype=np.complex128)
     at_zero, samples, count, pending = 0, 0, 1, 0
     while True:
-        # The points given come first, last to first; then those halfway between two that are too far apart.
+        # First the given points, last to first; then midpoints of intervals that are too long.
         given = pending < corners and samples < 2 * corners
         if given:
             corner = corners - 1 - pending
             point, step = edge[corner], SLOPE_PART * (edge[corner + 1] - edge[corner])
         else:
             if samples == 2 * corners:
-                # Motions at zero, of a free shaft, are outside: divided out like the others.
+                # Motions of a free shaft at zero are outside the sector: divided out like other known roots.
                 at_zero = math.floor(waiting[2, corners].real + 0.5)
                 for k in range(1, corners + 1):
                     waiting[1, k] -= at_zero * waiting[0, k]

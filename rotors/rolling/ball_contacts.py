@@ -44,7 +44,7 @@ def ball_kinematics(row: BallRow, azimuths: FloatArray) -> tuple[FloatArray, Flo
 
 @dataclass(frozen=True)
 class BallsAtRest:
-    """A row whose balls have no inertia: every ball's contacts in series."""
+    """Contacts of a row of balls without inertia: both contacts of every ball in series."""
 
     row: BallRow
     azimuths: FloatArray
@@ -56,7 +56,7 @@ class BallsAtRest:
         return row_energy(motion, *_spring(self.row.stiffness, v, approach, distance))
 
     def loads(self, q: FloatArray) -> ElementLoads:
-        """What every ball carries."""
+        """Loads of every ball."""
         v, _, approach = self._state(q)
         load = self.row.stiffness * np.maximum(approach, 0.0) ** 1.5
         return ball_loads(self.row, self.azimuths, (load, load), (v, v), approach)
@@ -87,7 +87,7 @@ def _spring(
 
 
 def row_energy(motion: FloatArray, value: FloatArray, force: FloatArray, hessian: FloatArray) -> RowEnergy:
-    """From every ball's plane to the ring's coordinates."""
+    """Energy of the row over the ring's coordinates, from the energies in every ball's plane."""
     return RowEnergy(
         value=float(value.sum()),
         gradient=np.einsum("bi,bij->j", force, motion),
@@ -103,7 +103,7 @@ def ball_loads(
     vectors: tuple[FloatArray, FloatArray],
     approach: FloatArray,
 ) -> ElementLoads:
-    """The result of a row from the inner and outer loads and their lines of action."""
+    """Element loads of a row from the inner and outer contact loads and their lines of action."""
     contacts = (row.inner_contact, row.outer_contact)
     angles = [np.arctan2(row.direction * vector[:, 1], vector[:, 0]) for vector in vectors]
     roots = [np.cbrt(load) for load in loads]

@@ -30,8 +30,7 @@ class BallRow:
     clearance
         Diametral, m; negative is an interference.
     axial_offset
-        By how much assembly has moved the inner groove along the row's direction, pressing the balls, m: a preload
-        against another row.
+        Axial displacement of the inner groove at assembly along the row's direction, m: a preload against another row.
     position
         Of the balls' centres from the bearing's centre along z, m.
     direction
@@ -44,7 +43,7 @@ class BallRow:
     Raises
     ------
     RotorError
-        What cannot be, such as balls that do not find room on their circle.
+        Invalid geometry, such as balls that do not fit on the pitch circle.
     """
 
     count: int
