@@ -115,7 +115,7 @@ class Chain:
         return np.asarray(along * (self.table.lengths[:, None] * SQUARE_WEIGHTS)[:, :, None])
 
     def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:
-        """Coefficients of `rotors.timoshenko.PieceTable` at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""
+        """Coefficients of the table at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""
         return self.table.coefficients_at(self.element[piece], fraction)
 
     def transfers(self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None) -> NumberArray:

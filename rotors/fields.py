@@ -103,7 +103,7 @@ class Fields:
 
     @cached_property
     def _rows(self) -> tuple[FloatArray, FloatArray]:
-        """Motion and strain of every field at the Gauss points and the nodes (`rotors.energy_kernels.energy_rows`)."""
+        """Motion and strain of every field at the Gauss points and the nodes, as of `energy_rows`."""
         from .energy_kernels import energy_rows
 
         table, weights, count = self.chain.table, self.chain.energy_weights, self.frequency_squared.size

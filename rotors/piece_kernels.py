@@ -43,7 +43,7 @@ NEGLIGIBLE = 1e-18
 
 @inner(error_model="python", fastmath=FINITE)
 def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, out: NumberArray) -> None:
-    """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `rotors.timoshenko.PieceTable`."""
+    """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `PieceTable`."""
     a, b, k = given[0] * h, given[1] * h, given[4] * h
     m, j = translation * given[2] * h, (rotation * given[3] - given[5]) * h
     am, bj, bk, km = a * m, b * j, b * k, k * m
