@@ -160,7 +160,7 @@ def count_at(
     inertia: FloatArray,
     transfers: FloatArray,
 ) -> tuple[int, float]:
-    """Number of roots below a frequency and the determinant there; ``transfers`` (e, 1, 2n, 2n) is scratch space."""
+    """Number of roots below a frequency and the determinant there; ``transfers`` (e, 1, 2n, 2n) is scratch."""
     squared = frequency * frequency
     for e in range(lengths.size):
         piece_transfers(lengths[e], given[e], squared, squared, WHOLE, transfers[e])
