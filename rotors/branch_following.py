@@ -71,13 +71,18 @@ def extended_branches(table: IntArray, partner: IntArray, count: int) -> IntArra
     -------
     (s + 1, b')
     """
-    row = np.full(table.shape[1], -1, dtype=np.intp)
-    if table.shape[0]:
+    speeds, branches = table.shape
+    row = np.full(branches, -1, dtype=np.intp)
+    if speeds:
         active = table[-1] >= 0
         row[active] = partner[table[-1][active]]
-    begun = np.setdiff1d(np.arange(count), row)
-    wider = np.pad(table, ((0, 0), (0, begun.size)), constant_values=-1)
-    return np.vstack([wider, np.concatenate([row, begun])])
+    is_new = np.ones(count, dtype=np.bool_)
+    is_new[row[row >= 0]] = False
+    begun = np.flatnonzero(is_new)
+    longer = np.full((speeds + 1, branches + begun.size), -1, dtype=np.intp)
+    longer[:speeds, :branches] = table
+    longer[speeds, :branches], longer[speeds, branches:] = row, begun
+    return longer
 
 
 @dataclass(frozen=True)

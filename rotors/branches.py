@@ -55,7 +55,7 @@ def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArra
     for k, one in enumerate(roots):
         partner = np.zeros(0, dtype=np.intp)
         if k:
-            expected = _continued([known.eigenvalues for known in roots[:k]], table, speeds[: k + 1])
+            expected = _continued(roots[max(k - 2, 0) : k], table, speeds[max(k - 2, 0) : k + 1])
             jump = np.abs(expected[:, None] - one.eigenvalues) / np.abs(one.eigenvalues)
             likeness = np.abs(shapes[k - 1].conj() @ shapes[k].T) ** 2
             partner = paired_modes(
@@ -92,11 +92,15 @@ def _characters_of_all(chain: SpatialChain, roots: Sequence[ExactRoots], speeds:
     return np.split(every, np.cumsum(sizes)[:-1])
 
 
-def _continued(values: Sequence[ComplexArray], table: IntArray, speeds: FloatArray) -> ComplexArray:
-    """Linear continuation of each of the last speed's roots to the next, along the branches of a table, (w,)."""
-    expected = values[-1].copy()
-    if len(values) > 1:
-        part = (speeds[-1] - speeds[-2]) / (speeds[-2] - speeds[-3])
+def _continued(roots: Sequence[ExactRoots], table: IntArray, speeds: FloatArray) -> ComplexArray:
+    """Linear continuation of the last speed's roots to the next speed, along the branches of a table, (w,).
+
+    ``roots`` are those of the last two speeds, or of the first alone; ``speeds`` are theirs and the next.
+    """
+    expected = roots[-1].eigenvalues.copy()
+    if len(roots) > 1:
+        part = (speeds[2] - speeds[1]) / (speeds[1] - speeds[0])
         before, last = table[-2:, (table[-2] >= 0) & (table[-1] >= 0)]
-        expected[last] = values[-1][last] + part * (values[-1][last] - values[-2][before])
+        values = roots[1].eigenvalues[last]
+        expected[last] = values + part * (values - roots[0].eigenvalues[before])
     return expected
