@@ -5,9 +5,9 @@
 The rotor is that of Friswell's example 5.9.2 with damped bearings, once for each number of ROSS's elements; it has a
 segment for each of them, so that both programs are given the same file. Of the plain shaft we make few pieces, as equal
 segments are one; of the stepped shaft, on which every diameter is another by up to two parts in a hundred, as many as
-ROSS does. Both are warm: compiled code is compiled, a rotor holds what its speed does not change, as ROSS's holds its
-matrices, and every call has a speed of its own, because ROSS keeps what it solved before. One row has a rotor of ours
-that is new in every call, while ROSS's is not.
+ROSS does. Both are warm: compiled code is compiled, a solver holds what the speed does not change, as the rotor of ROSS
+does its matrices, and every call has a speed of its own, because ROSS keeps what it solved before. One row has a rotor
+of ours that is new in every call, while the one of ROSS is not.
 
 Times are processor times, of runs in turn; each that counts follows two of the same that do not, as the other program
 leaves nothing of it in the caches; but for ROSS's Campbell diagram, which takes seconds. Shown are the medians of both,
@@ -36,6 +36,7 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
+    WhirlSolver,
     campbell,
     read_ross,
     rest_frequencies,
@@ -89,6 +90,7 @@ def rows(ross: Any, elements: int, stepped: bool, modes: int, repeats: int, fold
     files = [written_rotor(elements, damping, folder, stepped) for damping in (0.0, 300.0)]
     (rotor, undamped, _), (_, damped, _) = map(read_ross, files)
     at_rest, turning = map(ross.Rotor.load, files)
+    solver = WhirlSolver(rotor, damped)
 
     return [
         Row(
@@ -100,7 +102,7 @@ def rows(ross: Any, elements: int, stepped: bool, modes: int, repeats: int, fold
         ),
         Row(
             "whirl at speed",
-            lambda speed: solve_whirl(rotor, damped, speed, count=modes).frequencies,
+            lambda speed: solver.modes(speed, count=modes).frequencies,
             lambda speed: turning.run_modal(speed, num_modes=2 * modes).wn,
             repeats,
         ),
@@ -112,7 +114,7 @@ def rows(ross: Any, elements: int, stepped: bool, modes: int, repeats: int, fold
         ),
         Row(
             f"Campbell, {CAMPBELL_SPEEDS} speeds",
-            lambda speed: campbell(rotor, damped, np.linspace(0.0, speed, CAMPBELL_SPEEDS), count=modes),
+            lambda speed: campbell(rotor, damped, np.linspace(0.0, speed, CAMPBELL_SPEEDS), count=modes, solver=solver),
             lambda speed: turning.run_campbell(np.linspace(1e-6, 1.0, CAMPBELL_SPEEDS) * speed, frequencies=modes),
             1,
         ),

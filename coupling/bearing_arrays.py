@@ -8,7 +8,7 @@ import numpy.typing as npt
 from coupling.bearing_law import BearingLaw, GapLaw, RollingLaw
 from coupling.connector import NonlinearConnector
 from coupling.kernel_arrays import BALLS, GAP, ROLLERS, Bearings
-from rotors.rolling import BallRow, RollerRow
+from rotors.rolling import BallRow
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,15 +53,6 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
     )
 
 
-def cage_rate(row: BallRow | RollerRow, speed: float) -> float:
-    """Speed of the cage [rad/s] with the inner ring turning at a speed and the outer at rest: ½ (1 - γ) Ω.
-
-    γ = D cos α / D_pw, of pure rolling at the nominal contact angle (Harris and Kotzalas 2006).
-    """
-    angle = row.contact_angle if isinstance(row, BallRow) else 0.0
-    return float(0.5 * (1.0 - row.element_diameter * np.cos(angle) / row.pitch_diameter) * speed)
-
-
 def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
     """Kind, count, numbers, cage and slices of every row of a law."""
     none = np.zeros((0, 2))
@@ -69,7 +60,7 @@ def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
         yield GAP, 0, (law.force, law.depth, law.exponent, law.gap), (0.0, 0.0), none
         return
     for row in law.state.bearing.rows:
-        cage = law.cage_angle, cage_rate(row, speed)
+        cage = law.cage_angle, row.cage_speed(speed)
         if isinstance(row, BallRow):
             yield BALLS, row.count, _ball_shape(row), cage, none
         else:
@@ -79,13 +70,5 @@ def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
 
 
 def _ball_shape(row: BallRow) -> tuple[float, ...]:
-    """A, v₀, |v₀|² - A², the inner centres' radius and place, and K; see `rotors.rolling.ball_contacts`."""
-    distance, angle, sense = row.groove_distance, row.contact_angle, row.direction
-    start_r = distance * np.cos(angle) - 0.5 * row.clearance
-    start_z = sense * (distance * np.sin(angle) + row.axial_offset)
-    before = 0.25 * row.clearance**2 - distance * row.clearance * np.cos(angle)
-    before += 2.0 * distance * row.axial_offset * np.sin(angle) + row.axial_offset**2
-    arm = (row.inner_groove - 0.5) * row.ball_diameter
-    reach = 0.5 * row.pitch_diameter + arm * np.cos(angle)
-    place = row.position + sense * arm * np.sin(angle)
-    return distance, start_r, start_z, before, reach, place, row.stiffness
+    """A, v₀, |v₀|² − A², the inner centres' radius and place, and K; see `rotors.rolling.ball_contacts`."""
+    return row.groove_distance, *row.groove_offset, row.groove_excess, *row.inner_groove_centre, row.stiffness

@@ -15,15 +15,17 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import linear_sum_assignment
+
+from rotors.branch_following import paired_modes
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
+IntArray = npt.NDArray[np.intp]
 
 _ALIKE = 0.8  # likeness from which two modes are one beyond doubt
 _ONE = 1e-6  # eigenvalues nearer to each other than this part of them are not told apart
 _JUMP = 0.05  # a step of an eigenvalue by this part of it weighs as much as no likeness at all
+_MOST_JUMPS = 4.0  # such steps, beyond which the length of a step makes no further difference
 _FARTHEST = 0.3  # a branch that would have to jump by this part of its frequency has ended
 _HALVINGS = 6  # of a step of speed
 
@@ -85,10 +87,9 @@ def matched(
     products = _products(one, other)
     alike = np.minimum(np.abs(products), 1.0)
     jump = np.abs(other.values[None, :] - one.values[:, None]) / np.abs(one.values)[:, None]
-    rows, columns = linear_sum_assignment((1.0 - alike) + np.minimum(jump / _JUMP, 4.0))
-    found = np.full(one.values.size, -1)
-    followed = (jump[rows, columns] < _FARTHEST) | (alike[rows, columns] > _ALIKE)
-    found[rows[followed]] = columns[followed]
+    found = paired_modes(
+        jump, alike, jump_scale=_JUMP, most_jumps=_MOST_JUMPS, longest_jump=_FARTHEST, sure_likeness=_ALIKE
+    )
     wanted = np.abs(one.values) < limit
     # Of modes that have one frequency at every speed, as of equal shafts, no step tells which is which: nor need it.
     gaps = np.abs(other.values[:, None] - other.values[None, :])

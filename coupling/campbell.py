@@ -9,11 +9,12 @@ import numpy.typing as npt
 
 from coupling.branches import ModesAtSpeed, matched
 from coupling.contact_state import ContactState, linear_matrices, mean_contact
-from coupling.crossings import refined_crossing
+from coupling.crossings import order_crossing
 from coupling.errors import CouplingError
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.machine import CoupledMachine
 from coupling.modes import coupled_modes
+from rotors.branch_following import extended_branches
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -149,23 +150,15 @@ def system_campbell(
         return _described(machine, speed, limit, state).modes
 
     known: list[_Described] = []
-    places: list[list[int]] = []
+    branches = np.zeros((0, 0), dtype=np.intp)
     for number, speed in enumerate(stand_in):
         here = _described(machine, float(speed), limit, state)
-        if known:
-            partner = matched(known[-1].modes, here.modes, solve, limit)
-            for branch in places:
-                branch.append(int(partner[branch[-1]]) if branch[-1] >= 0 else -1)
-        taken = {branch[-1] for branch in places}
-        places += [[-1] * number + [new] for new in range(here.modes.values.size) if new not in taken]
+        partner = matched(known[-1].modes, here.modes, solve, limit) if known else np.zeros(0, dtype=np.intp)
+        branches = extended_branches(branches, partner, here.modes.values.size)
         known.append(here)
         progress((number + 1) / stand_in.size)
-    below = [
-        branch
-        for branch in places
-        if any(at >= 0 and abs(one.modes.values[at]) < frequency_limit for at, one in zip(branch, known, strict=True))
-    ]
-    table = np.array(below, dtype=np.int64).reshape(-1, turning.size).T
+    sizes = np.abs(_along(branches, [one.modes.values for one in known], np.nan))
+    table = branches[:, np.any(sizes < frequency_limit, axis=0)]
     eigenvalues = _along(table, [one.modes.values for one in known], complex(np.nan, np.nan))
     kinds, where = (_along(table, [np.array(getattr(one, key)) for one in known], "") for key in ("kinds", "where"))
     whirl, teeth = (_along(table, [getattr(one, key) for one in known], np.nan) for key in ("whirl", "teeth"))
@@ -176,7 +169,7 @@ def system_campbell(
             if not np.all(np.isfinite(gap[left : left + 2, branch])):
                 continue
             ends = [(known[i].modes, int(table[i, branch])) for i in (left, left + 1)]
-            found = refined_crossing(machine, line.order, ends, state)
+            found = order_crossing(machine, line.order, ends, state)
             if found is None:
                 unsettled.append(
                     f"{line.name} meets the mode at {eigenvalues[left, branch].imag / (2.0 * np.pi):.5g} Hz between "
@@ -232,7 +225,7 @@ def _described(machine: CoupledMachine, speed: float, limit: float, contact: Con
     )
 
 
-def _along(table: npt.NDArray[np.int64], values: Sequence[npt.NDArray[Any]], missing: Any) -> npt.NDArray[Any]:
+def _along(table: npt.NDArray[np.intp], values: Sequence[npt.NDArray[Any]], missing: Any) -> npt.NDArray[Any]:
     """Values of the modes at each speed along the branches, (s, b)."""
     columns = [
         np.where(row >= 0, of[np.maximum(row, 0)] if of.size else missing, missing)

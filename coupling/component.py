@@ -20,6 +20,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from housing import HousingModes, ModeSet
 from rotors import ModalRotor, Pedestal
+from rotors.modal import gyroscopic_matrix
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -128,21 +129,14 @@ class RotorComponent(Component):
         return {}
 
     def _motions(self, at: float) -> FloatArray:
-        m = self.modal.lateral.count
-        displacement, slope = (self.mixture.T @ part[:, 0] for part in self.modal.lateral.evaluate([at]))
-        rows = np.zeros((5, self.size))
-        rows[0, :m] = rows[1, m : 2 * m] = displacement
-        if self.modal.axial is not None:
-            rows[2, self.size - self.modal.axial.count :] = self.modal.axial.evaluate([at])[:, 0]
-        rows[3, m : 2 * m], rows[4, :m] = -slope, slope
+        rows, m = self.modal.motions(at), self.modal.lateral.count
+        for plane in (slice(0, m), slice(m, 2 * m)):
+            rows[:, plane] = rows[:, plane] @ self.mixture
         return rows
 
     def rotation(self, at: float) -> FloatArray:
         """Rotation about z at a distance from the left end [m], shape (n,)."""
-        row = np.zeros(self.size)
-        first = 2 * self.modal.lateral.count
-        row[first : first + self.modal.torsional.count] = self.modal.torsional.evaluate([at])[:, 0]
-        return row
+        return self.modal.rotation(at)
 
     @property
     def turning(self) -> FloatArray:
@@ -308,19 +302,16 @@ def rotor_component(
         x and y of the shaft's line [m], which matter where the base turns.
     """
     lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
-    m, t = lateral.count, modal.torsional.count
-    n = 2 * m + t + len(along)
-    values, mixture = np.linalg.eigh(np.diag(lateral.frequencies**2) - lateral.support_matrix)
+    m, n = lateral.count, modal.size
+    values, mixture = np.linalg.eigh(lateral.free_stiffness)
     # Motions of the whole shaft have no stiffness; what rounding leaves of it is taken off.
     values = np.where(np.abs(values) < 1e-9 * values[-1], 0.0, np.maximum(values, 0.0))
     squared = np.concatenate([values, values, modal.torsional.frequencies**2, along**2])
     gyroscopic = np.zeros((n, n))
-    polar = mixture.T @ lateral.polar_inertia_matrix @ mixture
-    gyroscopic[:m, m : 2 * m] = polar
-    gyroscopic[m : 2 * m, :m] = -polar
+    gyroscopic[: 2 * m, : 2 * m] = gyroscopic_matrix(mixture.T @ lateral.polar_inertia_matrix @ mixture)
     return RotorComponent(
         name=name,
-        kinds=("rotor",) * (2 * m) + ("torsion",) * t + ("axial",) * len(along),
+        kinds=("rotor",) * (2 * m) + ("torsion",) * modal.torsional.count + ("axial",) * len(along),
         stiffness=np.diag(squared),
         damping=np.diag(2.0 * damping_ratio * np.sqrt(squared)),
         gyroscopic=gyroscopic,

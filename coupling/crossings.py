@@ -1,26 +1,31 @@
-"""Where an order of the speed meets a mode: between two speeds of a branch, to ten digits."""
+"""Crossing of an excitation order with a coupled mode, refined between two speeds of a branch to ten digits."""
 
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from coupling.branches import ModesAtSpeed
 from coupling.contact_state import ContactState, linear_matrices
 from coupling.eigenpairs import refine_pair
 from coupling.machine import CoupledMachine
+from rotors.branch_following import BranchPoint, refined_crossing
+
+ComplexArray = npt.NDArray[np.complex128]
+Point = BranchPoint[ComplexArray]
 
 _CROSSING = 1e-10  # of a frequency, to which a crossing is found
 _STEPS = 40
 _RESIDUAL = 1e-9
 
 
-def refined_crossing(
+def order_crossing(
     machine: CoupledMachine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]], contact: ContactState
 ) -> tuple[float, complex] | None:
     """Speed and eigenvalue where a branch has the frequency of an order, between two neighbours on it.
 
-    Regula falsi with Illinois' halving; at each speed Newton's method on the eigenpair, begun between its neighbours.
-    None where that leads away from the branch.
+    At each speed on the way Newton's method on the eigenpair begins between its neighbours. None where that leads away
+    from the branch.
 
     Parameters
     ----------
@@ -32,31 +37,26 @@ def refined_crossing(
     contact : ContactState
         Of all speeds.
     """
-    (low, one), (high, other) = ends
-    speeds = [low.speed, high.speed]
-    values = [complex(low.values[one]), complex(high.values[other])]
-    shapes = [low.right[one], high.right[other]]
-    # Shapes are known up to a factor; the second is turned into line with the first, to be averaged with it.
-    shapes[1] = shapes[1] * np.exp(-1j * np.angle(np.vdot(shapes[0], shapes[1])))
-    gaps = [value.imag - order * abs(speed) for value, speed in zip(values, speeds, strict=True)]
-    weights = list(gaps)
-    for _ in range(_STEPS):
-        part = weights[0] / (weights[0] - weights[1])
-        speed = speeds[0] + part * (speeds[1] - speeds[0])
-        system = machine.at_speed(speed).system
-        stiffness, damping = linear_matrices(system, contact)
-        start = values[0] + part * (values[1] - values[0])
-        value, shape, residual = refine_pair(stiffness, damping, start, (1.0 - part) * shapes[0] + part * shapes[1])
-        if residual > _RESIDUAL or not _between(value, values):
+
+    def point(speed: float, value: complex, shape: ComplexArray) -> Point:
+        # Shapes are known up to a factor; each is turned into line with the first, to be averaged with others.
+        aligned = np.asarray(shape * np.exp(-1j * np.angle(np.vdot(first, shape))))
+        return BranchPoint(speed, value, value.imag - order * abs(speed), aligned)
+
+    def solve(part: float, low: Point, high: Point) -> Point | None:
+        speed = low.speed + part * (high.speed - low.speed)
+        stiffness, damping = linear_matrices(machine.at_speed(speed).system, contact)
+        start = low.eigenvalue + part * (high.eigenvalue - low.eigenvalue)
+        shape = (1.0 - part) * low.shape + part * high.shape
+        value, shape, residual = refine_pair(stiffness, damping, start, shape)
+        if residual > _RESIDUAL or not _between(value, (low.eigenvalue, high.eigenvalue)):
             return None
-        gap = value.imag - order * abs(speed)
-        if abs(gap) <= _CROSSING * abs(value):
-            return speed, value
-        shape = shape * np.exp(-1j * np.angle(np.vdot(shapes[0], shape)))
-        near = 0 if (gap > 0.0) == (gaps[0] > 0.0) else 1
-        speeds[near], values[near], shapes[near], gaps[near], weights[near] = speed, value, shape, gap, gap
-        weights[1 - near] *= 0.5
-    return None
+        return point(speed, value, shape)
+
+    first = ends[0][0].right[ends[0][1]]
+    low, high = (point(modes.speed, complex(modes.values[at]), modes.right[at]) for modes, at in ends)
+    found = refined_crossing(low, high, solve, tolerance=_CROSSING, steps=_STEPS)
+    return None if found is None else (found.speed, found.eigenvalue)
 
 
 def _between(value: complex, ends: Sequence[complex]) -> bool:

@@ -54,8 +54,7 @@ from .statics import StaticDeflection, StaticForce, static_deflection
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
 from .torsional_response import Torque, TorsionalDashpot, TorsionalResponse, torsional_response
 from .unbalance import BowShape, SynchronousResponse, bow_shape, unbalance_response
-from .whirl import MOSTLY_AXIAL, WhirlModes, solve_whirl
-from .whirl_certificate import WhirlCertificate
+from .whirl import MOSTLY_AXIAL, WhirlModes, WhirlSolver, solve_whirl
 from .whirl_energy import StrainShares
 
 __all__ = [
@@ -99,8 +98,8 @@ __all__ = [
     "TorsionalModes",
     "TorsionalResponse",
     "Unbalance",
-    "WhirlCertificate",
     "WhirlModes",
+    "WhirlSolver",
     "attach_loads",
     "attach_motions",
     "bow_shape",

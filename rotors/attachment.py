@@ -1,4 +1,4 @@
-"""Residual attachment modes: the static compliance at loaded places that a truncated basis lacks."""
+"""Residual attachment modes: the static compliance that a truncated modal basis lacks at loaded places."""
 
 from collections.abc import Sequence
 
@@ -13,23 +13,23 @@ from .shapes import responses, ritz_vectors
 
 FloatArray = npt.NDArray[np.float64]
 
-# A residual smaller than this part of the static response is rounding: the basis has it already.
+# A residual smaller than this part of the static response is rounding.
 NOTHING_LEFT = 1e-7
-# A free shaft has no static response: a shift of ω² this far below its first elastic ω stands in for it. Of that
-# response all but a thousandth is rigid; what is left has a direction in error by the same part at most, and so a
-# compliance in error by its square. A smaller part would lose to rounding what it gains.
+# A free shaft has no static response: it is taken at ω² = −(this part of the first elastic ω)². All but a thousandth of
+# that response is rigid; the direction of the rest errs by the same part at most, so the compliance errs by its square.
+# A smaller shift would lose more to rounding.
 FREE_SHIFT = 0.03
 
 
 def attach_loads(
     modes: LateralModes, *, forces_at: Sequence[float] = (), moments_at: Sequence[float] = ()
 ) -> LateralModes:
-    """Modes, and behind them vectors that make their static response to point loads exact.
+    """Modes followed by residual attachment modes, which make the static response to point loads exact.
 
     The static response to a unit force or moment at each place, less what the modes already carry, is
-    made orthonormal in mass and diagonal in stiffness. The modes proper stay as they were; the vectors
-    added have frequencies too (Rayleigh quotients, not natural frequencies), so that the whole set enters
-    a coupled model like any other. On a free shaft the response is taken at ω² slightly below zero.
+    made orthonormal in mass and diagonal in stiffness. The natural modes do not change. The attachment modes have
+    frequencies too (Rayleigh quotients, not natural frequencies), so that the whole set enters a coupled model like
+    natural modes. On a free shaft the response is taken at ω² slightly below zero.
 
     Parameters
     ----------
@@ -53,10 +53,10 @@ def attach_loads(
 
 
 def attach_motions(modes: Modes, at: Sequence[float]) -> Modes:
-    """Torsional or axial modes, and behind them vectors that make the static response to point loads exact.
+    """Torsional or axial modes followed by residual attachment modes, exact in static response to point loads.
 
-    As `attach_loads`, of torques or of forces along the axis. Of a free shaft it is the strain that a load leaves
-    beside the motion of the whole.
+    As `attach_loads`, for torques or forces along the axis. On a free shaft they carry the elastic part of the
+    response, without the rigid motion.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def attach_motions(modes: Modes, at: Sequence[float]) -> Modes:
 
 
 def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]]) -> FoundModes | None:
-    """Modes with the vectors of some loads behind them; None where these add nothing.
+    """Modes followed by the attachment modes of some loads; None where these add nothing.
 
     Each load is a place (m) and the component of displacement along which it acts.
     """
@@ -104,8 +104,8 @@ def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]])
 def _residuals(fields: Fields, modes: FloatArray, zeros: int, count: int) -> FloatArray:
     """Combinations of fields that span the last ``count`` of them less the modes, (r, fields).
 
-    The first ``zeros`` modes are rigid. They go first: the response of a shaft that is all but free is rigid but for
-    a small part, and it is this part of which something may be left.
+    The first ``zeros`` modes are rigid. They are removed first: the response of a nearly free shaft is almost all
+    rigid, and the residual is a part of the small remainder.
     """
     kept = np.hstack([modes, np.zeros((modes.shape[0], count))])
     rows = np.hstack([np.zeros((count, modes.shape[1])), np.eye(count)])
@@ -124,7 +124,7 @@ def _residuals(fields: Fields, modes: FloatArray, zeros: int, count: int) -> Flo
 
 
 def _without(fields: Fields, rows: FloatArray, modes: FloatArray) -> FloatArray:
-    """Combinations less what they have of orthonormal modes; twice, for the rounding that the first time leaves."""
+    """Combinations without their components along orthonormal modes; twice, to remove rounding."""
     for _ in range(2 if modes.size else 0):
         rows = rows - fields.mass_products(rows, modes) @ modes
     return rows

@@ -32,7 +32,7 @@ def solve_axial_modes(
     frequency_limit: float | None = None,
     count: int | None = None,
 ) -> AxialModes:
-    """Every axial mode below a limit, or the lowest few.
+    """Every axial mode below a limit, or the lowest ones.
 
     Segments are rods of EA and ρA (without the lateral contraction that slows waves as short as the diameter),
     discs are masses, couplings are springs.
@@ -46,7 +46,7 @@ def solve_axial_modes(
     frequency_limit
         rad/s: all modes strictly below.
     count
-        How many modes, a rigid motion included; with neither, 10 or all there are.
+        Number of modes, a rigid motion included; with neither, 10 or all there are.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A spring along the shaft's axis or about it."""
+"""Axial and torsional springs from the shaft to ground."""
 
 from dataclasses import dataclass
 

@@ -1,9 +1,9 @@
-"""Banded complex matrices in batches: factors, solutions, and the null vectors of singular ones.
+"""Banded complex matrices in batches: LU factors, solutions, and null vectors of singular matrices.
 
 All matrices of a batch share one pattern, given by the row and column of every entry. A matrix is kept by
-rows, entry (i, j) at ``[i, j - i + lower]``, with ``lower`` more places on the right for what partial
-pivoting fills in. The factors are those of Gaussian elimination, P A = L U, the multipliers in place; rows are
-followed only as far as they reach, which on a chain is half of the band.
+rows, entry (i, j) at ``[i, j - i + lower]``, with ``lower`` more places on the right for the fill-in of partial
+pivoting. The factors are those of Gaussian elimination, P A = L U, the multipliers in place; each row is followed only
+to its last entry, which on a shaft is half of the band.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ IntArray = npt.NDArray[np.intp]
 
 @dataclass(frozen=True)
 class BandPattern:
-    """Where a batch of matrices has entries; several entries at one place add up.
+    """Sparsity pattern of a batch of banded matrices; several entries at one place add up.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class BandPattern:
     order
         Of the matrices.
     lower, upper
-        How many diagonals lie below and above the main one.
+        Number of diagonals below and above the main one.
     """
 
     rows: IntArray

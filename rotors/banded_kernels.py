@@ -1,4 +1,4 @@
-"""Compiled elimination of banded complex matrices; the layout is that of `rotors.banded`.
+"""Compiled LU factorization of banded complex matrices, stored as in `rotors.banded`.
 
 Importing this module imports numba.
 """
@@ -14,9 +14,9 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-# An exactly vanishing pivot is replaced by this part of the matrix's largest entry: a root met to the last digit.
+# A vanishing pivot, at a root hit to the last digit, is replaced by this part of the matrix's largest entry.
 TINY = 1e-18
-# Pivots are gathered while their product's square is between these, before its logarithm is taken.
+# Pivots are multiplied while the square of their product is between these, before its logarithm is taken.
 SMALL, LARGE = 1e-100, 1e100
 
 
@@ -38,7 +38,7 @@ def fill(rows: IntArray, columns: IntArray, lower: int, values: ComplexArray, ma
 def factor(
     matrix: ComplexArray, lower: int, envelope: IntArray, pivots: IntArray, ends: IntArray, least: float
 ) -> complex:
-    """Factor in place; the logarithm of the determinant.
+    """LU factors in place; returns the logarithm of the determinant.
 
     The diagonal takes the reciprocals of the pivots, and ``ends`` (order,) the last column of every row of U: rows are
     short where nothing reaches far, and interchanges and what they fill in carry their ends along.
@@ -146,7 +146,7 @@ def put(given: ComplexArray, out: ComplexArray) -> None:
 
 @inner(error_model="python")
 def orthonormalise(vectors: ComplexArray) -> None:
-    """Gram and Schmidt on the rows in place, twice where there is something to take off."""
+    """Gram-Schmidt orthonormalisation of the rows in place, twice where there are earlier rows."""
     for k in range(vectors.shape[0]):
         for _ in range(2 if k else 1):
             for other in range(k):

@@ -1,4 +1,4 @@
-"""Compiled orthonormalisation of fields in mass, for `rotors.planar_basis`.
+"""Compiled Gram-Schmidt orthonormalisation of shaft fields in mass, for `rotors.planar_basis`.
 
 Importing this module imports numba.
 """
@@ -23,14 +23,14 @@ def _product(motion: FloatArray, one: int, other: int, mass: FloatArray) -> floa
 
 @uncounted(error_model="python")
 def mass_orthonormal(motion: FloatArray, strain: FloatArray, shapes: FloatArray, mass: FloatArray, least: float) -> int:
-    """Make rows of ``motion`` (k, g) orthonormal under the weights ``mass`` (g,) in place, and the others with them.
+    """Make rows of ``motion`` (k, g) orthonormal under the weights ``mass`` (g,) in place, combining the others alike.
 
-    Rows of which less than the part ``least`` is left are dropped, and the rest moved up; returns how many are left.
+    Rows reduced below the part ``least`` of their norm are dropped, the rest moved up; returns the number left.
     """
     kept = 0
     for row in range(motion.shape[0]):
         source, left = row, 1.0
-        # At first only brought to unit norm; then twice, for the rounding that the first time leaves.
+        # First normalised, then orthogonalised twice, because of rounding.
         for turn in range(3):
             for other in range(kept if turn else 0):
                 overlap = _product(motion, other, kept, mass)

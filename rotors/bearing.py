@@ -1,4 +1,4 @@
-"""What holds a rotor: springs of one plane, and bearings in all directions, on pedestals or on the ground."""
+"""Bearings by their stiffness and damping matrices, pedestals, and supports of one plane."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -38,14 +38,14 @@ class RadialSupport:
 
 @dataclass(frozen=True, eq=False)
 class Pedestal:
-    """What a bearing stands on: a mass on springs and dashpots, free to move in x and y.
+    """A bearing's pedestal: a mass on springs and dashpots, free to move in x and y.
 
     Parameters
     ----------
     stiffness, damping
         (2, 2) over x, y: to the ground, N/m and N·s/m.
     mass
-        That moves with it, kg.
+        Moving mass, kg.
     """
 
     stiffness: FloatArray
@@ -64,12 +64,12 @@ class Pedestal:
 
 @dataclass(frozen=True, eq=False)
 class Bearing:
-    """A linear bearing between the shaft and whatever carries it.
+    """A linear bearing between the shaft and its carrier: a pedestal, the housing or the ground.
 
     Parameters
     ----------
     name
-        What messages call it.
+        Name in messages.
     at
         Position from the rotor's left end, m.
     stiffness, damping
@@ -80,7 +80,7 @@ class Bearing:
         (s,): ascending speeds of rotation of the tables, rad/s; between them the coefficients follow a monotone
         cubic (Fritsch and Carlson 1980).
     pedestal
-        What it stands on, where that is not rigid.
+        The pedestal, if it is not rigid.
 
     Raises
     ------
@@ -132,9 +132,7 @@ class Bearing:
         return cls(name, at, stiffness * np.eye(2), damping * np.eye(2))
 
     def at_speed(self, speed: float) -> "Bearing":
-        """The bearing with the constant coefficients that its tables hold for a speed of rotation (rad/s).
-
-        The sense of rotation does not matter to a table.
+        """The bearing with the constant coefficients of its tables at a speed of rotation (rad/s) of either sense.
 
         Raises
         ------
@@ -223,7 +221,7 @@ def undamped(bearing: Bearing) -> Bearing:
 
 
 def _frozen(what: str, value: npt.ArrayLike) -> FloatArray:
-    """A finite array that nobody can change."""
+    """A finite, read-only array."""
     array = np.array(value, dtype=np.float64)
     require(bool(np.isfinite(array).all()), what, array.tolist(), "finite numbers")
     array.setflags(write=False)

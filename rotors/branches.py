@@ -1,21 +1,23 @@
-"""Whirl modes followed from speed to speed, through the places where their frequencies cross."""
+"""Branches of a Campbell diagram: whirl modes followed from speed to speed, through the places where they cross."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import linear_sum_assignment
 
+from .branch_following import extended_branches, paired_modes
 from .exact_roots import ExactRoots
 from .spatial_chain import SpatialChain
 from .spatial_field import SpatialMotion
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
 
-# Weight of a shape's likeness against the eigenvalue's continuity, as a part of the eigenvalue.
-SHAPE_WEIGHT = 0.1
+# A jump by this part of the eigenvalue weighs as much as no likeness at all; no jump weighs more than so many of these.
+JUMP_SCALE = 0.1
+MOST_JUMPS = 100.0
 # A branch that would have to jump further than this part of its frequency has ended.
 LONGEST_JUMP = 0.5
 
@@ -43,33 +45,31 @@ class Branch:
 def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[Branch]:
     """Branches through the roots (one set a speed) of one chain.
 
-    From one speed to the next, branches and roots are paired so that the sum of what they differ by is least:
-    the distance of the root from the branch's linear continuation, as a part of it, and a little of 1 − MAC.
+    A root's jump is its distance from the linear continuation of the branch; shapes are compared by the modal assurance
+    criterion of the nodes' displacements.
     """
-    inside = chain.layout.displacements
-    ways = _characters_of_all(chain, roots, speeds)
-    branches: list[tuple[ComplexArray, FloatArray]] = []
-    active: list[tuple[int, ComplexArray]] = []
+    inside = chain.layout.displacements.ravel()
+    shapes = [one.solutions[:, inside] for one in roots]
+    shapes = [one / np.maximum(np.linalg.norm(one, axis=1, keepdims=True), 1e-300) for one in shapes]
+    table = np.zeros((0, 0), dtype=np.intp)
     for k, one in enumerate(roots):
-        shapes = one.solutions[:, inside.ravel()]
-        shapes = shapes / np.maximum(np.linalg.norm(shapes, axis=1, keepdims=True), 1e-300)
-        owner = np.full(one.eigenvalues.size, -1)
-        if active and one.eigenvalues.size:
-            expected = np.array([_continued(branches[b][0], speeds, k) for b, _ in active])
+        partner = np.zeros(0, dtype=np.intp)
+        if k:
+            expected = _continued(roots[max(k - 2, 0) : k], table, speeds[max(k - 2, 0) : k + 1])
             jump = np.abs(expected[:, None] - one.eigenvalues) / np.abs(one.eigenvalues)
-            likeness = np.abs(np.array([shape for _, shape in active]).conj() @ shapes.T) ** 2
-            rows, columns = linear_sum_assignment(np.minimum(jump, 10.0) + SHAPE_WEIGHT * (1.0 - likeness))
-            good = jump[rows, columns] < LONGEST_JUMP
-            owner[columns[good]] = np.array([active[row][0] for row in rows])[good]
-        active = []
-        for root, branch in enumerate(owner.tolist()):
-            if branch < 0:
-                branch = len(branches)
-                branches.append((np.full(speeds.size, complex(np.nan, np.nan)), np.full((speeds.size, 2), np.nan)))
-            branches[branch][0][k] = one.eigenvalues[root]
-            branches[branch][1][k] = ways[k][root]
-            active.append((branch, shapes[root]))
-    return [Branch(values, ways[:, 0], ways[:, 1]) for values, ways in branches]
+            likeness = np.abs(shapes[k - 1].conj() @ shapes[k].T) ** 2
+            partner = paired_modes(
+                jump, likeness, jump_scale=JUMP_SCALE, most_jumps=MOST_JUMPS, longest_jump=LONGEST_JUMP
+            )
+        table = extended_branches(table, partner, one.eigenvalues.size)
+    ways = _characters_of_all(chain, roots, speeds)
+    branches = []
+    for column in table.T:
+        values, way = np.full(speeds.size, complex(np.nan, np.nan)), np.full((speeds.size, 2), np.nan)
+        for k in np.flatnonzero(column >= 0).tolist():
+            values[k], way[k] = roots[k].eigenvalues[column[k]], ways[k][column[k]]
+        branches.append(Branch(values, way[:, 0], way[:, 1]))
+    return branches
 
 
 def characters(chain: SpatialChain, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
@@ -92,9 +92,15 @@ def _characters_of_all(chain: SpatialChain, roots: Sequence[ExactRoots], speeds:
     return np.split(every, np.cumsum(sizes)[:-1])
 
 
-def _continued(values: ComplexArray, speeds: FloatArray, k: int) -> complex:
-    """Linear continuation of a branch to the speed k from the two before it."""
-    if k < 2 or not np.isfinite(values[k - 2]):
-        return complex(values[k - 1])
-    part = (speeds[k] - speeds[k - 1]) / (speeds[k - 1] - speeds[k - 2])
-    return complex(values[k - 1] + part * (values[k - 1] - values[k - 2]))
+def _continued(roots: Sequence[ExactRoots], table: IntArray, speeds: FloatArray) -> ComplexArray:
+    """Linear continuation of the last speed's roots to the next speed, along the branches of a table, (w,).
+
+    ``roots`` are those of the last two speeds, or of the first alone; ``speeds`` are theirs and the next.
+    """
+    expected = roots[-1].eigenvalues.copy()
+    if len(roots) > 1:
+        part = (speeds[2] - speeds[1]) / (speeds[1] - speeds[0])
+        before, last = table[-2:, (table[-2] >= 0) & (table[-1] >= 0)]
+        values = roots[1].eigenvalues[last]
+        expected[last] = values + part * (values - roots[0].eigenvalues[before])
+    return expected

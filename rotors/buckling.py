@@ -1,4 +1,4 @@
-"""At what multiple of its axial forces a shaft buckles, by the same count that finds its frequencies."""
+"""Buckling of a shaft under its axial forces, by the Wittrick-Williams root count."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,15 +16,15 @@ from .shaft import Rotor
 STANDSTILL = 1e-9
 RELATIVE_WIDTH = 1e-13
 MOST_DOUBLINGS = 100
-# A shaft that may tilt freely buckles under any compression: below this the factor is zero.
+# A shaft that is free to tilt buckles under any compression: a factor below this is zero.
 LEAST_FACTOR = 1e-9
 
 
 def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> float:
     """The least factor on all axial forces of a rotor at which it buckles in one plane.
 
-    Where compression has consumed a shaft's bending stiffness a natural frequency has come down to zero: beyond,
-    the root count at standstill exceeds the number of rigid motions.
+    Compression lowers the natural frequencies. Where one has reached zero the shaft buckles: beyond, the root count at
+    standstill exceeds the number of rigid motions.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> flo
 
 
 def require_unbuckled(rotor: Rotor, supports: Sequence[RadialSupport]) -> None:
-    """Raise `RotorError` saying at what factor, if the rotor's own axial forces buckle it."""
+    """Raise `RotorError` with the buckling factor if the rotor's own axial forces buckle it."""
     if rotor.is_compressed:
         buckled = _has_buckled(rotor, supports, 1.0)
         factor = buckling_factor(rotor, supports) if buckled else np.inf

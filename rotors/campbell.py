@@ -2,11 +2,11 @@
 
 Starting values at every speed come from one projection on planar modes, reduced once; the roots are then refined
 on the exact equations, all speeds in one batch. Branches are followed from speed to speed by the eigenvalue that
-continues them and the shape that resembles theirs; motions that the bearings do not tie to each other, as forward and
-backward whirl in isotropic ones, are followed apart, so that they cannot be confused where they cross.
+continues them and the likeness of shapes. Motions that the bearings do not couple, such as forward and backward whirl
+in isotropic ones, are followed separately, so that they cannot be confused where they cross.
 
-Where nothing damps, the number of roots is proved at every speed (`rotors.whirl_count`). Elsewhere a proof costs a
-contour at each speed: it is made at a few, and at all where asked.
+Without damping the number of roots is proved at every speed (`rotors.whirl_count`). With damping a proof costs a
+contour integral at each speed: it is made at a few speeds, or at all on request.
 """
 
 from collections.abc import Sequence
@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .bearing import Bearing
+from .branch_following import BranchPoint, refined_crossing
 from .branches import Branch, characters, followed
 from .campbell_roots import limits_behind, proved_at, roots_at_speeds
 from .certificate import ACCEPTED
@@ -24,19 +25,21 @@ from .exact_roots import refine_each
 from .harmonic import finite_values
 from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
-from .projection import Projection, basis_for
+from .projection import Projection
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, retied, whirl_chain, whirl_reach
+from .spatial_chain import SpatialChain, retied, whirl_reach
 from .spatial_ties import block_sets
-from .whirl import START_REACH, is_undriven
+from .whirl import START_REACH, WhirlSolver
 from .whirl_certificate import NO_OSCILLATION
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
+# With whirl direction and axial share in place of the shape.
+Point = BranchPoint[tuple[float, float]]
 
-# A crossing whose root lies further off than this, as a part of it, belongs to another branch.
-LONGEST_JUMP = 0.1
+# A root further from its starting value than this part of it belongs to another branch.
+CROSSING_JUMP = 0.1
 CROSSING_STEPS = 30
 CROSSING_TOLERANCE = 1e-11
 
@@ -76,7 +79,7 @@ class Crossing:
 
 @dataclass(frozen=True)
 class Campbell:
-    """Whirl over speed, one column for each branch; NaN where a branch does not oscillate or is out of range.
+    """Whirl over speed, one column for each branch; NaN where a branch does not oscillate or is outside the range.
 
     Attributes
     ----------
@@ -97,8 +100,7 @@ class Campbell:
     direction: FloatArray
     axial_share: FloatArray
     proved: BoolArray
-    rotor: Rotor = field(repr=False)
-    bearings: tuple[Bearing, ...] = field(repr=False)
+    solver: WhirlSolver = field(repr=False)
     blocks: tuple[tuple[int, ...], ...] = field(repr=False)
 
     @property
@@ -134,40 +136,37 @@ class Campbell:
         return tuple(sorted(found, key=lambda crossing: abs(crossing.speed)))
 
     def _crossing(self, branch: int, left: int, order: float) -> Crossing:
-        """Regula falsi with Illinois' halving, each λ refined exactly from between its neighbours."""
-        low, high = (float(speed) for speed in self.speeds[left : left + 2])
-        ends = self.eigenvalues[left : left + 2, branch]
-        gaps = ends.imag - order * np.abs(self.speeds[left : left + 2])
-        below, above = complex(ends[0]), complex(ends[1])
-        weight = [float(gaps[0]), float(gaps[1])]
-        chain = self._chain(branch, float(np.abs(ends).max()), max(abs(low), abs(high)))
-        direction, along = float(self.direction[left, branch]), float(self.axial_share[left, branch])
-        for _ in range(CROSSING_STEPS):
-            part = weight[0] / (weight[0] - weight[1])
-            speed = low + part * (high - low)
-            tied = retied(chain, self.bearings, speed)
-            start = np.array([below + part * (above - below)])
+        """The crossing between two neighbouring speeds, each λ on the way refined from between its neighbours."""
+        speeds, ends = self.speeds[left : left + 2].tolist(), self.eigenvalues[left : left + 2, branch]
+        chain = self._chain(branch, float(np.abs(ends).max()), max(abs(speeds[0]), abs(speeds[1])))
+
+        def solve(part: float, low: Point, high: Point) -> Point | None:
+            speed = low.speed + part * (high.speed - low.speed)
+            tied = retied(chain, self.solver.bearings, speed)
+            start = np.array([low.eigenvalue + part * (high.eigenvalue - low.eigenvalue)])
             root = refine_each(tied, start, np.array([speed]))
             value = complex(root.eigenvalues[0])
-            if root.residuals[0] > ACCEPTED or abs(value - start[0]) > LONGEST_JUMP * abs(value):
-                break
+            if root.residuals[0] > ACCEPTED or abs(value - start[0]) > CROSSING_JUMP * abs(value):
+                return None
             direction, along = characters(tied, root, np.array([speed]))[0].tolist()
-            gap = value.imag - order * abs(speed)
-            if abs(gap) <= CROSSING_TOLERANCE * abs(value):
-                return Crossing(speed, value, order, direction, branch, along)
-            if (gap > 0.0) == (weight[0] > 0.0):
-                low, below, weight = speed, value, [gap, 0.5 * weight[1]]
-            else:
-                high, above, weight = speed, value, [0.5 * weight[0], gap]
-        raise IncompleteModesError(
-            f"the crossing of order {order:g} between {self.speeds[left]:g} and {self.speeds[left + 1]:g} rad/s does "
-            "not settle; ask for more speeds about there"
-        )
+            return BranchPoint(speed, value, value.imag - order * abs(speed), (direction, along))
+
+        points = [
+            BranchPoint(speed, complex(value), float(value.imag - order * abs(speed)), (np.nan, np.nan))
+            for speed, value in zip(speeds, ends, strict=True)
+        ]
+        found = refined_crossing(points[0], points[1], solve, tolerance=CROSSING_TOLERANCE, steps=CROSSING_STEPS)
+        if found is None:
+            raise IncompleteModesError(
+                f"the crossing of order {order:g} between {speeds[0]:g} and {speeds[1]:g} rad/s does "
+                "not settle; ask for more speeds about there"
+            )
+        return Crossing(found.speed, found.eigenvalue, order, found.shape[0], branch, found.shape[1])
 
     def _chain(self, branch: int, highest: float, speed: float) -> SpatialChain:
         sets = self.blocks[branch]
-        constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.bearings]
-        return whirl_chain(self.rotor, constant, sets, whirl_reach(START_REACH * highest, speed))
+        constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.solver.bearings]
+        return self.solver.equations(constant, sets, whirl_reach(START_REACH * highest, speed))
 
 
 def campbell(
@@ -179,23 +178,26 @@ def campbell(
     count: int | None = None,
     basis: LateralModes | None = None,
     prove_all: bool = False,
+    solver: WhirlSolver | None = None,
 ) -> Campbell:
     """Exact whirl modes over a range of speeds.
 
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; tables are read at each speed.
+        The rotor and its bearings; tables over speed are read at each speed.
     speeds
         (s,): Ω, rad/s, ascending.
     frequency_limit
         rad/s: branches below it at some speed.
     count
-        How many, the lowest at every speed, instead of a limit; with neither, 12.
+        Number of branches, the lowest at every speed, instead of a limit; with neither, 12.
     basis
-        From `rotors.whirl_basis`, to spare building it.
+        From `rotors.whirl_basis`, to avoid building it.
     prove_all
         Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
+    solver
+        A `rotors.WhirlSolver` of the same rotor and bearings, whose basis and equations are used.
 
     Raises
     ------
@@ -206,7 +208,10 @@ def campbell(
     """
     turning = finite_values("speeds", speeds)
     require(bool((np.diff(turning) > 0.0).all()), "speeds", turning.tolist(), "ascending speeds")
-    chosen = basis_for(rotor, bearings, frequency_limit, count, basis)
+    shared = WhirlSolver(rotor, bearings, basis) if solver is None else solver
+    same = shared.rotor is rotor and shared.bearings == tuple(bearings)
+    require(same, "rotor of the solver", shared.rotor.name, f"{rotor.name}, on the same bearings")
+    chosen = shared.planar_basis(frequency_limit, count)
     tabled = any(bearing.speeds is not None for bearing in bearings)
     at_speeds = [[b.at_speed(float(s)) for b in bearings] for s in turning] if tabled else [list(bearings)]
     sets = block_sets([bearing for row in at_speeds for bearing in row])
@@ -223,13 +228,13 @@ def campbell(
         starts.append(np.where(oscillates, values, np.nan))
     limits = limits_behind(starts, frequency_limit, wanted)
     least = NO_OSCILLATION * chosen.floor
-    undriven = is_undriven(rotor, [bearing for row in at_speeds for bearing in row])
+    undriven = shared.is_undriven([bearing for row in at_speeds for bearing in row])
     highest = max(whirl_reach(START_REACH * r, float(s)) for r, s in zip(limits, turning, strict=True))
     branches: list[Branch] = []
     owners: list[tuple[int, ...]] = []
     proved = np.ones(turning.size, dtype=np.bool_)
     for blocks, values in zip(sets, starts, strict=True):
-        chain = whirl_chain(rotor, at_speeds[0], blocks, highest)
+        chain = shared.equations(at_speeds[0], blocks, highest)
         chains = [retied(chain, row, 0.0) for row in at_speeds] if tabled else [chain] * turning.size
         roots = roots_at_speeds(chains, values, turning, limits)
         proved &= proved_at(chains, roots, turning, least, limits, undriven, prove_all)
@@ -245,8 +250,7 @@ def campbell(
         direction=np.stack([branches[k].direction for k in order], axis=1) if order else empty,
         axial_share=np.stack([branches[k].axial_share for k in order], axis=1) if order else empty,
         proved=proved,
-        rotor=rotor,
-        bearings=tuple(bearings),
+        solver=shared,
         blocks=tuple(owners[k] for k in order),
     )
 

@@ -1,4 +1,4 @@
-"""Exact whirl roots at many speeds at once, from starting values to their proof; for `rotors.campbell`."""
+"""Whirl eigenvalues of a Campbell diagram: exact roots at many speeds at once, and their proof."""
 
 from collections.abc import Sequence
 
@@ -20,12 +20,12 @@ BoolArray = npt.NDArray[np.bool_]
 PROOFS = 3
 # Branches are followed this far beyond the limit at every speed.
 WINDOW = 1.1
-# Gaps between starting values narrower than this may not be any.
+# Narrower gaps between starting values may vanish between the roots.
 WIDE_GAP = 1e-3
 
 
 def limits_behind(starts: Sequence[ComplexArray], frequency_limit: float | None, count: int | None) -> FloatArray:
-    """At every speed a frequency in a gap behind the wanted branches, (s,)."""
+    """At every speed a frequency in a gap above the wanted branches, (s,)."""
     sizes = np.sort(np.abs(np.concatenate(starts, axis=1)), axis=1)
     if count is None:
         assert frequency_limit is not None
@@ -45,7 +45,7 @@ def limits_behind(starts: Sequence[ComplexArray], frequency_limit: float | None,
 def roots_at_speeds(
     chains: Sequence[SpatialChain], values: ComplexArray, speeds: FloatArray, limits: FloatArray
 ) -> list[ExactRoots]:
-    """Exact roots at every speed: those that lie apart in one batch, near ones together at their speed."""
+    """Exact roots at every speed: separated ones of all speeds in one batch, clusters at their own speed."""
     chosen = [row[np.abs(row) < WINDOW * limit] for row, limit in zip(values, limits, strict=True)]
     same = all(chain is chains[0] for chain in chains)
     near = [not same or not apart(row, NEAR) for row in chosen]
@@ -75,7 +75,7 @@ def proved_at(
     undriven: bool,
     prove_all: bool,
 ) -> BoolArray:
-    """Count the roots at every speed, or at a few; a set that lacks one is replaced by the result of a search."""
+    """Prove the number of roots at every speed, or at a few; where one is missing it is searched for."""
     if undriven:
         chosen = np.arange(speeds.size)
         expected = _expected(chains, speeds, least, limits)

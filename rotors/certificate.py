@@ -1,5 +1,6 @@
-"""The proof that travels with a set of modes."""
+"""Certificate of a set of modes: the proof that none is missing and that each is accurate."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ FloatArray = npt.NDArray[np.float64]
 
 ENERGY_TOLERANCE = 1e-8
 ORTHONORMALITY_TOLERANCE = 1e-8
-# Of a root refined on the exact equations: its relative residual, and how far it still moves when it is done.
+# Accepted relative residual of a root of the exact equations, and relative correction at which it has converged.
 ACCEPTED = 1e-11
 SETTLED = 2e-14
 MOST_STEPS = 14  # of Newton's method
@@ -19,33 +20,51 @@ MOST_STEPS = 14  # of Newton's method
 
 @dataclass(frozen=True)
 class ModeCertificate:
-    """What the root count demands, what the mode set holds, and how well its modes satisfy the energies.
+    """Proof that a set of modes is complete: an independent count of the modes, and how accurate those held are.
 
     Attributes
     ----------
     limit
-        rad/s below which every mode is claimed.
+        rad/s: every mode below it is claimed; of whirl every oscillating motion with |λ| below it.
     expected
-        Number of modes below the limit by the Wittrick–Williams count, doubles twice, rigid motions included.
+        Number of modes below the limit by the count, doubles twice, rigid motions included.
     found
-        Number of independent shapes held whose own energies give their frequency.
+        Number of independent modes held there.
     max_residual
-        Largest relative difference between a mode's ω² and its strain over kinetic energy, both integrated
-        along the shaft; of rigid motions, zero.
+        Planar and torsional modes: largest relative difference between ω² and the strain over the kinetic energy of a
+        shape, both integrated along the shaft; zero of rigid motions. Whirl: largest last correction of a root of the
+        exact equations, as a part of it.
+    method
+        ``"wittrick-williams"``: the root count of `rotors.root_count`. ``"inertia"``: the same count of the Hermitian
+        dynamic stiffness (`rotors.whirl_count`). ``"winding"``: the argument principle (`rotors.winding`).
+        ``"crossings"``: crossings of a Campbell diagram, whose branches are proved.
     orthonormality
-        Largest entry of |Φᵀ M Φ − I|.
+        Largest entry of |Φᵀ M Φ − I|; zero of whirl, whose modes have no such products.
     """
 
     limit: float
     expected: int
     found: int
     max_residual: float
-    orthonormality: float
+    method: str
+    orthonormality: float = 0.0
 
     @property
     def complete(self) -> bool:
         """Whether every mode below the limit is held."""
         return self.found == self.expected
+
+
+def combined_certificate(parts: Sequence[ModeCertificate], limit: float, method: str) -> ModeCertificate:
+    """Certificate of several independent sets of motions below one limit (rad/s), counted by one method."""
+    return ModeCertificate(
+        limit,
+        sum(part.expected for part in parts),
+        sum(part.found for part in parts),
+        max((part.max_residual for part in parts), default=0.0),
+        method,
+        max((part.orthonormality for part in parts), default=0.0),
+    )
 
 
 def certify(
@@ -65,7 +84,7 @@ def certify(
     skewness = float(np.abs(mass - np.eye(squared.size)).max(initial=0.0))
     failed = int(np.count_nonzero(~(residual <= ENERGY_TOLERANCE)))
     found = int(squared.size) - failed if skewness <= ORTHONORMALITY_TOLERANCE else 0
-    certificate = ModeCertificate(limit, expected, found, worst, skewness)
+    certificate = ModeCertificate(limit, expected, found, worst, "wittrick-williams", skewness)
     if not certificate.complete:
         raise IncompleteModesError(
             f"{found} of {expected} modes below {limit:g} rad/s pass their energy check (worst residual "

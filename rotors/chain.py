@@ -1,9 +1,8 @@
-"""Pieces of shaft between nodes: the one form that bending, torsion and axial motion share.
+"""Discretised shaft: elements between nodes, the common form of bending, torsion and axial motion.
 
-Every node may carry inertia and a spring to ground; every piece has an exact transfer matrix
-(`rotors.timoshenko`). The chain is kept in units of its own (a length, a force or moment) in which
-displacements and forces are of one size, so that a state vector can be normalised as a whole. `rotors.lines`
-makes chains of rotors.
+Every node may carry inertia and a spring to ground; every piece of shaft between two nodes has an exact transfer matrix
+(`rotors.timoshenko`). Lengths and forces are scaled so that displacements and forces are of one size and a state vector
+can be normalised as a whole. `rotors.rotor_lines` makes the discretised shafts of a rotor.
 """
 
 from dataclasses import dataclass, replace
@@ -25,7 +24,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 # Products of two fields, on pieces this short, are integrated to rounding.
 GAUSS_FRACTIONS, GAUSS_WEIGHTS = gauss_rule(10)
-# Of the inertias that whirl has in both senses.
+# For the squares of forward and backward whirl.
 SQUARE_FRACTIONS, SQUARE_WEIGHTS = gauss_rule(6)
 
 
@@ -44,16 +43,16 @@ class EnergyWeights:
 
 @dataclass(frozen=True)
 class Chain:
-    """Pieces between nodes, in scaled units; n is 2 for bending and 1 for a rod.
+    """A shaft as pieces between nodes, in scaled units; n is 2 for bending and 1 for a rod.
 
     Attributes
     ----------
     nodes
         (p + 1,): ascending positions, m (they and the stations are not in scaled units).
     table
-        The pieces that differ from each other, in scaled units.
+        The distinct pieces, in scaled units.
     element
-        (p,): which of them each piece is.
+        (p,): index of each piece in the table.
     node_inertia, node_stiffness
         (p + 1, n): at the nodes; an infinite stiffness is a constraint.
     node_polar
@@ -91,7 +90,7 @@ class Chain:
 
     @cached_property
     def constrained(self) -> npt.NDArray[np.bool_]:
-        """Which node displacements are held, (p + 1, n)."""
+        """Whether each node displacement is constrained, (p + 1, n)."""
         return np.isinf(self.node_stiffness)
 
     @cached_property
@@ -101,7 +100,7 @@ class Chain:
 
     @cached_property
     def energy_weights(self) -> EnergyWeights:
-        """What turns squared fields into energies: coefficients times lengths times the weights of Gauss."""
+        """Quadrature weights of squared motions and strains: coefficients times lengths times Gauss weights."""
         from .energy_kernels import energy_weights
 
         table, nodal = self.table, (self.node_stiffness, self.node_inertia, self.node_polar)
@@ -111,12 +110,12 @@ class Chain:
 
     @cached_property
     def inertia_weights(self) -> FloatArray:
-        """What weighs the squares of displacement and rotation at the `SQUARE_FRACTIONS` (g,) of pieces, (e, g, 2)."""
+        """Weights of squared displacement and rotation at the `SQUARE_FRACTIONS` (g,) of distinct pieces, (e, g, 2)."""
         along = self.table.coefficients_along(SQUARE_FRACTIONS)[:, :, 2:4]
         return np.asarray(along * (self.table.lengths[:, None] * SQUARE_WEIGHTS)[:, :, None])
 
     def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:
-        """Coefficients of `rotors.timoshenko.PieceTable` at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""
+        """Coefficients of the table at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""
         return self.table.coefficients_at(self.element[piece], fraction)
 
     def transfers(self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None) -> NumberArray:
@@ -141,7 +140,7 @@ class Chain:
         return self.table.transfers_to(self.element[piece], fraction, translation, rotation)
 
     def places(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Piece that holds each position (z,) in m, and the fraction of it that lies to the left, both (z,)."""
+        """Index of the piece at each position (z,) in m, and the fraction of it to the left, both (z,)."""
         piece = self.nodes.searchsorted(positions, side="right") - 1
         piece = np.minimum(np.maximum(piece, 0), self.element.size - 1)
         left = self.nodes[piece]
@@ -178,9 +177,9 @@ class Chain:
 
     @cached_property
     def rigid_shapes(self) -> FloatArray:
-        """Independent motions that strain nothing, as node displacements, (zero modes, p + 1, n).
+        """Independent rigid motions, which strain nothing, as node displacements, (zero modes, p + 1, n).
 
-        An axial force works on a shaft that tilts, so that no tilt is free where there is one.
+        An axial force does work on a tilting shaft, so that a shaft with an axial force has no free tilt.
         """
         if self.size == 2 and np.count_nonzero(self.node_stiffness[:, 0]) > 1:
             return np.zeros((0, self.nodes.size, 2))

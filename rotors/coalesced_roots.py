@@ -1,8 +1,8 @@
-"""Roots that coalesce, where Newton's method crawls: all roots inside a circle by contour integrals.
+"""Coalescing eigenvalues, where Newton's method slows down: all roots inside a circle by contour integrals (Beyn).
 
 Where cross-coupling is just as large as the bearings' anisotropy allows, forward and backward whirl meet in one root
-with one shape: a defective pair, at which each root moves as the square root of any perturbation, but their mean as
-the perturbation itself. Beyn's integrals (Linear Algebra Appl. 436, 2012)
+with one shape: a defective pair. Under a perturbation each root moves as its square root, but their mean as the
+perturbation itself. Beyn's integrals (Linear Algebra Appl. 436, 2012)
 
     A₀ = (1/2πi) ∮ N(λ)⁻¹ V dλ,    A₁ = (1/2πi) ∮ (λ − c) N(λ)⁻¹ V dλ
 
@@ -33,22 +33,22 @@ ComplexArray = npt.NDArray[np.complex128]
 CIRCLES = (0.03, 0.006, 0.1)
 POINTS = 48
 MOST_INSIDE = 8
-# Singular values below this part of the largest are none.
+# Singular values below this part of the largest count as zero.
 RANK = 1e-9
-# Roots nearer than this are looked at together.
+# Roots closer than this are treated together.
 ONE_ROOT = 1e-3
-# Nearer than this no rounding tells them apart: they are one, at their mean, whose error is the square of this.
+# Roots closer than this cannot be resolved: they are set to their mean, whose error is the square of this.
 UNRESOLVED = 3e-8
-# Rounding, which moves either of two by this over their distance.
+# Rounding moves either of two roots by this over their distance.
 ROUNDING = 1e-15
 # The narrow circle's radius about them, as a part of them.
 CLOSE = 3e-3
-# A polished root may differ from the integral's by this part of the circle's radius.
+# A refined root may differ from the integral's by this part of the circle's radius.
 SAME_PLACE = 1e-3
 
 
 def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> ExactRoots:
-    """Exact roots near starting values; fewer than those where several lead to one root, or one to none.
+    """Exact roots near starting values; fewer where several lead to one root, or one to none.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> Exa
 
 
 def with_circle(chain: SpatialChain, roots: ExactRoots, centre: complex, speed: Speed) -> ExactRoots:
-    """The roots, those about a place by contour integrals: there some may coalesce."""
+    """The roots, with those about a place replaced by the roots of contour integrals."""
     for part in CIRCLES:
         radius = part * abs(centre)
         found = roots_in_circle(chain, centre, radius, speed)
@@ -81,7 +81,7 @@ def with_circle(chain: SpatialChain, roots: ExactRoots, centre: complex, speed: 
 def roots_in_circle(chain: SpatialChain, centre: complex, radius: float, speed: Speed) -> ExactRoots | None:
     """All roots within ``radius`` of ``centre``, rad/s; None where the circle passes too near one, or holds too many.
 
-    Of a coalesced pair, the second vector is a principal one: it has no shape of its own.
+    The second vector of a coalesced pair is a principal vector: the pair has one shape.
     """
     turn = np.exp(2j * np.pi * (np.arange(POINTS) + 0.5) / POINTS)
     around = centre + radius * turn
@@ -112,7 +112,7 @@ def roots_in_circle(chain: SpatialChain, centre: complex, radius: float, speed: 
 
 
 def _settled(chain: SpatialChain, roots: ExactRoots, span: ComplexArray, radius: float, speed: Speed) -> ExactRoots:
-    """Roots of one group polished one by one, or held together at their mean where they do not part."""
+    """Roots of one group refined one by one, or kept together at their mean where they are not resolved."""
     polished = refine_alone(chain, roots.eigenvalues, roots.solutions, speed)
     moved = np.abs(polished.eigenvalues - roots.eigenvalues)
     near = (polished.residuals <= ACCEPTED) & (moved <= SAME_PLACE * radius)
@@ -120,14 +120,14 @@ def _settled(chain: SpatialChain, roots: ExactRoots, span: ComplexArray, radius:
         return polished
     mean = complex(roots.eigenvalues.mean())
     spread = np.abs(roots.eigenvalues - mean) / abs(mean)
-    # Roots just outside a wide circle spoil the integrals by (radius / distance)^48: a narrow one is rid of them.
+    # Roots just outside a circle disturb the integrals by (radius / distance)^48: a narrow circle avoids them.
     narrow = abs(mean) * max(CLOSE, 5.0 * float(spread.max()))
     if narrow < 0.5 * radius:
         again = roots_in_circle(chain, mean, narrow, speed)
         if again is not None and again.eigenvalues.size == roots.eigenvalues.size:
             return again
     if spread.size == 1 or spread.max() > ONE_ROOT:
-        return roots  # whose residual is infinite: no root of theirs is known
+        return roots  # with infinite residuals: not converged
     # Independent vectors of the space that belongs to the group: the shape, and principal vectors.
     projected = span.conj().T @ roots.solutions.T
     basis = span @ np.linalg.qr(projected)[0]

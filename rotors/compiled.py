@@ -1,14 +1,14 @@
-"""How the kernels are compiled: :func:`counted`, :func:`uncounted` or :func:`inner`.
+"""Compilation of kernels by numba: the decorators :func:`counted`, :func:`uncounted` and :func:`inner`.
 
 Importing this module imports numba.
 
-Numba counts every array that changes hands, in and out of each function, atomically; with tuples of a dozen arrays that
-costs several times the arithmetic of a step, and most of the time that compiling takes. Kernels that make no arrays
-need no counts: whoever calls the first of them holds all arrays meanwhile. numba refuses to compile one that does make
-an array, be it for the message of an error that ``a[:] = b`` could raise: write a loop.
+Numba counts references to every array that enters or leaves a function, atomically; with tuples of a dozen arrays that
+costs several times the arithmetic of a step, and most of the compile time. Kernels that make no arrays need no counts:
+the first caller holds all arrays meanwhile. numba refuses to compile one that does make an array, even for the message
+of an error that ``a[:] = b`` could raise: write a loop.
 
-What a kernel calls is compiled on its own, then again with every kernel above it that it ends up in. Hence few kernels
-that call many, and no entrances from Python or C where only kernels call.
+A called kernel is compiled on its own, and again within every kernel that inlines it. So few kernels call many, and
+kernels that only kernels call have no entry points from Python or C.
 
 Compiled kernels are cached by :mod:`rotors.kernel_cache`.
 """
@@ -25,7 +25,7 @@ Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 # A product and the sum it goes into may be rounded once.
 FUSED = {"contract"}
-# The same where nothing can overflow: what a real factor's missing imaginary part would make is left out.
+# The same without infinities and NaN, so that products with the zero imaginary part of a real factor vanish.
 FINITE = {"contract", "nnan", "ninf", "nsz"}
 
 _ALL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
@@ -35,7 +35,7 @@ def counted(**options: Any) -> Callable[[Kernel], Kernel]:
     """Compile a function that makes arrays; further options are numba's."""
 
     def compiled(function: Kernel) -> Kernel:
-        # numba asks where to cache when a function is decorated; other packages' functions keep their own place.
+        # numba reads the cache folder when it decorates; functions of other packages keep theirs.
         config: Any = numba.config
         given, config.CACHE_DIR = config.CACHE_DIR, cache_folder()
         try:

@@ -1,7 +1,7 @@
-"""Compiled root count of a chain; the derivation is in `rotors.root_count`.
+"""Compiled Wittrick-Williams root count of a discretised shaft; the derivation is in `rotors.root_count`.
 
 Importing this module imports numba. The arrays of a chain come in one order throughout: lengths and coefficients
-of the pieces that differ, which of them each piece is, and stiffness and inertia of the nodes.
+of the distinct pieces, the index of each piece among them, and stiffness and inertia of the nodes.
 """
 
 import math
@@ -37,7 +37,7 @@ def _inner(one: State, other: State) -> float:
 
 @inner(error_model="python")
 def _orthonormal(first: State, second: State) -> tuple[State, State]:
-    """The same span and orientation, by Gram and Schmidt."""
+    """Orthonormal states of the same span and orientation, by Gram-Schmidt."""
     first = _combined(1.0 / math.sqrt(_inner(first, first)), first, 0.0, first)
     second = _combined(1.0, second, -_inner(first, second), first)
     return first, _combined(1.0 / math.sqrt(_inner(second, second)), second, 0.0, second)
@@ -55,13 +55,13 @@ def _moved(transfer: FloatArray, y: State) -> State:
 
 @inner(error_model="python")
 def _with_term(first: State, second: State, row: int, term: float) -> tuple[State, State, float]:
-    """States after a node's spring or inertia on displacement ``row``, and the first's share of it."""
+    """States after a node's spring or inertia on displacement ``row``, and the size of that displacement."""
     size = math.hypot(first[row], second[row])
     if size > 0.0:
         c, s = first[row] / size, second[row] / size
         first, second = _combined(c, first, s, second), _combined(c, second, -s, first)
     elif abs(second[2 + row]) > abs(first[2 + row]):
-        # At a root to the last digit nothing moves here: the state that is nearer to the reaction makes way for it.
+        # At a root hit to the last digit nothing moves here: the state closer to the reaction is replaced by it.
         first, second = second, _combined(-1.0, first, 0.0, first)
     held = math.isinf(term)
     if row == 0:
@@ -78,7 +78,7 @@ def _with_term(first: State, second: State, row: int, term: float) -> tuple[Stat
 def _beam_count(
     squared: float, transfers: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
 ) -> tuple[int, float]:
-    """Roots below ω² and the determinant there, by the two states that the left part admits."""
+    """Number of roots below ω² and the determinant there, from the two admissible states of the left part."""
     first, second = (1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)
     sign, total, scale = 1.0, 0, 1.0
     last = element.size
@@ -91,7 +91,7 @@ def _beam_count(
         if term_b != 0.0:
             first, second, size = _with_term(first, second, 1, term_b)
             if held_x and held_b and scale > 1e-200:
-                # A clamp parts the chain: the determinant is the product of those of its sides.
+                # A clamp separates the shaft: the determinant is the product of those of both sides.
                 scale *= size
         determinant = first[0] * second[1] - first[1] * second[0]
         mixed = second[1] * first[2] + first[0] * second[3] - first[1] * second[2] - second[0] * first[3]
@@ -125,13 +125,13 @@ def _beam_count(
 def _rod_count(
     squared: float, transfers: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
 ) -> tuple[int, float]:
-    """The same of a rod, whose left part admits one state."""
+    """The same for a rod, whose left part has one admissible state."""
     u, f, sign, total, scale = 1.0, 0.0, 1.0, 0, 1.0
     for node in range(element.size + 1):
         if math.isinf(stiffness[node, 0]):
             if scale > 1e-200:
                 scale *= abs(u)
-            # A lone state cannot be turned: the reaction keeps the sign that its displacement had.
+            # A single state cannot be rotated: the reaction keeps the sign of its displacement.
             u, f = 0.0, sign
         else:
             f += (stiffness[node, 0] - squared * inertia[node, 0]) * u
@@ -160,7 +160,7 @@ def count_at(
     inertia: FloatArray,
     transfers: FloatArray,
 ) -> tuple[int, float]:
-    """Roots below a frequency and the determinant there; ``transfers`` (e, 1, 2n, 2n) is for scratch."""
+    """Number of roots below a frequency and the determinant there; ``transfers`` (e, 1, 2n, 2n) is scratch."""
     squared = frequency * frequency
     for e in range(lengths.size):
         piece_transfers(lengths[e], given[e], squared, squared, WHOLE, transfers[e])

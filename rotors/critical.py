@@ -1,4 +1,4 @@
-"""Critical speeds of a rotor: where its whirl meets its rotation."""
+"""Critical speeds of a rotor: speeds of rotation equal to a whirl frequency."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from .bearing import Bearing, undamped
 from .campbell import campbell
-from .certificate import ACCEPTED
+from .certificate import ACCEPTED, ModeCertificate
 from .errors import require
 from .exact_roots import SYNCHRONOUS
 from .lateral import LateralModes
@@ -16,8 +16,8 @@ from .planar_basis import DEFAULT_COUNT
 from .projection import Projection, basis_for
 from .shaft import Rotor
 from .spatial_ties import block_sets
-from .whirl import MOSTLY_AXIAL, WhirlRoots, certified_whirl
-from .whirl_certificate import NO_OSCILLATION, WhirlCertificate
+from .whirl import MOSTLY_AXIAL, WhirlRoots, WhirlSolver, certified_whirl
+from .whirl_certificate import NO_OSCILLATION
 
 # Speeds at which tables are looked at for critical ones, and how far beyond them branches are followed.
 TABLE_SPEEDS = 60
@@ -45,11 +45,11 @@ class CriticalSpeeds:
     speeds: FloatArray
     direction: FloatArray
     axial_share: FloatArray
-    certificate: WhirlCertificate
+    certificate: ModeCertificate
 
     @property
     def lateral(self) -> "CriticalSpeeds":
-        """Those of whirl: without motions that are for the most part along the axis, which no unbalance drives."""
+        """The critical speeds of lateral motion, without mostly axial ones, which no unbalance drives."""
         kept = self.axial_share <= MOSTLY_AXIAL
         return replace(
             self, speeds=self.speeds[kept], direction=self.direction[kept], axial_share=self.axial_share[kept]
@@ -84,13 +84,13 @@ def critical_speeds(
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it.
+        The rotor and its bearings.
     speed_limit
         rad/s: all critical speeds strictly below.
     count
-        How many, instead of a limit; with neither, 12.
+        Number of critical speeds, instead of a limit; with neither, 12.
     basis
-        From `rotors.whirl_basis`, to spare building it.
+        From `rotors.whirl_basis`, to avoid building it.
 
     Raises
     ------
@@ -122,17 +122,17 @@ def _tabled_critical_speeds(
     )
     found = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
     speeds = np.array([crossing.speed for crossing in found])
-    proof = WhirlCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
+    proof = ModeCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
     direction = np.array([crossing.direction for crossing in found])
     return CriticalSpeeds(speeds, direction, np.array([crossing.axial_share for crossing in found]), proof)
 
 
 def certified_criticals(
     rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[Projection], limit: float | None, count: int | None
-) -> tuple[WhirlRoots, WhirlCertificate]:
-    """Synchronous whirl of undamped bearings below a limit, or the lowest few, for some sets of tied motions."""
+) -> tuple[WhirlRoots, ModeCertificate]:
+    """Synchronous whirl in undamped bearings below a limit, or the lowest roots, for some sets of coupled motions."""
     return certified_whirl(
-        rotor,
+        WhirlSolver(rotor, bearings),
         bearings,
         [(one.blocks, one.critical(bearings)) for one in sets],
         SYNCHRONOUS,

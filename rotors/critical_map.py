@@ -2,7 +2,7 @@
 
 In isotropic bearings forward synchronous whirl is a planar problem: with Ω = ω the rotary inertia enters as
 (I_d − I_p) ω², here a circular block of `rotors.spatial_chain` at λ = iω and Ω = ω. Every curve is exact, and at every
-stiffness the number of its points is that of the count in `rotors.whirl_count`.
+stiffness the number of its points is proved by the count of `rotors.whirl_count`.
 """
 
 from collections.abc import Sequence
@@ -59,7 +59,7 @@ def critical_speed_map(
     stiffnesses
         (s,): N/m, alike in all directions.
     count
-        How many critical speeds.
+        Number of critical speeds.
     direction
         1 for forward whirl, −1 for backward.
 

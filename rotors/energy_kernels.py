@@ -1,4 +1,4 @@
-"""Compiled quadrature of a chain's fields: what their energies are sums of squares of, and the weights of these.
+"""Compiled quadrature of kinetic and strain energy along a discretised shaft.
 
 Importing this module imports numba. The arrays of a chain come in the order of `rotors.count_kernels`.
 """
@@ -26,7 +26,7 @@ def energy_weights(
     inertia: FloatArray,
     polar: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What weighs the squares of `energy_rows`: mass and polar inertia beside the motion, and strain.
+    """Weights of the squares of `energy_rows`: mass and polar inertia for motion, compliance or stiffness for strain.
 
     ``weights`` (g,) are those of the quadrature over a piece; infinite ``stiffness`` (p + 1, n) stores nothing.
     """
@@ -78,7 +78,7 @@ def energy_rows(
     motion: FloatArray,
     strain: FloatArray,
 ) -> None:
-    """Fill in what the energies of fields with node states (k, p + 1, 2n) are sums of squares of.
+    """Fill in the terms whose weighted squares are the energies of fields with node states (k, p + 1, 2n).
 
     Piece by piece and at every fraction (g,) of it, ``motion`` (k, p g n + ...) takes the displacements and
     ``strain`` (k, p g (2n − 1) + ...) the rotation (of a beam) and the forces; both end with the displacements of

@@ -1,11 +1,11 @@
-"""The equations of `rotors.spatial_chain` as a table, from which compiled code makes their entries for any λ.
+"""Shooting matrix of the whirl equations: a table from which compiled code makes its entries for any λ.
 
 Beside the transfer matrices of runs of pieces every entry is, with Ω the speed of rotation and s the unit of force,
 
     (c₀ + c₁ λ + c₂ λ² + c₃ λΩ + c₄ s) / (d₁ s + d₀):
 
-inertias by c₂, c₃ and d₁; bearings and pedestals by c₀, c₁, c₂ over s plus the largest stiffness of their row, so that
-stiff directions and soft ones count alike; their forces by c₄. Ones and directions do not vary.
+inertias have c₂, c₃ and d₁; bearings and pedestals c₀, c₁, c₂ over s plus the largest stiffness of their row, so that
+stiff and soft directions are scaled alike; their forces c₄. Unit entries and directions are constant.
 """
 
 from collections.abc import Sequence
@@ -33,22 +33,22 @@ NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), NOWHERE, np.zeros(1, dtype=np.intp)
 
 @dataclass(frozen=True)
 class EntryTable:
-    """Entries of the equations of one chain.
+    """The shooting matrix of one set of equations, as a table of its entries.
 
     Attributes
     ----------
     pattern
-        Where they stand.
+        Rows and columns of the entries.
     blocks
         1 for r+, −1 for r−, 0 for z.
     beams, rods
-        Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), the
-        nodes with unknowns, between which pieces run together, (r + 1,), and the first run of the same pieces as each,
-        (r,); no rods without z.
+        Lengths (e,) and coefficients (e, 6 or 2, j) of the distinct pieces, each piece's index among them, (p,), the
+        nodes with unknowns, between which pieces form a run, (r + 1,), and for each run the first equal one, (r,); no
+        rods without z.
     numerators, denominators
-        (t, 5) complex and (t, 2): of the entries that are no transfer matrix's, and stand behind those.
+        (t, 5) complex and (t, 2): of the entries that follow those of the transfer matrices.
     constants
-        (c,) complex: entries that do not vary, behind the others.
+        (c,) complex: constant entries, at the end.
     """
 
     pattern: BandPattern
@@ -82,15 +82,15 @@ class EntryTable:
 def entry_table(
     bending: Chain, axial: Chain | None, blocks: tuple[int, ...], ties: Sequence[Tie], kept: IntArray, layout: Layout
 ) -> EntryTable:
-    """The table of a chain with unknowns at the nodes ``kept``, (r + 1,), laid out as given."""
-    first, terms, transfers = 0, _Terms(), []
+    """The shooting matrix with unknowns at the nodes ``kept``, (r + 1,), in the given layout."""
+    first, terms, runs = 0, _Terms(), []
     states = np.stack([layout.displacements[:-1], layout.forces])
     reached = np.stack([layout.continuity, layout.balances[1:]])
     for block in blocks:
         own = slice(first, first + len(MEMBERS[block]))
         # (r, 2n) each, displacements before forces.
         rows, columns = (np.concatenate([*places[:, :, own]], axis=1) for places in (reached, states))
-        transfers.append(np.array(np.broadcast_arrays(rows[:, :, None], columns[:, None])).reshape(2, -1))
+        runs.append(np.array(np.broadcast_arrays(rows[:, :, None], columns[:, None])).reshape(2, -1))
         first = own.stop
     terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, kept, blocks)], OVER_FORCE)
     terms.add(layout.continuity, layout.displacements[1:], [1.0])
@@ -99,7 +99,7 @@ def entry_table(
         node = int(kept.searchsorted(tie.node))
         _add_tie(terms, tie, layout.balances[node], layout.displacements[node], own_places)
     places, numerators, denominators, constants = terms.parted()
-    rows, columns = np.concatenate(transfers + places, axis=1)
+    rows, columns = np.concatenate(runs + places, axis=1)
     return EntryTable(
         BandPattern.of(rows, columns, layout.order),
         np.array(blocks, dtype=np.intp),
@@ -129,7 +129,7 @@ def _inertias(chain: Chain, kept: IntArray, blocks: tuple[int, ...]) -> tuple[Fl
 
 
 def _add_tie(terms: "_Terms", tie: Tie, balance: IntArray, node: IntArray, places: TiePlaces) -> None:
-    """Entries of a bearing's forces g and a pedestal's displacements p; of its node the balance and displacements."""
+    """Add the entries of a bearing's forces g and its pedestal's displacements p at a node."""
     shared = list(tie.foot)
     held = _over(tie.stiffness)
     grounded = _over(tie.foot_stiffness)
@@ -146,13 +146,13 @@ def _add_tie(terms: "_Terms", tie: Tie, balance: IntArray, node: IntArray, place
 
 
 def _over(stiffness: ComplexArray) -> FloatArray:
-    """Denominators of rows (m,) of one size, by a factor that does not vary with λ, (m, 2)."""
+    """Denominators (m, 2) that scale rows (m,) to one size by a factor independent of λ."""
     largest = np.abs(stiffness).max(axis=1, initial=0.0)
     return np.stack([np.ones_like(largest), largest], axis=1)
 
 
 class _Terms:
-    """Entries as they come, block by block."""
+    """Entries collected block by block."""
 
     def __init__(self) -> None:
         self.places: list[IntArray] = []
@@ -175,7 +175,7 @@ class _Terms:
         self.denominators.append(bottom.reshape(-1, 2))
 
     def parted(self) -> tuple[list[IntArray], ComplexArray, FloatArray, ComplexArray]:
-        """Without entries that vanish: places of those that vary and of others, what makes the former, the latter."""
+        """Rows and columns of varying and of constant entries, the terms of the former and the values of the latter."""
         places = np.concatenate(self.places, axis=1)
         top, bottom = np.concatenate(self.numerators), np.concatenate(self.denominators)
         held = ~top[:, 1:].any(axis=1) & (bottom == ALONE).all(axis=1)

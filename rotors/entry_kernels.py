@@ -1,4 +1,4 @@
-"""Compiled entries of the equations of `rotors.spatial_chain`, and their determinants; laid out by `rotors.entries`.
+"""Compiled shooting matrix of whirl: its entries, determinant and node states, as laid out by `rotors.entries`.
 
 Importing this module imports numba.
 """
@@ -15,19 +15,19 @@ from .piece_kernels import whole_transfer
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-# Lengths (e,), coefficients (e, 6 or 2, j) of the pieces that differ, which of them each piece is, (p,), the nodes
-# between which pieces run together, (r + 1,), and the first run of the same pieces as each, (r,).
+# Lengths (e,) and coefficients (e, 6 or 2, j) of the distinct pieces, each piece's index among them, (p,), the nodes
+# between which pieces form a run, (r + 1,), and for each run the first equal one, (r,).
 Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
 # Blocks (of which 1 and −1 are bending, 0 axial motion), beams, rods, numerators (t, 5), denominators (t, 2) and
 # constants (c,).
 Table = tuple[IntArray, Runs, Runs, ComplexArray, FloatArray, ComplexArray]
-# Rows and columns of the entries (nnz,), envelope (order, 2), and how many diagonals lie below and above the main one.
+# Rows and columns of the entries (nnz,), envelope (order, 2), numbers of diagonals below and above the main one.
 Pattern = tuple[IntArray, IntArray, IntArray, int, int]
 
 
 @inner(error_model="python", fastmath=FUSED)
 def _times(left: ComplexArray, right: ComplexArray, out: ComplexArray) -> None:
-    """The product of two matrices of order 2 or 4, of which the latter's loops are unrolled."""
+    """Product of two matrices of order 2 or 4, with unrolled inner loops."""
     if left.shape[0] == 2:
         for i in range(2):
             for j in range(2):
@@ -43,7 +43,7 @@ def _times(left: ComplexArray, right: ComplexArray, out: ComplexArray) -> None:
 def _put_runs(
     runs: Runs, translation: complex, rotation: complex, scale: float, transfers: Any, out: ComplexArray
 ) -> int:
-    """−T of every run of pieces, forces in the given unit, into the beginning of ``out``; how many entries they are."""
+    """−T of every run of pieces, forces in the given unit, at the start of ``out``; returns the number of entries."""
     lengths, given, element, kept, like = runs
     whole, over = np.ones(1), 1.0 / scale
     size, half, spare = transfers.shape[2], transfers.shape[2] // 2, lengths.size
@@ -80,9 +80,9 @@ def force_unit(at: complex, mass: float) -> float:
 
 @counted(error_model="python", no_cpython_wrapper=True)
 def scratch(table: Table, size: int) -> tuple[ComplexArray, ComplexArray, ComplexArray, int]:
-    """Room for the transfer matrices of beams and rods and two products of each, and for the entries, (nnz,).
+    """Scratch arrays for the transfer matrices of beams and rods and two products of each, and for the entries, (nnz,).
 
-    Those of the entries that do not vary are in place, behind the others, of which the last number tells how many.
+    The constant entries are filled in, after the varying ones; the last number is that of the varying ones.
     """
     beams = np.empty((table[1][0].size + 2, 1, 4, 4), dtype=np.complex128)
     rods = np.empty((table[2][0].size + 2, 1, 2, 2), dtype=np.complex128)
@@ -105,7 +105,7 @@ def put_entries(
         else:
             first += _put_runs(beam_runs, -squared, -squared + block * 2j * turning, scale, beams, out[first:])
     for term in range(numerators.shape[0]):
-        # No view of a row: making one, and letting it go, takes longer than the row.
+        # No view of a row: making one takes longer than the row.
         top = numerators[term, 0] + numerators[term, 1] * at + numerators[term, 2] * squared
         top += numerators[term, 3] * turning + numerators[term, 4] * scale
         out[first + term] = top * (1.0 / (denominators[term, 0] * scale + denominators[term, 1]))

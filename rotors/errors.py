@@ -1,19 +1,19 @@
-"""What can go wrong in this room: a wrong input, or a result that fails its own proof."""
+"""Errors of the package, and the checks of arguments that raise them."""
 
 import math
 import numbers
 
 
 class RotorError(ValueError):
-    """A shaft, disc, bearing or request that cannot be: names what, its value and what was expected."""
+    """An invalid shaft, disc, bearing or request: the message names it, its value and the expected value."""
 
 
 class IncompleteModesError(RuntimeError):
-    """The modes found are not the modes that the root count demands, or a mode fails its energy check."""
+    """The modes found do not agree with the root count, or a mode fails its energy check."""
 
 
 class EquilibriumError(RuntimeError):
-    """A rolling bearing's equilibrium is not one, or is where its theory has ended; says why, and what would help."""
+    """A rolling bearing's equilibrium fails its proof or exceeds its theory; the message says why and what helps."""
 
 
 def require(condition: bool, what: str, value: object, expected: str) -> None:

@@ -1,4 +1,4 @@
-"""Eigenvalues refined on the exact equations, with their vectors; clusters together, duplicates recognised.
+"""Whirl eigenvalues by Newton's method on the exact equations: clusters refined together, duplicates recognised.
 
 With the equations N(λ) x = 0 of `rotors.spatial_chain`, let X and Y span the right and left singular vectors of the
 k smallest singular values of N(σ), k the number of roots near σ. Projected on them the equations are
@@ -9,8 +9,8 @@ Newton's method on the two-sided Rayleigh functional,
     λ ← λ − (yᴴ N x) / (yᴴ N' x),
 
 whose error is squared at every step (Schwetlick and Schreiber, Linear Algebra Appl. 436, 2012). Roots of a cluster
-that turn out to lie apart are then refined one by one; those that do not, and would blur each other's vectors,
-stay together, where what is left out, the square of their distance, is below rounding.
+that are found to be separated are then refined one by one. Those that are not, whose vectors would mix, stay together;
+the neglected terms, of the order of the square of their distance, are below rounding.
 """
 
 from dataclasses import dataclass
@@ -27,15 +27,15 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-# Starting values nearer than this are refined together first, as their errors may be as large.
+# Starting values closer than this are refined together first: their errors may be as large.
 NEAR = 1e-3
-# Refined roots nearer than this stay together: the square of it is below rounding.
+# Refined roots closer than this stay together: its square is below rounding.
 TIED = 1e-7
-# Refined roots nearer than this with parallel vectors are one root found twice.
+# Refined roots closer than this with parallel vectors are one root found twice.
 SAME = 1e-9
 PARALLEL = 1e-3
-# Relative step of the central difference that gives slopes of the entries: good to about 1e-10, which costs
-# the refined roots nothing, as their residual is exact.
+# Relative step of the central difference for slopes of the entries: accurate to about 1e-10. The refined roots lose
+# nothing by it, as their residual is exact.
 SLOPE_STEP = 1e-5
 NO_PLACES = np.zeros(0, dtype=np.complex128)
 
@@ -62,7 +62,7 @@ class Speed:
 
 @dataclass(frozen=True)
 class ExactRoots:
-    """Roots of the exact equations of one chain.
+    """Eigenvalues of one set of exact equations, with their vectors.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class ExactRoots:
     solutions
         (w, order) complex: right null vectors, of unit norm in the scaled unknowns.
     residuals
-        (w,): the last correction, as a part of the root.
+        (w,): the last relative correction.
     scales
         (w,): the unit of forces in each solution.
     """
@@ -82,11 +82,11 @@ class ExactRoots:
     scales: FloatArray
 
     def take(self, index: npt.NDArray[np.intp] | npt.NDArray[np.bool_]) -> "ExactRoots":
-        """Some of the roots."""
+        """Selected roots."""
         return ExactRoots(self.eigenvalues[index], self.solutions[index], self.residuals[index], self.scales[index])
 
     def joined(self, other: "ExactRoots") -> "ExactRoots":
-        """These roots and then those."""
+        """These roots followed by others."""
         return ExactRoots(
             np.concatenate([self.eigenvalues, other.eigenvalues]),
             np.concatenate([self.solutions, other.solutions]),
@@ -105,7 +105,7 @@ def constant_speed(speed: float) -> Speed:
 
 
 def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tuple[ExactRoots, ComplexArray]:
-    """Exact roots near starting values, each once, and the places where the iteration has not settled.
+    """Exact roots near starting values, each once, and the places where the iteration has not converged.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tu
 
 
 def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
-    """The roots that have settled, each once, and where the others stand."""
+    """The converged roots, each once, and the values of the others."""
     from .place_kernels import are_done
 
     if are_done(roots.eigenvalues, roots.residuals, ACCEPTED, SAME):
@@ -156,14 +156,14 @@ def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
 
 
 def apart(values: ComplexArray, tolerance: float) -> bool:
-    """Whether no two values are nearer than ``tolerance`` of their modulus."""
+    """Whether no two values are closer than ``tolerance`` times their modulus."""
     from .place_kernels import are_apart
 
     return bool(are_apart(values, tolerance))
 
 
 def clusters(values: ComplexArray, tolerance: float) -> list[npt.NDArray[np.intp]]:
-    """Indices of values that chains of distances below ``tolerance`` of their modulus connect."""
+    """Clusters of values, as indices: single linkage with distances below ``tolerance`` times the modulus."""
     label = np.arange(values.size)
     if apart(values, tolerance):
         return list(label[:, None])
@@ -206,8 +206,8 @@ def refine_each(
 ) -> ExactRoots:
     """Exact roots from starting values, each alone and at its own speed, (w,) both; none is dropped.
 
-    ``vectors`` (w, order), where there are any, spare the first steps. A root that does not settle has a residual
-    above `ACCEPTED`.
+    Starting ``vectors`` (w, order) save the first steps. A root that does not converge has a residual above
+    `ACCEPTED`.
     """
     if vectors is None:
         vectors = random_vectors(starts.size, chain.pattern.order)
@@ -218,7 +218,7 @@ def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArra
     """Exact roots from starting values (w,) and vectors (w, order), each by itself; none is dropped."""
     from .newton_kernels import newton
 
-    # One kind of array, lest the kernel be compiled for each kind: some are not to be written to.
+    # Arrays of one type, so that the kernel is compiled once: some of those given are read-only.
     starts, vectors = (np.array(given, dtype=np.complex128, order="C") for given in (starts, vectors))
     bases = np.array(speed.base, dtype=np.complex128, ndmin=1)
     entries = chain.entries
@@ -228,7 +228,7 @@ def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArra
 
 @lru_cache(maxsize=64)
 def random_vectors(count: int, order: int) -> ComplexArray:
-    """Complex vectors to start iterations from, the same every time, (count, order); not to be written to."""
+    """Reproducible random complex vectors to start iterations from, (count, order), read-only."""
     random = np.random.default_rng(1991)
     vectors = random.standard_normal((count, order)) + 1j * random.standard_normal((count, order))
     vectors.setflags(write=False)
@@ -252,7 +252,7 @@ def _together(chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, 
             return ExactRoots(values, basis[0], np.full(values.size, np.inf), np.full(values.size, scale[0]))
         found = centre[0] + offsets
         moved = np.abs(np.sort_complex(found) - np.sort_complex(values)).max() / np.abs(found)
-        # What the small problem leaves out is of the order of the square of the distances.
+        # The small eigenproblem neglects terms of the order of the squared distances.
         change = np.maximum(moved, np.abs(offsets / found) ** 2)
         values, basis, mixture = found, right, mixing
         if step > 0 and moved.max() <= 5.0 * SETTLED:

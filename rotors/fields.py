@@ -1,4 +1,4 @@
-"""Exact fields along a chain: from the states at its nodes to any place, and their energies.
+"""Exact fields along a discretised shaft: continued from node states to any place, with their energies.
 
 A field is the state (displacements, then forces) at the left end of every piece at one ω²; inside a
 piece the transfer matrix continues it. Quadrature over a piece is Gauss–Legendre, which integrates
@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Fields:
-    """Fields along one chain, in its scaled units.
+    """Exact fields along one discretised shaft, in its scaled units.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ class Fields:
         return np.asarray(pieces.reshape(mixture.shape[0], self.chain.element.size, -1).sum(axis=2))
 
     def joined(self, other: "Fields") -> "Fields":
-        """These fields followed by those of ``other``, on the same chain."""
+        """These fields followed by those of ``other``, on the same shaft."""
         return Fields(
             self.chain,
             np.concatenate([self.frequency_squared, other.frequency_squared]),
@@ -96,14 +96,14 @@ class Fields:
         )
 
     def on(self, chain: Chain) -> "Fields":
-        """The same fields on a chain that differs by further nodes only."""
+        """The same fields on a discretised shaft with further nodes."""
         if chain is self.chain:
             return self
         return Fields(chain, self.frequency_squared, self.at(chain.nodes))
 
     @cached_property
     def _rows(self) -> tuple[FloatArray, FloatArray]:
-        """Motion and strain of every field at the Gauss points and the nodes (`rotors.energy_kernels.energy_rows`)."""
+        """Motion and strain of every field at the Gauss points and the nodes, as of `energy_rows`."""
         from .energy_kernels import energy_rows
 
         table, weights, count = self.chain.table, self.chain.energy_weights, self.frequency_squared.size

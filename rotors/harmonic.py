@@ -1,4 +1,4 @@
-"""Steady response of a turning rotor to harmonic loads, by the exact equations of both planes.
+"""Harmonic response of a turning rotor, by the exact equations of both planes.
 
 A load Re[F e^{iωt}] at a node stands on the right of the equations of `rotors.spatial_chain` at λ = iω, with a
 negative sign in the node's force balance. No modes are summed, so nothing is truncated.
@@ -26,7 +26,7 @@ Loads = ComplexArray
 
 @dataclass(frozen=True)
 class Orbit:
-    """Ellipses that points of the shaft run through.
+    """Elliptic orbits of points of the shaft.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ def harmonic_response(
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; tables are read at ``speed``.
+        The rotor and its bearings; tables over speed are read at ``speed``.
     forces
         Their places and complex amplitudes.
     frequencies
@@ -173,7 +173,7 @@ def solve_harmonic(
         rotor.require_on_shaft("load", place)
     tabled = any(bearing.speeds is not None for bearing in bearings)
     constant = [bearing.at_speed(float(speeds[0])) if tabled else bearing for bearing in bearings]
-    # Tables may tie motions at one speed and not at another: then all go together.
+    # Tables may couple motions at one speed and not at another: then all are solved together.
     sets = block_sets([b.at_speed(float(s)) for s in speeds for b in bearings] if tabled else constant)
     highest = max(
         (whirl_reach(float(w), float(s)) for w, s in zip(np.abs(frequencies), speeds, strict=True)), default=0.0

@@ -1,10 +1,9 @@
-"""Where compiled kernels are cached: one folder for each state of their sources and of what compiles them.
+"""Kernel cache: one folder of compiled kernels for each state of their sources and of the compiler.
 
-numba stamps a cached kernel by the file that it stands in. Machine code holds more than that: the kernels that it calls
-and the constants that it reads, from other files. A kernel that is cached by its own file alone goes on with old code
-when one of those changes. Here the folder's name is a digest of all sources that reach machine code and of the
-versions of numba, llvmlite and NumPy, so that changed sources find an empty folder. numba itself keeps apart Python
-versions and processors.
+numba stamps a cached kernel with its own source file only. Its machine code also holds the kernels that it calls and
+the constants that it reads from other files, and would stay outdated when one of those changes. Here the folder's name
+is a digest of all sources of machine code and of the versions of numba, llvmlite and NumPy, so that changed sources
+find an empty folder. numba itself separates Python versions and processors.
 
 The folder stands below ``NUMBA_CACHE_DIR`` where that is set, else beside the sources, else, where these are read-only,
 in the user's cache. Folders that no process has used for a month are removed.
@@ -27,12 +26,12 @@ import numpy as np
 _PACKAGES = ("rotors", "coupling")
 _UNUSED = 30 * 86400.0
 """Age of a folder that is removed [s]."""
-_KERNELS = re.compile(rb"^from (?:rotors)?\.compiled import", re.MULTILINE)
+_KERNELS = re.compile(rb"^from [\w.]*\.compiled import", re.MULTILINE)
 _IMPORT = re.compile(rb"^from ((?:rotors|coupling)?\.?[\w.]*) import", re.MULTILINE)
 
 
 def kernel_sources(root: Path) -> list[Path]:
-    """Every source that reaches machine code: files with kernels, and the files that these import from.
+    """Sources of the machine code: files with kernels, and the files that these import from.
 
     Parameters
     ----------
@@ -83,7 +82,7 @@ def sources_digest(root: Path) -> str:
 @cache
 def cache_folder() -> str:
     """Folder of this process's kernels, made where it can be; empty where there is none to write to."""
-    root = Path(__file__).resolve().parents[1]
+    root = next(folder for folder in Path(__file__).resolve().parents if folder.name == "rotors").parent
     name = f"kernels-{sources_digest(root)}"
     given = str(numba.config.CACHE_DIR)  # type: ignore[attr-defined]  # set by numba from its environment variables
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "gearwhine"

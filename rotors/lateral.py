@@ -1,4 +1,4 @@
-"""Undamped bending modes of a shaft in one plane: the modal basis of the rotor (TM-101442 Eqs. 7–13)."""
+"""Lateral modes: undamped bending of a shaft in one plane, the modal basis of the rotor (TM-101442 Eqs. 7–13)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -35,9 +35,9 @@ class LateralModes:
     polar_inertia_matrix
         (m, m): ∫ ρI_p βᵢβⱼ dz plus Σ I_p βᵢβⱼ of the discs: the gyroscopic matrix per rad/s.
     supports
-        The springs that K holds, which a coupled model takes out again.
+        The springs in K, which a coupled model removes again.
     certificate
-        Proof of completeness. Vectors added by `rotors.attach_loads` are beyond it.
+        Proof of completeness. It does not cover the attachment modes of `rotors.attach_loads`.
     """
 
     frequencies: FloatArray
@@ -85,14 +85,14 @@ class LateralModes:
         return states[:, :, 0] / unit[0], states[:, :, 1] / unit[1]
 
     def strain_energy_shares(self, edges: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Parts of every mode's strain energy in lengths of shaft and in its supports; together one.
+        """Shares of every mode's strain energy in lengths of shaft and in its supports; their sum is one.
 
         A mode's strain energy is ½ ω² at unit modal coordinate. Rigid motions have none, and zeros here.
 
         Parameters
         ----------
         edges
-            (e + 1,): ascending positions that part the shaft, m: `Rotor.joints` for its segments.
+            (e + 1,): ascending positions that divide the shaft, m: `Rotor.joints` for its segments.
 
         Returns
         -------
@@ -121,6 +121,11 @@ class LateralModes:
         return lengths / whole, supports / whole
 
     @property
+    def free_stiffness(self) -> FloatArray:
+        """diag(ω²) less the supports: stiffness of the shaft alone, (m, m), 1/s²."""
+        return np.diag(self.frequencies**2) - self.support_matrix
+
+    @property
     def support_matrix(self) -> FloatArray:
         """Φᵀ k Φ of the finite supports, (m, m), N/m per unit modal mass."""
         total = np.zeros((self.count, self.count))
@@ -140,7 +145,7 @@ def solve_lateral_modes(
     frequency_limit: float | None = None,
     count: int | None = None,
 ) -> LateralModes:
-    """Every planar bending mode below a limit, or the lowest few, without gyroscopic effects.
+    """Every planar bending mode below a limit, or the lowest ones, without gyroscopic effects.
 
     Parameters
     ----------
@@ -151,8 +156,8 @@ def solve_lateral_modes(
     frequency_limit
         rad/s: all modes strictly below.
     count
-        How many modes, instead of a limit; with neither, 10 (or all that a lumped rotor has). A multiple
-        root at the end is kept whole, so that a mode or two more may come back.
+        Number of modes, instead of a limit; with neither, 10 (or all that a lumped rotor has). A multiple root at the
+        end is kept whole, so that the result may hold a mode or two more.
 
     Raises
     ------

@@ -1,9 +1,9 @@
-"""Where the unknowns and the equations of `rotors.spatial_chain` stand.
+"""Order of the unknowns (columns) and equations (rows) of the shooting matrix.
 
-Elimination goes from left to right, and its price is that of what it fills in. At every node the unknowns of ties come
-first, then those of one block after another, displacements before forces; the equations of a node stand in the order
-of the blocks too, those of ties behind them. So what a tie brings together is done with before the next run begins, and
-both senses hardly fill in each other's rows. Right of the last node there is no force.
+Elimination goes from left to right, and its cost is its fill-in. At every node the unknowns of bearings come first,
+then those of one block after another, displacements before forces; the equations of a node stand in the order of the
+blocks too, followed by those of bearings. So a bearing's coupling is eliminated before the next run begins, and the two
+senses hardly fill in each other's rows. Right of the last node there is no force.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ IntArray = npt.NDArray[np.intp]
 
 @dataclass(frozen=True)
 class TiePlaces:
-    """Unknowns of a tie's forces (m,) and of its pedestal's displacements (f,), and the equations of both."""
+    """Columns of a bearing's forces (m,) and of its pedestal's displacements (f,), and the rows of both."""
 
     forces: IntArray
     feet: IntArray
@@ -34,13 +34,13 @@ class Layout:
     Attributes
     ----------
     order
-        How many there are of either.
+        Number of unknowns, and of equations.
     displacements, forces
         (r + 1, n) and (r, n): columns of the state right of a node.
     continuity, balances
         (r, n) and (r + 1, n): rows of the displacements at every node but the first, and of the forces at every node.
     ties
-        Of every tie.
+        For every bearing.
     """
 
     order: int
@@ -52,7 +52,7 @@ class Layout:
 
     @classmethod
     def of(cls, blocks: tuple[int, ...], kept: IntArray, ties: Sequence[Tie]) -> "Layout":
-        """For the blocks at nodes that have unknowns, (r + 1,), and the ties at some of them."""
+        """Layout of the blocks at the nodes with unknowns, (r + 1,), and of the bearings at some of them."""
         widths = np.array([len(MEMBERS[block]) for block in blocks])
         n, width = int(widths.sum()), np.repeat(widths, widths)
         # A block's displacements and then its forces, behind those of the blocks before it.

@@ -1,4 +1,4 @@
-"""Compiled cutting of a line's spans into pieces; the rule is that of `rotors.lines`.
+"""Compiled discretisation of a shaft: spans cut into elements by the rule of `rotors.lines`.
 
 Importing this module imports numba.
 """
@@ -19,11 +19,11 @@ PieceArrays = tuple[FloatArray, IntArray, IntArray, IntArray, FloatArray, FloatA
 
 @inner(error_model="python")
 def longest_piece(squared: float, stiffness: FloatArray, inertia: FloatArray, force: float) -> float:
-    """Longest piece of one kind, clamped ends of which have no root below ω²; m."""
+    """Length (m) of the longest piece of one kind that has no root below ω² with clamped ends."""
     mass = squared * inertia[0]
     if stiffness.size == 1:
         return math.pi * math.sqrt(stiffness[0] / mass) if mass > 0.0 else math.inf
-    # Tension counts as compression does: the fields it makes grow as fast.
+    # Tension counts like compression: its fields grow as fast.
     linear = squared * inertia[1] + 2.0 * abs(force)
     divisor = linear + math.sqrt(linear**2 + 8.0 * mass * stiffness[1])
     if divisor == 0.0:
@@ -45,7 +45,7 @@ def piece_counts(
     inertia: FloatArray,
     force: FloatArray,
 ) -> FloatArray:
-    """Into how many pieces each span is cut, (s,); as floats, which cannot overflow."""
+    """Number of pieces of each span, (s,); as floats, which cannot overflow."""
     longest = np.empty(force.size)
     for k in range(force.size):
         longest[k] = longest_piece(highest * highest, stiffness[k], inertia[k], force[k])

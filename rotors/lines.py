@@ -1,4 +1,4 @@
-"""A shaft between its stations, before it is cut into pieces short enough for a frequency.
+"""Continuous shaft: its spans between stations, and their discretisation into elements short enough for a frequency.
 
 Pieces are so short that none, clamped at both ends, has a natural frequency of its own below the highest asked.
 For a Timoshenko piece of length h, clamped ends give by Wirtinger's inequality ‖x‖ ≤ (h/π)‖x'‖,
@@ -34,12 +34,12 @@ MOST_PIECES = 50_000
 
 @dataclass(frozen=True)
 class Line:
-    """Spans between stations, in scaled units; n is 2 for bending and 1 for a rod.
+    """One motion of a shaft as spans between stations, in scaled units; n is 2 for bending and 1 for a rod.
 
     Attributes
     ----------
     label
-        What messages call it.
+        Name in messages.
     nodes
         (s + 1,): ends of the spans, m.
     stations
@@ -76,15 +76,15 @@ class Line:
 
     @property
     def available_modes(self) -> float:
-        """How many modes there are: infinite with distributed mass, else the inertias that can move."""
+        """Number of modes: infinite with distributed mass, else the number of inertias that can move."""
         if bool(self.inertia.any()):
             return np.inf
         return int(np.count_nonzero((self.node_inertia > 0.0) & ~np.isinf(self.node_stiffness)))
 
     def likely_frequency(self, count: int) -> float:
-        """About the ``count``-th natural frequency of the bare shaft, by its waves, or a scale of it; rad/s.
+        """Estimate of the ``count``-th natural frequency from the waves of the bare shaft, or a frequency scale; rad/s.
 
-        Held by springs and without discs: a free shaft's lies lower, that of a clamped one higher.
+        It is that of a simply supported shaft without discs: a free shaft's is lower, a clamped one's higher.
         """
         shear, bending = self._wave_sums
         if shear == 0.0:
@@ -104,7 +104,7 @@ class Line:
         return float(shear), float(bending)
 
     def cut(self, highest: float) -> Chain:
-        """Chain good up to ``highest`` rad/s.
+        """The discretised shaft, valid up to ``highest`` rad/s.
 
         Raises
         ------
@@ -122,7 +122,7 @@ class Line:
         return self.in_pieces(counts.astype(np.intp), highest)
 
     def in_pieces(self, counts: IntArray, highest: float) -> Chain:
-        """Chain with every span in so many equal pieces, (s,)."""
+        """The discretised shaft with every span in ``counts`` (s,) equal pieces, valid up to ``highest`` rad/s."""
         from .line_kernels import cut_spans
 
         nodes, index, element, kind, middle, half, lengths = cut_spans(
@@ -145,9 +145,9 @@ class Line:
         )
 
     def held(self, places: Sequence[float], *springs: Sequence[tuple[float, ...]]) -> "list[Line]":
-        """The same line with springs to ground at some places (m), n stiffnesses (in scaled units) each.
+        """The same shaft on springs to ground at some places (m), n stiffnesses (in scaled units) each.
 
-        There is one line for each set of springs; all share their places.
+        Returns one shaft for each set of springs; the places are common to all sets.
         """
         if not places:
             return [self] * len(springs)
@@ -164,7 +164,7 @@ class Line:
         return lines
 
     def with_nodes(self, nodes: FloatArray) -> "Line":
-        """The same line cut at nodes (m) that include its own; new ones are bare, and no stations."""
+        """The same shaft with nodes (m) that include its own; new ones carry nothing, and are no stations."""
         span = np.clip(np.searchsorted(self.nodes, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, self.kind.size - 1)
         left, width = self.nodes[span], np.diff(self.nodes)[span]
         # Places within the span, and from them within the kind's own span.
@@ -186,7 +186,7 @@ class Line:
 
 
 def cut_together(lines: Sequence[Line], highest: float) -> list[Chain]:
-    """Chains good up to ``highest`` rad/s of lines that differ by their springs only: the first is cut for all."""
+    """Discretised shafts, valid up to ``highest`` rad/s, of shafts that differ in their springs only."""
     first = lines[0].cut(highest)
     index = first.nodes.searchsorted(lines[0].nodes)
     springs = [spread(first.nodes.size, index, line.node_stiffness) for line in lines[1:]]

@@ -1,4 +1,4 @@
-"""What acts on a rotor from outside: unbalance, residual bow, harmonic forces."""
+"""Loads of a rotor: unbalance, residual bow, harmonic forces."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Unbalance:
-    """A mass off the axis.
+    """An unbalance: a mass off the axis of rotation.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class HarmonicForce:
 
 @dataclass(frozen=True, eq=False)
 class Bow:
-    """The shape that a shaft has when nothing loads it, measured at some places.
+    """Residual bow: the shape of the unloaded shaft, measured at some places.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Shaft material, and the shear coefficient that a round section has in Timoshenko's theory."""
+"""Shaft material, and Timoshenko's shear coefficient of round cross-sections."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -1,4 +1,4 @@
-"""The rotor as the component that a coupled model is made of: its modes, and what its bearings add in modal form.
+"""Modal rotor: a rotor reduced to modes and residual attachment modes, and its bearings in modal form.
 
 Both planes share the bending modes Φ at averaged bearing stiffness k̄ (TM-101442 Eqs. 7 to 13), so that q = (q_x, q_y)
 obeys
@@ -9,11 +9,11 @@ with the gyroscopic matrix G = ∫ Φ' dI_p Φ'ᵀ and, summed over the bearings
 
     K_s = Σ diag(k_xx - k̄, k_yy - k̄) ⊗ Φ_b Φ_bᵀ
 
-and the cross-coupling K_c = Σ [[0, k_xy], [k_yx, 0]] ⊗ Φ_b Φ_bᵀ (TM-104434 Eqs. 11 to 15). The rows of a bearing's tilt
-stiffness do the same with the slopes. Behind the modes stand residual attachment vectors for every load that a bearing
-or a gear puts on the shaft: a force across at each of them, a moment and a force along the axis where a bearing resists
-these motions or a gear's teeth push along it, and a torque at every gear. They are the static response that the modes
-left out carry (Craig 2000), without which a gear's or a bearing's place is too stiff.
+and the cross-coupling K_c = Σ [[0, k_xy], [k_yx, 0]] ⊗ Φ_b Φ_bᵀ (TM-104434 Eqs. 11 to 15). A bearing's tilt stiffness
+enters in the same way with the slopes. The modes are followed by residual attachment modes for every load that a
+bearing or a gear puts on the shaft: a lateral force at each of them, a moment and an axial force where a bearing
+resists these motions or a gear has thrust, and a torque at every gear. They are the static response of the truncated
+modes (Craig 2000), without which the shaft is too stiff at gears and bearings.
 """
 
 from collections.abc import Sequence
@@ -53,7 +53,7 @@ class ModalRotor:
     axial : AxialModes or None
         Free along the axis; the rigid motion first. Where no bearing resists motion along it, there are none.
     bearings : tuple of Bearing
-        Those whose averaged stiffness the bending modes hold.
+        The bearings whose averaged stiffness is in the bending modes.
     ports : tuple of float
         Places of bearings, gears and other forces, m from the left end.
     participation : Participation or None
@@ -70,7 +70,7 @@ class ModalRotor:
     @property
     def gyroscopic(self) -> FloatArray:
         """J ⊗ G over (q_x, q_y), (2 b, 2 b): times the speed of rotation [rad/s] it joins the damping."""
-        return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), self.lateral.polar_inertia_matrix)
+        return gyroscopic_matrix(self.lateral.polar_inertia_matrix)
 
     @property
     def compensation(self) -> FloatArray:
@@ -89,7 +89,7 @@ class ModalRotor:
 
     @property
     def static_error(self) -> float:
-        """Largest part of the static compliance at a port that the modes alone, without the vectors, lack.
+        """Largest share of the static compliance at a port that the modes lack without the attachment modes.
 
         Zero for a rotor that its bearings leave free, which has no static compliance.
         """
@@ -99,23 +99,65 @@ class ModalRotor:
         shares = (self.lateral.evaluate(self.ports)[0] / frequencies[:, None]) ** 2
         return float((shares[proper:].sum(axis=0) / shares.sum(axis=0)).max())
 
+    @property
+    def size(self) -> int:
+        """Number of coordinates n: two planes of bending, torsion, and motion along the axis, in this order."""
+        return 2 * self.lateral.count + self.torsional.count + (0 if self.axial is None else self.axial.count)
+
+    def motions(self, at: float) -> FloatArray:
+        """Motion of the section at a place (m): x, y, z, rotations about x and y, by all coordinates, (5, n)."""
+        bending = 2 * self.lateral.count
+        along = np.zeros((0, 1)) if self.axial is None else self.axial.evaluate([at])
+        (section,) = section_motions(*self.lateral.evaluate([at]), along)
+        rows = np.zeros((5, self.size))
+        rows[:, :bending] = section[:, :bending]
+        rows[:, bending + self.torsional.count :] = section[:, bending:]
+        return rows
+
+    def rotation(self, at: float) -> FloatArray:
+        """Rotation about the axis of the section at a place (m), by all coordinates, (n,)."""
+        row, first = np.zeros(self.size), 2 * self.lateral.count
+        row[first : first + self.torsional.count] = self.torsional.evaluate([at])[:, 0]
+        return row
+
     def _bearing_sum(self, what: str, chosen: FloatArray) -> FloatArray:
         """Σ of the chosen entries, (2, 2), of the bearings' matrices, on displacements and on slopes."""
         size = 2 * self.lateral.count
         total = np.zeros((size, size))
+        # The plane that x, y and the rotations about x and y belong to; z moves no bending coordinate.
+        plane = np.array([0, 1, 0, 1, 0])
         for bearing in self.bearings:
-            spatial = bearing.spatial_stiffness if what == "stiffness" else bearing.spatial_damping
-            displacement, slope = (part[:, 0] for part in self.lateral.evaluate([bearing.at]))
-            # Motions x, y, rotation about x (minus the slope in y) and about y (the slope in x), by plane.
-            none = np.zeros_like(displacement)
-            motions = np.array([[displacement, none], [none, displacement], [none, -slope], [slope, none]]).reshape(
-                4, size
-            )
-            kept = spatial[np.ix_([0, 1, 3, 4], [0, 1, 3, 4])]
-            # The plane that each of the four motions belongs to.
-            plane = np.array([0, 1, 1, 0])
-            total += motions.T @ (kept * chosen[np.ix_(plane, plane)]) @ motions
+            matrix = bearing.spatial_stiffness if what == "stiffness" else bearing.spatial_damping
+            motions = self.motions(bearing.at)[:, :size]
+            total += motions.T @ (matrix * chosen[np.ix_(plane, plane)]) @ motions
         return total
+
+
+def gyroscopic_matrix(polar_inertia: FloatArray) -> FloatArray:
+    """J ⊗ G over the coordinates (q_x, q_y) of both planes, (2 b, 2 b), of G (b, b): per rad/s of the speed."""
+    return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), polar_inertia)
+
+
+def section_motions(displacement: FloatArray, slope: FloatArray, along: FloatArray) -> FloatArray:
+    """Motions of sections by the coordinates of both planes and of the axis, (p, 5, 2 b + a).
+
+    Rows are x, y, z and the rotations about x and y: the slope in x is the rotation about y, the slope in y minus that
+    about x.
+
+    Parameters
+    ----------
+    displacement, slope
+        (b, p): of the planar motions at p places.
+    along
+        (a, p): displacements of the axial motions.
+    """
+    b, places = displacement.shape
+    rows = np.zeros((places, 5, 2 * b + along.shape[0]))
+    rows[:, 0, :b] = rows[:, 1, b : 2 * b] = displacement.T
+    rows[:, 2, 2 * b :] = along.T
+    rows[:, 3, b : 2 * b] = -slope.T
+    rows[:, 4, :b] = slope.T
+    return rows
 
 
 def modal_rotor(
@@ -129,16 +171,16 @@ def modal_rotor(
     moments_at: Sequence[float] = (),
     thrusts_at: Sequence[float] = (),
 ) -> ModalRotor:
-    """Reduce a rotor to the modes that a coupled model keeps, and the vectors that make its ports' compliance exact.
+    """Reduce a rotor to its modes and to residual attachment modes that make the compliance of its ports exact.
 
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; bearings with tables, at their speed (`Bearing.at_speed`).
+        The rotor and its bearings; those with tables over speed at their speed (`Bearing.at_speed`).
     frequency_limit : float
         rad/s: every bending and torsional mode below it is kept, and at least four bending modes.
     count : int
-        How many bending modes in each plane and how many torsional modes, the rigid rotation included, instead.
+        Number of bending modes in each plane and of torsional modes, the rigid rotation included, instead.
     gears_at : sequence of float
         Where forces and torques of gears act, m from the left end.
     forces_at : sequence of float
@@ -181,7 +223,7 @@ def modal_rotor(
 def _require_few(
     rotor: Rotor, supports: Sequence[RadialSupport], frequency_limit: float | None, count: int | None
 ) -> None:
-    """Raise `RotorError` where more modes are asked for than a coupled model can use."""
+    """Raise `RotorError` where more modes are requested than `MOST_MODES`."""
     most = f"{MOST_MODES} or fewer: a lower frequency_limit, or a shaft less soft"
     if count is not None:
         require(count <= MOST_MODES, f"rotor {rotor.name!r}: number of modes", count, most)
@@ -201,7 +243,7 @@ def _axial(
     count: int | None,
     thrusts_at: Sequence[float],
 ) -> AxialModes | None:
-    """Free axial modes with vectors for forces at the bearings that hold the shaft along its axis, if any do."""
+    """Free axial modes with attachment modes at the axial bearings; None without axial bearings."""
     thrust = [b.at for b in bearings if b.spatial_stiffness[2].any() or b.spatial_damping[2].any()]
     if not thrust:
         return None

@@ -1,4 +1,4 @@
-"""Compiled Newton steps of `rotors.exact_roots`, each root by itself.
+"""Compiled Newton iteration for whirl eigenvalues, each root by itself; see `rotors.exact_roots`.
 
 Importing this module imports numba.
 """
@@ -18,15 +18,15 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-# Slopes are taken anew after steps longer than this.
+# Slopes are recomputed after steps longer than this.
 STALE = 1e-4
-# A step larger than this part of the root starts from nowhere near it, and is shortened.
+# A step larger than this part of the root is shortened: its start is not near a root.
 LONGEST_STEP = 0.3
-# A root that has moved by less than this part of it is finished with the factors at hand.
+# After a smaller relative step the existing factors serve for the next one.
 CLOSE = 1e-6
-# What is left of the vector's error then is a few times the square of what was taken off it, which must be no more.
+# Largest correction of the vector in that step: its remaining error is a few times the square of the correction.
 TURNED = 1e-7
-# Relative step of the difference that gives slopes of the entries, good to about 1e-6.
+# Relative step of the forward difference for slopes of the entries, accurate to about 1e-6.
 FORWARD = 1e-6
 
 
@@ -39,7 +39,7 @@ def forms(
     left: ComplexArray,
     right: ComplexArray,
 ) -> tuple[complex, complex]:
-    """yᴴ N x and yᴴ N' x, of entries of which the first vary."""
+    """yᴴ N x and yᴴ N' x; the varying entries come first."""
     top, bottom = 0.0j, 0.0j
     for entry in range(slopes.size):
         both = np.conj(left[rows[entry]]) * right[columns[entry]]
@@ -66,10 +66,10 @@ def newton(
     force of a ``mass``. Returned are roots (w,), vectors (w, order), the last correction as a part of the root, (w,),
     and the unit of force in each vector, (w,).
 
-    Once a root is nearly met, one step goes without factors of its own: with N the matrix at the new place and F the
-    factored one of the last, x ← x − F⁻¹ N x leaves of the vector's error the part by which the root has moved
-    (Neumaier, SIAM J. Numer. Anal. 22, 1985). A vector that its own factors made is that of where they were made: it
-    is done only where the root has not moved on from there.
+    Close to a root one step reuses the factors of the last: with N the matrix at the new place and F the factored one,
+    x ← x − F⁻¹ N x reduces the vector's error by the relative change of the root (Neumaier, SIAM J. Numer. Anal. 22,
+    1985). A vector from factors belongs to the place where they were made: it has converged only if the root has not
+    moved from there.
     """
     rows, columns, envelope, lower, upper = pattern
     order = envelope.shape[0]
@@ -89,7 +89,7 @@ def newton(
             scale = scales[root] if held else force_unit(at, mass)
             scales[root] = scale
             put_entries(at, base + rate * at, scale, table, beams, rods, values)
-            # Slopes of the last step do for a root that has hardly moved since: they are not in the residual.
+            # Slopes of the last step serve for a root that has hardly moved: they do not enter the residual.
             if last > STALE:
                 ahead = at * (1.0 + FORWARD)
                 put_entries(ahead, base + rate * ahead, scale, table, beams, rods, slopes)
@@ -98,7 +98,7 @@ def newton(
                     slopes[entry] = (slopes[entry] - values[entry]) * over
             turned = 0.0
             if held:
-                # The factors of where the root was a moment ago take the rest off the vector.
+                # The factors of the last step correct the vector.
                 for i in range(order):
                     side[i] = 0.0
                 for entry in range(rows.size):
@@ -129,16 +129,16 @@ def newton(
             share = abs(change) / abs(at)
             if share > LONGEST_STEP:
                 change = LONGEST_STEP * abs(at) * cmath.exp(1j * cmath.phase(change))
-            # Rounding alone moves a settled root: it stays where its last good step brought it.
+            # Only rounding moves a converged root: it keeps its value of the last good step.
             rounding = share < ACCEPTED and share >= 0.5 * last
             if not rounding and cmath.isfinite(change):
                 at += change
-            # What is left after the step, from how the last two steps fell.
+            # Estimated error after the step, from the decrease of the last two steps.
             forecast = math.inf
             if share < math.sqrt(ACCEPTED) and last < 1.0:
                 forecast = share**2 * (1.0 / last if held else max(1.0, share / last**2)) + STALE * share
             residuals[root] = share if rounding else min(share, forecast)
-            # Held factors serve one step: a root that has not settled by then gets its own.
+            # Old factors serve one step: a root that has not converged by then gets new ones.
             kept, held, last = held, not held and share <= CLOSE, share
             if turned <= TURNED**2 and (rounding or share <= SETTLED or (kept and forecast <= SETTLED)):
                 break

@@ -1,4 +1,4 @@
-"""How much of a rotor's inertia its modes feel when the ground under its bearings moves.
+"""Participation factors of a rotor's modes in rigid motions of the ground.
 
 For a ground that moves rigidly, u = q + R s, the modes are driven by -∫ φ R dm s'' over translation and over rotation
 of the sections. R is a displacement along x (or y), a turn of the shaft's line about its left end in the plane of x
@@ -13,10 +13,9 @@ import numpy.typing as npt
 
 from .axial import AxialModes
 from .lateral import LateralModes
-from .lumped import station_inertias
 from .quadrature import gauss_rule
 from .segment import Segment
-from .shaft import Rotor
+from .shaft import Rotor, station_inertias
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -25,7 +24,7 @@ _FRACTIONS, _WEIGHTS = gauss_rule(10)  # on pieces no longer than the shaft is t
 
 @dataclass(frozen=True)
 class Participation:
-    """Integrals over the rotor; m bending and a axial modes.
+    """Participation of m bending and a axial modes in rigid motions of the ground, integrals over the rotor.
 
     Attributes
     ----------
@@ -57,7 +56,7 @@ def participation(rotor: Rotor, lateral: LateralModes, axial: AxialModes | None)
 
 
 def _spread(rotor: Rotor) -> tuple[FloatArray, FloatArray]:
-    """Places (p,) [m] and mass, diametral and polar inertia (p, 3) there that stand for the whole rotor."""
+    """Quadrature places (p,) [m] and mass, diametral and polar inertia (p, 3) of the whole rotor there."""
     stations = rotor.stations
     places, inertias = [stations], [station_inertias(rotor, stations)]
     for part, left in zip(rotor.segments, rotor.joints[:-1].tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""Compiled transfer matrices of pieces of shaft; the equations are those of `rotors.timoshenko`.
+"""Compiled transfer matrices of Timoshenko beam and rod elements; the equations are those of `rotors.timoshenko`.
 
 Importing this module imports numba. All functions take real or complex ω².
 """
@@ -20,9 +20,9 @@ NumberArray = npt.NDArray[Any]
 CLOSED_TERMS = 13
 EVEN = np.array([1.0 / factorial(2 * k) for k in range(CLOSED_TERMS)])
 ODD = np.array([1.0 / factorial(2 * k + 1) for k in range(CLOSED_TERMS)])
-# With ρ ≥ |λ²| the terms from the N-th on are below N max(2 ρᴺ⁻¹, ρᴺ) / (2N)!, and their slopes, which differentiation
-# by a complex step takes from here, below 24 N (N − 1) ρᴺ⁻² / (2N)! of the first one's: for every N, up to what ρ that
-# is rounding. Four hold all slopes at zero.
+# With ρ ≥ |λ²| the terms from the N-th on are below N max(2 ρᴺ⁻¹, ρᴺ) / (2N)!, and their slopes, needed for
+# complex-step differentiation, below 24 N (N − 1) ρᴺ⁻² / (2N)! of the first one's. For every N, the largest ρ at which
+# both are rounding. Four terms have all slopes at zero.
 ROUNDING = 5e-17
 LEAST_TERMS = 4
 REACH = np.array(
@@ -36,14 +36,14 @@ REACH = np.array(
         for n in range(LEAST_TERMS, CLOSED_TERMS)
     ]
 )
-# Terms of the power series along a cone; pieces of such lengths and tapers need about 25.
+# Most terms of the power series along a cone; about 25 are needed.
 MOST_TERMS = 80
 NEGLIGIBLE = 1e-18
 
 
 @inner(error_model="python", fastmath=FINITE)
 def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, out: NumberArray) -> None:
-    """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `rotors.timoshenko.PieceTable`."""
+    """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `PieceTable`."""
     a, b, k = given[0] * h, given[1] * h, given[4] * h
     m, j = translation * given[2] * h, (rotation * given[3] - given[5]) * h
     am, bj, bk, km = a * m, b * j, b * k, k * m
@@ -82,7 +82,7 @@ def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, o
 
 @inner(error_model="python", fastmath=FINITE)
 def uniform_rod(h: float, given: FloatArray, translation: Any, out: NumberArray) -> None:
-    """T of a uniform rod of length h: cos and sin, as their series."""
+    """T of a uniform rod of length h, by the series of cosine and sine."""
     twist, swing = given[0] * h, translation * given[1] * h
     root = -twist * swing
     cosine, sine, power = 0.0 * root + 1.0, 0.0 * root + 1.0, 0.0 * root + 1.0
@@ -129,7 +129,7 @@ def taper_series(h: float, given: FloatArray, translation: Any, rotation: Any, s
                 series[k + 1, 3, column] = factor * y3
             for row in range(size):
                 largest = max(largest, abs(series[k + 1, row, column]))
-        # Two in a row: a term may vanish by symmetry.
+        # Two small terms in a row: one may vanish by symmetry.
         quiet = quiet + 1 if largest < NEGLIGIBLE else 0
         if quiet == 2:
             return k + 2
@@ -192,7 +192,7 @@ def piece_transfers(
 def whole_transfer(
     h: float, given: FloatArray, translation: Any, rotation: Any, whole: FloatArray, out: NumberArray
 ) -> None:
-    """T of a piece into ``out`` (1, 2n, 2n), ``whole`` being one: of the most usual piece without a detour."""
+    """Transfer matrix T of a whole piece into ``out`` (1, 2n, 2n), faster for uniform beams; ``whole`` is one."""
     if given.shape[0] == 6 and given.shape[1] == 1:
         uniform_beam(h, given[:, 0], translation, rotation, out[0])
     else:

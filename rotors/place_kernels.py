@@ -1,4 +1,4 @@
-"""Compiled questions about where eigenvalues lie: which oscillate, and which lie apart.
+"""Compiled tests of eigenvalues: oscillating or not, separated or not, inside a sector or not.
 
 Importing this module imports numba.
 """
@@ -17,17 +17,17 @@ BoolArray = npt.NDArray[np.bool_]
 
 @inner(error_model="python")
 def logarithm(value: complex) -> complex:
-    """ln λ, of zero minus infinity."""
+    """ln λ; minus infinity for zero."""
     return complex(math.log(abs(value)), math.atan2(value.imag, value.real))
 
 
 @counted(error_model="python")
 def ascending(values: ComplexArray, least: float, angle: float) -> ComplexArray:
-    """Values that lie above the real axis by more than an angle (small, rad), larger than ``least``, by their size."""
+    """Values above the real axis by more than a small angle (rad) and larger than ``least``, by ascending modulus."""
     kept, sizes, count = np.empty(values.size, dtype=np.complex128), np.empty(values.size), 0
     for k in range(values.size):
         size = abs(values[k])
-        # Neither holds of what is no number.
+        # Both are false for NaN.
         if not (size > least and values[k].imag > angle * size):
             continue
         place = count
@@ -41,7 +41,7 @@ def ascending(values: ComplexArray, least: float, angle: float) -> ComplexArray:
 
 @uncounted(error_model="python")
 def are_apart(values: ComplexArray, tolerance: float) -> bool:
-    """Whether no two values are nearer than a part of either's size."""
+    """Whether no two values are closer than ``tolerance`` times either's modulus."""
     for i in range(values.size):
         for j in range(i):
             if abs(values[i] - values[j]) <= tolerance * max(abs(values[i]), abs(values[j])):
@@ -51,7 +51,7 @@ def are_apart(values: ComplexArray, tolerance: float) -> bool:
 
 @uncounted(error_model="python")
 def are_done(values: ComplexArray, residuals: FloatArray, accepted: float, tolerance: float) -> bool:
-    """Whether no residual exceeds what is accepted, and no two values are nearer than a part of either's size."""
+    """Whether no residual exceeds ``accepted`` and no two values are closer than ``tolerance`` times a modulus."""
     for residual in residuals:
         if not residual <= accepted:
             return False
@@ -60,14 +60,14 @@ def are_done(values: ComplexArray, residuals: FloatArray, accepted: float, toler
 
 @uncounted(error_model="python")
 def inside(values: ComplexArray, bounds: FloatArray, out: BoolArray) -> None:
-    """Which of the values lie in a sector of the bounds that `edge_distance` takes."""
+    """Mark the values inside a sector; ``bounds`` as in `edge_distance`."""
     for k in range(values.size):
         out[k] = edge_distance(logarithm(values[k]), bounds) < 0.0
 
 
 @inner(error_model="python")
 def edge_distance(place: complex, bounds: FloatArray) -> float:
-    """How far ln λ lies from the edge of a sector, negative inside; along the axes, the larger part.
+    """Distance of ln λ from the edge of a sector, negative inside: the larger of those along the two axes.
 
     ``bounds`` are the least and the greatest ln |λ| and arg λ, in this order.
     """

@@ -1,9 +1,9 @@
-"""Planar motions that whirl is projected on: modes, and the static answers to loads where bearings and discs act.
+"""Planar basis of whirl: modes of one plane, and static responses to loads at bearings and discs.
 
-`rotors.whirl_basis` gives the same as certified modes, to be looked at and held. A single solution needs less: any
-mass-orthonormal basis of the same space gives the same starting values, and the roots have a proof of their own. Here
-the modes' fields and the responses are made orthonormal one after another, by Gram and Schmidt on their values at
-the points of quadrature, so that what little a response adds to the modes keeps its digits.
+`rotors.whirl_basis` gives the same space as certified modes. Starting values need less: any mass-orthonormal basis of
+the space gives the same, and the roots have a proof of their own. Here the modes' fields and the responses are made
+orthonormal one after another, by Gram-Schmidt on their values at the quadrature points, so that the small part that a
+response adds to the modes keeps its digits.
 """
 
 from collections.abc import Sequence
@@ -30,13 +30,13 @@ FloatArray = npt.NDArray[np.float64]
 DEFAULT_COUNT = 12
 LEAST_MODES = 6
 SPARE_MODES = 3
-# The basis reaches this many times beyond the highest whirl frequency asked for: it gives starting values only.
+# The basis holds modes up to this multiple of the highest whirl frequency: it gives starting values only.
 BASIS_REACH = 1.5
 
 
 @dataclass(frozen=True, eq=False)
 class PlanarBasis:
-    """Mass-orthonormal motions of the shaft in one plane, and what they do at its bearings.
+    """Mass-orthonormal motions of the shaft in one plane, and their values at its bearings.
 
     Attributes
     ----------
@@ -63,13 +63,13 @@ class PlanarBasis:
 
     @classmethod
     def of_modes(cls, modes: LateralModes, bearings: Sequence[Bearing]) -> "PlanarBasis":
-        """The basis that certified modes and attachment vectors are, at the given bearings."""
+        """The basis of certified modes and attachment modes, at the given bearings."""
         displacement = slope = np.zeros((modes.count, 0))
         if bearings:
             displacement, slope = modes.evaluate([bearing.at for bearing in bearings])
         moving = modes.frequencies[modes.frequencies > 0.0]
         return cls(
-            stiffness=np.diag(modes.frequencies**2) - modes.support_matrix,
+            stiffness=modes.free_stiffness,
             polar_inertia=modes.polar_inertia_matrix,
             displacement=displacement,
             slope=slope,
@@ -78,7 +78,7 @@ class PlanarBasis:
 
 
 def mean_supports(bearings: Sequence[Bearing]) -> tuple[RadialSupport, ...]:
-    """The planar springs that a basis holds, of tables those at the middle of their speeds."""
+    """Planar springs of a basis: averaged bearing stiffness, of tables over speed at the middle of the table."""
     return tuple(
         bearing.at_speed(float(bearing.speeds[bearing.speeds.size // 2])).mean_support
         if bearing.speeds is not None
@@ -88,14 +88,14 @@ def mean_supports(bearings: Sequence[Bearing]) -> tuple[RadialSupport, ...]:
 
 
 def loaded_places(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[list[float], list[float]]:
-    """Where forces and where moments act on the turning shaft, beside its own inertia, m."""
+    """Places (m) of forces and of moments on the turning shaft: bearings, and discs with polar inertia."""
     moments = [disc.at for disc in rotor.discs if disc.polar_inertia > 0.0]
     moments += [bearing.at for bearing in bearings if bearing.stiffness.shape[-1] == 5]
     return [bearing.at for bearing in bearings], moments
 
 
 def modes_needed(count: int | None, available: float) -> int:
-    """How many planar modes the basis for so many whirl modes has."""
+    """Number of planar modes in the basis for ``count`` whirl modes."""
     return int(min(max((count or DEFAULT_COUNT) // 2 + SPARE_MODES, LEAST_MODES), available))
 
 
@@ -135,7 +135,7 @@ def planar_basis(
     squared = np.concatenate([np.zeros(zeros), squared, np.full(len(loads), shift)])
     fields = np.concatenate(states) if len(states) > 1 else states[0]
     arrays = chain.table.lengths, chain.table.coefficients, chain.element
-    # Springs are the bearings' to add.
+    # The bearings' springs are added by the projection.
     nodal = np.zeros_like(chain.node_stiffness), chain.node_inertia, chain.node_polar
     mass, polar, stiffness = energy_weights(GAUSS_FRACTIONS, GAUSS_WEIGHTS, *arrays, *nodal)
     motion, strain = np.empty((squared.size, mass.size)), np.empty((squared.size, stiffness.size))
@@ -156,7 +156,7 @@ def planar_basis(
 
 
 def _lowest_modes(line: Line, frequency_limit: float | None, count: int | None) -> tuple[Chain, FloatArray]:
-    """A chain and its lowest natural frequencies, as many as the basis needs, rad/s."""
+    """A discretised shaft and its lowest natural frequencies, rad/s, those that the basis needs."""
     available = line.available_modes
     if frequency_limit is not None:
         require_finite("frequency_limit", frequency_limit, positive=True)

@@ -1,4 +1,4 @@
-"""A rotor on its bearings at rest: the frequencies of both planes."""
+"""Natural frequencies of a rotor at rest, in both planes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,22 +8,21 @@ import numpy.typing as npt
 
 from .bearing import Bearing, undamped
 from .buckling import require_unbuckled
-from .certificate import ModeCertificate
+from .certificate import ModeCertificate, combined_certificate
 from .chain import Chain
 from .errors import require, require_count, require_finite
 from .lines import Line, cut_together
 from .planar_basis import DEFAULT_COUNT
 from .projection import slowest
 from .root_count import counts_below, isolate
-from .rotor_lines import FreeLines, bending_lines
+from .rotor_lines import bending_lines
 from .search import chain_that_holds, limit_above, proved_modes
 from .shaft import Rotor
 from .whirl import solve_whirl
-from .whirl_certificate import WhirlCertificate
 
 FloatArray = npt.NDArray[np.float64]
 
-# Bisections after which roots of both planes that are not parted yet are one.
+# Bisections after which roots of both planes that are not separated count as one.
 MOST_HALVINGS = 50
 
 
@@ -36,15 +35,15 @@ class RestFrequencies:
     frequencies
         (m,): ascending, rad/s; an isotropic root stands twice.
     axial_share
-        (m,): part of the kinetic energy along the axis, as in `rotors.WhirlModes`; 0 where the bearings do not tie it
-        to the others.
+        (m,): share of the kinetic energy along the axis, as in `rotors.WhirlModes`; 0 where the bearings do not couple
+        axial and lateral motion.
     certificate
-        Proof of completeness over both planes, and the axis where it is tied to them.
+        Proof of completeness over both planes, and over axial motion where it is coupled to them.
     """
 
     frequencies: FloatArray
     axial_share: FloatArray
-    certificate: ModeCertificate | WhirlCertificate
+    certificate: ModeCertificate
 
 
 def rest_frequencies(
@@ -56,17 +55,17 @@ def rest_frequencies(
 ) -> RestFrequencies:
     """Undamped natural frequencies of both planes of a rotor that does not turn.
 
-    Where bearings do not tie the planes, each is solved with its own k_xx or k_yy; otherwise both go together, as
-    in `rotors.solve_whirl` at no speed.
+    Where bearings do not couple the planes, each is solved with its own k_xx or k_yy; otherwise both are solved
+    together, as in `rotors.solve_whirl` at zero speed.
 
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; no bearings leave it free. Of tables the lowest speed is taken.
+        The rotor and its bearings, none for a free rotor. Tables over speed are read at their lowest speed.
     frequency_limit
         rad/s: all frequencies strictly below.
     count
-        How many over both planes, instead of a limit; with neither, 12. Multiple roots stay whole.
+        Number of frequencies over both planes, instead of a limit; with neither, 12. Multiple roots stay whole.
 
     Raises
     ------
@@ -94,7 +93,7 @@ def rest_frequencies(
         expected = counts_below(chains, limit)
         found = [isolate(chain, number, limit) for chain, number in zip(chains, expected, strict=True)]
     else:
-        chains, shares = _shares(rotor.once(FreeLines).bending, lines, wanted or DEFAULT_COUNT)
+        chains, shares = _shares(lines, wanted or DEFAULT_COUNT)
         if alike:
             chains, shares = chains[:1], shares[:1]
         found = [isolate(chain, share, chain.highest) for chain, share in zip(chains, shares, strict=True)]
@@ -111,35 +110,29 @@ def rest_frequencies(
         if number
     ]
     if alike:
-        solved, expected = solved * 2, expected * 2
+        solved = solved * 2
     frequencies = np.sort(np.concatenate([modes.frequencies for modes in solved] or [np.zeros(0)]))
-    certificate = ModeCertificate(
-        limit=limit,
-        expected=sum(expected),
-        found=frequencies.size,
-        max_residual=max((modes.certificate.max_residual for modes in solved), default=0.0),
-        orthonormality=max((modes.certificate.orthonormality for modes in solved), default=0.0),
-    )
+    certificate = combined_certificate([modes.certificate for modes in solved], limit, "wittrick-williams")
     return RestFrequencies(frequencies, np.zeros(frequencies.size), certificate)
 
 
 def _is_planar(bearing: Bearing) -> bool:
-    """Whether each plane has its own springs, and the ground behind them."""
+    """Whether the bearing is rigidly mounted and its stiffness is diagonal."""
     stiffness = bearing.stiffness
     return bearing.pedestal is None and np.count_nonzero(stiffness) == np.count_nonzero(stiffness.diagonal())
 
 
-def _shares(bare: Line, lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
-    """Chains of the planes, and how many modes each gives to the lowest ``count`` of both.
+def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
+    """Discretised shafts of the planes, and the number of modes of each among the lowest ``count`` of both.
 
-    Of a lumped rotor that has fewer, all.
+    A lumped rotor with fewer modes gives all of them.
     """
     # Distributed mass has no end of modes; of lumped ones, constraints take some in one plane or the other.
-    available = [line.available_modes for line in lines] if bare.available_modes < np.inf else [np.inf]
+    available = [line.available_modes for line in lines] if lines[0].available_modes < np.inf else [np.inf]
     if sum(available) <= count:
         most = [int(number) for number in available]
         return [chain_that_holds(line, number) for line, number in zip(lines, most, strict=True)], most
-    low, high = 0.0, bare.likely_frequency((count + 1) // 2)
+    low, high = 0.0, lines[0].likely_frequency((count + 1) // 2)
     while True:
         chains = cut_together(lines, high)
         shares = counts_below(chains, high)
@@ -147,7 +140,7 @@ def _shares(bare: Line, lines: list[Line], count: int) -> tuple[list[Chain], lis
             break
         low, high = high, 2.0 * high
     for _ in range(MOST_HALVINGS):
-        # One too many costs less than the search for the gap between the last two.
+        # A superfluous mode costs less than the search for the gap between the last two.
         if sum(shares) <= count + 1:
             break
         middle = 0.5 * (low + high)

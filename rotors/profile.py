@@ -1,4 +1,4 @@
-"""Stiffness and inertia along a row of segments, as polynomials that transfer matrices can take.
+"""Stiffness and inertia along a shaft: piecewise polynomials that enter the transfer matrices.
 
 A cylinder or a coupling has constants. Along a cone 1/EI, 1/κGA and their like are rational functions; each is
 interpolated at Chebyshev points, and the cone halved until the last coefficients of every interpolant are
@@ -9,6 +9,7 @@ piece for every change of a diameter by about a third.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -40,7 +41,7 @@ BENDING, TORSION, AXIAL = slice(0, 6), slice(6, 8), slice(8, 10)
 
 @dataclass(frozen=True)
 class Profile:
-    """Spans of a shaft, each of one kind: uniform, or tapering mildly.
+    """A shaft as spans of uniform or mildly tapering section; equal spans share one kind.
 
     Attributes
     ----------
@@ -49,7 +50,7 @@ class Profile:
     lengths
         (s,): m, of whole segments exactly as given, so that equal segments are equal here.
     kind
-        (s,): which of the kinds each span is.
+        (s,): index of each span's kind.
     coefficients
         (k, 10, j): of every kind, SI, the coefficients of 1, s, s², ... with s from −1 to 1 along the span: in
         bending 1/(κGA + P), 1/EI, ρA, ρI, g, g P (`rotors.timoshenko`); 1/GJ, ρJ; 1/EA, ρA.
@@ -65,6 +66,11 @@ class Profile:
     coefficients: FloatArray
     extremes: FloatArray
     uniform: npt.NDArray[np.bool_]
+
+    @cached_property
+    def mean_bending_stiffness(self) -> float:
+        """Geometric mean of the spans' least EI, N·m²."""
+        return float(np.exp(np.log(self.extremes[self.kind, 1]).mean()))
 
 
 def profile_of(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Profile:
@@ -121,7 +127,7 @@ def restricted(coefficients: FloatArray, centre: FloatArray, half: FloatArray) -
 
 
 def _identity(part: Segment | Coupling) -> tuple[object, ...]:
-    """What makes two uniform parts of different lengths alike."""
+    """Key that two uniform parts of one section share, whatever their lengths."""
     if isinstance(part, Coupling):
         stiffnesses = (part.lateral_stiffness, part.tilt_stiffness, part.torsional_stiffness, part.axial_stiffness)
         return (part.length, *stiffnesses)
@@ -150,7 +156,7 @@ def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
 
 
 def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:
-    """Start and end (fractions of the cone), coefficients and extremes of pieces mild enough."""
+    """Start and end (fractions of the cone), coefficients and extremes of pieces short enough to interpolate."""
     fractions = [start + fraction * (end - start) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
     samples = [_segment_values(part, fraction) for fraction in fractions]
     values, rows = np.array([value for value, _ in samples[:-2]]), np.array([row for _, row in samples])
@@ -165,7 +171,7 @@ def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple
             raise RotorError(f"segment {part!r} tapers too sharply; expected diameters further from zero")
         middle = 0.5 * (start + end)
         return _taper(part, start, middle, halvings + 1) + _taper(part, middle, end, halvings + 1)
-    # Rounding in the high coefficients would be all that is left of them.
+    # Coefficients of the size of rounding are zero.
     chebyshev[np.abs(chebyshev) < 0.1 * tolerance] = 0.0
     extremes = np.array([*rows[:, :2].min(axis=0), *rows[:, 2:4].max(axis=0), part.axial_force])
     return [(start, end, (chebyshev.T @ _TO_POWERS), extremes)]

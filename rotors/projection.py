@@ -1,4 +1,4 @@
-"""Whirl on a basis of planar modes: starting values for the exact roots.
+"""Modal projection of whirl on planar modes: starting values for the exact roots.
 
 Both planes share the modes at averaged bearing stiffness, X = Φᵀ q_x and Y = Φᵀ q_y. With Λ = diag(ω²),
 G the polar inertia matrix and Φ_b the modes' displacements at bearing b,
@@ -7,9 +7,9 @@ G the polar inertia matrix and Φ_b the modes' displacements at bearing b,
     q̈_y − Ω G q̇_x + Σ_b Φ_b Φ_bᵀ (c_yx q̇_x + c_yy q̇_y) + Λ q_y + Σ_b Φ_b Φ_bᵀ [k_yx q_x + (k_yy − k̄) q_y] = 0
 
 (TM-104434 Eqs. 11–15 with constant speed and grounded bearings). The sums over bearings are its compensation
-matrices. Here the same is written with slopes, axial modes and pedestals where bearings have them, and only for the
-motions that the bearings tie to each other: where forward and backward motion are not tied, for one of them, in the
-circular coordinates of `rotors.spatial_ties`.
+matrices. Slopes, axial modes and pedestals are added where bearings have them. Each set of motions that the bearings
+couple is projected on its own; where forward and backward motion are not coupled, each in the circular coordinates of
+`rotors.spatial_ties`.
 """
 
 from collections.abc import Sequence
@@ -25,6 +25,7 @@ from .axial import solve_axial_modes
 from .bearing import Bearing
 from .errors import require, require_count, require_finite
 from .lateral import LateralModes, solve_lateral_modes
+from .modal import gyroscopic_matrix, section_motions
 from .planar_basis import (
     BASIS_REACH,
     LEAST_MODES,
@@ -45,7 +46,7 @@ IntArray = npt.NDArray[np.intp]
 NumberArray = npt.NDArray[Any]
 
 AXIAL_MODES = 8
-# A massless pedestal weighs this part of the rotor in the basis, where every coordinate has a mass.
+# Mass of a massless pedestal in the projection, as a part of the rotor's: every coordinate needs a mass.
 PEDESTAL_MASS = 1e-6
 
 
@@ -56,12 +57,11 @@ def whirl_basis(
     frequency_limit: float | None = None,
     count: int | None = None,
 ) -> LateralModes:
-    """Planar basis for whirl: modes at averaged stiffness, well beyond the need, and attachment vectors.
+    """Planar basis for whirl: modes at averaged bearing stiffness, and attachment modes.
 
-    It holds every mode below ``frequency_limit`` and half as far again, or three more than half of ``count``, and at
-    least six; behind them the static responses to a force at each bearing and to a moment at each disc, where
-    the compensation and gyroscopic terms act. Build it once to sweep the speed. Of tables over speed it holds
-    the stiffness at the middle of the table.
+    It holds every mode below 1.5 times ``frequency_limit``, or three more than half of ``count``, and at least six;
+    then the static responses to a force at each bearing and to a moment at each disc, where the compensation and
+    gyroscopic terms act. Tables over speed enter with the stiffness at the middle of the table.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def whirl_basis(
     frequency_limit
         Highest whirl frequency of interest, rad/s.
     count
-        How many whirl modes are of interest, instead.
+        Number of whirl modes of interest, instead.
 
     Raises
     ------
@@ -99,30 +99,15 @@ def basis_for(
     count: int | None,
     basis: LateralModes | None,
 ) -> PlanarBasis:
-    """From the given basis if it fits the bearings, or a new one; checks the limit and the count."""
+    """Planar basis from the given modes, which must be on the bearings' averaged stiffness, or a new one."""
     require_count("count of modes", count)
+    for bearing in bearings:
+        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
     if basis is None:
-        return rotor.once(_basis_of_bearings, tuple(bearings), frequency_limit, count)
-    return rotor.once(_basis_of_modes, tuple(bearings), basis)
-
-
-def _basis_of_bearings(
-    rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
-) -> PlanarBasis:
-    _require_on_shaft(rotor, bearings)
-    return planar_basis(rotor, bearings, frequency_limit, count)
-
-
-def _basis_of_modes(rotor: Rotor, bearings: Sequence[Bearing], basis: LateralModes) -> PlanarBasis:
-    _require_on_shaft(rotor, bearings)
+        return planar_basis(rotor, bearings, frequency_limit, count)
     expected = mean_supports(bearings)
     require(basis.supports == expected, "supports of the basis", basis.supports, f"{expected}, the bearings'")
     return PlanarBasis.of_modes(basis, bearings)
-
-
-def _require_on_shaft(rotor: Rotor, bearings: Sequence[Bearing]) -> None:
-    for bearing in bearings:
-        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
 
 
 def slowest(bearing: Bearing) -> float:
@@ -132,10 +117,10 @@ def slowest(bearing: Bearing) -> float:
 
 @dataclass(frozen=True)
 class Projection:
-    """One set of tied motions of a rotor on its modal basis.
+    """Projection of one set of coupled motions of a rotor on its modal basis.
 
-    Coordinates are the circular ones of `rotors.spatial_ties` where forward or backward motion stands alone; tied
-    together they are those of x and y, in which everything is real, and the eigenproblem costs a third.
+    Coordinates are the circular ones of `rotors.spatial_ties` where forward or backward motion stands alone. Where both
+    are coupled they are those of x and y, in which all matrices are real and the eigenproblem costs a third.
 
     Attributes
     ----------
@@ -157,7 +142,7 @@ class Projection:
 
     @classmethod
     def of(cls, rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], basis: PlanarBasis) -> "Projection":
-        """The projection for some tied motions of a rotor."""
+        """The projection for one set of coupled motions of a rotor."""
         frequencies, shapes = np.zeros(0), np.zeros((0, len(bearings)))
         if 0 in blocks:
             frequencies, shapes = _axial_modes(rotor, bearings)
@@ -185,8 +170,7 @@ class Projection:
         else:
             stiffness[:b, :b] += self.basis.stiffness
             stiffness[b : 2 * b, b : 2 * b] += self.basis.stiffness
-            gyroscopic[:b, b : 2 * b] = self.basis.polar_inertia
-            gyroscopic[b : 2 * b, :b] = -self.basis.polar_inertia
+            gyroscopic[: 2 * b, : 2 * b] = gyroscopic_matrix(self.basis.polar_inertia)
             axial = np.arange(2 * b, 2 * b + a)
             stiffness[axial, axial] += self.axial_frequencies**2
         for bearing, coordinates, directions in feet:
@@ -258,17 +242,11 @@ class Projection:
             feet.append((k, order + np.arange(len(directions)), directions))
             order += len(directions)
         relative = np.zeros((len(bearings), held.shape[-1], order))
-        displacement, slope = self.basis.displacement.T, self.basis.slope.T
-        if bearings:
-            relative[:, 0, :b] = displacement
-            if alone:
-                relative[:, 1, :b] = slope
-            else:
-                relative[:, 1, b : 2 * b] = displacement
-                relative[:, 2, 2 * b : shaft] = self.axial_shapes.T
-                # The slope in y is minus the rotation about x.
-                relative[:, 3, b : 2 * b] = -slope
-                relative[:, 4, :b] = slope
+        displacement, slope = self.basis.displacement, self.basis.slope
+        if bearings and alone:
+            relative[:, 0, :b], relative[:, 1, :b] = displacement.T, slope.T
+        elif bearings:
+            relative[:, :, :shaft] = section_motions(displacement, slope, self.axial_shapes)
         for k, coordinates, directions in feet:
             relative[k, directions, coordinates] -= 1.0
         return (
@@ -288,7 +266,7 @@ class Projection:
 
 @dataclass(frozen=True)
 class Pencil:
-    """A projected motion as a system of first order, still + Ω turning, of one set of tied motions.
+    """First-order system, still + Ω turning, of one projected set of coupled motions.
 
     Attributes
     ----------
@@ -297,7 +275,7 @@ class Pencil:
     still, turning
         (2N, 2N): in 1/s, and per rad/s of the speed Ω.
     planes
-        The same in a form that costs less, where it has one.
+        The cheaper form for lightly damped planes, where it applies.
     """
 
     blocks: tuple[int, ...]
@@ -306,7 +284,7 @@ class Pencil:
     planes: TiedPlanes | None
 
     def eigenvalues(self, speeds: FloatArray) -> ComplexArray:
-        """All eigenvalues at every speed, (speeds, 2N), rad/s; near enough to the system's to start from."""
+        """All eigenvalues at every speed, (speeds, 2N), rad/s, as starting values."""
         if self.planes is None:
             return self._by_systems(speeds)
         values, mixed = self.planes.eigenvalues(speeds)
@@ -320,7 +298,7 @@ class Pencil:
 
 
 def pencils(rotor: Rotor, bearings: Sequence[Bearing], basis: PlanarBasis) -> list[Pencil]:
-    """Of every set of motions that bearings of constant coefficients tie."""
+    """First-order systems of all sets of motions that bearings of constant coefficients couple."""
     sets = block_sets(bearings)
     return [Projection.of(rotor, bearings, blocks, basis).pencil(bearings) for blocks in sets]
 

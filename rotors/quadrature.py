@@ -1,4 +1,4 @@
-"""Gauss–Legendre rules on the unit interval, made once by the modules that use them."""
+"""Gauss–Legendre quadrature on the unit interval."""
 
 import numpy as np
 import numpy.typing as npt

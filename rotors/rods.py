@@ -1,4 +1,4 @@
-"""Modes of a shaft as a rod: what its torsion and its axial motion share."""
+"""Rod modes: the common form of torsional and axial modes."""
 
 from dataclasses import dataclass, field
 from typing import TypeVar

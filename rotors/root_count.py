@@ -1,4 +1,4 @@
-"""How many natural frequencies lie below a frequency, and from that count each of them.
+"""Wittrick–Williams root count: the number of natural frequencies below a frequency, and each of them by that count.
 
 The count of Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) for a structure with dynamic
 stiffness K(ω) is J = J₀ + s(K), with J₀ the clamped members' own modes below ω, here none by
@@ -45,7 +45,7 @@ LOWEST = 1e-16
 
 
 def chain_arrays(chain: Chain) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
-    """A chain as the compiled functions take it."""
+    """A discretised shaft as the arrays that compiled functions take."""
     table = chain.table
     return table.lengths, table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
 
@@ -71,7 +71,7 @@ def counts_below(chains: Sequence[Chain], frequency: float) -> list[int]:
 
 
 def isolate(chain: Chain, wanted: int, limit: float) -> FloatArray:
-    """The lowest ``wanted`` natural frequencies of a chain, each to about 1e-13 of itself.
+    """The lowest ``wanted`` natural frequencies of a shaft, each to a relative 1e-13 or so.
 
     Rigid motions are zeros; a root of multiplicity r stands r times.
 
@@ -80,7 +80,7 @@ def isolate(chain: Chain, wanted: int, limit: float) -> FloatArray:
     chain
         The shaft.
     wanted
-        How many; the count at the limit must not be less.
+        Number of frequencies; the count at the limit must not be less.
     limit
         rad/s.
 

@@ -1,4 +1,4 @@
-"""Compiled search for the natural frequencies of a chain inside brackets of its root count.
+"""Compiled search for natural frequencies inside brackets of the Wittrick-Williams root count.
 
 Importing this module imports numba. The arrays of a chain come in the order of `rotors.count_kernels`.
 """
@@ -14,7 +14,7 @@ from .count_kernels import count_at
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
-# Brackets of multiple roots end this narrow; steps towards single roots end at a few units of rounding.
+# Final width of the brackets of multiple roots; steps towards single roots end at a few units of rounding.
 RELATIVE_WIDTH = 2e-13
 LAST_STEP = 5e-15
 MOST_STEPS = 200
@@ -35,10 +35,10 @@ def lowest_roots(
 ) -> tuple[int, int, FloatArray]:
     """Counts at two frequencies and, if they enclose them, the roots numbered ``zeros`` to ``wanted``, ascending.
 
-    Every root keeps a bracket of its own, low counts on one side and high ones on the other, which each
-    evaluation narrows for all. A bracket that holds one root alone has determinants of both signs at its
-    ends and is closed by the inverse quadratic steps of Chandrupatla (Adv. Eng. Softw. 28, 1997), which
-    fall back to halving; the count, not the determinant, says on which side a step has come down. Others are halved.
+    Every root has a bracket of its own, with counts below and above it at the ends; each evaluation narrows all
+    brackets. A bracket with a single root has determinants of both signs at its ends and is closed by the inverse
+    quadratic steps of Chandrupatla (Adv. Eng. Softw. 28, 1997), which fall back to halving; the count, not the
+    determinant, decides on which side of the root a step lies. Other brackets are halved.
     """
     size = 2 * stiffness.shape[1]
     transfers = np.empty((lengths.size, 1, size, size))
@@ -60,7 +60,7 @@ def lowest_roots(
                 break
             middle = math.sqrt(a) * math.sqrt(b) if b > 4.0 * a else 0.5 * (a + b)
             if a == lowest and b == limit:
-                # The lowest frequency is seldom further below the limit than this.
+                # The lowest frequency is seldom lower than this part of the limit.
                 middle = max(middle, FIRST_PART * limit)
             count, value = count_at(middle, lengths, given, element, stiffness, inertia, transfers)
             for k in range(root, number):

@@ -1,4 +1,4 @@
-"""From a request, a limit or a count, to certified modes of a chain; shared by bending and torsion."""
+"""Certified modes of a shaft in bending, torsion or axial motion, below a frequency limit or by their number."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ MOST_DOUBLINGS = 200
 
 @dataclass(frozen=True)
 class FoundModes:
-    """Modes of a chain: frequencies (m,) in rad/s, fields, mixture (m, k), and their certificate."""
+    """Modes of a shaft: frequencies (m,) in rad/s, k fields, their mixture (m, k) in each mode, and a certificate."""
 
     frequencies: FloatArray
     fields: Fields
@@ -34,7 +34,7 @@ class FoundModes:
 
 
 def find_modes(line: Line, frequency_limit: float | None, count: int | None) -> FoundModes:
-    """Every mode of a line below the limit, or the lowest ``count``."""
+    """Every mode of a shaft below the limit (rad/s), or the lowest ``count``."""
     require(
         frequency_limit is None or count is None,
         "frequency_limit and count",
@@ -56,7 +56,7 @@ def find_modes(line: Line, frequency_limit: float | None, count: int | None) -> 
 
 
 def certified_modes(chain: Chain, wanted: int, limit: float | None = None) -> FoundModes:
-    """The lowest ``wanted`` modes of a chain: all below a limit (rad/s), or else with all twins of the last.
+    """The lowest ``wanted`` modes of a shaft: all below a limit (rad/s), or with every multiple of the last root.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def proved_modes(chain: Chain, frequencies: FloatArray, expected: int, limit: fl
 
 
 def chain_that_holds(line: Line, wanted: int) -> Chain:
-    """A chain with at least so many modes below the highest frequency that it is good for."""
+    """A discretised shaft with at least ``wanted`` modes below the highest frequency that it is good for."""
     highest = line.likely_frequency(wanted)
     for _ in range(MOST_DOUBLINGS):
         chain = line.cut(highest)

@@ -1,4 +1,4 @@
-"""A round section of a shaft and what follows from its diameters."""
+"""Round cross-section: area, second moment, stiffness and mass per length."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A straight round piece of shaft."""
+"""Shaft segment: a straight round length of shaft, cylindrical or conical."""
 
 import math
 from collections.abc import Callable
@@ -14,18 +14,18 @@ _GAUSS = tuple(zip(*(part.tolist() for part in gauss_rule(4)), strict=True))
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight round piece of shaft, cylindrical or conical.
+    """A straight round length of shaft, cylindrical or conical.
 
     Parameters
     ----------
     length, outer_diameter, inner_diameter
-        In m; the bore (inner diameter) may be zero. Of a cone these are the diameters at its left end.
+        In m; the bore (inner diameter) may be zero. For a cone, the diameters at its left end.
     material
         Its material.
     shear_coefficient
         ``"cowper"``, ``"hutchinson"``, or the number κ itself.
     right_outer_diameter, right_inner_diameter
-        At the right end in m, between which the diameters change linearly; None where they do not change.
+        Diameters at the right end, m; the diameters change linearly. None for a cylinder.
     axial_force
         Static force in N that the piece carries, tension positive.
 

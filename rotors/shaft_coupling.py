@@ -1,4 +1,4 @@
-"""A flexible coupling between two shafts on one axis."""
+"""Flexible coupling between two shafts on one axis."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ class Coupling:
     """A flexible coupling between two shafts on one axis, in their row of segments.
 
     Its compliances are spread evenly over its length, as those of a massless beam with κGA = k L, EI = k_t L,
-    GJ = k_θ L and EA = k_z L; what it weighs is half at either end.
+    GJ = k_θ L and EA = k_z L; half of its mass is at either end.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Coupling:
 
     @property
     def is_damped(self) -> bool:
-        """Whether any of its dashpots takes something."""
+        """Whether it has damping."""
         return any(getattr(self, what) > 0.0 for what in DAMPINGS)
 
     @property

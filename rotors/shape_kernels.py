@@ -1,4 +1,4 @@
-"""Compiled multiple shooting on a chain: its banded equations, and their null vectors.
+"""Compiled multiple shooting on a discretised shaft: banded equations and their null vectors, the mode shapes.
 
 Importing this module imports numba. The equations are those of `rotors.shapes`; the arrays of a chain come in
 the order of `rotors.count_kernels`.
@@ -16,7 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
 INVERSE_ITERATIONS = 2
-# Stands for a pivot that vanishes, which at a root met to the last digit it may.
+# Replaces a vanishing pivot, as at a root hit to the last digit.
 LEAST_PIVOT = 1e-30
 
 
@@ -108,7 +108,7 @@ def solve_band(band: FloatArray, pivots: IntArray, x: FloatArray) -> None:
 
 @inner(error_model="python")
 def solve_band_transposed(band: FloatArray, pivots: IntArray, x: FloatArray) -> None:
-    """The same with the transposed equations."""
+    """Solve the transposed equations with the factors in place."""
     order, width = band.shape[0], (band.shape[1] - 1) // 3
     for k in range(order):
         value = x[k]
@@ -123,9 +123,9 @@ def solve_band_transposed(band: FloatArray, pivots: IntArray, x: FloatArray) -> 
 
 @inner(error_model="python")
 def _orthonormalise(vectors: FloatArray) -> None:
-    """Rows made orthonormal in place; twice, because nearly parallel ones leave rounding of their size.
+    """Gram-Schmidt orthonormalisation of the rows in place; twice, because of rounding of nearly parallel rows.
 
-    In plain loops, which compile in a tenth of the time that array expressions take.
+    Plain loops compile in a tenth of the time of array expressions.
     """
     for k in range(vectors.shape[0]):
         row, largest = vectors[k], 0.0
@@ -178,7 +178,7 @@ def null_states(
         group = states[first:end]
         for k in range(end - first):
             for i in range(order):
-                # Any start that is no eigenvector's neighbour will do; this one is the same on every machine.
+                # An arbitrary start, the same on every machine.
                 group[k, i] = ((i * 7919 + (k + 1) * 104729) % 1009) / 504.5 - 1.0
         for _ in range(INVERSE_ITERATIONS):
             for k in range(end - first):

@@ -1,11 +1,10 @@
-"""Mode shapes as null vectors of the whole chain at once, and the proof that they are modes.
+"""Mode shapes: null vectors of the transfer equations of the whole shaft at once.
 
-Marching a shape from one end finds no mode that lives at the other. All node states are therefore
+A shape integrated from one end loses a mode that is localised at the other end. All node states are therefore
 unknowns together (multiple shooting): the equations u_{i+1} = T₁₁ u_i + T₁₂ f_i, the same for forces with
 the node's springs and inertias added, and free ends. A held displacement takes the place of its force balance. Node by
 node, this matrix is a band; in the chain's units it is well conditioned for any number of pieces, and inverse
-iteration on it with as many vectors as the root's multiplicity gives every shape, wherever it lives and whatever
-nodes it has.
+iteration on it with as many vectors as the root's multiplicity gives every shape, localised or not.
 """
 
 from itertools import pairwise
@@ -21,19 +20,19 @@ from .root_count import chain_arrays
 
 FloatArray = npt.NDArray[np.float64]
 
-# Roots closer than this share one null space, at their mean: the frequencies themselves are good to 1e-12. Shapes
-# err by as much, which beside a heavy disc counts many times.
+# Roots closer than this share one null space, at their mean: the frequencies are good to 1e-12. Shapes err by as much,
+# which a heavy disc amplifies.
 ONE_NULL_SPACE = 2e-12
-# Roots closer than this are twins, of which a count of modes takes in both or none.
+# Roots closer than this are multiples of one root: a set of modes holds all of them or none.
 SAME_ROOT = 1e-10
-# Of a rigid motion in an elastic mode, as a part of its norm.
+# Smallest share of a rigid motion in an elastic mode, as a part of its norm, that is removed.
 LEAST_SHARE = 1e-12
 # Shapes of roots closer than this mix in rounding, and are separated again by their energies.
 NEAR_ROOT = 1e-4
 
 
 def groups(frequencies: FloatArray, tolerance: float) -> list[slice]:
-    """Runs of ascending frequencies whose neighbours differ by less than ``tolerance`` of their value."""
+    """Groups of ascending frequencies whose neighbours differ by less than ``tolerance`` of their value."""
     breaks = np.flatnonzero(np.diff(frequencies) > tolerance * frequencies[1:]) + 1
     edges = [0, *breaks.tolist(), frequencies.size]
     return [slice(left, right) for left, right in pairwise(edges) if right > left]
@@ -85,7 +84,7 @@ def shared_roots(elastic: FloatArray) -> FloatArray:
 
 
 def has_neighbours(elastic: FloatArray) -> bool:
-    """Whether some roots are near each other, as most are not."""
+    """Whether any two neighbouring roots are closer than `NEAR_ROOT`."""
     return bool(np.count_nonzero(elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]))
 
 
@@ -124,7 +123,7 @@ def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArr
     scale = 1.0 / np.sqrt(mass.diagonal())
     scale[:zeros] = 1.0
     mixture = np.diag(scale)
-    # Beside a very heavy disc a rigid motion's share in an elastic shape is all rounding, but counts.
+    # Beside a very heavy disc the share of a rigid motion in an elastic shape is rounding, but not negligible.
     rigid = scale[zeros:, None] * mass[zeros:, :zeros]
     leaning = zeros > 0 and np.abs(rigid).max(initial=0.0) > LEAST_SHARE
     if not near and not leaning:

@@ -1,4 +1,4 @@
-"""Compiled inertias of complex motions, for `rotors.spatial_field`.
+"""Compiled kinetic-energy shares of complex motions, for `rotors.spatial_field`.
 
 Importing this module imports numba.
 """
@@ -24,7 +24,7 @@ def inertia_shares(
     along: FloatArray,
     nodal: FloatArray,
 ) -> FloatArray:
-    """Σ over Gauss points and nodes of the weights times |r|² and |β|², of every motion, (w,).
+    """Weighted sums of |r|² and |β|² over Gauss points and nodes, for every motion, (w,).
 
     ``states`` (w, p + 1, 4) continue from the left end of every piece at ω² of (w,) ``translation`` and ``rotation``;
     the weights are ``along`` (e, g, 2) at the ``fractions`` (g,) of the pieces and ``nodal`` (p + 1, 2).

@@ -1,4 +1,4 @@
-"""Both planes of a turning shaft together, exactly: the transfer equations for any complex frequency.
+"""Whirl equations: the exact transfer-matrix equations of both planes of a turning shaft at any complex frequency.
 
 A motion e^{λt} of a disc turning at Ω obeys I_d λ²β_x + Ω I_p λ β_y = M_x and I_d λ²β_y − Ω I_p λ β_x = M_y
 (`rotors.whirl`). In the circular coordinates of `rotors.spatial_ties` these part into
@@ -10,8 +10,8 @@ equations of `rotors.timoshenko` with
 
     ω² → −λ² for translation,     ω² → −λ² ± 2iΩλ for rotation.
 
-So the exact transfer matrices of both senses are at hand for any λ, with no modal truncation; the bearings alone
-tie them, and tie the shaft's axial motion where their five-by-five matrices do. At λ = iω forward whirl is r+.
+So the exact transfer matrices of both senses follow for any λ, with no modal truncation. Only the bearings couple the
+two senses, and the shaft's axial motion where their 5×5 matrices do. At λ = iω forward whirl is r+.
 
 The unknowns are the states (displacements u, forces f to the right) at some nodes, the forces g of bearings and the
 displacements p of pedestals; the equations are those of multiple shooting,
@@ -26,9 +26,9 @@ eigenvalues, each with its multiplicity. (Elimination of the states shows it: th
 the bearings' forces have unit diagonal, and what is left is the map from the displacements of the left end and of
 the pedestals to the forces on the right end and the pedestals.) `rotors.layout` puts them in order.
 
-At a bare node nothing but the next piece begins. Roots need no unknowns there unless motion grows too much on the
-way: a run of pieces has the product of their transfer matrices (`SpatialChain.in_runs`), so that a shaft of sixty
-steps has no more unknowns than one without.
+A node without inertia or bearing needs no unknowns unless the motion grows too much along the way: a run of pieces has
+the product of their transfer matrices (`SpatialChain.in_runs`), so that a shaft of sixty steps has no more unknowns
+than a plain one.
 
 Forces are scaled by the inertia forces of the frequency at hand, so that a nearly rigid shaft on soft
 bearings loses no digits to its own stiffness.
@@ -55,22 +55,22 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-# The least unit of force of a response, as a part of what the stiffest bearing takes per unit displacement.
+# Least unit of force of a response, as a part of the stiffest bearing's force per unit displacement.
 STATIC_FORCE = 1e-6
-# Motion grows along a run of pieces by this power of e at the most, which costs its states no more than two digits.
+# Largest growth of motion along a run of pieces, as a power of e: it costs the states two digits at most.
 MOST_GROWTH = 4.5
-# Pieces are made for frequencies so many to an octave.
+# Number of frequencies in an octave for which equations are made.
 REACH_STEPS = 4
 
 
 @dataclass(frozen=True)
 class SpatialChain:
-    """The pieces, the nodes' inertias and the ties of a rotor, for one set of tied motions.
+    """Exact equations of a rotor on its bearings, for one set of coupled motions.
 
     Attributes
     ----------
     rotor
-        What the pieces are of.
+        The rotor.
     bending
         Pieces and node inertias of one plane, without springs.
     blocks
@@ -78,7 +78,7 @@ class SpatialChain:
     ties
         Bearings with constant coefficients.
     kept
-        (r + 1,): nodes whose states are unknowns, ascending; both ends, and wherever more than a piece begins.
+        (r + 1,): nodes whose states are unknowns, ascending: both ends, and nodes with inertia or a bearing.
     """
 
     rotor: Rotor
@@ -99,30 +99,30 @@ class SpatialChain:
 
     @cached_property
     def axial(self) -> Chain:
-        """The same shaft as a rod, on the same nodes and in the same units."""
+        """Axial motion of the same shaft, with the same nodes and units."""
         return axial_chain_on(self.rotor, self.bending)
 
     @cached_property
     def total_mass(self) -> float:
-        """About the mass, in scaled units."""
+        """Approximate mass of the rotor in scaled units."""
         chain = self.bending
         along = chain.coefficients_at(np.arange(chain.element.size), np.full(chain.element.size, 0.5))[:, 2]
         return float(along @ chain.lengths + chain.node_inertia[:, 0].sum())
 
     @cached_property
     def layout(self) -> Layout:
-        """Where unknowns and equations stand."""
+        """Order of unknowns and equations."""
         return Layout.of(self.blocks, self.kept, self.ties)
 
     @cached_property
     def entries(self) -> EntryTable:
-        """What makes the entries of the equations at any λ."""
+        """The table from which the matrix is made at any λ."""
         axial = self.axial if 0 in self.blocks else None
         return entry_table(self.bending, axial, self.blocks, self.ties, self.kept, self.layout)
 
     @property
     def pattern(self) -> BandPattern:
-        """Places of the entries that `values` gives."""
+        """Rows and columns of the entries in `values`."""
         return self.entries.pattern
 
     def force_scale(self, eigenvalues: ComplexArray) -> FloatArray:
@@ -176,7 +176,7 @@ class SpatialChain:
     def states(
         self, solutions: ComplexArray, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
     ) -> dict[int, ComplexArray]:
-        """Of every block its states (b, p + 1, 2 or 4) at all nodes in scaled units, of solutions (b, order)."""
+        """States (b, p + 1, 2 or 4) of every block at all nodes in scaled units, from solutions (b, order)."""
         from .entry_kernels import node_states
 
         states, given = {}, np.ascontiguousarray(solutions)
@@ -189,7 +189,7 @@ class SpatialChain:
 
     @cached_property
     def _state_places(self) -> list[IntArray]:
-        """Of every block the unknowns that are its states at the kept nodes, (r + 1, 2 or 4); −1 where none is."""
+        """Unknown of every state of every block at the kept nodes, (r + 1, 2 or 4); −1 where there is none."""
         first, places, layout = 0, [], self.layout
         forces = np.concatenate([layout.forces, np.full((1, self.size), -1)])
         for block in self.blocks:
@@ -199,7 +199,7 @@ class SpatialChain:
         return places
 
     def in_runs(self) -> "SpatialChain":
-        """The same equations with unknowns where there is need of them only: what loads the nodes has to be none."""
+        """The same equations with unknowns at loaded nodes only; no external load may act at the others."""
         chain = self.bending
         needed = chain.node_inertia.any(axis=1) | (chain.node_polar != 0.0)
         needed[[0, -1, *(tie.node for tie in self.ties)]] = True
@@ -224,7 +224,7 @@ def squared_frequencies(
 
 
 def whirl_reach(limit: float, speed: float) -> float:
-    """The planar frequency up to which pieces must be short, for whirl up to ``limit`` at ``speed``, rad/s.
+    """Planar frequency for which pieces must be short enough, for whirl up to ``limit`` at ``speed``, rad/s.
 
     The rotary inertia's ω² ± 2Ωω is largest in magnitude at ω(ω + 2|Ω|).
     """
@@ -238,12 +238,12 @@ def spatial_chain(
     highest: float,
     places: Sequence[float] = (),
 ) -> SpatialChain:
-    """Exact equations of some tied motions of a rotor on bearings of constant coefficients.
+    """Exact equations of one set of coupled motions of a rotor on bearings of constant coefficients.
 
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it.
+        The rotor and its bearings.
     blocks
         One of `rotors.spatial_ties.block_sets`.
     highest
@@ -259,18 +259,17 @@ def spatial_chain(
 
 
 def whirl_chain(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
-    """The equations of `spatial_chain` in runs, which the rotor holds."""
-    # In steps, so that the next speed asks for the same.
-    steps = math.ceil(REACH_STEPS * math.log2(highest))
-    return rotor.once(_chain_in_runs, tuple(bearings), blocks, 2.0 ** (steps / REACH_STEPS))
+    """The equations of `spatial_chain` in runs, for whirl up to a planar frequency of ``highest`` rad/s."""
+    return spatial_chain(rotor, bearings, blocks, reach_step(highest)).in_runs()
 
 
-def _chain_in_runs(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
-    return spatial_chain(rotor, bearings, blocks, highest).in_runs()
+def reach_step(highest: float) -> float:
+    """The next of the frequencies (rad/s) that equations are made for, so that those of near speeds are the same."""
+    return math.exp2(math.ceil(REACH_STEPS * math.log2(highest)) / REACH_STEPS)
 
 
 def retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:
-    """The same chain with the coefficients that its bearings' tables hold at another speed (rad/s)."""
+    """The same equations with the bearings' coefficients at another speed (rad/s)."""
     units = block_units(chain.bending, chain.blocks)
     ties = tuple(
         make_tie(bearing.at_speed(speed), tie.node, chain.blocks, units)

@@ -1,4 +1,4 @@
-"""Exact motion of a whole shaft in both planes at a complex frequency, from the states at its nodes to any place."""
+"""Complex motion of a shaft in both planes, continued exactly from the states at its nodes to any place."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -29,9 +29,9 @@ class SpatialMotion:
     forward, backward
         (w, p + 1, 4) complex: r±, β± and the forces that belong to them, right of every node, in scaled units.
     axial
-        (w, p + 1, 2) complex: the same of z, which is at rest where no bearing ties it to the others.
+        (w, p + 1, 2) complex: the same of z; zero where no bearing couples it to lateral motion.
     rod
-        Pieces of the shaft's axial motion, where there is any.
+        The shaft's axial motion, discretised; None without any.
     """
 
     chain: Chain
@@ -51,7 +51,7 @@ class SpatialMotion:
         solutions: ComplexArray,
         scale: FloatArray,
     ) -> "SpatialMotion":
-        """Motions from solutions (w, order) and their unit of force (w,); blocks that the chain lacks are at rest."""
+        """Motions from solutions (w, order) and their unit of force (w,); blocks without equations are at rest."""
         parts = chain.states(solutions, eigenvalues, speeds, scale)
         for block in MEMBERS.keys() - parts.keys():
             shape = (eigenvalues.size, chain.bending.nodes.size, 2 * len(MEMBERS[block]))
@@ -65,7 +65,7 @@ class SpatialMotion:
         return int(self.eigenvalues.size)
 
     def take(self, index: npt.ArrayLike) -> "SpatialMotion":
-        """Some of the motions, or their order changed."""
+        """Selected motions, in the order of the index."""
         chosen = np.asarray(index)
         return replace(
             self,
@@ -77,7 +77,7 @@ class SpatialMotion:
         )
 
     def joined(self, other: "SpatialMotion") -> "SpatialMotion":
-        """These motions and then those, of the same shaft."""
+        """These motions followed by others of the same shaft."""
         return replace(
             self,
             eigenvalues=np.concatenate([self.eigenvalues, other.eigenvalues]),
@@ -88,7 +88,7 @@ class SpatialMotion:
         )
 
     def plus(self, other: "SpatialMotion") -> "SpatialMotion":
-        """The sum of two answers to the same frequencies."""
+        """Sum of two responses at the same frequencies."""
         return replace(
             self,
             forward=self.forward + other.forward,
@@ -134,7 +134,7 @@ class SpatialMotion:
 
     @property
     def direction(self) -> FloatArray:
-        """Between −1 and 1: of the lateral `shares` the forward part less the backward one, (w,); 0 without any."""
+        """Forward minus backward part of the lateral `shares`, −1 to 1, (w,); 0 without lateral motion."""
         forward, backward = self.shares[:, 0], self.shares[:, 1]
         lateral = forward + backward
         return np.divide(forward - backward, lateral, out=np.zeros_like(lateral), where=lateral > 0.0)

@@ -1,4 +1,4 @@
-"""Bearings and pedestals in circular coordinates: what ties the forward and the backward motion of a shaft.
+"""Circular coordinates of forward and backward whirl, and bearings and pedestals in them.
 
 With x, y and the slopes β_x, β_y of both planes, where β_x is the rotation about y and β_y minus the
 rotation about x, circular coordinates are
@@ -35,21 +35,22 @@ CARTESIAN = np.eye(5, dtype=np.complex128)
 MEMBERS = {1: (0, 1), -1: (2, 3), 0: (4,)}
 # Lateral displacements among the five coordinates: Cartesian and circular.
 RADIAL = {False: (0, 1), True: (0, 2)}
-# Terms this small beside a matrix's largest come from rounding in the change of coordinates.
+# Terms below this part of a matrix's largest are rounding of the change of coordinates.
 NO_COUPLING = 1e-14
 
 
 @dataclass(frozen=True)
 class Tie:
-    """A bearing at a node of a chain, in scaled units, along directions of its own.
+    """A bearing at a node of a discretised shaft, in scaled units, along directions of its own.
 
-    Where it ties forward to backward motion, its directions are x, y and the like: circular coordinates would mix a
-    stiff direction with a soft one, and lose the soft one's digits. Directions in which it does nothing are left out.
+    Where it couples forward and backward motion, its directions are x, y and their like: circular coordinates would mix
+    a stiff direction with a soft one, and lose the soft one's digits. Directions without stiffness and damping are left
+    out.
 
     Attributes
     ----------
     node
-        Where it holds the shaft.
+        Index of its node.
     directions
         (m,): indices into x, y, z and the rotations about x and y, or into r+, β+, r−, β−, z where it is ``circular``.
     frame
@@ -57,7 +58,7 @@ class Tie:
     stiffness, damping
         (m, m) complex: force on what carries it.
     foot
-        (f,): positions in ``directions`` that its pedestal shares; empty on a rigid one.
+        (f,): positions in ``directions`` that its pedestal shares; empty without a pedestal.
     foot_stiffness, foot_damping, foot_mass
         (f, f) complex: of the pedestal against the ground.
     """
@@ -81,9 +82,9 @@ class Tie:
 
 
 def block_sets(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
-    """Which motions the bearings tie to each other: sets of 1 (forward), −1 (backward) and 0 (axial).
+    """Sets of motions that the bearings couple: 1 (forward), −1 (backward) and 0 (axial).
 
-    Axial motion appears only where a bearing ties it to the lateral one; alone it is no whirl.
+    Axial motion appears only where a bearing couples it to lateral motion; alone it is no whirl.
     """
     matrices = [m for bearing in bearings for m in (bearing.spatial_stiffness, bearing.spatial_damping) if m.any()]
     for bearing in bearings:
@@ -106,7 +107,7 @@ def block_sets(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
 
 
 def make_tie(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatArray) -> Tie:
-    """The tie of a bearing of constant coefficients to some blocks; ``units`` are those of their coordinates, (n,)."""
+    """A bearing of constant coefficients at a node, for some blocks; ``units`` (n,) are those of their coordinates."""
     members = [member for block in blocks for member in MEMBERS[block]]
     circular = len(blocks) == 1
     if circular:

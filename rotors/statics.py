@@ -1,4 +1,4 @@
-"""Static deflection of a rotor under its weight and given forces, and what its bearings carry.
+"""Static deflection and bearing loads of a rotor under its weight and given forces.
 
 The weight along a piece enters exactly, whatever its taper and axial force. With y' = (A₀ + ω²B) y
 (`rotors.timoshenko`), y(0) = (1, 0, 0, 0) gives at ω = 0 the rigid translation y = (1, 0, 0, 0); its derivative with
@@ -28,9 +28,9 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 STANDARD_GRAVITY = (0.0, -9.80665, 0.0)
-# The imaginary ω² of the derivative: no difference is taken, so that it may be as small as can be.
+# The imaginary ω² of the derivative: no difference is taken, so that it may be arbitrarily small.
 TINY = 1e-30
-# Against the bearings' largest, a rigid motion's stiffness below this part holds nothing.
+# A rigid motion whose stiffness is below this part of the largest is free.
 NOT_HELD = 1e-12
 
 
@@ -58,7 +58,7 @@ class StaticForce:
 
 @dataclass(frozen=True)
 class StaticDeflection:
-    """How a rotor hangs in its bearings.
+    """Static deflection of a rotor and the loads of its bearings.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ def static_deflection(
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; tables are read at ``speed``.
+        The rotor and its bearings; tables over speed are read at ``speed``.
     forces
         Constant forces on the shaft.
     gravity

@@ -1,4 +1,4 @@
-"""Compiled first and second order of damping, for `rotors.tied_planes`.
+"""Compiled second-order perturbation of whirl eigenvalues by damping, for `rotors.tied_planes`.
 
 Importing this module imports numba.
 """
@@ -17,7 +17,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 @inner(error_model="python")
 def _project(matrix: FloatArray, motions: FloatArray, spare: FloatArray, out: FloatArray) -> None:
-    """Half of MᵀDM into ``out`` (N, N), of motions (n, N), of which ``spare`` (n, N) takes DM."""
+    """½ MᵀDM of motions M (n, N) into ``out`` (N, N); ``spare`` (n, N) is scratch space for DM."""
     for i in range(matrix.shape[0]):
         for k in range(out.shape[0]):
             spare[i, k] = 0.0
@@ -61,7 +61,7 @@ def damped(
     damping_x: FloatArray,
     damping_y: FloatArray,
 ) -> tuple[ComplexArray, FloatArray]:
-    """λ and conjugates at every speed, (speeds, 2N), and how far damping mixes those of the lower half, (speeds,).
+    """λ and conjugates at every speed, (speeds, 2N), and how strongly damping couples the lower half, (speeds,).
 
     ``squared`` (speeds, N) and ``right`` (speeds, N, N) are σ² and V.
     """
@@ -73,7 +73,7 @@ def damped(
     for speed in range(count):
         for k in range(order):
             sizes[k] = math.sqrt(squared[speed, k])
-        # p = C s / σ, of which the velocities of y are the last.
+        # p = C s / σ; the velocities of y come last.
         for i in range(y):
             for k in range(order):
                 moving[i, k] = frequencies[x + i] * right[speed, x + i, k]
@@ -93,7 +93,7 @@ def damped(
                 if j != k:
                     apart = sizes[k] - sizes[j]
                     near = (by_x[k, j] + by_y[k, j]) * (by_x[j, k] + by_y[j, k])
-                    # Two at one place: whatever mixes them does so wholly.
+                    # Equal frequencies: any coupling mixes them completely.
                     if abs(near) > apart * apart:
                         most, near = math.inf, 0.0
                     elif near != 0.0:

@@ -1,4 +1,4 @@
-"""Eigenvalues of a projected rotor whose bearings tie x to y by the gyroscopic moment alone, and damp it lightly.
+"""Lightly damped whirl of a projected rotor whose planes are coupled by the gyroscopic moment alone.
 
 Let Λ_x and Λ_y be the squared frequencies of both planes at rest, and all matrices be those of their modes. With
 states p = (Λ_x^½ q_x, q̇_y) and s = (q̇_x, −Λ_y^½ q_y), undamped motion at the speed Ω is
@@ -11,7 +11,7 @@ A = Uᵀ(−D)U / 2 and B = Vᵀ(−D)V / 2 of either, perturbation to second or
 
     λ_k = iσ_k + A_kk + B_kk + Σ_{j≠k} (A + B)_kj (A + B)_jk / i(σ_k − σ_j) + Σ_j (A − B)_kj (A − B)_jk / i(σ_k + σ_j).
 
-What it leaves out is of third order, where damping mixes motions by a small part of their distance only.
+The error is of third order, provided that damping couples modes by a small part of the distance of their eigenvalues.
 """
 
 from dataclasses import dataclass
@@ -23,8 +23,9 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
 
-# Damping may mix motions by this part, squared, so that starting values err by a thousandth of the distance to others.
-# This is asked of the lower half: above lie the answers to loads, which stand for all higher modes and start no root.
+# Most that damping may couple modes, squared, relative to their distance: starting values then err by a thousandth of
+# the distance. Checked for the lower half: above are responses to loads, which stand for all higher modes and start no
+# root.
 MOST_MIXED = 0.01
 # Squared frequencies below this part of the largest lose their digits in CᵀC.
 LEAST_SQUARED = 1e-10
@@ -34,7 +35,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class TiedPlanes:
-    """Both planes at rest, and what ties and damps them.
+    """Both planes at rest, with gyroscopic coupling and light damping.
 
     Attributes
     ----------
@@ -55,7 +56,7 @@ class TiedPlanes:
     def of(
         cls, mass: FloatArray, stiffness: FloatArray, damping: FloatArray, gyroscopic: FloatArray, in_x: BoolArray
     ) -> "TiedPlanes | None":
-        """From diagonal mass (N,) and matrices (N, N), those ``in_x`` being of one plane; None of other rotors."""
+        """From diagonal mass (N,) and matrices (N, N), ``in_x`` marking one plane; None where it does not apply."""
         x, y = np.flatnonzero(in_x), np.flatnonzero(~in_x)
         apart = np.ix_(x, y), np.ix_(y, x)
         within = np.ix_(x, x), np.ix_(y, y)
@@ -78,7 +79,7 @@ class TiedPlanes:
         )
 
     def eigenvalues(self, speeds: FloatArray) -> tuple[ComplexArray, BoolArray]:
-        """All λ at every speed with their conjugates, (speeds, 2N), rad/s, and where damping mixes too much."""
+        """All λ with conjugates, (speeds, 2N), rad/s, and the speeds at which damping couples modes too strongly."""
         from .tied_kernels import damped, squares
 
         squared, right = np.linalg.eigh(squares(self.frequencies, self.gyroscopic, speeds))

@@ -1,4 +1,4 @@
-"""Exact transfer matrices of a piece of shaft: Timoshenko beam in bending, rod in torsion or along its axis.
+"""Exact transfer matrices of a shaft element: Timoshenko beam in bending, rod in torsion or along its axis.
 
 Bending, at circular frequency ω, with the section's displacement x and rotation β, under a static axial
 force P (tension positive). From the energy ½ ∫ κGA (x' − β)² + EI β'² + P x'² dz the transverse force is

@@ -1,4 +1,4 @@
-"""Torsional modes of a shaft, and of a chain of inertias and springs."""
+"""Torsional modes of a shaft, and of a chain of inertias and springs (Holzer)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ def solve_torsional_modes(
     frequency_limit: float | None = None,
     count: int | None = None,
 ) -> TorsionalModes:
-    """Every torsional mode below a limit, or the lowest few.
+    """Every torsional mode below a limit, or the lowest ones.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def solve_torsional_modes(
     frequency_limit
         rad/s: all modes strictly below.
     count
-        How many modes, a rigid rotation included; with neither, 10 or all there are.
+        Number of modes, a rigid rotation included; with neither, 10 or all there are.
 
     Raises
     ------

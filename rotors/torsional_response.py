@@ -1,4 +1,4 @@
-"""Steady torsional response of a rotor to harmonic torques, by the exact transfer matrices of its pieces.
+"""Torsional response of a rotor to harmonic torques, by exact transfer matrices.
 
 Material damping is a complex shear modulus G (1 + 2iζ): at every frequency a piece loses the part of its energy
 that a mode of damping ratio ζ loses. With c = 1 + 2iζ a piece's equations θ' = τ/(c GJ), τ' = −ω²ρJ θ are those of
@@ -61,7 +61,7 @@ class TorsionalResponse:
     damping_ratio
         ζ of the shaft.
     softness
-        (p, b): what multiplies the twist of each piece under a torque, for the dashpot of a coupling beside it.
+        (p, b): factor on the twist of each piece under a torque, from the dashpot of a coupling.
     """
 
     frequencies: FloatArray
@@ -144,7 +144,7 @@ def torsional_response(
 
 
 def _softness(rotor: Rotor, chain: Chain, omega: FloatArray, modulus: complex) -> ComplexArray:
-    """Of every piece its twist under a torque as a part of what it is without the dashpots of couplings, (p, b)."""
+    """Twist of every piece under a torque, relative to that without the dashpots of couplings, (p, b)."""
     found = np.ones((chain.lengths.size, omega.size), dtype=np.complex128)
     middles = 0.5 * (chain.nodes[1:] + chain.nodes[:-1])
     for left, part in zip(rotor.joints[:-1].tolist(), rotor.segments, strict=True):
@@ -156,7 +156,7 @@ def _softness(rotor: Rotor, chain: Chain, omega: FloatArray, modulus: complex) -
 
 
 def in_units_of(transfers: ComplexArray, unit: complex) -> ComplexArray:
-    """Transfer matrices of a rod (..., 2, 2) whose forces were counted in a complex unit, in plain forces."""
+    """Transfer matrices of a rod (..., 2, 2) in plain forces, from those with forces in a complex unit."""
     plain = transfers.astype(np.complex128)
     plain[..., 0, 1] /= unit
     plain[..., 1, 0] *= unit
@@ -173,7 +173,7 @@ def _pattern(nodes: int) -> BandPattern:
 
 
 def _values(chain: Chain, terms: ComplexArray, transfers: ComplexArray) -> ComplexArray:
-    """Entries for `_pattern`; a node that is held has its displacement for an equation."""
+    """Entries for `_pattern`; the equation of a constrained node is that its displacement is zero."""
     held, batch = chain.constrained[:, 0], terms.shape[0]
     moved = np.moveaxis(transfers, 1, 0)
     free = np.where(held[1:], 0.0, 1.0)

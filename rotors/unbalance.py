@@ -1,4 +1,4 @@
-"""Response to unbalance and to residual bow, exactly, with amplitude and phase.
+"""Unbalance response and residual bow: exact synchronous motion with amplitude and phase.
 
 An unbalance m e at the angle φ on the rotor is the force m e Ω² e^{iφ} that turns with it: x + i y of the force is
 m e Ω² e^{i(Ωt + φ)}, which in circular coordinates loads r+ alone, by √2 m e Ω² e^{iφ}, and what anisotropic
@@ -7,8 +7,8 @@ its motion u differs from it, K_s(u − b e^{iΩt}), so that K_s b loads the str
 measured points the shaft's own takes the least strain energy; then K_s b is the reactions R_k that would hold a
 straight shaft at the points, and only they are needed. One or two points define a rigid run-out: it loads nothing.
 
-What a probe reads is the surface: at slow roll the run-out b itself, and at speed b + u(Ω) − u(0). For a
-bow that vanishes at two bearings u(0) = b, and the probe reads the motion u; a rigid run-out it reads as it is.
+A probe reads the surface: at slow roll the run-out b itself, at speed b + u(Ω) − u(0). For a bow that vanishes at two
+bearings u(0) = b, and the probe reads the motion u; of a rigid run-out it reads the run-out.
 """
 
 from collections.abc import Sequence
@@ -58,7 +58,7 @@ class SynchronousResponse(HarmonicResponse):
 
 @dataclass(frozen=True)
 class BowShape:
-    """A bow's curve along the whole shaft, and the loads that straighten it.
+    """Bow of the whole shaft, and the loads that straighten it.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ def unbalance_response(
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; tables are read at each speed.
+        The rotor and its bearings; tables over speed are read at each speed.
     unbalances
         Any number.
     speeds

@@ -1,4 +1,4 @@
-"""Damped, gyroscopic whirl of a rotor on its bearings: exact, and complete by proof.
+"""Whirl modes: damped, gyroscopic modes of a rotor on its bearings, exact and complete by proof.
 
 Speed Ω is positive counter-clockwise from +z; motion e^{λt} whirls forward, with the rotation for Ω > 0, when y
 lags x by a quarter turn. Starting values come from a projection on planar modes (`rotors.projection`); each
@@ -8,45 +8,50 @@ and their number is proved (`rotors.whirl_certificate`).
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from .bearing import Bearing
+from .certificate import ModeCertificate, combined_certificate
 from .coalesced_roots import refine_roots
 from .errors import require_finite
 from .exact_roots import ExactRoots, Speed, constant_speed
 from .lateral import LateralModes
-from .planar_basis import DEFAULT_COUNT
-from .projection import basis_for, pencils
+from .planar_basis import DEFAULT_COUNT, PlanarBasis
+from .projection import Pencil, basis_for, pencils
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, whirl_chain, whirl_reach
+from .spatial_chain import SpatialChain, reach_step, whirl_chain, whirl_reach
 from .spatial_field import SpatialMotion
-from .whirl_certificate import NO_OSCILLATION, WhirlCertificate, certified_roots, oscillating
+from .whirl_certificate import NO_OSCILLATION, certified_roots, oscillating
 from .whirl_count import is_conservative
 from .whirl_energy import StrainShares, strain_shares
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+Made = TypeVar("Made")
 
-# How far beyond the limit starting values are still followed: the projection's lie above the roots.
+# Starting values up to this multiple of the limit are refined: the projection's lie above the roots.
 START_REACH = 1.2
-# Behind the modes asked for, starting values are followed to the first that lies this far from the one before it: the
-# proof's limit finds its gap there.
+# Beyond the modes wanted, starting values are refined up to the first gap of this relative width, in which the proof's
+# limit is placed.
 WIDE_GAP = 0.01
-# Part of a motion's kinetic energy above which it is called axial. One with less along the axis is still driven by
-# unbalance, by the root of what is left for the motion across it.
+# Share of axial kinetic energy above which a motion is called axial. Unbalance still drives one with less, in
+# proportion to the root of its lateral share.
 MOSTLY_AXIAL = 0.9
-# A limit in a gap narrower than this would be too near a root to count by.
+# In a narrower gap a limit would be too close to a root for the count.
 LEAST_GAP = 1e-6
+# Number of results that a solver holds, those made last.
+MOST_HELD = 16
 
 
 @dataclass(frozen=True)
 class WhirlModes:
-    """Complex modes at one speed of rotation, ascending in frequency; overdamped motions are left out.
+    """Complex modes at one speed of rotation, ascending in frequency, without overdamped motions.
 
     Attributes
     ----------
@@ -57,26 +62,26 @@ class WhirlModes:
     certificate
         Proof that none is missing.
     bearings
-        What the shapes stand on, with the coefficients of this speed.
+        The bearings, with their coefficients at this speed.
     roots
         The same eigenvalues as roots of the exact equations, with their vectors, of which `motion` makes the shapes.
     """
 
     speed: float
     eigenvalues: ComplexArray
-    certificate: WhirlCertificate
+    certificate: ModeCertificate
     bearings: tuple[Bearing, ...] = field(repr=False)
     roots: "WhirlRoots" = field(repr=False)
 
     @cached_property
     def motion(self) -> SpatialMotion:
-        """The exact shapes, of unit norm in the inertias of shaft and nodes, m per √kg; made when first asked for."""
+        """The exact mode shapes, of unit norm in the inertias of shaft and nodes, m per √kg."""
         motion = self.roots.motion
         return motion.scaled(1.0 / np.sqrt(motion.shares.sum(axis=1)).astype(np.complex128))
 
     @property
     def direction(self) -> FloatArray:
-        """How circular the whirl is, the inertia-weighted mean over the shaft, (w,).
+        """Direction and circularity of the whirl, the inertia-weighted mean over the shaft, (w,).
 
         1 is circular and counter-clockwise (forward for positive speed), −1 circular and clockwise, 0 planar.
         """
@@ -84,7 +89,7 @@ class WhirlModes:
 
     @property
     def axial_share(self) -> FloatArray:
-        """Part of the kinetic energy that is along the axis, (w,): 0 where no bearing ties it to the others."""
+        """Share of the kinetic energy along the axis, (w,): 0 where no bearing couples axial and lateral motion."""
         return self.roots.motion.axial_share
 
     @property
@@ -125,15 +130,15 @@ class WhirlModes:
         return self.motion.section_loads(z)
 
     def strain_energy_shares(self, edges: npt.ArrayLike) -> StrainShares:
-        """Parts of every mode's strain energy, in the mean of a cycle, in lengths of shaft and what holds it.
+        """Shares of every mode's mean strain energy in lengths of shaft, bearings and pedestals.
 
-        The mean is that of the swinging ¼ q̂ᴴKq̂ with growth or decay left out; of a bearing the symmetric part of its
-        stiffness stores energy (`rotors.whirl_energy`).
+        The mean over a cycle is ¼ q̂ᴴKq̂ without growth or decay; of a bearing's stiffness the symmetric part stores
+        energy (`rotors.whirl_energy`).
 
         Parameters
         ----------
         edges
-            (e + 1,): ascending positions that part the shaft, m: `Rotor.joints` for its segments.
+            (e + 1,): ascending positions that divide the shaft, m: `Rotor.joints` for its segments.
 
         Raises
         ------
@@ -149,6 +154,82 @@ class WhirlModes:
         return np.asarray(np.divide(forward - backward, total, out=np.zeros_like(total), where=total > 0.0))
 
 
+@dataclass(frozen=True, eq=False)
+class WhirlSolver:
+    """Whirl of one rotor on its bearings at many speeds.
+
+    The planar basis, the projected systems and the exact equations do not change with the speed: the solver makes them
+    when they are first needed and holds them.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and its bearings; tables over speed are read at each speed.
+    basis
+        From `rotors.whirl_basis`, of the same rotor and bearings; without it the solver makes its own.
+
+    Examples
+    --------
+    >>> solver = WhirlSolver(shaft, bearings)                         # doctest: +SKIP
+    >>> modes = [solver.modes(speed, count=8) for speed in speeds]    # doctest: +SKIP
+    """
+
+    rotor: Rotor
+    bearings: Sequence[Bearing]
+    basis: LateralModes | None = None
+    _held: dict[tuple[Hashable, ...], object] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "bearings", tuple(self.bearings))
+
+    def modes(self, speed: float, *, frequency_limit: float | None = None, count: int | None = None) -> WhirlModes:
+        """Complex modes at a speed of rotation (rad/s), certified complete; arguments and errors of `solve_whirl`."""
+        require_finite("speed", speed)
+        basis = self.planar_basis(frequency_limit, count)
+        constant = tuple(bearing.at_speed(speed) for bearing in self.bearings)
+        turning = np.array([speed])
+        roots, certificate = certified_whirl(
+            self,
+            constant,
+            [(one.blocks, one.eigenvalues(turning)[0]) for one in self._pencils(constant, basis)],
+            constant_speed(speed),
+            speed,
+            NO_OSCILLATION * basis.floor,
+            frequency_limit,
+            None if frequency_limit is not None else count or DEFAULT_COUNT,
+        )
+        return WhirlModes(speed, roots.eigenvalues, certificate, constant, roots)
+
+    def planar_basis(self, frequency_limit: float | None, count: int | None) -> PlanarBasis:
+        """Planar basis for whirl below a limit (rad/s), or for the lowest ``count`` modes."""
+        return self._hold(
+            ("basis", frequency_limit, count),
+            lambda: basis_for(self.rotor, self.bearings, frequency_limit, count, self.basis),
+        )
+
+    def equations(self, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
+        """Exact equations of some tied motions on bearings of constant coefficients; see `whirl_chain`."""
+        return self._hold(
+            ("equations", tuple(bearings), blocks, reach_step(highest)),
+            lambda: whirl_chain(self.rotor, bearings, blocks, highest),
+        )
+
+    def is_undriven(self, bearings: Sequence[Bearing]) -> bool:
+        """Whether roots may be counted by inertia: nothing damps or drives, and all stiffness is positive."""
+        return self._hold(("undriven", tuple(bearings)), lambda: is_undriven(self.rotor, bearings))
+
+    def _pencils(self, bearings: tuple[Bearing, ...], basis: PlanarBasis) -> list[Pencil]:
+        return self._hold(("pencils", bearings, basis), lambda: pencils(self.rotor, bearings, basis))
+
+    def _hold(self, key: tuple[Hashable, ...], make: Callable[[], Made]) -> Made:
+        if key not in self._held:
+            made = make()
+            if len(self._held) >= MOST_HELD:
+                self._held.pop(next(iter(self._held)), None)
+            self._held[key] = made
+        return cast(Made, self._held[key])
+
+
 def solve_whirl(
     rotor: Rotor,
     bearings: Sequence[Bearing],
@@ -160,18 +241,20 @@ def solve_whirl(
 ) -> WhirlModes:
     """Complex modes of the turning rotor on grounded bearings or pedestals, certified complete.
 
+    For several speeds of one rotor a `WhirlSolver` holds what they share.
+
     Parameters
     ----------
     rotor, bearings
-        The rotor and what holds it; tables over speed are read at ``speed``.
+        The rotor and its bearings; tables over speed are read at ``speed``.
     speed
         Ω, rad/s; negative is clockwise.
     frequency_limit
         rad/s: modes whose natural frequency |λ| is below it.
     count
-        How many modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with less has less.
+        Number of modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with fewer gives all.
     basis
-        From `rotors.whirl_basis`, of the same rotor and bearings; without it the rotor makes and holds one of its own.
+        From `rotors.whirl_basis`, of the same rotor and bearings; without it one is made.
 
     Raises
     ------
@@ -180,36 +263,21 @@ def solve_whirl(
     IncompleteModesError
         The modes fail their own proof, or the basis does.
     """
-    require_finite("speed", speed)
-    chosen = basis_for(rotor, bearings, frequency_limit, count, basis)
-    constant = tuple(bearing.at_speed(speed) for bearing in bearings)
-    turning = np.array([speed])
-    wanted = None if frequency_limit is not None else count or DEFAULT_COUNT
-    roots, certificate = certified_whirl(
-        rotor,
-        constant,
-        [(one.blocks, one.eigenvalues(turning)[0]) for one in rotor.once(pencils, constant, chosen)],
-        constant_speed(speed),
-        speed,
-        NO_OSCILLATION * chosen.floor,
-        frequency_limit,
-        wanted,
-    )
-    return WhirlModes(speed, roots.eigenvalues, certificate, constant, roots)
+    return WhirlSolver(rotor, bearings, basis).modes(speed, frequency_limit=frequency_limit, count=count)
 
 
 @dataclass(frozen=True)
 class WhirlRoots:
-    """Whirl as roots of the exact equations of every set of tied motions, from which shapes are made.
+    """Whirl as roots of the exact equations of every set of coupled motions.
 
     Attributes
     ----------
     chains, parts
         The equations of the sets, and their roots.
     speed
-        Of rotation.
+        Speed of rotation.
     order
-        (w,): where each root stands among all, one set after another.
+        (w,): index of each root among the roots of all sets.
     """
 
     chains: Sequence[SpatialChain]
@@ -224,7 +292,7 @@ class WhirlRoots:
 
     @cached_property
     def motion(self) -> SpatialMotion:
-        """The exact motion of every root, as it comes; made when first asked for."""
+        """The exact motion of every root, without normalisation."""
         motions = [
             SpatialMotion.of(chain, one.eigenvalues, self.speed(one.eigenvalues), one.solutions, one.scales)
             for chain, one in zip(self.chains, self.parts, strict=True)
@@ -236,7 +304,7 @@ class WhirlRoots:
 
 
 def certified_whirl(
-    rotor: Rotor,
+    solver: WhirlSolver,
     bearings: Sequence[Bearing],
     starts: Sequence[tuple[tuple[int, ...], ComplexArray]],
     speed: Speed,
@@ -244,8 +312,10 @@ def certified_whirl(
     least: float,
     limit: float | None,
     count: int | None,
-) -> tuple[WhirlRoots, WhirlCertificate]:
-    """Every motion below a limit, or the lowest ``count``, from starting values for every set of tied motions.
+) -> tuple[WhirlRoots, ModeCertificate]:
+    """Every motion below a limit, or the lowest ``count``, on bearings of constant coefficients.
+
+    ``starts`` are starting values for every set of coupled motions.
 
     ``turning`` is the speed at which pieces must be short enough, rad/s; None where it follows the frequency.
     """
@@ -260,7 +330,7 @@ def certified_whirl(
         reach = START_REACH * limit
     highest = max(START_REACH * reach, 10.0 * least)
     highest = whirl_reach(highest, highest if turning is None else turning)
-    chains = [whirl_chain(rotor, bearings, blocks, highest) for blocks, _ in starts]
+    chains = [solver.equations(bearings, blocks, highest) for blocks, _ in starts]
     near = [bisect_right(own, reach) for own in sizes]
     refined = [refine_roots(chain, values[:k], speed) for chain, values, k in zip(chains, kept, near, strict=True)]
     if limit is None:
@@ -268,7 +338,7 @@ def certified_whirl(
         sector = oscillating(least, _limit_behind(refined, least, count))
     else:
         sector = oscillating(least, limit)
-    conservative = rotor.once(is_undriven, tuple(bearings))
+    conservative = solver.is_undriven(bearings)
     parts = [
         certified_roots(chain, roots, speed, sector, conservative, values[k:])
         for chain, roots, values, k in zip(chains, refined, kept, near, strict=True)
@@ -276,13 +346,7 @@ def certified_whirl(
     found = _all([roots.eigenvalues for roots, _ in parts])
     order = np.lexsort((found.imag, np.abs(found)))[:count]
     proofs = [proof for _, proof in parts]
-    certificate = WhirlCertificate(
-        sector.most,
-        sum(proof.expected for proof in proofs),
-        sum(proof.found for proof in proofs),
-        max(proof.max_residual for proof in proofs),
-        proofs[0].method,
-    )
+    certificate = combined_certificate(proofs, sector.most, proofs[0].method)
     return WhirlRoots(chains, [roots for roots, _ in parts], speed, order), certificate
 
 
@@ -293,7 +357,7 @@ def is_undriven(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
 
 
 def _reach_behind(ascending: Sequence[float], count: int) -> float:
-    """The size of starting values that holds the lowest ``count``, their twins, and one behind them."""
+    """Modulus below which lie the lowest ``count`` starting values, multiples of the last, and one more."""
     if not ascending:
         return 1.0
     last = min(count, len(ascending) - 1)
@@ -303,7 +367,7 @@ def _reach_behind(ascending: Sequence[float], count: int) -> float:
 
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
-    """A frequency in a gap behind the lowest ``count`` roots, or behind all there are."""
+    """A frequency in a gap above the lowest ``count`` roots, or above all of them."""
     from .place_kernels import ascending
 
     sizes = np.abs(ascending(_all([roots.eigenvalues for roots in refined]), least, NO_OSCILLATION)).tolist()

@@ -1,10 +1,9 @@
-"""Whirl modes of one chain, complete by proof: refined, counted, and searched for again where one is missing."""
-
-from dataclasses import dataclass
+"""Completeness of whirl modes: roots counted, and searched for again where one is missing."""
 
 import numpy as np
 import numpy.typing as npt
 
+from .certificate import ModeCertificate
 from .coalesced_roots import refine_roots, with_circle
 from .errors import IncompleteModesError
 from .exact_roots import ExactRoots, Speed, distinct
@@ -21,37 +20,6 @@ MOST_CUTS = 24
 MOST_NUDGES = 6
 
 
-@dataclass(frozen=True)
-class WhirlCertificate:
-    """Proof that a set of whirl modes is complete.
-
-    Attributes
-    ----------
-    limit
-        rad/s: every oscillating motion with |λ| below it is claimed.
-    expected
-        How many there are by the count.
-    found
-        How many independent roots of the exact equations are held there.
-    max_residual
-        The largest last correction of a root, as a part of it.
-    method
-        ``"inertia"``: negative eigenvalues of the Hermitian dynamic stiffness (`rotors.whirl_count`), or
-        ``"winding"``: turns of the determinant round the region (`rotors.winding`).
-    """
-
-    limit: float
-    expected: int
-    found: int
-    max_residual: float
-    method: str
-
-    @property
-    def complete(self) -> bool:
-        """Whether every motion below the limit is held."""
-        return self.found == self.expected
-
-
 def oscillating(least: float, most: float) -> Sector:
     """The sector of motions that oscillate, stable or not."""
     return Sector(least, most, NO_OSCILLATION, np.pi - NO_OSCILLATION)
@@ -64,13 +32,13 @@ def certified_roots(
     sector: Sector,
     conservative: bool,
     beyond: ComplexArray = NONE,
-) -> tuple[ExactRoots, WhirlCertificate]:
-    """All roots in a sector, starting from those known, and the proof; near values of others spare it some work.
+) -> tuple[ExactRoots, ModeCertificate]:
+    """All roots in a sector, starting from the known ones, and the proof; approximate roots ``beyond`` reduce its work.
 
     Raises
     ------
     IncompleteModesError
-        The count and the roots do not agree even after a search of their own.
+        The count and the roots do not agree even after a search.
     """
     method = "inertia" if conservative else "winding"
     held = roots.take(sector.holds(roots.eigenvalues))
@@ -78,7 +46,7 @@ def certified_roots(
     if held.eigenvalues.size < expected:
         held = search(chain, roots, speed, sector)
     found = held.eigenvalues.size
-    certificate = WhirlCertificate(sector.most, expected, found, max(held.residuals.tolist(), default=0.0), method)
+    certificate = ModeCertificate(sector.most, expected, found, max(held.residuals.tolist(), default=0.0), method)
     if not certificate.complete:
         raise IncompleteModesError(
             f"{found} whirl modes are found below {sector.most:g} rad/s, but the exact equations have {expected} "
@@ -91,7 +59,7 @@ def certified_roots(
 def count_roots(
     chain: SpatialChain, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
 ) -> int:
-    """Roots in a sector: by inertia where all lie on the imaginary axis, else by winding, cheaper with known roots."""
+    """Number of roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
     if conservative:
         edges = np.array([sector.least, sector.most])
         low, high = negative_count(chain, edges, speed).tolist()
@@ -100,7 +68,7 @@ def count_roots(
 
 
 def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
-    """All roots in a sector: those known, and by winding and power sums those that are not."""
+    """All roots in a sector: the known ones, and the missing ones by the argument principle and power sums."""
     roots, waiting, cuts = known, [sector], 0
     while waiting:
         part = waiting.pop()
@@ -126,7 +94,7 @@ def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector)
 
 
 def _cut(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
-    """Two parts of a sector with no root on the cut."""
+    """Two parts of a sector without a root on their common side."""
     for nudge in range(MOST_NUDGES):
         halves = sector.halves(0.5 + 0.037 * nudge)
         try:

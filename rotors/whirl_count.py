@@ -1,4 +1,4 @@
-"""How many whirl frequencies lie below a frequency, where nothing damps or drives the whirl.
+"""Inertia count of whirl frequencies below a frequency, for rotors without damping or driving forces.
 
 Let stiffness be Hermitian and positive semidefinite and damping absent. At λ = iω the dynamic stiffness of the
 turning rotor over both planes is the Hermitian D(ω) = K − ω²M + ωG, with G Hermitian in circular coordinates and
@@ -16,7 +16,8 @@ of the next piece, s(D) = Σ s(S + K₁₁) + s(S_last), as in `rotors.root_coun
 
     s(S + K₁₁) = s(Uᴴ T₁₂⁻¹ U_right).
 
-Pedestals are eliminated first: s of each one's own matrix counts, and the bearing becomes the Schur complement.
+Pedestals are eliminated first: the negative eigenvalues of each one's own matrix count, and the bearing becomes the
+Schur complement.
 """
 
 from collections.abc import Sequence
@@ -38,7 +39,7 @@ ROUNDING = 1e-12
 
 
 def is_conservative(bearings: Sequence[Bearing]) -> bool:
-    """Whether bearings and pedestals neither damp nor drive, so that the count above holds."""
+    """Whether bearings and pedestals are undamped with symmetric, positive semidefinite stiffness."""
     for bearing in bearings:
         stiffnesses, dampings = [bearing.spatial_stiffness], [bearing.spatial_damping]
         if bearing.pedestal is not None:
@@ -62,7 +63,7 @@ def is_conservative(bearings: Sequence[Bearing]) -> bool:
 def negative_count(chain: SpatialChain, frequencies: FloatArray, speed: Speed) -> IntArray:
     """Negative eigenvalues s(D(ω)) of the undamped dynamic stiffness at every ω (rad/s), (b,)."""
     eigenvalues = (1j * frequencies).astype(np.complex128)
-    # One unit of forces for all: at a frequency near zero its own would make every bearing a rigid one.
+    # One unit of force for all frequencies: with that of a frequency near zero every bearing would seem rigid.
     speeds, scale = speed(eigenvalues), np.full(frequencies.size, chain.force_scale(eigenvalues).max())
     n, batch = chain.size, frequencies.size
     nodes, added = _node_matrices(chain, eigenvalues, speeds, scale)

@@ -1,4 +1,4 @@
-"""Where whirl strains a rotor: the strain energy of complex modes in lengths of shaft, bearings and pedestals.
+"""Strain energy of whirl modes in lengths of shaft, bearings and pedestals.
 
 In motion Re[q̂ e^{λt}] strain energy swings at twice the frequency about a mean. Meant here is the mean over one turn of
 the phase, with the growth or decay e^{Re λ t} left out, ¼ Re(q̂ᴴ K q̂): of the shaft
@@ -9,8 +9,8 @@ with its complex shear forces f, bending moments m, slopes β and axial force n;
 carrier ¼ Re(δᴴ K δ) with the complex deflection δ, in which a skew part of K, which stores nothing, takes no part. As
 circular coordinates r± = (x ± i y)/√2 are unitary, the sums over x and y are those over + and −.
 
-Where nothing damps, a share is also how much the mode's frequency depends on that stiffness: with λ = iω and Hermitian
-matrices, ∂ω/∂ln k of a part is proportional to the energy in it.
+Without damping a share is also the sensitivity of the mode's frequency to that stiffness: with λ = iω and Hermitian
+matrices, ∂ω/∂ln k of a part is proportional to its energy.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class StrainShares:
-    """Parts of every mode's mean strain energy; together one, or all zero for a mode that strains nothing.
+    """Shares of every mode's mean strain energy; their sum is one, or zero for a mode that strains nothing.
 
     Attributes
     ----------

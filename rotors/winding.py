@@ -1,31 +1,32 @@
-"""How many roots of the exact equations lie in a region, by the argument principle; and where a missing one is.
+"""Argument principle: the number of roots of the exact equations in a region, and estimates of missing roots.
 
 The determinant f(λ) of `rotors.spatial_chain` is entire, so that the number of its zeros inside a closed contour
-is the number of turns that f makes about zero along it. The contour here bounds a rectangle in the plane of
-w = ln λ: an annular sector r₁ < |λ| < r₂, θ₁ < arg λ < θ₂. All oscillating motions, stable or not, lie in one such
-sector just inside 0 < arg λ < π.
+is the winding number of f about zero along it. The contour here bounds a rectangle in the plane of w = ln λ: an annular
+sector r₁ < |λ| < r₂, θ₁ < arg λ < θ₂. All oscillating motions, stable or not, lie in one such sector just inside
+0 < arg λ < π.
 
-Roots that are known already are divided out: q(λ) = f(λ) / Π (λ − μ_k), over all μ_k at hand inside and outside, is
-analytic on the contour whatever the μ_k are, and the zeros of f inside number
+Known roots are divided out: q(λ) = f(λ) / Π (λ − μ_k), over all known μ_k inside and outside, is analytic on the
+contour whatever the μ_k are, and the number of zeros of f inside is exactly
 
-    turns of q  +  how many μ_k lie inside,
+    winding number of q  +  number of μ_k inside,
 
-exactly, because an error in a μ_k leaves both a zero and a pole inside, whose turns cancel. Where the μ_k are the roots
-and none is missing, q is smooth and turns nowhere, so that few samples show it; a missing root shows in q as it would
-in f. A μ_k next to the contour itself is left in f: which side it lies on is for the sampling to find. Where both
-senses are tied and the speed is real, f(λ̄) is the conjugate of f(λ), and the conjugates of the μ_k, outside the sector,
-are divided out too; and so is a power of λ, for the motions of a free shaft at zero.
+because an error in a μ_k leaves both a zero and a pole inside, whose contributions cancel. If the μ_k are all the
+roots, q is smooth with winding number zero, and few samples suffice; a missing root shows in q as in f. A μ_k next to
+the contour is not divided out: the sampling decides on which side it lies. Where both senses are coupled and the speed
+is real, f(λ̄) is the conjugate of f(λ), and the conjugates of the μ_k, outside the sector, are divided out too; so is a
+power of λ, for the motions of a free shaft at zero.
 
 Sampling is adaptive. With g = d ln q/dw measured at every sample by a short second step, an interval of
 length h is safe when |h g| < 1.5 at both its ends and its own change of ln q is that of the mean slope. A
-root of any multiplicity k at a distance d < h/2 from the interval gives |g| > k/h at both ends, so that even
-a double root's whole turn, invisible in the phase, is seen in the slopes, and the interval halved.
+root of any multiplicity k at a distance d < h/2 from the interval gives |g| > k/h at both ends. So even the whole turn
+of a double root, invisible in the phase, shows in the slopes, and the interval is halved.
 
-Where a root is missing from those known, the power sums of all roots,
+Where a root is missing from the known ones, the power sums of all roots,
 
     Σ w_k^m = (1/2πi) ∮ w^m d ln q = (1/2πi) { [w^m ln q] − m ∮ w^{m−1} ln q dw },
 
-less those of known ones not divided out, give the polynomial of the missing (Delves and Lyness, Math. Comp. 21, 1967).
+less those of known roots not divided out, give the polynomial of the missing ones (Delves and Lyness, Math. Comp. 21,
+1967).
 """
 
 import math
@@ -46,7 +47,7 @@ NONE = np.zeros(0, dtype=np.complex128)
 
 
 class RootOnContourError(IncompleteModesError):
-    """A root lies on the contour itself, so that it is neither inside nor outside."""
+    """A root lies on the contour, neither inside nor outside."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ class Sector:
         return found
 
     def halves(self, part: float) -> tuple["Sector", "Sector"]:
-        """Two sectors, cut across the longer side at a part of it."""
+        """Two sectors, divided across the longer side at a fraction of it."""
         if np.log(self.most / self.least) > self.last - self.first:
             middle = self.least * (self.most / self.least) ** part
             return Sector(self.least, middle, self.first, self.last), Sector(middle, self.most, self.first, self.last)
@@ -82,18 +83,18 @@ class Sector:
 
 @dataclass(frozen=True)
 class Winding:
-    """What one contour tells.
+    """Number of roots inside one contour, and the samples along it.
 
     Attributes
     ----------
     count
         Roots inside, with multiplicity.
     samples
-        How many determinants it took.
+        Number of determinants evaluated.
     path
-        Along the contour, the last the first again: w, ln q continued along it, d ln q/dw, (3, s + 1).
+        (3, s + 1): w, ln q continued along the contour, and d ln q/dw; the last point is the first.
     left
-        Known roots inside that q still has.
+        Known roots inside that are not divided out of q.
     """
 
     count: int
@@ -102,7 +103,7 @@ class Winding:
     left: ComplexArray
 
     def missing(self, wanted: int) -> ComplexArray:
-        """Estimates of so many roots inside that are not among the known ones, by the power sums."""
+        """Estimates of ``wanted`` roots inside that are not among the known ones, by the power sums."""
         points, logs, slopes = self.path
         # About the middle of the contour and in its size, the powers stay of one order.
         middle = points[:-1].mean()
@@ -125,7 +126,7 @@ class Winding:
 
 
 def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray = NONE) -> Winding:
-    """The turns of the determinant along the edge of a sector.
+    """Count the roots in a sector by the winding number of the determinant along its edge.
 
     Parameters
     ----------
@@ -136,7 +137,7 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
     speed
         Speed of rotation as an analytic function of λ.
     known
-        (k,) complex, rad/s: roots known already, inside or outside; what is not quite a root costs samples only.
+        (k,) complex, rad/s: known roots, inside or outside; an inexact root costs samples only.
 
     Raises
     ------

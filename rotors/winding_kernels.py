@@ -1,4 +1,4 @@
-"""Compiled sampling of the determinant along a contour, for `rotors.winding`.
+"""Compiled argument principle: the determinant sampled along a contour, for `rotors.winding`.
 
 Importing this module imports numba.
 """
@@ -17,27 +17,27 @@ from .place_kernels import edge_distance, logarithm
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-# A safe interval: the steepest slopes of ln q, and the largest misfit of its change.
+# A safe interval: largest slope of ln q, and largest error of its change.
 STEEPEST = 1.5
 MISFIT = 0.3
-# Sides are sampled at so many places, both ends included.
+# Number of samples on each side at first, both ends included.
 SIDE_SAMPLES = 4
-# Known roots nearer to the contour than this, in ln λ, are not divided out.
+# Known roots closer to the contour than this, in ln λ, are not divided out.
 TOO_NEAR = 1e-4
-# The second step of a sample, as a part of the interval it was put into.
+# Step of the difference for slopes, as a part of the interval.
 SLOPE_PART = 1e-3
-# An interval of ln λ still unsafe at this length passes through a root to rounding.
+# An interval of ln λ still unsafe at this length passes through a root.
 SHORTEST = 1e-10
 MOST_SAMPLES = 40_000
-# Points that may wait beside those of the sides: two for each halving down to the shortest.
+# Most points that wait beside those of the sides: two for each halving down to the shortest interval.
 MOST_WAITING = 2 * math.ceil(-math.log2(SHORTEST)) + 16
-# Factors are gathered up to these sizes before their logarithm is taken.
+# Factors are multiplied up to these sizes before their logarithm is taken.
 SMALL, LARGE = 1e-100, 1e100
 
 
 @inner(error_model="python")
 def _logarithm_of_product(at: complex, divided: ComplexArray) -> complex:
-    """ln Π (λ − μ_k), but for whole turns."""
+    """ln Π (λ − μ_k), up to multiples of 2πi."""
     total, product = 0.0j, 1.0 + 0.0j
     for k in range(divided.size):
         product *= at - divided[k]
@@ -60,7 +60,7 @@ def _put_edge(bounds: FloatArray, edge: ComplexArray) -> None:
     """Points on the sides of a sector, counter-clockwise from its first corner and back to it."""
     part, sizes, angles = edge.size // 4, bounds[:2], bounds[2:]
     for side in range(4):
-        # Which end of ln |λ| and of arg λ the side begins and ends at.
+        # The ends of ln |λ| and of arg λ at which the side begins and ends.
         start = complex(sizes[(side + 1) // 2 % 2], angles[side // 2])
         end = complex(sizes[(side + 2) // 2 % 2], angles[(side + 1) % 4 // 2])
         for k in range(part):
@@ -72,7 +72,7 @@ def _put_edge(bounds: FloatArray, edge: ComplexArray) -> None:
 def _divide(
     known: ComplexArray, mirrored: bool, bounds: FloatArray, divided: ComplexArray, left: ComplexArray
 ) -> tuple[int, int, int]:
-    """Sort known roots into those divided out and those left inside; how many each, and how many of the former inside.
+    """Sort known roots into those divided out and those left inside; numbers of both, and of the former inside.
 
     ``mirrored`` roots have conjugates that are roots.
     """
@@ -104,14 +104,13 @@ def walk(
     table: Table,
     pattern: Pattern,
 ) -> tuple[int, int, int, ComplexArray, ComplexArray]:
-    """Follow ln q along the edge of a sector: how many points that took, how many determinants, and what was found.
+    """Follow ln q along the edge of a sector, with adaptive sampling.
 
-    That is how many roots are inside, the known ones of them that are not divided out, and (3, s), of which as many
-    columns as there are points hold them, ln q and d ln q/dw; no points where the path does not settle.
+    Returns the number of points (0 where the path does not converge) and of determinants, the number of roots inside,
+    the known roots inside that are not divided out, and (3, s): the points, ln q and d ln q/dw.
 
     ``bounds`` are as of `rotors.place_kernels.edge_distance`, Ω = ``speed[0]`` + ``speed[1]`` λ, and ``mass`` gives the
-    unit of force. An interval that is not safe is halved: what its ends know of it does not depend on what was found
-    elsewhere.
+    unit of force. An interval that is not safe is halved.
     """
     edge = np.empty(4 * (SIDE_SAMPLES - 1) + 1, dtype=np.complex128)
     _put_edge(bounds, edge)
@@ -126,18 +125,18 @@ def walk(
     pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
     both = np.empty(2, dtype=np.complex128)
     found = np.empty((3, 64), dtype=np.complex128)
-    # Behind the last point of ``found`` that is safe to go on from, points to come wait, the nearest at the end.
+    # Points beyond the last safe one of ``found`` wait here, the nearest at the end.
     waiting = np.empty((3, corners + 1 + MOST_WAITING), dtype=np.complex128)
     at_zero, samples, count, pending = 0, 0, 1, 0
     while True:
-        # The points given come first, last to first; then those halfway between two that are too far apart.
+        # First the given points, last to first; then midpoints of intervals that are too long.
         given = pending < corners and samples < 2 * corners
         if given:
             corner = corners - 1 - pending
             point, step = edge[corner], SLOPE_PART * (edge[corner + 1] - edge[corner])
         else:
             if samples == 2 * corners:
-                # Motions at zero, of a free shaft, are outside: divided out like the others.
+                # Motions of a free shaft at zero are outside the sector: divided out like other known roots.
                 at_zero = math.floor(waiting[2, corners].real + 0.5)
                 for k in range(1, corners + 1):
                     waiting[1, k] -= at_zero * waiting[0, k]

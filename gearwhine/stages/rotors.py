@@ -107,7 +107,8 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         weight = solve_weight(analysis, rotor, bearings, reference)
         progress(f"rotor {given.name}: whirl over speed")
         diagram = campbell_speeds(case, given.name)
-        campbell = room.campbell(rotor, bearings, diagram, count=analysis.modes) if diagram else None
+        solver = room.WhirlSolver(rotor, bearings)
+        campbell = room.campbell(rotor, bearings, diagram, count=analysis.modes, solver=solver) if diagram else None
         held = not isinstance(weight, str)
         rest = room.rest_frequencies(rotor, resting, count=analysis.modes)
         torsional = room.solve_torsional_modes(rotor)
@@ -121,7 +122,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 axial=_axial_frequencies(rotor, resting, rest),
                 lateral=room.solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
                 torsional=torsional,
-                whirl=tuple(room.solve_whirl(rotor, bearings, speed, count=analysis.modes) for speed in speeds),
+                whirl=tuple(solver.modes(speed, count=analysis.modes) for speed in speeds),
                 campbell=campbell,
                 crossings=() if campbell is None else _crossings(campbell),
                 orders={}

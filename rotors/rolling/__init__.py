@@ -1,4 +1,4 @@
-"""Rolling bearings from their geometry: what they carry, element by element, and how stiff they are under a load.
+"""Rolling bearings by their geometry: loads of the elements and tangent stiffness under a load.
 
     row = BallRow(count=7, ball_diameter=11.5e-3, pitch_diameter=43.5e-3)
     state = rolling_equilibrium(RollingBearing([row]), [1000.0, 0.0, 0.0, 0.0, 0.0])

@@ -1,4 +1,4 @@
-"""Rows of balls set against each other: double-row and paired bearings."""
+"""Bearing arrangements: double-row and paired ball bearings, back to back, face to face or in tandem."""
 
 import math
 from dataclasses import replace
@@ -20,7 +20,7 @@ _DIRECTIONS: dict[str, tuple[int, int]] = {"back to back": (1, -1), "face to fac
 def paired(
     row: BallRow, arrangement: Arrangement, spacing: float, *, preload: float = 0.0, name: str = "paired bearing"
 ) -> RollingBearing:
-    """Two rows alike, on the same rings or on rings clamped together.
+    """Two equal rows, on the same rings or on rings clamped together.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def paired(
     Raises
     ------
     RotorError
-        A spacing that is not positive, a negative preload, or a preload in tandem, where nothing presses back.
+        A spacing that is not positive, a negative preload, or a preload in tandem, where no row opposes it.
     """
     known = arrangement in _DIRECTIONS
     require(known, "arrangement", arrangement, f"one of {', '.join(map(repr, _DIRECTIONS))}")

@@ -1,4 +1,4 @@
-"""The elastic energy of a row of balls and its derivatives.
+"""Contact energy of a row of balls, its gradient and its Hessian.
 
 At the azimuth ψ the centre of the inner groove's curvature stands from that of the outer one by the vector v in the
 ball's own plane (radial, axial), v = v₀ + B q, with σ the row's direction, A the distance of the centres when a ball
@@ -17,7 +17,6 @@ for δ > 0 and nothing otherwise. The length of a vector is convex, and so is an
 energy is convex in q. Friction is left out.
 """
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -32,12 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 
 def ball_kinematics(row: BallRow, azimuths: FloatArray) -> tuple[FloatArray, FloatArray]:
     """v₀, (2,), and B, (balls, 2, 5)."""
-    angle, sense = row.contact_angle, row.direction
-    radial = row.groove_distance * math.cos(angle) - 0.5 * row.clearance
-    start = np.array([radial, sense * (row.groove_distance * math.sin(angle) + row.axial_offset)])
-    arm = (row.inner_groove - 0.5) * row.ball_diameter
-    radius = 0.5 * row.pitch_diameter + arm * math.cos(angle)
-    place = row.position + sense * arm * math.sin(angle)
+    radius, place = row.inner_groove_centre
     cosine, sine, zero = np.cos(azimuths), np.sin(azimuths), np.zeros_like(azimuths)
     motion = np.array(
         [
@@ -45,12 +39,12 @@ def ball_kinematics(row: BallRow, azimuths: FloatArray) -> tuple[FloatArray, Flo
             [zero, zero, zero + 1.0, radius * sine, -radius * cosine],
         ]
     )
-    return start, np.moveaxis(motion, 2, 0)
+    return np.array(row.groove_offset), np.moveaxis(motion, 2, 0)
 
 
 @dataclass(frozen=True)
 class BallsAtRest:
-    """A row whose balls have no inertia: every ball's contacts in series."""
+    """Contacts of a row of balls without inertia: both contacts of every ball in series."""
 
     row: BallRow
     azimuths: FloatArray
@@ -62,7 +56,7 @@ class BallsAtRest:
         return row_energy(motion, *_spring(self.row.stiffness, v, approach, distance))
 
     def loads(self, q: FloatArray) -> ElementLoads:
-        """What every ball carries."""
+        """Loads of every ball."""
         v, _, approach = self._state(q)
         load = self.row.stiffness * np.maximum(approach, 0.0) ** 1.5
         return ball_loads(self.row, self.azimuths, (load, load), (v, v), approach)
@@ -75,11 +69,7 @@ class BallsAtRest:
         start, motion = self._kinematics
         moved = motion @ q
         v, nominal = start + moved, self.row.groove_distance
-        # |v₀|² − A² by its terms: |v| − A itself would lose the digits that A has and δ has not.
-        angle, clearance, offset = self.row.contact_angle, self.row.clearance, self.row.axial_offset
-        before = 0.25 * clearance**2 - nominal * clearance * math.cos(angle)
-        before += 2.0 * nominal * offset * math.sin(angle) + offset**2
-        excess = before + 2.0 * moved @ start + (moved**2).sum(axis=1)
+        excess = self.row.groove_excess + 2.0 * moved @ start + (moved**2).sum(axis=1)
         return v, motion, excess / (np.linalg.norm(v, axis=1) + nominal)
 
 
@@ -97,7 +87,7 @@ def _spring(
 
 
 def row_energy(motion: FloatArray, value: FloatArray, force: FloatArray, hessian: FloatArray) -> RowEnergy:
-    """From every ball's plane to the ring's coordinates."""
+    """Energy of the row over the ring's coordinates, from the energies in every ball's plane."""
     return RowEnergy(
         value=float(value.sum()),
         gradient=np.einsum("bi,bij->j", force, motion),
@@ -113,7 +103,7 @@ def ball_loads(
     vectors: tuple[FloatArray, FloatArray],
     approach: FloatArray,
 ) -> ElementLoads:
-    """The result of a row from the inner and outer loads and their lines of action."""
+    """Element loads of a row from the inner and outer contact loads and their lines of action."""
     contacts = (row.inner_contact, row.outer_contact)
     angles = [np.arctan2(row.direction * vector[:, 1], vector[:, 0]) for vector in vectors]
     roots = [np.cbrt(load) for load in loads]

@@ -1,4 +1,4 @@
-"""A row of balls by its geometry."""
+"""Ball row of a rolling bearing, by its geometry."""
 
 import math
 from dataclasses import dataclass, replace
@@ -30,8 +30,7 @@ class BallRow:
     clearance
         Diametral, m; negative is an interference.
     axial_offset
-        By how much assembly has moved the inner groove along the row's direction, pressing the balls, m: a preload
-        against another row.
+        Axial displacement of the inner groove at assembly along the row's direction, m: a preload against another row.
     position
         Of the balls' centres from the bearing's centre along z, m.
     direction
@@ -44,7 +43,7 @@ class BallRow:
     Raises
     ------
     RotorError
-        What cannot be, such as balls that do not find room on their circle.
+        Invalid geometry, such as balls that do not fit on the pitch circle.
     """
 
     count: int
@@ -90,6 +89,34 @@ class BallRow:
         """A: between the centres of the grooves' curvature with a ball that just touches both, m."""
         return (self.inner_groove + self.outer_groove - 1.0) * self.ball_diameter
 
+    @property
+    def groove_offset(self) -> tuple[float, float]:
+        """v₀ = (A cos α − s/2, σ (A sin α + e)): from the outer to the inner groove's centre, radial and axial, m."""
+        radial = self.groove_distance * math.cos(self.contact_angle) - 0.5 * self.clearance
+        axial = self.groove_distance * math.sin(self.contact_angle) + self.axial_offset
+        return radial, self.direction * axial
+
+    @property
+    def groove_excess(self) -> float:
+        """|v₀|² − A² by its terms, m²: |v₀| − A itself would lose the digits that A has and the approach has not."""
+        distance, offset, angle = self.groove_distance, self.axial_offset, self.contact_angle
+        radial = 0.25 * self.clearance**2 - distance * self.clearance * math.cos(angle)
+        return radial + 2.0 * distance * offset * math.sin(angle) + offset**2
+
+    @property
+    def inner_groove_centre(self) -> tuple[float, float]:
+        """Radius of the inner groove's centres of curvature, and their place along z, m."""
+        arm = (self.inner_groove - 0.5) * self.ball_diameter
+        radius = 0.5 * self.pitch_diameter + arm * math.cos(self.contact_angle)
+        return radius, self.position + self.direction * arm * math.sin(self.contact_angle)
+
+    def cage_speed(self, speed: float) -> float:
+        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − γ) Ω, rad/s.
+
+        γ = D cos α / D_pw, of pure rolling at the nominal contact angle (Harris and Kotzalas 2006).
+        """
+        return 0.5 * (1.0 - self._gamma) * speed
+
     def facing(self, direction: int) -> "BallRow":
         """The same row with another direction."""
         return replace(self, direction=direction)
@@ -118,10 +145,10 @@ class BallRow:
     def centrifugal_force(self, speed: float) -> float:
         """On one ball with the inner ring turning at ``speed`` (rad/s) and the outer at rest, N.
 
-        m (D_pw / 2) ω², with pure rolling at the nominal contact angle, ω = ½ (1 − γ) Ω (Harris and Kotzalas 2006).
+        m (D_pw / 2) ω² with the cage's speed ω (Harris and Kotzalas 2006).
         """
         mass = self.elasticity.element_density * math.pi / 6.0 * self.ball_diameter**3
-        return mass * 0.5 * self.pitch_diameter * (0.5 * (1.0 - self._gamma) * speed) ** 2
+        return mass * 0.5 * self.pitch_diameter * self.cage_speed(speed) ** 2
 
     def axial_force(self, axial_offset: float) -> float:
         """Force (N) along the row's direction that moves a centred inner ring by ``axial_offset`` (m)."""

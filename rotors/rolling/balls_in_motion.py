@@ -1,6 +1,6 @@
-"""Balls thrown outwards by their turning about the bearing.
+"""Centrifugal force on balls: contact equilibrium of balls that orbit in a bearing.
 
-A turning ball is thrown outwards by F_c, and its two contacts stand at two angles (Jones 1960; Harris and Kotzalas
+The centrifugal force F_c on an orbiting ball makes its two contact angles differ (Jones 1960; Harris and Kotzalas
 2006). With f the force of the inner contact, the outer one carries f + F_c r, r the radial direction. A contact under
 the force g reaches by A + c |g|^{2/3} from the ball to its groove's centre, c = K^{−2/3}, and both together reach from
 centre to centre:
@@ -15,10 +15,10 @@ so f minimises ψ(f) − f·v, the ball's energy is φ(v) = max over f of f·v �
 
     ∂φ/∂v = f,   ∂²φ/∂v² = [∂²ψ/∂f²]⁻¹.
 
-The ball leaves the inner ring, f = 0, where the outer groove alone can hold it within the inner one's reach; far
-beyond any groove, as a search may try, the outer ring likewise, f = −F_c r. In terms of the ball's place instead the
-same problem is a narrow curved valley, along which Newton's method creeps for slow balls.
-The gyroscopic moment, and with it friction, is left out; the ball orbits at the speed of its nominal contact angle.
+The ball leaves the inner ring, f = 0, where the outer groove alone holds it within the inner one's reach; far beyond
+any groove, as in an iteration, it leaves the outer ring likewise, f = −F_c r. In terms of the ball's place the same
+problem is a narrow curved valley, in which Newton's method is slow for slow balls. The gyroscopic moment, and with it
+friction, is left out; the ball orbits at the speed of its nominal contact angle.
 """
 
 import math
@@ -38,15 +38,15 @@ from .trust_region import Local, minimise
 
 FloatArray = npt.NDArray[np.float64]
 
-# Parts of the distance between the grooves' centres by which the contacts may miss it: aimed at, and refused. The
-# latter also of the greater of the static and the centrifugal force, by which the contact's may be off.
+# Closure error of the contacts, as a part of the distance between the grooves' centres: target and largest accepted.
+# The latter also limits the force error, relative to the larger of the static and the centrifugal force.
 _CLOSED = 1e-15
 _OPEN = 1e-12
 
 
 @dataclass(frozen=True)
 class BallsInMotion:
-    """A row whose balls are thrown outwards by a force each, N."""
+    """Contacts of a row of balls under a centrifugal force each, ``thrown`` (N)."""
 
     row: BallRow
     azimuths: FloatArray
@@ -59,14 +59,14 @@ class BallsInMotion:
         inner_value, _, inner_hessian = _reach(self.row.inner_contact, self._inner_arm, force)
         outer_value, _, outer_hessian = _reach(self.row.outer_contact, self._outer_arm, force + self._outwards)
         value = (force * v).sum(axis=1) - inner_value - outer_value
-        # A ball on one ring alone does not stiffen the other.
+        # A ball in contact with one ring only adds no stiffness.
         hessian = np.zeros((self.row.count, 2, 2))
         both = force.any(axis=1) & (force + self._outwards).any(axis=1)
         hessian[both] = np.linalg.inv(inner_hessian[both] + outer_hessian[both])
         return row_energy(motion, value, force, hessian)
 
     def loads(self, q: FloatArray) -> ElementLoads:
-        """What every ball carries, inside and outside."""
+        """Loads of every ball at both rings."""
         v, _ = self._vectors(q)
         inner = np.array([self._inner_force(one) for one in v])
         outer = inner + self._outwards
@@ -105,7 +105,7 @@ class BallsInMotion:
             )
 
         found = minimise(local, start, 0.5, _CLOSED)
-        # A ball that barely touches has a force of hardly a direction: then it counts how far that can be off.
+        # The force of a ball that barely touches has no certain direction: then its possible error decides.
         there = local(found.place)
         if found.residual > _OPEN and np.linalg.norm(np.linalg.solve(there.hessian, there.gradient)) > _OPEN:
             raise EquilibriumError(

@@ -1,13 +1,13 @@
-"""Rolling bearings by their main dimensions: what lies inside, estimated from the usual proportions.
+"""Internal geometry of a rolling bearing estimated from its catalogue dimensions.
 
-Catalogues print bore d, outer diameter D and width B, but not what is between. The pitch circle lies near the middle,
-(d + D)/2. Design practice (Changsen 1991; the bounds of Gupta, Tiwari and Nair, Mechanism and Machine Theory 42, 2007)
-makes a ball 0.24 to 0.35 of D − d, and lets as many into a deep-groove bearing as an arc of 186° or so takes when the
-rings are pushed apart (Conrad), Z = 1 + φ / (2 asin(D_w / D_pw)). Here: 0.3 and 186°, which meets sizes 6205, 6208 and
-6305 to a ball and their printed static ratings to 9 %. Bearings assembled with a counterbore fill their pitch circle
-but for the cage: Z balls or rollers with 15 % or 20 % of air between them. A cylindrical roller has 0.275 (D − d) and a
-contact as long as 0.55 B, which meets the static ratings of NU 205, 208 and 210 to 5 %. Grooves are .52 and .53 of the
-ball, ISO 281's limits.
+Catalogues print bore d, outer diameter D and width B, but not the internal geometry. The pitch circle lies near the
+middle, (d + D)/2. Design practice (Changsen 1991; the bounds of Gupta, Tiwari and Nair, Mechanism and Machine Theory
+42, 2007) makes a ball 0.24 to 0.35 of D − d, and lets as many into a deep-groove bearing as an arc of 186° or so takes
+when the rings are pushed apart (Conrad), Z = 1 + φ / (2 asin(D_w / D_pw)). Here: 0.3 and 186°, which meets sizes 6205,
+6208 and 6305 to a ball and their printed static ratings to 9 %. Bearings assembled with a counterbore fill their pitch
+circle but for the cage: Z balls or rollers with 15 % or 20 % of air between them. A cylindrical roller has 0.275 (D −
+d) and a contact as long as 0.55 B, which meets the static ratings of NU 205, 208 and 210 to 5 %. Grooves are .52 and
+.53 of the ball, ISO 281's limits.
 
 All of this is an estimate. Stiffness goes as Z^{2/3} D_w^{1/3} (Krämer), so a ball too many of nine moves it by 7 %.
 """
@@ -41,7 +41,7 @@ def catalogue_row(
     contact_angle: float | None = None,
     clearance: float = 0.0,
 ) -> Row:
-    """Estimated inside of a bearing of which the main dimensions are known; see the module for where it comes from.
+    """Internal geometry of a bearing estimated from its main dimensions; the module gives the sources.
 
     Parameters
     ----------
@@ -52,12 +52,12 @@ def catalogue_row(
     contact_angle
         Of angular-contact balls, rad; 40° where none is given. Others have none.
     clearance
-        Diametral, in running, m; catalogues print it before mounting, when it is more.
+        Diametral clearance in operation, m; catalogues print the larger value before mounting.
 
     Raises
     ------
     RotorError
-        Dimensions that are no bearing's, or a contact angle that does not fit the kind.
+        Impossible dimensions, or a contact angle that does not fit the type.
     """
     known = kind in ("deep-groove", "angular-contact", "cylindrical-roller")
     require(known, "type of bearing", kind, "'deep-groove', 'angular-contact' or 'cylindrical-roller'")

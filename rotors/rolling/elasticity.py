@@ -1,4 +1,4 @@
-"""Elasticity of rings and rolling elements, as far as a contact feels it."""
+"""Elasticity of rings and rolling elements in contact."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What every kind of row tells the equilibrium: its elastic energy, and what its elements carry."""
+"""Contact energy and element loads: the common form of ball and roller rows."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -13,7 +13,7 @@ FloatArray = npt.NDArray[np.float64]
 class RowEnergy:
     """Energy (J), its gradient (5,) and Hessian (5, 5) over the inner ring's displacement q.
 
-    ``force`` is the sum of the elements' loads, N, of which the gradient's rounding is a part.
+    ``force`` is the sum of the elements' loads, N: the scale of the gradient's rounding.
     """
 
     value: float
@@ -24,14 +24,14 @@ class RowEnergy:
 
 @dataclass(frozen=True)
 class ElementLoads:
-    """What each rolling element of a row carries.
+    """Loads, contact angles and pressures of each rolling element of a row.
 
     Attributes
     ----------
     azimuths
         (n,): from x towards y, rad.
     inner_load, outer_load
-        (n,): of the contacts with either ring, N; they differ only where elements are thrown outwards.
+        (n,): of the contacts with either ring, N; they differ only with centrifugal forces.
     inner_angle, outer_angle
         (n,): contact angles, in the row's direction, rad.
     inner_pressure, outer_pressure
@@ -59,7 +59,7 @@ class ElementLoads:
 
     @property
     def loaded(self) -> int:
-        """How many elements press on the inner ring."""
+        """Number of elements that press on the inner ring."""
         return int(np.count_nonzero(self.inner_load > 0.0))
 
     @property
@@ -69,10 +69,10 @@ class ElementLoads:
 
 
 class RowContacts(Protocol):
-    """A row with its elements at given azimuths."""
+    """Contacts of a row with its elements at given azimuths."""
 
     def energy(self, q: FloatArray) -> RowEnergy:
         """Energy and its derivatives at the inner ring's displacement q, (5,)."""
 
     def loads(self, q: FloatArray) -> ElementLoads:
-        """What the elements carry there."""
+        """Element loads at that displacement."""

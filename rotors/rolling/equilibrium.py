@@ -1,4 +1,4 @@
-"""The place that the inner ring of a rolling bearing takes under a load.
+"""Static equilibrium of a rolling bearing: displacement of the inner ring under a load.
 
 With the energy φ(q) of all elements and the load f, the potential
 
@@ -28,11 +28,11 @@ from .trust_region import Local, minimise
 
 FloatArray = npt.NDArray[np.float64]
 
-# Approach of the rings over the element's diameter beyond which Hertz's small contacts, and the steel, have ended:
-# about five times the static load rating of ISO 76.
+# Largest approach of the rings over the element's diameter: beyond, Hertz's theory of small contacts and the elasticity
+# of steel do not hold. It is reached at about five times the static load rating of ISO 76.
 LARGEST_APPROACH = 0.02
-# Parts of the loads at work that may be out of balance: aimed at, and refused. A ring that nothing loads is measured
-# against a small part of E* D² instead, a hundredth of a newton for a ball of 10 mm.
+# Unbalanced force relative to the loads: target and largest accepted. For an unloaded ring the reference is a small
+# part of E* D² instead, a hundredth of a newton for a ball of 10 mm.
 _TOLERANCE = 1e-14
 _ACCEPTED = 1e-10
 _LEAST_FORCE = 1e-9
@@ -53,27 +53,27 @@ def rolling_equilibrium(
     bearing
         By its geometry.
     load
-        (5,): force x, y, z (N) and moment about x and y (N·m) on the inner ring at the bearing's centre. What falls on
-        a held coordinate is carried by what holds it.
+        (5,): force x, y, z (N) and moment about x and y (N·m) on the inner ring at the bearing's centre. The constraint
+        carries the load on a held coordinate.
     held
-        Displacement of the coordinates that are not free, by their names in `COORDINATES`, m and rad. The rotations
-        held at zero are a stiff shaft in line with its seat.
+        Displacement of constrained coordinates, by their names in `COORDINATES`, m and rad. Rotations held at zero
+        represent a stiff, aligned shaft.
     speed
-        Of the inner ring, rad/s, the outer at rest: balls are thrown outwards.
+        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on balls.
     cage_angle
         Azimuth of the first element of every row, rad.
 
     Returns
     -------
     RollingState
-        Without play, the only equilibrium; along a coordinate that play leaves loose, one of them.
+        The equilibrium, unique without clearance; otherwise one of several along a loose coordinate.
 
     Raises
     ------
     RotorError
         Wrong arguments, such as an axial load on cylindrical rollers.
     EquilibriumError
-        Contacts that leave their groove, a load beyond what the theory holds for, or a result that fails its own proof.
+        Contacts outside their groove, a load beyond the theory, or a result that fails its proof.
     """
     applied = np.array(load, dtype=np.float64)
     finite = applied.shape == (5,) and bool(np.isfinite(applied).all())
@@ -93,7 +93,7 @@ def rolling_equilibrium(
     )
 
     contacts = [_contacts(row, speed, cage_angle) for row in bearing.rows]
-    # Rotations as motions of the pitch circle, so that all five are lengths.
+    # Rotations as displacements of the pitch circle, so that all five are lengths.
     size = np.array([1.0, 1.0, 1.0, bearing.reach, bearing.reach])
     force = applied + bearing.axial_preload * np.eye(5)[2]
     free = np.array([name not in fixed for name in COORDINATES])
@@ -144,7 +144,7 @@ def rolling_reaction(
     speed: float = 0.0,
     cage_angle: float = 0.0,
 ) -> RollingState:
-    """What the bearing does when its inner ring is displaced by five given amounts (m and rad).
+    """State of the bearing with its inner ring displaced by five given amounts (m and rad).
 
     Raises
     ------
@@ -168,7 +168,7 @@ def _contacts(row: Row, speed: float, cage_angle: float) -> RowContacts:
 
 
 def _total(rows: Sequence[RowEnergy]) -> RowEnergy:
-    """Rows that share their rings."""
+    """Energy of rows that share their rings."""
     return RowEnergy(
         value=math.fsum(row.value for row in rows),
         gradient=np.sum([row.gradient for row in rows], axis=0),
@@ -178,7 +178,7 @@ def _total(rows: Sequence[RowEnergy]) -> RowEnergy:
 
 
 def _require_proof(state: RollingState) -> None:
-    """Raise unless the state is an equilibrium, stable, and within what the theory holds for."""
+    """Raise unless the state is a stable equilibrium within the limits of the theory."""
     name = state.bearing.name
     for number, (row, loads) in enumerate(zip(state.bearing.rows, state.rows, strict=True), start=1):
         deepest = float(loads.approach.max()) / row.element_diameter

@@ -1,4 +1,4 @@
-"""Hertz's elliptic contact of two smooth bodies, with the integrals solved and not approximated.
+"""Hertz's elliptic contact of two smooth bodies, by the exact elliptic integrals.
 
 Two bodies touch at a point with the principal relative curvatures Σρ_y ≥ Σρ_x (1/m). Under a load Q the contact is an
 ellipse of semi-axes a ≥ b, κ = a/b, with m = 1 − 1/κ² the parameter of the complete elliptic integrals K and E
@@ -20,13 +20,13 @@ from scipy.special import ellipe, ellipkm1, elliprd
 
 from rotors.errors import require_finite
 
-# log κ of the longest ellipse looked for: far beyond any groove, and R_D still has all its digits there.
+# log κ of the longest ellipse considered: far beyond any groove, and R_D still has all its digits.
 _LONGEST = 30.0
 
 
 @dataclass(frozen=True)
 class PointContact:
-    """A contact that obeys Q = stiffness · δ^{3/2}.
+    """A point contact, Q = stiffness · δ^{3/2}.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ def point_contact(curvature_major: float, curvature_minor: float, contact_modulu
     Raises
     ------
     RotorError
-        A curvature or modulus that is not positive: the bodies would fit like a ball in its socket.
+        A curvature or modulus that is not positive, as of a ball in a conforming socket.
     """
     require_finite("relative curvature in the longer axis", curvature_major, positive=True)
     require_finite("relative curvature in the shorter axis", curvature_minor, minimum=curvature_major)

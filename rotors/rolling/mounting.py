@@ -1,4 +1,4 @@
-"""From a rolling bearing under its load to the linear bearing that a rotor turns on, and formulas for a first guess."""
+"""Linear bearing from a loaded rolling bearing, and Krämer's stiffness formulas for a first estimate."""
 
 import math
 
@@ -19,14 +19,14 @@ def bearing_from(state: RollingState, name: str, at: float, *, damping: npt.Arra
     state
         From `rolling_equilibrium`.
     name, at
-        Of the bearing: what messages call it, and where its centre is, m from the rotor's left end.
+        Name of the bearing in messages, and place of its centre, m from the rotor's left end.
     damping
-        (2, 2) or (5, 5), N·s/m and its like: contact mechanics gives none. None where not given.
+        (2, 2) or (5, 5), N·s/m and its like; zero if not given, as contact mechanics gives none.
 
     Raises
     ------
     EquilibriumError
-        Play leaves the shaft loose in x or y at this load: there is no stiffness to speak of.
+        Clearance leaves the shaft loose in x or y at this load.
     RotorError
         As `Bearing`.
     """
@@ -41,7 +41,7 @@ def bearing_from(state: RollingState, name: str, at: float, *, damping: npt.Arra
 
 
 def kramer_ball_stiffness(count: int, ball_diameter: float, load: float, contact_angle: float = 0.0) -> float:
-    """Radial stiffness (N/m) in the direction of a radial load (N) by Krämer's formula, for a first guess.
+    """Radial stiffness (N/m) in the direction of a radial load (N) by Krämer's formula, for a first estimate.
 
     k = 13e6 Z^{2/3} d^{1/3} F^{1/3} cos^{5/3} α in N and m (Krämer 1993, after Friswell et al. 2010, chapter 5): no
     clearance, grooves as usual.

@@ -1,4 +1,4 @@
-"""The elastic energy of a row of cylindrical rollers and its derivatives.
+"""Contact energy of a row of cylindrical rollers, its gradient and its Hessian.
 
 Slice k of the roller at ψ, at the place z_k along the axis, is pressed between the raceways by
 
@@ -25,7 +25,7 @@ _POWER = 10.0 / 9.0
 
 @dataclass(frozen=True)
 class RollerSlices:
-    """A row of rollers cut into slices."""
+    """Contacts of a row of rollers cut into slices."""
 
     row: RollerRow
     azimuths: FloatArray
@@ -44,7 +44,7 @@ class RollerSlices:
         )
 
     def loads(self, q: FloatArray) -> ElementLoads:
-        """What every roller and slice carries; pressures of the worst slice by Hertz's line contact.
+        """Loads of every roller and slice; pressures of the worst slice by Hertz's line contact.
 
         p = (w E* Σρ / π)^{1/2} and half the width b = 2 w / (π p), w the load per length.
         """

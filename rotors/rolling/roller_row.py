@@ -1,4 +1,4 @@
-"""A row of cylindrical rollers by its geometry."""
+"""Roller row of a cylindrical-roller bearing, by its geometry."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -33,7 +33,7 @@ class RollerRow:
     profile
         ``"straight"``, or ``"logarithmic"`` as ISO 16281 takes it where nothing else is known.
     slices
-        Laminae into which a roller is cut; ISO 16281 asks for 30 or more.
+        Number of laminae of a roller; ISO 16281 requires 30 or more.
     position
         Of the rollers' middles from the bearing's centre along z, m.
     elasticity
@@ -42,7 +42,7 @@ class RollerRow:
     Raises
     ------
     RotorError
-        What cannot be, such as rollers that do not find room on their circle.
+        Invalid geometry, such as rollers that do not fit on the pitch circle.
     """
 
     count: int
@@ -69,6 +69,10 @@ class RollerRow:
         """Of the rollers, m."""
         return self.roller_diameter
 
+    def cage_speed(self, speed: float) -> float:
+        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − D/D_pw) Ω, rad/s."""
+        return 0.5 * (1.0 - self.roller_diameter / self.pitch_diameter) * speed
+
     @property
     def stiffness(self) -> float:
         """c of one straight roller between both raceways, Q = c δ^{10/9}, N/m^{10/9}.
@@ -86,7 +90,7 @@ class RollerRow:
 
     @property
     def slice_drops(self) -> FloatArray:
-        """By how much the profile falls back at each slice, (slices,), m.
+        """Profile drop P at each slice, (slices,), m.
 
         ISO 16281: P = 0.00035 D ln[1 / (1 − (2x/L)²)] for L ≤ 2.5 D; for longer rollers the middle is straight and
         P = 0.0005 D ln[1 / (1 − ((2|x| − L + 2.5 D) / 2.5 D)²)] at its ends.

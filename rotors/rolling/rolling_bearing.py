@@ -1,4 +1,4 @@
-"""A rolling bearing: rows that share their rings.
+"""Rolling bearing: rows of balls or rollers that share their rings.
 
 The inner ring moves by q = (x, y, z, rotation about x, rotation about y) against the outer, taken at the bearing's
 centre. A row's own direction is +1 where pushing the inner ring towards +z loads its contacts, −1 where −z does.
@@ -26,7 +26,7 @@ class RollingBearing:
     axial_preload
         A constant force of a spring on the inner ring along z, N.
     name
-        What messages call it.
+        Name in messages.
 
     Raises
     ------
@@ -50,7 +50,7 @@ class RollingBearing:
 
     @property
     def force_scale(self) -> float:
-        """E* D² of the smallest element: far more than it can carry, N."""
+        """E* D² of the smallest element, a force far above its capacity, N."""
         return min(row.elasticity.contact_modulus * row.element_diameter**2 for row in self.rows)
 
     @property
@@ -60,5 +60,5 @@ class RollingBearing:
 
     @property
     def reach(self) -> float:
-        """A length that turns rotations into motions of the contacts' size: half the largest pitch diameter, m."""
+        """Half the largest pitch diameter, by which rotations are scaled to displacements of the contacts, m."""
         return 0.5 * max(row.pitch_diameter for row in self.rows)

@@ -1,4 +1,4 @@
-"""Whether the elements of a row find room on their circle."""
+"""Check that the elements of a row fit on the pitch circle."""
 
 import math
 
@@ -6,7 +6,7 @@ from rotors.errors import require, require_count, require_finite
 
 
 def require_room(what: str, count: int, diameter: float, pitch_diameter: float) -> None:
-    """Raise `RotorError` unless three or more elements (m) fit side by side on the pitch circle (m)."""
+    """Raise `RotorError` unless three or more elements fit side by side on the pitch circle; diameters in m."""
     require_count(f"count of {what}s", count)
     require(count >= 3, f"count of {what}s", count, "three or more")
     require_finite(f"{what} diameter", diameter, positive=True)

@@ -1,4 +1,4 @@
-"""What a rolling bearing does under a load."""
+"""State of a rolling bearing under a load: displacement, tangent stiffness, element loads."""
 
 from dataclasses import dataclass, field
 
@@ -13,9 +13,9 @@ FloatArray = npt.NDArray[np.float64]
 COORDINATES = ("x", "y", "z", "rx", "ry")
 """The inner ring's displacement against the outer: along x, y, z, and rotations about x and y."""
 
-# Stiffness below this part of the largest, rotations taken at the pitch circle, is none.
+# Stiffness below this part of the largest, rotations scaled by the pitch circle, counts as zero.
 _NO_STIFFNESS = 1e-9
-# Share of a coordinate in such a motion above which it is not held.
+# Share of a coordinate in such a motion above which it counts as free.
 _TAKES_PART = 1e-6
 
 
@@ -26,17 +26,17 @@ class RollingState:
     Attributes
     ----------
     bearing
-        What was loaded.
+        The bearing.
     displacement
         (5,): of the inner ring against the outer.
     load
-        (5,): on the inner ring from outside, what holds the held coordinates included and the preload's spring not.
+        (5,): external load on the inner ring, constraint forces included, the preload spring excluded.
     reaction
-        (5,): what the elements put on the outer ring; ``load`` and the spring's force together, but for the residual.
+        (5,): force of the elements on the outer ring: ``load`` plus the spring's force, up to the residual.
     stiffness
         (5, 5): tangent, symmetric and positive semidefinite; ∂reaction/∂displacement.
     rows
-        What the elements of each row carry.
+        Element loads of each row.
     speed
         Of the inner ring, rad/s.
     residual
@@ -57,7 +57,7 @@ class RollingState:
 
     @property
     def loaded(self) -> int:
-        """How many elements of all rows press on the inner ring."""
+        """Number of loaded elements in all rows."""
         return sum(row.loaded for row in self.rows)
 
     @property
@@ -67,13 +67,13 @@ class RollingState:
 
     @property
     def even_stiffness(self) -> FloatArray:
-        """The stiffness with rotations as motions of the pitch circle and moments as forces there, (5, 5), N/m."""
+        """Stiffness with rotations as displacements of the pitch circle and moments as forces there, (5, 5), N/m."""
         size = np.array([1.0, 1.0, 1.0, self.bearing.reach, self.bearing.reach])
         return np.asarray(self.stiffness / np.outer(size, size))
 
     @property
     def loose(self) -> tuple[str, ...]:
-        """Coordinates that take part in motions which nothing resists, because of play or by the bearing's kind."""
+        """Coordinates of motions without stiffness, because of clearance or of the bearing's type."""
         values, vectors = np.linalg.eigh(self.even_stiffness)
         free = vectors[:, values <= _NO_STIFFNESS * max(values[-1], 1.0)]
         weight = (free**2).sum(axis=1)

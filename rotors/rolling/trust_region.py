@@ -1,4 +1,4 @@
-"""Minimum of a convex function with its exact Hessian, from any start."""
+"""Trust-region Newton method: the minimum of a convex function with its exact Hessian, from any start."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ _EPSILON = float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True)
 class Local:
-    """A function about a point.
+    """A function and its derivatives at a point.
 
     Attributes
     ----------
@@ -26,9 +26,9 @@ class Local:
     gradient, hessian
         (n,) and (n, n), symmetric and positive semidefinite.
     noise
-        Size of the terms whose difference ``value`` is: what rounding is a part of.
+        Size of the terms whose difference is ``value``: the scale of its rounding.
     force
-        Size of the terms whose sum ``gradient`` is.
+        Size of the terms whose sum is ``gradient``.
     """
 
     value: float
@@ -40,7 +40,7 @@ class Local:
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where the iteration stopped, and the largest component of the gradient over ``force`` there."""
+    """Final point of the iteration, and the largest component of the gradient over ``force`` there."""
 
     place: FloatArray
     residual: float
@@ -74,7 +74,7 @@ def minimise(function: Callable[[FloatArray], Local], start: FloatArray, radius:
         if not step.any():
             break
         there = function(place + step)
-        # In the noise of rounding the decrease says nothing, and the ratio tends to one.
+        # Within rounding the decrease is meaningless, and the ratio tends to one.
         noise = 10.0 * _EPSILON * max(here.noise, there.noise)
         ratio = (here.value - there.value + noise) / (predicted + noise)
         length = float(np.linalg.norm(step))
@@ -97,7 +97,7 @@ def _residual(local: Local) -> float:
 
 
 def _step(local: Local, radius: float) -> tuple[FloatArray, float]:
-    """Minimiser of the local quadratic within the radius, and by how much it lowers that."""
+    """Minimiser of the local quadratic within the radius, and the decrease of the quadratic."""
     values, vectors = linalg.eigh(local.hessian)
     values = np.maximum(values, 0.0)
     slope = vectors.T @ local.gradient

@@ -1,4 +1,4 @@
-"""Rotors to and from the files of ROSS (Rotordynamic Open Source Software), which need not be installed."""
+"""ROSS files: reads and writes rotors of ROSS (Rotordynamic Open Source Software), which need not be installed."""
 
 from .reading import RossModel, read_ross
 from .writing import write_ross

@@ -1,4 +1,4 @@
-"""The bearings and seals of a rotor on file, and the supports that some of them stand on."""
+"""Bearings, seals and their supports in a ROSS file."""
 
 import re
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ def read_bearing(entry: Entry, at: float, pedestal: Pedestal | None, remarks: Re
     Raises
     ------
     RotorError
-        Coefficients that do not fit each other, or cannot be a bearing's.
+        Coefficients that do not fit each other, or are invalid.
     """
     speeds, tables = _tables(entry, remarks)
     stiffness, damping = (_matrix(tables, letter, speeds) for letter in "kc")
@@ -44,7 +44,7 @@ def read_bearing(entry: Entry, at: float, pedestal: Pedestal | None, remarks: Re
 
 
 def read_pedestal(masses: Sequence[Entry], supports: Sequence[Entry], bearing: Entry, remarks: Remarks) -> Pedestal:
-    """Read what a bearing stands on: the point masses at its ``n_link``, and the bearings from there to the ground.
+    """Read a bearing's pedestal: the point masses at its ``n_link``, and the bearings from there to the ground.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def _tables(entry: Entry, remarks: Remarks) -> tuple[FloatArray | None, dict[str
     for letter in "kcm":
         for place in PLACES:
             name = letter + place
-            # As in ROSS, y is like x where it is not given, and x must be.
+            # As in ROSS, y defaults to x, which must be given.
             fallback = letter + "xx" if place == "yy" and name not in entry.values else name
             values = entry.series(fallback, default=None if fallback in ("kxx", "cxx") else 0.0)
             if len(values) == 1:
@@ -101,7 +101,7 @@ def _tables(entry: Entry, remarks: Remarks) -> tuple[FloatArray | None, dict[str
 
 
 def _matrix(tables: dict[str, FloatArray], letter: str, speeds: FloatArray | None) -> FloatArray:
-    """Stiffness or damping, (2, 2) where nothing holds axially and (5, 5) where something does, or a table of these."""
+    """Stiffness or damping, (2, 2) without axial coefficients and (5, 5) with them, or a table of these."""
     size = 5 if any(tables[kind + "zz"].any() for kind in "kc") else 2
     count = 1 if speeds is None else speeds.size
     table = np.zeros((count, size, size))
@@ -112,7 +112,7 @@ def _matrix(tables: dict[str, FloatArray], letter: str, speeds: FloatArray | Non
 
 
 def _remark_on_the_rest(entry: Entry, tables: dict[str, FloatArray], remarks: Remarks) -> None:
-    """Remark on coefficients that a linear bearing of springs and dashpots leaves out."""
+    """Remark on coefficients that a linear bearing of springs and dashpots does not have."""
     for name, values in tables.items():
         if name.startswith("m") and values.any():
             largest = float(np.abs(values).max())

@@ -1,4 +1,4 @@
-"""Reads a rotor that ROSS saved."""
+"""Reading of a rotor that ROSS saved."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -29,7 +29,7 @@ class RossModel(NamedTuple):
     bearings
         Every bearing and seal that holds the shaft.
     warnings
-        What the file holds and the rotor does not, or holds otherwise, a sentence each.
+        Properties of the file that the rotor does not have or has otherwise, a sentence each.
     """
 
     rotor: Rotor
@@ -86,7 +86,7 @@ def read_ross(path: str | os.PathLike[str]) -> RossModel:
 
 
 def _sorted_by_kind(entries: Sequence[Entry]) -> dict[str, list[Entry]]:
-    """Elements by what they become; none of a kind that is not known."""
+    """Elements sorted by their kind here; raises for an unknown kind."""
     chosen: dict[str, list[Entry]] = {SHAFT: [], DISC: [], POINT_MASS: [], "bearing": []}
     tests: list[tuple[str, Callable[[Entry], bool]]] = [
         (SHAFT, lambda entry: entry.kind in (SHAFT, COUPLING)),
@@ -139,7 +139,7 @@ def _pedestal_of(
     linked: set[int],
     remarks: Remarks,
 ) -> Pedestal | None:
-    """What a bearing stands on, and note of its node; None for the ground."""
+    """Pedestal of a bearing, whose node is added to ``linked``; None for the ground."""
     link = entry.node("n_link")
     if link is None:
         return None

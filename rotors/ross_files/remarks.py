@@ -1,16 +1,16 @@
-"""What one side of an exchange has and the other has no place for, said once for all the elements it holds of."""
+"""Remarks on properties that a file format cannot hold, each made once for all elements concerned."""
 
 from collections import defaultdict
 
 
 class Remarks:
-    """Collects remarks on elements; those of the same words become one."""
+    """Collects remarks on elements; equal texts become one."""
 
     def __init__(self) -> None:
         self._places: defaultdict[str, list[str]] = defaultdict(list)
 
     def add(self, place: str, text: str) -> None:
-        """Note that a text holds of a place."""
+        """Add a remark on a place."""
         if place not in self._places[text]:
             self._places[text].append(place)
 

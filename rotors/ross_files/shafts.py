@@ -1,4 +1,4 @@
-"""The shaft of a rotor on file: its elements in a row, cylinders, cones and couplings, and its nodes."""
+"""Shaft elements in a ROSS file: cylinders, cones and couplings in a row, and their nodes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,13 +30,13 @@ _COUPLING_KEYS = frozenset(
     + _STIFFNESSES
     + _DAMPINGS
 )
-# ROSS draws a coupling of no given length this long, and sets its nodes so far apart.
+# Length that ROSS gives to a coupling without one, and the distance of its nodes.
 _COUPLING_LENGTH = 0.2
 
 
 @dataclass(frozen=True)
 class ReadShaft:
-    """A row of segments, and where the file's nodes are on it.
+    """A row of segments and the positions of the file's nodes on it.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ def read_shaft(entries: Sequence[Entry], remarks: Remarks) -> ReadShaft:
 
 
 def _in_a_row(entries: Sequence[Entry]) -> list[Entry]:
-    """The elements by their left node; where none says so, as they stand."""
+    """The elements in the order of their left nodes; in that of the file if none is given."""
     nodes = [entry.node() for entry in entries]
     if all(node is None for node in nodes):
         return list(entries)
@@ -146,7 +146,7 @@ def _material(entry: Entry) -> ShaftMaterial:
 def _shear(
     entry: Entry, material: ShaftMaterial, diameters: tuple[float, float, float, float], remarks: Remarks
 ) -> float | ShearFormula:
-    """The shear coefficient that ROSS would take, and what it would leave out and the exact segment cannot."""
+    """Shear coefficient as in ROSS, with remarks on properties that the exact segment cannot have."""
     for flag, kept in (("rotary_inertia", "rotary inertia"), ("gyroscopic", "gyroscopic moment")):
         if not entry.flag(flag):
             remarks.add(entry.place, f"{flag} is false; the segment keeps its {kept}")
@@ -213,7 +213,7 @@ def _coupling(entry: Entry, remarks: Remarks) -> tuple[Coupling, tuple[tuple[flo
 
 
 def _note_unknown(entry: Entry, known: frozenset[str], remarks: Remarks) -> None:
-    """Remark on keys that no ROSS element of this class has."""
+    """Remark on keys that are unknown for this class of element."""
     for name in entry.values:
         if name not in known:
             remarks.add(entry.place, f"{name} is not read")

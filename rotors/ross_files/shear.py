@@ -1,12 +1,12 @@
-"""The shear coefficients that ROSS knows, and how ours are told to it.
+"""Shear coefficients of ROSS, and their counterparts here.
 
 ROSS has two formulas for the shear coefficient κ. Its ``cowper`` is Cowper's, as in `rotors.shear_coefficient`. Its
 ``hutchinson`` has the denominator of Hutchinson (J. Appl. Mech. 68, 2001) but a factor 1 + ν less in the numerator,
 
     κ = 6 (1 + ν)(1 + m²)² / [(1 + m²)²(7 + 12ν + 4ν²) + 4 m²(5 + 6ν + 2ν²)],
 
-0.71 for a solid section of ν = 0.3 where Hutchinson's is 0.93. What ROSS solves follows from it, and so does what
-is read from its files. Elements without shear deflection (``shear_effects`` false) have a κ so large that they are
+0.71 for a solid section of ν = 0.3 where Hutchinson's is 0.93. The results of ROSS follow from it, and so does a rotor
+read from its files. Elements without shear deflection (``shear_effects`` false) have a κ so large that they are
 rigid in shear to ten digits.
 """
 
@@ -30,7 +30,7 @@ def ross_hutchinson(bore_ratio: float, poisson_ratio: float) -> float:
 
 
 def ross_formula(segment: Segment) -> tuple[str, bool, float]:
-    """The formula that comes nearest to a segment's shear coefficient in ROSS.
+    """The formula of ROSS that is closest to a segment's shear coefficient.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def ross_formula(segment: Segment) -> tuple[str, bool, float]:
     shear_effects
         False where the segment is rigid in shear.
     difference
-        How far κ then is from the segment's at the middle of its length, as a part of it.
+        Relative difference of its κ from that of the segment at the middle of its length.
     """
     middle = segment.section(0.5)
     factor = middle.shear_factor

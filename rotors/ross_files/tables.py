@@ -1,8 +1,8 @@
-"""A rotor saved by ROSS as it stands on file: one table for each element, its keys read with their place in mind.
+"""Element tables of a ROSS file, read with messages that name the file and the key.
 
 ``rotor.save("x.toml")`` of ROSS 2 writes ``ross_version``, a table ``parameters``, and for each element a table named
 by its class and its tag, such as ``["ShaftElement_Shaft Element 0"]``, that holds the arguments of its constructor in
-SI. What was None is left out. With the suffix ``.json`` the same goes to JSON.
+SI, except those that are None. With the suffix ``.json`` it writes the same as JSON.
 """
 
 import json
@@ -19,7 +19,7 @@ from rotors.errors import RotorError
 from .remarks import Remarks
 
 LARGEST_FILE = 50_000_000
-"""Bytes beyond which a file is not taken for a rotor."""
+"""Size of the largest file that is read [bytes]."""
 
 _NOT_ELEMENTS = ("parameters", "ross_version")
 _SPEEDS_OF_OPERATION = {"min_w", "max_w", "rated_w"}
@@ -55,12 +55,12 @@ class Entry:
 
     @property
     def tag(self) -> str:
-        """Its own name; where it has none, the rest of its key."""
+        """Name of the element; without one, the rest of its key."""
         given = self.values.get("tag")
         return given if isinstance(given, str) and given else self.key.partition("_")[2] or self.key
 
     def error(self, name: str, expected: str) -> RotorError:
-        """What is wrong with a key, naming file, key and value."""
+        """Error of a key, with file, key and value."""
         value = self.values.get(name, "missing")
         return RotorError(f"{self.file}: {self.key}.{name} is {value!r}; expected {expected}")
 

@@ -1,4 +1,4 @@
-"""Writes a rotor so that ROSS loads it."""
+"""Writing of a rotor as a file that ROSS loads."""
 
 import math
 import os
@@ -40,7 +40,7 @@ def write_ross(
 ) -> tuple[str, ...]:
     """Write a rotor and its bearings as TOML that ``ross.Rotor.load`` reads.
 
-    ROSS solves finite elements, so that what it finds depends on their length; every segment end, disc and bearing
+    ROSS solves finite elements, so that its results depend on their length; every segment end, disc and bearing
     is a node whatever the length. A pedestal becomes a point mass at a node of its own (``n_link``), on a bearing to
     the ground. The file appears whole or not at all.
 
@@ -51,14 +51,14 @@ def write_ross(
     rotor
         Of distributed mass.
     bearings
-        What holds it.
+        Its bearings.
     element_length
         Longest element, m; by default a twentieth of the rotor.
 
     Returns
     -------
     tuple of str
-        What ROSS has no place for or computes otherwise, a sentence each.
+        Properties that ROSS does not have or computes otherwise, a sentence each.
 
     Raises
     ------
@@ -238,7 +238,7 @@ def _pedestal(name: str, pedestal: Pedestal, node: int) -> list[Table]:
 
 
 def _write_whole(path: Path, text: str) -> None:
-    """Write beside the place and move there, so that no half file stands."""
+    """Write a temporary file and rename it, so that no partial file remains."""
     staged = path.with_name(f".{path.name}.partial")
     try:
         staged.write_text(text, encoding="utf-8")

@@ -1,15 +1,18 @@
-"""Pieces that run together between the unknowns of whirl's equations, and what a rotor holds from speed to speed."""
+"""Pieces that run together between the unknowns of whirl's equations, and what a solver holds from speed to speed."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
+from rotors import Bearing, Disc, Rotor, RotorError, Segment, ShaftMaterial, WhirlSolver, campbell, solve_whirl
 from rotors.coalesced_roots import refine_roots
 from rotors.exact_roots import constant_speed
-from rotors.shaft import MOST_HELD, MassModel
+from rotors.shaft import MassModel
 from rotors.spatial_chain import MOST_GROWTH, SpatialChain, spatial_chain, whirl_reach
 from rotors.spatial_field import SpatialMotion
 from rotors.spatial_ties import block_sets
+from rotors.whirl import MOST_HELD
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISC = Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0)
@@ -86,33 +89,43 @@ def test_motion_grows_no_more_along_a_run_than_it_may() -> None:
     assert (fastest[uniform] <= table.growth(4e4)[uniform] * (1.0 + 1e-12)).all()
 
 
-def test_what_a_rotor_holds_is_of_its_bearings() -> None:
+def test_a_solver_that_solved_before_gives_the_digits_of_a_new_one() -> None:
+    rotor, bearings = stepped(30), bearings_of("both senses")
+    solver = WhirlSolver(rotor, bearings)
+    before = solver.modes(SPEED, count=6).eigenvalues
+    for speed, count in ((3.0 * SPEED, 12), (0.5 * SPEED, 4), (SPEED, 6)):
+        held, fresh = solver.modes(speed, count=count), solve_whirl(rotor, bearings, speed, count=count)
+        np.testing.assert_array_equal(held.eigenvalues, fresh.eigenvalues)
+    np.testing.assert_array_equal(solver.modes(SPEED, count=6).eigenvalues, before)
+
+
+def test_solvers_of_other_bearings_share_nothing() -> None:
     rotor = stepped(30)
-    before = solve_whirl(rotor, bearings_of("both senses"), SPEED, count=6).eigenvalues
-    # Other bearings at the same places: the answer of a rotor that has solved nothing before.
-    for factor in (0.5, 2.0):
-        held = solve_whirl(rotor, bearings_of("both senses", factor), SPEED, count=6).eigenvalues
-        fresh = solve_whirl(stepped(30), bearings_of("both senses", factor), SPEED, count=6).eigenvalues
-        np.testing.assert_array_equal(held, fresh)
-        assert np.abs(held - before).max() > 1.0
-    # Equal bearings and the former speed, after others: every digit again.
-    solve_whirl(rotor, bearings_of("both senses"), 3.0 * SPEED, count=12)
-    again = solve_whirl(rotor, bearings_of("both senses"), SPEED, count=6).eigenvalues
-    np.testing.assert_array_equal(again, before)
+    first, other = (WhirlSolver(rotor, bearings_of("both senses", factor)) for factor in (1.0, 2.0))
+    before = first.modes(SPEED, count=6).eigenvalues
+    assert np.abs(other.modes(SPEED, count=6).eigenvalues - before).max() > 1.0
+    np.testing.assert_array_equal(first.modes(SPEED, count=6).eigenvalues, before)
 
 
-def test_a_rotor_holds_a_few_things_made_last() -> None:
-    rotor, made = stepped(6), []
+def test_a_solver_of_tabled_bearings_holds_no_more_than_it_may() -> None:
+    rotor, speeds = stepped(6), np.linspace(100.0, 500.0, 9)
+    tables = [
+        replace(bearing, stiffness=np.array([bearing.stiffness, 2.0 * bearing.stiffness]), speeds=speeds[[0, -1]])
+        for bearing in bearings_of("both senses")
+    ]
+    solver = WhirlSolver(rotor, tables)
+    for speed in (*speeds.tolist(), 100.0):
+        constant = [bearing.at_speed(speed) for bearing in tables]
+        expected = solve_whirl(rotor, constant, speed, count=4).eigenvalues
+        np.testing.assert_allclose(solver.modes(speed, count=4).eigenvalues, expected, rtol=1e-10)
+    assert len(solver._held) == MOST_HELD
 
-    def make(shaft: Rotor, number: int) -> int:
-        assert shaft is rotor
-        made.append(number)
-        return -number
 
-    for number in range(MOST_HELD):
-        assert rotor.once(make, number) == rotor.once(make, number) == -number
-    assert made == list(range(MOST_HELD))
-    rotor.once(make, MOST_HELD)
-    rotor.once(make, MOST_HELD - 1)
-    rotor.once(make, 0)
-    assert made == [*range(MOST_HELD + 1), 0]
+def test_a_diagram_by_a_solver_is_that_of_its_rotor_and_bearings() -> None:
+    rotor, bearings = stepped(6), bearings_of("both senses")
+    solver, speeds = WhirlSolver(rotor, bearings), np.linspace(0.0, 400.0, 5)
+    own = campbell(rotor, bearings, speeds, count=4)
+    shared = campbell(rotor, bearings, speeds, count=4, solver=solver)
+    np.testing.assert_array_equal(shared.eigenvalues, own.eigenvalues)
+    with pytest.raises(RotorError, match="rotor of the solver is 'stepped'"):
+        campbell(rotor, bearings_of("both senses", 2.0), speeds, count=4, solver=solver)

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from rotors import RadialSupport, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
-from rotors.rotor_lines import FreeLines
+from rotors.rotor_lines import free_bending_shaft
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 
@@ -22,7 +22,7 @@ def uniform(length: float, diameter: float, bore: float, pieces: int) -> Rotor:
 
 
 def test_pieces_are_not_made_one_again() -> None:
-    assert all(uniform(*SHAFTS[0], pieces).once(FreeLines).bending.kind.size == pieces for pieces in (1, 7, 400))
+    assert all(free_bending_shaft(uniform(*SHAFTS[0], pieces)).kind.size == pieces for pieces in (1, 7, 400))
 
 
 def section(length: float, diameter: float, bore: float) -> tuple[float, float, float, float]:

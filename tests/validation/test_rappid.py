@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
-from rotors.lumped import station_inertias
+from rotors.shaft import station_inertias
 
 SOURCE = "RAPPID, after the ROSS validation notebook"
 REMARK = (

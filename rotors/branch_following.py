@@ -1,0 +1,135 @@
+"""Branch following: modes paired from speed to speed, and the crossing of a branch with an order of the speed.
+
+A Campbell diagram connects the modes of neighbouring speeds. Where two modes cross, the frequency alone does not say
+which is which; where they veer, the shape alone does not. Both are weighed in a linear assignment.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import linear_sum_assignment
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+Shape = TypeVar("Shape")
+
+
+def paired_modes(
+    jump: FloatArray,
+    likeness: FloatArray,
+    *,
+    jump_scale: float,
+    most_jumps: float,
+    longest_jump: float,
+    sure_likeness: float = np.inf,
+) -> IntArray:
+    """Pair the modes of one speed with those of the next so that the sum of their differences is least.
+
+    The difference of two modes is 1 − likeness + min(jump / jump_scale, most_jumps).
+
+    Parameters
+    ----------
+    jump
+        (m, n): distance of each eigenvalue at the next speed from the one expected there, as a part of it.
+    likeness
+        (m, n): likeness of the shapes, 0 to 1, such as the modal assurance criterion.
+    jump_scale
+        Jump that weighs as much as shapes without any likeness.
+    most_jumps
+        Multiple of ``jump_scale`` beyond which the length of a jump makes no further difference.
+    longest_jump
+        A pair further apart is no pair, unless its likeness exceeds ``sure_likeness``.
+
+    Returns
+    -------
+    (m,)
+        Index of the same mode at the next speed, −1 where there is none.
+    """
+    rows, columns = linear_sum_assignment((1.0 - likeness) + np.minimum(jump / jump_scale, most_jumps))
+    followed = (jump[rows, columns] < longest_jump) | (likeness[rows, columns] > sure_likeness)
+    partner = np.full(jump.shape[0], -1, dtype=np.intp)
+    partner[rows[followed]] = columns[followed]
+    return partner
+
+
+def extended_branches(table: IntArray, partner: IntArray, count: int) -> IntArray:
+    """Table of branches with the modes of one more speed.
+
+    Parameters
+    ----------
+    table
+        (s, b): index of each branch's mode at every speed so far, −1 where the branch is not.
+    partner
+        (m,): index at the new speed of each of the last speed's m modes, −1 where there is none.
+    count
+        Number of modes at the new speed; those that are nobody's partner begin branches.
+
+    Returns
+    -------
+    (s + 1, b')
+    """
+    speeds, branches = table.shape
+    row = np.full(branches, -1, dtype=np.intp)
+    if speeds:
+        active = table[-1] >= 0
+        row[active] = partner[table[-1][active]]
+    is_new = np.ones(count, dtype=np.bool_)
+    is_new[row[row >= 0]] = False
+    begun = np.flatnonzero(is_new)
+    longer = np.full((speeds + 1, branches + begun.size), -1, dtype=np.intp)
+    longer[:speeds, :branches] = table
+    longer[speeds, :branches], longer[speeds, branches:] = row, begun
+    return longer
+
+
+@dataclass(frozen=True)
+class BranchPoint(Generic[Shape]):
+    """A mode on a branch: its speed of rotation (rad/s), eigenvalue (rad/s) and shape.
+
+    ``gap`` is the damped frequency less that of the order, rad/s.
+    """
+
+    speed: float
+    eigenvalue: complex
+    gap: float
+    shape: Shape
+
+
+def refined_crossing(
+    low: BranchPoint[Shape],
+    high: BranchPoint[Shape],
+    solve: Callable[[float, BranchPoint[Shape], BranchPoint[Shape]], BranchPoint[Shape] | None],
+    *,
+    tolerance: float,
+    steps: int,
+) -> BranchPoint[Shape] | None:
+    """The point between two of a branch at which the gap vanishes, by regula falsi with Illinois' halving.
+
+    Parameters
+    ----------
+    low, high
+        Neighbours on the branch whose gaps differ in sign.
+    solve
+        The branch's point at a fraction of the way from one point to another; None where it is not found.
+    tolerance
+        Part of the eigenvalue that the gap may be.
+    steps
+        Most evaluations.
+
+    Returns
+    -------
+    BranchPoint or None
+        None where a point is not found, or the steps do not suffice.
+    """
+    ends, weights = [low, high], [low.gap, high.gap]
+    for _ in range(steps):
+        point = solve(weights[0] / (weights[0] - weights[1]), *ends)
+        if point is None or abs(point.gap) <= tolerance * abs(point.eigenvalue):
+            return point
+        near = 0 if (point.gap > 0.0) == (ends[0].gap > 0.0) else 1
+        ends[near], weights[near] = point, point.gap
+        weights[1 - near] *= 0.5
+    return None
