@@ -12,10 +12,11 @@ from gearwhine.figures.style import FOOT, HEAD, INK, LABEL, MM_PER_INCH, PANEL_W
 
 FloatArray = npt.NDArray[np.float64]
 
-_MAP, _BETWEEN, _LETTERS = 52.0, 6.0, 5.0  # height of a map, and rooms between them and above [mm of paper]
+_MAP, _MAP_GAP, _MAP_LETTERS = 52.0, 6.0, 5.0  # height of a map, and rooms between them and above [mm of paper]
 _SCALE, _BESIDE, _NUMBERS = 3.0, 3.0, 13.0  # the colours' bar, the room before it and for its numbers [mm of paper]
 _PLACES = 240  # along the path of contact
-_MM, _MEGA, _N_PER_MM = 1e3, 1e-6, 1e-3
+_MEGA = 1e-6
+_MM, _N_PER_MM = 1e3, 1e-3
 
 
 def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh) -> Figure:
@@ -48,12 +49,12 @@ def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothConta
         f"largest load per width {_N_PER_MM * loads[most]:.4g} N/mm, at z = {_MM * faces.z[most[0]]:.3g} mm, "
         f"{loads[most] / even:.3g} times the even load of the mean number of pairs; pale lines: contact at one time"
     )
-    figure = sheet(HEAD + _LETTERS + 2.0 * _MAP + _BETWEEN + FOOT, title, note)
+    figure = sheet(HEAD + _MAP_LETTERS + 2.0 * _MAP + _MAP_GAP + FOOT, title, note)
     rolls = np.degrees(pair.driver_roll_angle(places))
     edges = _MM * np.concatenate([faces.z - 0.5 * faces.width, [faces.z[-1] + 0.5 * faces.width]])
     drawn = []
     for bottom, values, what in (
-        (FOOT + _MAP + _BETWEEN, _N_PER_MM * loads, "load per width [N/mm]"),
+        (FOOT + _MAP + _MAP_GAP, _N_PER_MM * loads, "load per width [N/mm]"),
         (FOOT, _MEGA * pressures, "contact pressure [MPa]"),
     ):
         axes = panel(figure, bottom, _MAP, width=PANEL_WIDTH - _BESIDE - _SCALE - _NUMBERS)

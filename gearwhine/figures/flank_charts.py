@@ -31,7 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _ROW, _BETWEEN, _NAMES, _GAP = 50.0, 12.0, 5.0, 14.0  # height of a row, rooms below it, above all and between [mm]
 _PLACES = 400  # along a flank
-_MICRO, _MM = 1e6, 1e3
+_MICRO, _MILLI = 1e6, 1e3
 
 
 def has_charts(pair: GearPairGeometry) -> bool:
@@ -122,8 +122,8 @@ def _draw_profile(axes: Axes, gear: Gear, active: FloatArray, best: TipRelief | 
 def _draw_helix(axes: Axes, gear: Gear) -> None:
     z = np.linspace(-0.5, 0.5, _PLACES) * gear.face_width
     deviation = np.zeros_like(z) if gear.helix_deviation is None else gear.helix_deviation.at(z, gear.face_width)
-    axes.plot(_MM * z, _MICRO * deviation, color=BLUE, lw=1.3, zorder=3, label="_helix")
-    axes.set(xlabel="helix: from the middle of the face [mm]", xlim=(_MM * z[0], _MM * z[-1]))
+    axes.plot(_MILLI * z, _MICRO * deviation, color=BLUE, lw=1.3, zorder=3, label="_helix")
+    axes.set(xlabel="helix: from the middle of the face [mm]", xlim=(_MILLI * z[0], _MILLI * z[-1]))
 
 
 def _draw_pitch(axes: Axes, gear: Gear) -> None:

@@ -25,7 +25,7 @@ from gearwhine.figures.style import (
     sheet,
 )
 
-_CURVES, _SWING, _BETWEEN = 78.0, 42.0, 12.0  # heights of the panels and the room between them [mm of paper]
+_CURVES, _SWING, _MAP_GAP = 78.0, 42.0, 12.0  # heights of the panels and the room between them [mm of paper]
 _SCALE, _BESIDE, _NUMBERS = 3.0, 3.0, 13.0  # the colours' bar, the room before it and for its numbers [mm of paper]
 _COLORS = colormaps["viridis"]
 _BRIGHTEST = 0.92  # of the colours: yellow on white is hard to see
@@ -56,16 +56,16 @@ def draw_harris_map(title: str, harris: HarrisMap, base_radius: float, torque: f
     torques, swing = harris.forces * base_radius, _MICRO * harris.peak_to_peak
     best = int(swing.argmin())
     note = f"quietest of these torques: {torques[best]:.4g} N·m with {swing[best]:.3f} µm peak to peak"
-    figure = sheet(HEAD + _CURVES + _BETWEEN + _SWING + FOOT, title, note)
+    figure = sheet(HEAD + _CURVES + _MAP_GAP + _SWING + FOOT, title, note)
     width = PANEL_WIDTH - _BESIDE - _SCALE - _NUMBERS
-    upper = panel(figure, FOOT + _SWING + _BETWEEN, _CURVES, width=width)
+    upper = panel(figure, FOOT + _SWING + _MAP_GAP, _CURVES, width=width)
     lower = panel(figure, FOOT, _SWING, width=width)
     scale = Normalize(float(torques[0]), float(torques[-1]) / _BRIGHTEST)
     for load, curve in zip(torques, harris.transmission_error, strict=True):
         upper.plot(harris.phases, _MICRO * curve, color=_COLORS(scale(load)), lw=1.0, label="_torque")
     upper.set(xlabel="mesh period", ylabel="transmission error [µm]", xlim=(0.0, 1.0))
     across, up = (float(inches) * MM_PER_INCH for inches in figure.get_size_inches())
-    place = ((LEFT + width + _BESIDE) / across, (FOOT + _SWING + _BETWEEN) / up, _SCALE / across, _CURVES / up)
+    place = ((LEFT + width + _BESIDE) / across, (FOOT + _SWING + _MAP_GAP) / up, _SCALE / across, _CURVES / up)
     bar = figure.colorbar(ScalarMappable(scale, _COLORS), cax=figure.add_axes(place))
     bar.ax.set_ylim(float(torques[0]), float(torques[-1]))
     bar.ax.tick_params(labelsize=TICK, colors=INK)

@@ -24,8 +24,8 @@ from gearwhine.figures.style import (
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
-_HEIGHT, _BETWEEN = 56.0, 4.0  # of each panel and the room between them [mm of paper]
-_DECADES = 6.0  # shown below the highest
+_RESPONSE_HEIGHT, _RESPONSE_GAP = 56.0, 4.0  # of each panel and the room between them [mm of paper]
+_AMPLITUDE_DECADES = 6.0  # shown below the highest
 
 
 @dataclass(frozen=True)
@@ -82,8 +82,11 @@ def draw_torsional_response(
     row = arrange(labels, [(value - low) / (high - low) * PANEL_WIDTH for value in marked], PANEL_WIDTH)
     note = "zero to peak; torque in the shaft to the right of each place"
     note += "; above: natural frequencies in Hz, free to turn" * bool(marked)
-    figure = sheet(HEAD + row.height + 2.0 + 2.0 * _HEIGHT + _BETWEEN + FOOT, title, note)
-    upper, lower = panel(figure, FOOT + _HEIGHT + _BETWEEN, _HEIGHT), panel(figure, FOOT, _HEIGHT)
+    figure = sheet(HEAD + row.height + 2.0 + 2.0 * _RESPONSE_HEIGHT + _RESPONSE_GAP + FOOT, title, note)
+    upper, lower = (
+        panel(figure, FOOT + _RESPONSE_HEIGHT + _RESPONSE_GAP, _RESPONSE_HEIGHT),
+        panel(figure, FOOT, _RESPONSE_HEIGHT),
+    )
     handles: list[Line2D] = []
     for axes, what, top, name in (
         (upper, "angle", tops[0], "angle [rad]"),
@@ -100,11 +103,11 @@ def draw_torsional_response(
                 color = SERIES[number % len(SERIES)]
                 lines += axes.plot(omega / _HERTZ, values, color=color, lw=1.2, zorder=3, label=label)
         if top > 0.0:
-            axes.set(yscale="log", ylim=(top * 10.0**-_DECADES, 2.0 * top))
+            axes.set(yscale="log", ylim=(top * 10.0**-_AMPLITUDE_DECADES, 2.0 * top))
         axes.set_ylabel(name)
         handles = max(handles, lines, key=len)
     upper.tick_params(labelbottom=False)
     lower.set_xlabel("frequency [Hz]")
     legend_beside_title(figure, upper, handles)
-    draw_row(upper, row, _HEIGHT + 1.0)
+    draw_row(upper, row, _RESPONSE_HEIGHT + 1.0)
     return figure

@@ -13,7 +13,7 @@ from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, NOTE, legend, p
 
 FloatArray = npt.NDArray[np.float64]
 
-_CURVE, _HUNTING, _BARS, _BETWEEN = 58.0, 34.0, 36.0, 12.0  # heights and the room between [mm of paper]
+_CURVE, _HUNTING, _BARS, _CURVE_GAP = 58.0, 34.0, 36.0, 12.0  # heights and the room between [mm of paper]
 _MICRO = 1e6
 _SLIM = 0.42  # width of a bar, in harmonics
 
@@ -45,22 +45,22 @@ def draw_transmission_error(
     curves = [("without load", phases, unloaded, GREY)]
     if loaded is not None:
         curves.append((f"under {loaded.force:.4g} N", loaded.phases, loaded.transmission_error, BLUE))
-    middle = _HUNTING + _BETWEEN if hunting is not None else 0.0
+    middle = _HUNTING + _CURVE_GAP if hunting is not None else 0.0
     note = "; ".join(
         f"{name} {_MICRO * period_mean(at, curve):.3f} µm in the mean, {_MICRO * np.ptp(curve):.3f} µm peak to peak"
         for name, at, curve, _ in curves
     )
     if hunting is not None:
         note += f"; over the hunting period {_MICRO * hunting.peak_to_peak_transmission_error:.3f} µm peak to peak"
-    figure = sheet(HEAD + _CURVE + _BETWEEN + middle + _BARS + FOOT, title, note)
-    upper = panel(figure, FOOT + _BARS + _BETWEEN + middle, _CURVE)
+    figure = sheet(HEAD + _CURVE + _CURVE_GAP + middle + _BARS + FOOT, title, note)
+    upper = panel(figure, FOOT + _BARS + _CURVE_GAP + middle, _CURVE)
     handles: list[Artist] = []
     for name, at, curve, color in curves:
         handles += upper.plot(at, _MICRO * (curve - period_mean(at, curve)), color=color, lw=1.4, label=name)
     upper.set(xlabel="mesh period", ylabel="about its mean [µm]", xlim=(0.0, 1.0))
     legend(figure, handles)
     if hunting is not None:
-        axes = panel(figure, FOOT + _BARS + _BETWEEN, _HUNTING)
+        axes = panel(figure, FOOT + _BARS + _CURVE_GAP, _HUNTING)
         about = _MICRO * (hunting.transmission_error - hunting.mean_transmission_error)
         axes.plot(hunting.phases, about, color=BLUE, lw=0.7, label="hunting")
         axes.set(xlabel="mesh periods of the hunting period", ylabel="about its mean [µm]")
