@@ -14,9 +14,6 @@ from gearwhine.case.problems import NOTHING, UNSAID, Finding
 from gearwhine.case.running import Operation
 from gearwhine.case.train import known_pairs, shaft_of, train_of_pairs
 
-LARGEST_IMBALANCE = 0.01
-"""How far given outputs may be from the input, as a part of it."""
-
 LARGEST_RATIO = 1e12
 """Speed over the first driver's beyond which a train is a mistake, long before numbers overflow."""
 
@@ -135,12 +132,19 @@ def _check_balance(operation: Operation, ratios: Mapping[str, Fraction]) -> Iter
     if not operation.output:
         return
     taken = sum(output.torque * abs(float(ratios[output.rotor])) for output in operation.output)
-    if abs(taken - operation.torque) > LARGEST_IMBALANCE * max(abs(operation.torque), abs(taken)):
+    if not _balance(operation.torque, taken):
         expected = (
             f"outputs that balance the input torque of {operation.torque:g} N*m; through the tooth ratios they "
             f"amount to {taken:g} N*m"
         )
         yield Finding(("operation", "output"), expected, [f"{output.torque:g} N*m" for output in operation.output])
+
+
+def _balance(entering: float, leaving: float) -> bool:
+    """Whether two torques are the same within the tolerance of the library."""
+    from coupling.gear_train import LARGEST_IMBALANCE
+
+    return abs(leaving - entering) <= LARGEST_IMBALANCE * max(abs(entering), abs(leaving))
 
 
 def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
@@ -152,7 +156,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
     for shaft, place in first.items():
         entering = operation.torque if place == 0 else 0.0
         taken = sum(output.torque for output in operation.output if output.rotor == shaft)
-        if abs(taken - entering) > LARGEST_IMBALANCE * max(abs(entering), abs(taken)):
+        if not _balance(entering, taken):
             expected = (
                 f'torques that balance on {kind} "{shaft}", as no gear pair leads to or from it; it takes in '
                 f"{entering:g} N*m and gives out {taken:g} N*m"

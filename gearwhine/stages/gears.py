@@ -1,4 +1,4 @@
-"""The gear pairs of a case: geometry, contact law, and the mesh at rest under its load."""
+"""Gear pairs of a case: geometry, contact law, and static transmission error under the mean torque."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from gearwhine.case import Case, CaseError, Problem, pair_torques, require, roto
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.build import build_discs, build_gear, build_rotor, gear_inertia
+from gearwhine.stages.build import build_gear, build_rotor, gear_inertia
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -127,7 +127,7 @@ def _inertia_at(case: Case, given: GivenGear) -> float:
     inertia = gear_inertia(case, given)[1]
     if given.rotor is not None and given.at is not None:
         rotor = case.rotor_named(given.rotor)
-        discs = build_discs(case, rotor)
+        discs = rotor.build(case.material).discs
         inertia += sum(disc.polar_inertia for disc in discs if abs(disc.at - given.at) < 1e-6 * rotor.length)
         if inertia == 0.0:
             inertia = build_rotor(case, rotor).polar_inertia

@@ -10,16 +10,14 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 import coupling as room
-import rotors as rotor_room
 from coupling.gears.gear_pair import LoadedGearPair
 from gearwhine.case import Case, Rotor, require
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.bearings import bearing_law, build_bearings
-from gearwhine.stages.build import build_gear, build_shaft, gear_inertia
+from gearwhine.stages.build import build_gear, gear_inertia
 from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import build_pair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, base_participation, solve_housing
-from gearwhine.stages.rotor_loads import given_bow
 from housing import RESPONSE_ORDERS, ModeSet, leading_attachments
 
 FloatArray = npt.NDArray[np.float64]
@@ -173,12 +171,12 @@ def describe_machine(
 def _shaft(case: Case, given: Rotor) -> room.Shaft:
     limit, count = _kept(case, given.name)
     return room.Shaft(
-        build_shaft(case, given),
+        given.build(case.material),
         given.axis,
         given.start,
         given.damping_ratio,
-        [rotor_room.Unbalance(entry.at, entry.moment, entry.phase) for entry in given.unbalance],
-        given_bow(given),
+        given.build_unbalance(),
+        given.build_bow(),
         limit,
         count,
     )

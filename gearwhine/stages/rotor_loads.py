@@ -107,8 +107,7 @@ def solve_response(
     speeds = [speed for speed in response_speeds(case, given.name) if speed or held]
     if not (given.unbalance or given.bow) or not speeds:
         return None
-    unbalances = [room.Unbalance(entry.at, entry.moment, entry.phase) for entry in given.unbalance]
-    bow = given_bow(given)
+    unbalances, bow = given.build_unbalance(), given.build_bow()
     response = room.unbalance_response(rotor, bearings, unbalances, speeds, bow=bow)
     probes = _probes(case, analysis, given)
     at_operation: tuple[ProbeReading, ...] = ()
@@ -116,14 +115,6 @@ def solve_response(
         once = room.unbalance_response(rotor, bearings, unbalances, [operation], bow=bow)
         at_operation = tuple(_read(once, probe) for probe in probes)
     return SolvedResponse(response, tuple(_read(response, probe) for probe in probes), at_operation)
-
-
-def given_bow(given: GivenRotor) -> room.Bow | None:
-    """A rotor's bow as the rotor room's own, if it has one."""
-    if not given.bow:
-        return None
-    points = np.array([(point.at, point.amplitude, point.phase) for point in given.bow])
-    return room.Bow(*points.T)
 
 
 def _read(response: room.SynchronousResponse, probe: Probe) -> ProbeReading:
