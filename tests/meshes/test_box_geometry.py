@@ -44,7 +44,7 @@ def _bore(name: str = "a", x: float = 0.0, y: float = 0.08, z: float = FRONT, **
         ({"bores": (_bore(z=0.13),)}, "or in the front wall, 100 mm to 120 mm"),
         (
             {"bores": (_bore(x=0.09),)},
-            r"bores\[0\].diameter: a bore within .*x = 90 mm.*reaches 10 mm beyond",
+            r"bores\[0\].diameter: expected a bore within .*x = 90 mm.*reaches 10 mm beyond",
         ),
         ({"bores": (_bore(y=0.01),)}, "y = 10 mm it reaches 10 mm beyond the edge"),
         ({"bores": (_bore(y=0.15),)}, "y = 150 mm it reaches 10 mm beyond the edge"),
