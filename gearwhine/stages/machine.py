@@ -1,4 +1,4 @@
-"""The whole machine of a case: rotors, housing, bearings, gears and loads in one system."""
+"""Machine of a case: shafts, bearings, gears and the reduced housing, assembled into one coupled system."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -101,13 +101,7 @@ def build_machine(
         housing = housing_in_machine(case, housing, progress)
     machine = describe_machine(case, None if housing is None else housing.component)
     components = machine.rotor_components(reach=reach, progress=progress)
-    driven = driving(case, components)
-    assert case.operation is not None
-    return machine.assemble(
-        pairs,
-        components,
-        room.Driving(driven.torques, driven.drives, driven.rates, base_motion(case), case.operation.gravity),
-    )
+    return machine.assemble(pairs, components, driving(case, components))
 
 
 def require_machine(case: Case) -> None:
@@ -215,17 +209,9 @@ def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
 
 
 def base_motion(case: Case) -> room.BaseMotion | None:
-    """How the ground of a case moves, if it does."""
-    given = None if case.operation is None else case.operation.base
-    if given is None:
-        return None
-    parts: list[room.BaseHarmonic | room.BaseHistory] = [
-        room.BaseHarmonic(_HERTZ * one.frequency, np.array(one.amplitudes) * np.exp(1j * one.phase))
-        for one in given.harmonic
-    ]
-    if given.over_time is not None:
-        parts.append(room.BaseHistory(np.array(given.over_time.time), np.array(given.over_time.rows).T))
-    return room.BaseMotion(tuple(parts), given.point)
+    """Motion of the ground of a case, if it moves."""
+    base = None if case.operation is None else case.operation.base
+    return None if base is None else base.build()
 
 
 def basis_error(
