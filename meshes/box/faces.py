@@ -1,4 +1,4 @@
-"""Which faces of a box's finished solid make up each named surface, found by where they lie."""
+"""Named surfaces of a box: the faces of its finished solid, found by their places."""
 
 from collections.abc import Callable
 from typing import Any
@@ -26,7 +26,7 @@ def named_faces(gmsh: Any, box: BoxGeometry, solid: BoxSolid) -> dict[str, list[
     """
     named = _matching(gmsh, gmsh.model.getEntities(2), _outer_tests(box))
     if box.bolts:
-        # The two circles of a bolt coincide: the part that they bound tells them apart.
+        # The two circles of a bolt coincide: they are distinguished by the part that they bound.
         body = gmsh.model.getBoundary([(3, tag) for tag in solid.body], oriented=False)
         cover = gmsh.model.getBoundary([(3, tag) for tag in solid.cover], oriented=False)
         slack = _slack(box)
@@ -44,7 +44,7 @@ def named_faces(gmsh: Any, box: BoxGeometry, solid: BoxSolid) -> dict[str, list[
 
 
 def _outer_tests(box: BoxGeometry) -> dict[str, Test]:
-    """A test for each surface that is found by its place alone."""
+    """Tests for the surfaces that are found by their places alone."""
     outer, slack = layout.outer_block(box), _slack(box)
     tests: dict[str, Test] = {
         face: _on_plane(axis, (outer.high if way > 0 else outer.low)[axis], slack)

@@ -1,4 +1,4 @@
-"""Fit of the parts of a box: walls, feet, bores, ribs, cover, fillets, bolt patches; all misfits at once."""
+"""Geometry checks of a box: walls, feet, ribs, fillets and bores; all misfits are reported at once."""
 
 from __future__ import annotations
 
@@ -8,19 +8,16 @@ from collections.abc import Iterator
 from meshes.box import layout
 from meshes.box.fit_cover import cover_misfits
 from meshes.box.layout import Block
-from meshes.box.misfit import Misfit, mm
+from meshes.box.misfit import SLACK, Misfit, mm
 from meshes.box.parts import FACES, OPPOSITE_FACES, Bore, Box, Rib
 
-__all__ = ["Misfit", "misfits"]
-
-_SLACK = 1e-9
 _LEAST_CORNER = 0.25  # of the thinner wall must be left where an edge is rounded
 
 
 def misfits(box: Box) -> Iterator[Misfit]:
-    """Yield everything that does not fit; where a part has no sound size, what follows from it is left out.
+    """Yield everything that does not fit; checks that depend on an unsound part are left out.
 
-    Ribs, cover and fillets are looked at only where walls and bores fit each other.
+    Ribs, cover and fillets are checked only where walls, feet and bores fit each other.
     """
     plain = [*_wall_misfits(box), *_foot_sizes(box)]
     for index, bore in enumerate(box.bores):
@@ -76,7 +73,7 @@ def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
     x, y, _ = bore.center
     for what, diameter in (("bore", bore.diameter), ("boss", bore.boss.diameter if bore.boss else 0.0)):
         over = max(abs(x) + diameter / 2.0 - box.size[0] / 2.0, diameter / 2.0 - y, y + diameter / 2.0 - box.size[1])
-        if over > _SLACK:
+        if over > SLACK:
             expected = (
                 f"a {what} within its wall of {mm(box.size[0])} by {mm(box.size[1])}; around "
                 f"x = {mm(x)}, y = {mm(y)} it reaches {mm(over)} beyond the edge"
@@ -169,12 +166,12 @@ def _rib_misfits(box: Box, index: int) -> Iterator[Misfit]:
     limits = layout.rib_range(box, rib)
     across = 3 - normal - "xyz".index(rib.along)
     low, high = limits.low[across] + rib.thickness / 2, limits.high[across] - rib.thickness / 2
-    if not low - _SLACK <= rib.at <= high + _SLACK:
+    if not low - SLACK <= rib.at <= high + SLACK:
         expected = f"a place on the wall, from {mm(low)} to {mm(high)} for a rib {mm(rib.thickness)} thick"
         yield Misfit((*location, "at"), expected)
     yield from _rib_ends(rib, limits, location)
     room = layout.cavity_block(box).size[normal]
-    if rib.side == "inside" and rib.height > room + _SLACK:
+    if rib.side == "inside" and rib.height > room + SLACK:
         yield Misfit((*location, "height"), f"at most the {mm(room)} inside the box")
 
 
@@ -182,7 +179,7 @@ def _rib_ends(rib: Rib, limits: Block, location: tuple[str | int, ...]) -> Itera
     along = "xyz".index(rib.along)
     low, high = limits.low[along], limits.high[along]
     for key, end in (("start", rib.start), ("end", rib.end)):
-        if end is not None and not low - _SLACK <= end <= high + _SLACK:
+        if end is not None and not low - SLACK <= end <= high + SLACK:
             expected = f"a place on the wall, which spans {rib.along} = {mm(low)} to {mm(high)} on its {rib.side}"
             yield Misfit((*location, key), expected)
             return
@@ -192,7 +189,7 @@ def _rib_ends(rib: Rib, limits: Block, location: tuple[str | int, ...]) -> Itera
 
 
 def _rib_clashes(box: Box) -> Iterator[Misfit]:
-    """Ribs that run into what they must not become one with: feet, and ribs across the joint of the cover."""
+    """Ribs that run into feet, or across the joint of the cover into other ribs."""
     feet = layout.foot_blocks(box)
     blocks = [layout.rib_block(box, rib) for rib in box.ribs]
     for index, (rib, block) in enumerate(zip(box.ribs, blocks, strict=True)):
@@ -206,7 +203,7 @@ def _rib_clashes(box: Box) -> Iterator[Misfit]:
 
 
 def _bore_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
-    """A bore that something stands in, or that crosses the joint of the cover."""
+    """A bore that a part obstructs, or that crosses the joint of the cover."""
     start, end = box.bore_span(bore)
     radius = bore.diameter / 2
     x, y, _ = bore.center
@@ -216,7 +213,7 @@ def _bore_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
     def stands_in(block: Block) -> bool:
         (x1, y1, z1), (x2, y2, z2) = block.low, block.high
         gap = math.hypot(max(x1 - x, 0.0, x - x2), max(y1 - y, 0.0, y - y2))
-        return gap < radius - _SLACK and z1 < end + margin and start - margin < z2
+        return gap < radius - SLACK and z1 < end + margin and start - margin < z2
 
     for number, rib in enumerate(box.ribs):
         if stands_in(layout.rib_block(box, rib)):
@@ -228,7 +225,7 @@ def _bore_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
     if box.fillets.inside > 0.0:
         cavity = layout.cavity_block(box).widened((0, 1), -box.fillets.inside)
         if any(
-            value - radius < cavity.low[axis] - _SLACK or value + radius > cavity.high[axis] + _SLACK
+            value - radius < cavity.low[axis] - SLACK or value + radius > cavity.high[axis] + SLACK
             for axis, value in enumerate((x, y))
         ):
             yield Misfit(location, f"a bore clear of the cavity's edges, rounded by {mm(box.fillets.inside)}")
@@ -245,7 +242,7 @@ def _joint_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
                 yield Misfit(("bores", index, "center"), f"a bore clear of the cover's {bolt.name}")
         return
     plane = layout.parting_plane(box, box.cover.face)
-    if way * (plane - bore.center[normal]) < radius - _SLACK:
+    if way * (plane - bore.center[normal]) < radius - SLACK:
         what = "boss" if bore.boss else "bore"
         expected = f"a {what} clear of the joint under the {box.cover.face} cover, at {'xyz'[normal]} = {mm(plane)}"
         yield Misfit(("bores", index, "center"), expected)

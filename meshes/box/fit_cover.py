@@ -1,4 +1,4 @@
-"""Whether a cover, its flange and its bolts fit a box."""
+"""Geometry checks of a box's cover, its flange and its bolts."""
 
 from __future__ import annotations
 
@@ -6,15 +6,14 @@ import math
 from collections.abc import Iterator
 
 from meshes.box import layout
-from meshes.box.misfit import Misfit, mm
+from meshes.box.misfit import SLACK, Misfit, mm
 from meshes.box.parts import FACES, Bolt, Box, Cover, Flange, plane_axes
 
-_SLACK = 1e-9
 _MOST_PER_EDGE = 200
 
 
 def cover_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
-    """Yield what does not fit of a cover; of bolts only where the rim they stand on is sound."""
+    """Yield the misfits of a cover; bolts are checked only where the rim under them is sound."""
     sound = True
     for misfit in (*_flange_misfits(box, cover), *_bolt_sizes(cover)):
         sound = False
@@ -39,7 +38,7 @@ def _flange_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
 
 
 def _widest_flange(box: Box, cover: Cover, flange: Flange) -> float:
-    """Inside, half of the opening; outside, what stays above the undersides of the feet."""
+    """Widest flange [m]: half of the opening inside; outside, up to the undersides of the feet."""
     axes = plane_axes(cover.face)
     if flange.side == "inside":
         return min(layout.cavity_block(box).size[axis] for axis in axes) / 2
@@ -104,7 +103,7 @@ def _on_rim(box: Box, cover: Cover, bolt: Bolt) -> bool:
     beside = [max(opening.low[axis] - u, 0.0, u - opening.high[axis]) for u, axis in zip(place, axes, strict=True)]
     rounding = box.fillets.outside
     if max(to_edge) < rounding:  # in a corner, rounded where the plate is
-        within = math.hypot(rounding - to_edge[0], rounding - to_edge[1]) + radius <= rounding + _SLACK
+        within = math.hypot(rounding - to_edge[0], rounding - to_edge[1]) + radius <= rounding + SLACK
     else:
-        within = min(to_edge) >= radius - _SLACK
-    return within and math.hypot(*beside) >= radius - _SLACK
+        within = min(to_edge) >= radius - SLACK
+    return within and math.hypot(*beside) >= radius - SLACK

@@ -1,4 +1,4 @@
-"""A gearbox housing as a welded or cast box: walls, bores for the bearings, bosses, feet, ribs, cover, fillets.
+"""Box geometry of a welded or cast gearbox housing: walls, bores, bosses, feet, ribs, cover, fillets.
 
 The box stands in the global frame with its shafts along z. The origin is the middle of the box in x and z and
 the underside of its base in y; feet reach below y = 0.
@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from meshes.box import layout
-from meshes.box.fit import Misfit, misfits
+from meshes.box.fit import misfits
+from meshes.box.misfit import Misfit
 from meshes.box.parts import FACES, FOOT_NAMES, OPPOSITE_FACES, Bolt, Bore, Cover, Feet, Fillets, Rib, WallThickness
 from meshes.errors import GeometryError
 
@@ -111,7 +112,7 @@ class BoxGeometry:
         return wall
 
     def bore_span(self, bore: Bore) -> tuple[float, float]:
-        """Where along z the bore's surface lies, boss included [m]."""
+        """Ends of the bore's surface along z, boss included [m]."""
         half = self.size[2] / 2
         length = bore.boss.length if bore.boss else 0.0
         if self.end_wall(bore) == "back":
@@ -120,7 +121,7 @@ class BoxGeometry:
 
     @property
     def inside_height(self) -> tuple[float, float]:
-        """Where the cavity begins and ends along y [m]."""
+        """Ends of the cavity along y [m]."""
         return (self.wall.bottom, self.size[1] - self.wall.top)
 
 

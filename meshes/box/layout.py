@@ -1,4 +1,4 @@
-"""Where the parts of a box lie: plain blocks, rims and bolts, in m."""
+"""Layout of a box: places of its parts as plain blocks, rims and bolts [m]."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _beside(box: Box, block: Block, cover: Cover, *, plate: bool) -> Block:
 
 
 def opening_block(box: Box, cover: Cover) -> Block:
-    """What is open below the cover: the cavity as far as its rim, an inside flange left out."""
+    """Opening below the cover: the cavity up to its rim, without an inside flange."""
     cavity = cavity_block(box)
     if cover.flange is not None and cover.flange.side == "inside":
         return cavity.widened(plane_axes(cover.face), -cover.flange.width)
@@ -156,7 +156,7 @@ def on_cover(box: Box, rib: Rib) -> bool:
 
 
 def rib_range(box: Box, rib: Rib) -> Block:
-    """What a rib may fill on its wall: along its axis by default the whole of it."""
+    """Space for a rib on its wall; by default a rib runs along all of it."""
     if on_cover(box, rib):
         assert box.cover is not None
         return plate_block(box, box.cover) if rib.side == "outside" else opening_block(box, box.cover)

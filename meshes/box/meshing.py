@@ -1,4 +1,4 @@
-"""From the dimensions of a box housing to its mesh."""
+"""Meshing of a box housing with tetrahedra by gmsh."""
 
 from meshes.box.faces import named_faces
 from meshes.box.geometry import BoxGeometry

@@ -1,6 +1,9 @@
-"""One thing about a box that does not fit, and where it was said."""
+"""Misfit of a box: the dimension that does not fit, and what is expected of it."""
 
 from dataclasses import dataclass
+
+SLACK = 1e-9
+"""Rounding of lengths [m]."""
 
 
 @dataclass(frozen=True)
@@ -12,7 +15,7 @@ class Misfit:
     location : tuple of str or int
         Attributes and indices from the :class:`~meshes.BoxGeometry` down, such as ``("ribs", 0, "at")``.
     expected : str
-        What was expected there, to be read after "expected".
+        The expected value, to be read after "expected".
     """
 
     location: tuple[str | int, ...]

@@ -1,7 +1,7 @@
-"""A box's mesh bent to other dimensions: the same nodes and elements, moved smoothly.
+"""Mesh morphing of a box: nodes follow the box's dimensions, elements stay the same.
 
-A mesh made anew at other dimensions has other elements, and its frequencies jump by their errors of discretisation.
-Nodes that move with the dimensions keep them smooth, and have a rate: it makes sensitivities to geometry exact.
+A new mesh at other dimensions has other elements, so that frequencies jump by the discretisation errors. With nodes
+that move with the dimensions frequencies are smooth, and the velocities of the nodes give exact shape sensitivities.
 
 Every boundary node lies on faces that a box's dimensions place: on planes along the axes, which fix one component of
 its motion, and on the cylinders of bores and bosses, which fix two. The rest of each component slides along its faces
@@ -27,14 +27,14 @@ _FACING = 1.0 - 1e-6  # cosine from which a facet is normal to an axis
 
 
 class BoxMorph:
-    """The ways in which a box's mesh can follow its dimensions.
+    """Morphing of a box's mesh to other dimensions.
 
     Parameters
     ----------
     mesh : Mesh
         Tetrahedra, of :func:`meshes.mesh_box` or moved by an earlier morph.
     geometry : BoxGeometry
-        That the mesh has now.
+        Present dimensions of the mesh.
 
     Raises
     ------
@@ -76,9 +76,9 @@ class BoxMorph:
         self._harmonic = [_Harmonic(mesh, self._vertices, held) for held in self._held]
 
     def displacement(self, geometry: BoxGeometry) -> FloatArray:
-        """How far each node moves to another geometry of the same parts [m], shape (n_nodes, 3).
+        """Displacement of each node to another geometry of the same parts [m], shape (n_nodes, 3).
 
-        It is linear in the places of planes and axes and in the radii: the difference of two neighbours is a rate.
+        It is linear in the places of planes and axes and in the radii.
 
         Raises
         ------
@@ -143,7 +143,7 @@ class BoxMorph:
 
 
 class _Harmonic:
-    """A component's values at all corners from those at some: ∇²u = 0 by linear tetrahedra."""
+    """Harmonic extension of a component from given corners to all of them: ∇²u = 0 by linear tetrahedra."""
 
     def __init__(self, mesh: Mesh, vertices: IntArray, held: npt.NDArray[np.bool_]) -> None:
         laplacian = _laplacian(mesh)[vertices][:, vertices]

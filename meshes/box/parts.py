@@ -1,4 +1,4 @@
-"""The parts of a box housing, each by its own dimensions in m.
+"""Parts of a box housing: walls, bores, bosses, feet, ribs, flange, cover, bolts and fillets, dimensions in m.
 
 Faces: left/right are x min/max, bottom/top y, back/front z.
 """
@@ -11,7 +11,7 @@ Axis = Literal["x", "y", "z"]
 Side = Literal["outside", "inside"]
 Point = tuple[float, float, float]
 
-# For each face: the axis it is normal to, and the way it looks along it.
+# For each face: the axis that it is normal to, and the sign of its outward normal.
 FACES: dict[Face, tuple[int, int]] = {
     "left": (0, -1),
     "right": (0, 1),
@@ -70,7 +70,7 @@ class Bore:
     name : str
         The name of its surface in the mesh.
     center : tuple of float
-        A point of its axis [m]; its z says which wall.
+        A point of its axis [m]; its z selects the wall.
     diameter : float
         [m].
     boss : Boss, optional
@@ -108,14 +108,14 @@ class Rib:
     face : str
         The wall it stands on.
     along : {"x", "y", "z"}
-        Where it runs, one of the wall's own two axes.
+        Axis along which it runs, one of the wall's own two.
     at : float
-        Where its middle plane lies on the other of the two [m].
+        Place of its middle plane on the other of the two [m].
     height, thickness : float
         [m]; the height is taken from the wall.
     side : {"outside", "inside"}
     start, end : float, optional
-        Where it begins and ends along its axis [m]; by default it runs the whole length of the wall.
+        Its ends along its axis [m]; by default it runs the whole length of the wall.
     """
 
     face: Face
@@ -130,7 +130,7 @@ class Rib:
 
 @dataclass(frozen=True)
 class Flange:
-    """A frame that widens the rim on which a cover lies: how far it stands off the walls, how thick it is [m]."""
+    """A frame that widens the rim under a cover: width beyond the walls, and thickness [m]."""
 
     width: float
     thickness: float
@@ -146,8 +146,8 @@ class CoverBolts:
     diameter : float
         Nominal, of the thread [m].
     per_edge : tuple of int, optional
-        How many along each of the two axes of the cover's plane (in the order x, y, z), corners counted with both,
-        on the middle line of the rim.
+        Number along each of the two axes of the cover's plane (in the order x, y, z), corners counted with both, on
+        the middle line of the rim.
     positions : tuple of (float, float)
         Places along those two axes [m], where not in rows.
     patch_diameter : float, optional
@@ -175,7 +175,7 @@ class Cover:
     flange : Flange, optional
         By default the rim is as wide as the walls are thick.
     bolts : CoverBolts, optional
-        What ties the plate to the body; needed unless bonded.
+        Bolts that hold the plate on the body; needed unless bonded.
     bonded : bool
         The plate shares its nodes with the rim, as if glued all round.
     """
@@ -232,7 +232,7 @@ class Bolt:
 
 
 class Box(Protocol):
-    """A box by its parts, as `meshes.BoxGeometry` has them: what their layout and their fit are found from."""
+    """A box by its parts, as `meshes.BoxGeometry` has them; layout and checks are derived from it."""
 
     @property
     def size(self) -> Point:
@@ -279,5 +279,5 @@ class Box(Protocol):
         ...
 
     def bore_span(self, bore: Bore) -> tuple[float, float]:
-        """Where along z the bore's surface lies, boss included [m]."""
+        """Ends of the bore's surface along z, boss included [m]."""
         ...

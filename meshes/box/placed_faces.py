@@ -1,4 +1,4 @@
-"""The faces that a box's dimensions place: planes along the axes, and the cylinders of bores and bosses."""
+"""Faces of a box whose places follow from its dimensions: planes along the axes, cylinders of bores and bosses."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from meshes.errors import GeometryError
 
 
 class MorphError(GeometryError):
-    """A mesh cannot follow its geometry: what is asked for wants another mesh, made anew."""
+    """A mesh cannot follow its geometry: the geometry needs a new mesh."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Cylinder:
 
 
 def carried(places: FloatArray, before: Cylinder, after: Cylinder) -> FloatArray:
-    """How far points of a cylinder move in x and y with it."""
+    """Displacements in x and y of points of a cylinder that moves [m]."""
     return np.asarray(
         after.center - before.center + (after.radius / before.radius - 1.0) * (places[:, :2] - before.center)
     )
@@ -45,7 +45,7 @@ def carried(places: FloatArray, before: Cylinder, after: Cylinder) -> FloatArray
 def on_cylinders(
     places: FloatArray, cylinders: list[Cylinder], slack: float
 ) -> tuple[npt.NDArray[np.bool_], list[tuple[int, npt.NDArray[np.bool_]]]]:
-    """Which facets, by their corners, lie on a cylinder; and on which."""
+    """Find the facets whose corners lie on a cylinder, and the cylinder of each."""
     upright = np.ptp(places[:, :, 2], axis=1) > 1e2 * slack  # the end faces' facets have all corners at one height
     any_, members = np.zeros(len(places), dtype=bool), []
     for number, cylinder in enumerate(cylinders):
@@ -66,7 +66,7 @@ def check_faces(box: BoxGeometry) -> None:
 
 
 def parts_of(box: BoxGeometry) -> tuple[object, ...]:
-    """What two geometries must share for one to be the other's mesh, moved."""
+    """Features that two geometries must share so that the mesh of one can be morphed to the other."""
     bores = tuple((bore.name, box.end_wall(bore), bore.boss is None) for bore in box.bores)
     ribs = tuple((rib.face, rib.along, rib.side, rib.start is None, rib.end is None) for rib in box.ribs)
     cover = None if box.cover is None else (box.cover.face, box.cover.flange is None, box.cover.bonded)

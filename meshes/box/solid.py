@@ -1,4 +1,4 @@
-"""The solid of a box in gmsh's OpenCASCADE kernel: a body, and a cover where it is a plate of its own."""
+"""Solid model of a box in gmsh's OpenCASCADE kernel: a body, and a cover where it is a separate plate."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -77,7 +77,7 @@ def _body(gmsh: Any, box: BoxGeometry) -> Entities:
 
 
 def _cavity(gmsh: Any, box: BoxGeometry) -> Entities:
-    """The cavity less what stands in it; below a cover it is open, and reaches beyond the joint."""
+    """The cavity less the parts inside it; below a cover it is open, and reaches beyond the joint."""
     block = layout.cavity_block(box)
     cover = box.cover
     if cover is not None:
