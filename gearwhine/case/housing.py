@@ -1,4 +1,4 @@
-"""The `[housing]` of a case: its geometry, seats, supports, sensors and what is fastened to it; and the materials.
+"""Housing of a case, `[housing]`: geometry, seats, supports, sensors and fixtures; and the materials.
 
 Attributes are named as the keys of the case file and are in SI; frequencies are in Hz.
 """
@@ -6,7 +6,7 @@ Attributes are named as the keys of the case file and are in SI; frequencies are
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, field_validator, model_validator
 
@@ -35,6 +35,9 @@ from gearwhine.case.fields import (
 from gearwhine.case.patches import Patch
 from gearwhine.case.region import Region
 from gearwhine.case.units import QuantityError, parse_quantity
+
+if TYPE_CHECKING:
+    import housing
 
 
 def _shape(value: Any) -> str:
@@ -232,6 +235,21 @@ class Support(Patch):
         """Whether it keeps the housing in its place; a dashpot alone lets it creep away."""
         return self.fixed is not None or self.stiffness is not None
 
+    def build(self) -> housing.Support:
+        """The support."""
+        from housing import Support as BuiltSupport
+
+        springs, dashpots, fixed = self.stiffness or Springs(), self.damping or Dashpots(), self.fixed or ()
+        return BuiltSupport(
+            name=self.name,
+            surface=self.surface,
+            box=self.corners,
+            plane=self.point_and_normal,
+            fixed=("x" in fixed, "y" in fixed, "z" in fixed),
+            stiffness=(springs.x, springs.y, springs.z),
+            damping=(dashpots.x, dashpots.y, dashpots.z),
+        )
+
 
 class Sensor(Table):
     """`[[housing.sensor]]`: a point on the surface [m] and a direction; None: the outward normal there."""
@@ -244,6 +262,12 @@ class Sensor(Table):
     def unit_vector(self) -> UnitVector | None:
         """The direction as a unit vector; None where it is the surface normal."""
         return None if self.direction is None else unit_vector(self.direction)
+
+    def build(self) -> housing.Sensor:
+        """The sensor."""
+        from housing import Sensor as BuiltSensor
+
+        return BuiltSensor(self.name, self.position, self.unit_vector)
 
 
 def _check_frequency_key(key: object) -> str:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import model_validator
 
 from gearwhine.case.fields import Length, Name, Point, Table, wrong
+
+if TYPE_CHECKING:
+    import housing
 
 
 class Plane(Table):
@@ -48,3 +51,9 @@ class Patch(Table):
             return None
         x, y, z = (float(axis == self.plane.axis) for axis in "xyz")
         return (x * self.plane.at, y * self.plane.at, z * self.plane.at), (x, y, z)
+
+    def build_patch(self) -> housing.Patch:
+        """The patch of the mesh's surface."""
+        from housing import Patch as BuiltPatch
+
+        return BuiltPatch(self.surface, self.corners, self.point_and_normal)

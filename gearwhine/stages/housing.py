@@ -155,10 +155,7 @@ def solve_housing(
         seats = _seats(case)
         seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
         loaded = {name: room.bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
-        sensors = {
-            entry.name: room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
-            for entry in given.sensor
-        }
+        sensors = {entry.name: room.sensor_port(mesh, entry.build()) for entry in given.sensor}
         bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
         survey = room.survey_grid(mesh, bounds)
         if kept is None:
