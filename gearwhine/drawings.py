@@ -1,4 +1,4 @@
-"""Which shapes to draw, and drawing them: pictures, films, or models that move."""
+"""Mode pictures: the selection of shapes, and their drawing as pictures, films or animated models."""
 
 from collections.abc import Sequence
 from pathlib import Path

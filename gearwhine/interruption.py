@@ -1,4 +1,4 @@
-"""Ctrl-C and a polite kill: both unwind the work as a KeyboardInterrupt, wherever that is safe."""
+"""Interruption by Ctrl-C or SIGTERM: both raise KeyboardInterrupt where that is safe."""
 
 import signal
 import sys

@@ -1,4 +1,4 @@
-"""Locks on folders, by which runs that share a results folder know of each other."""
+"""Locks on folders, for runs that share a results folder."""
 
 import fcntl
 import os

@@ -1,4 +1,4 @@
-"""A march on file: each block of its record with the state after it, so that a killed run can go on.
+"""Checkpoint files of a time integration: each block of the record with the state after it, for a later restart.
 
 A run keeps its blocks in a hidden folder of the output folder, which bears the key of everything the march depends on
 and goes when the results are written. A block and its checkpoint are one file that appears whole: it is written beside,

@@ -1,4 +1,4 @@
-"""Progress of long work: a live line on a terminal, plain lines where there is none, nothing when quiet."""
+"""Progress of long work: a live line on a terminal, plain lines elsewhere, nothing when quiet."""
 
 import sys
 import time

@@ -1,4 +1,4 @@
-"""A case and all that can be asked of it, each analysis a call that returns a labelled result."""
+"""Study: a case and its analyses, each a call that returns a labelled result."""
 
 from __future__ import annotations
 

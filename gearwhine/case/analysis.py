@@ -1,4 +1,4 @@
-"""The `[rotor_analysis]` table: what `gearwhine rotors` looks at. Attributes are named as the keys and are in SI."""
+"""Rotor analyses of a case, `[rotor_analysis]`. Attributes are named as the keys and are in SI."""
 
 from __future__ import annotations
 

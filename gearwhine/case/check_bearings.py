@@ -1,4 +1,4 @@
-"""Checks of bearings by themselves: tables that fit their speeds and reach far enough, pedestals on the ground."""
+"""Checks of bearings: tables over speed that fit and reach far enough, pedestals on the ground."""
 
 from __future__ import annotations
 

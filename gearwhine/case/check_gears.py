@@ -1,4 +1,4 @@
-"""Checks of gears and gear pairs: teeth that can be cut, pairs that can mesh at the distance of their axes, loops.
+"""Checks of gears and gear pairs: teeth that can be cut, gears that can mesh on their axes, loops that can turn.
 
 The geometry is that of :mod:`coupling.gears`; its errors are put in the words of the case file.
 """

@@ -1,4 +1,4 @@
-"""Checks of the housing: one geometry, and everything in its place on a box."""
+"""Checks of the housing: one geometry; seats, supports, sensors and masses in their places on a box."""
 
 from __future__ import annotations
 

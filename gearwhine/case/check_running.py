@@ -1,4 +1,4 @@
-"""Checks of how a case runs: that everything turns, that torques balance, that there is something to run."""
+"""Checks of operation: a train in which every shaft turns, balanced torques, a transient that can be run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks of rotors, and of bearings and probes on them: stations on the shaft, and shafts through their seats."""
+"""Checks of stations on rotors, and of rotor axes against bearing seats."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be read of a case, sound or not, so that the checks can look at all of it at once."""
+"""Readable tables of a case, sound or not, so that the checks see all of them at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The kinds of values a case holds, with their units and ranges, and the base of all its tables."""
+"""Field types of a case: quantities with unit and range, names, files, and the base class of all tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads a case: from a file or a bundled name to a checked `Case`, with everything wrong in one error."""
+"""Reading a case, from a file or a bundled name, to a checked `Case`; all problems in one error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was measured on the housing: frequencies, or a file of a modal survey and how it lies on the model."""
+"""Measured modes of a case, `[measured]`: frequencies, or a modal survey and its alignment with the model."""
 
 from __future__ import annotations
 

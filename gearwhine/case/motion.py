@@ -1,4 +1,4 @@
-"""What follows from a case without solving anything: speeds, torques and mesh frequencies."""
+"""Shaft speeds, torques and mesh frequencies of a case, by arithmetic alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values that may change with the speed of rotation: one quantity, or a list with one for each speed of a table."""
+"""Coefficients over speed: one quantity, or a list with one for each speed of a table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Patches of the housing's surface in a case: a named surface, or all of the surface in a box or on a plane."""
+"""Patches of the housing surface: a named surface, or the surface in a box or on a plane."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong in a case: problems, and the one error that carries them all."""
+"""Case errors: problems by key path, value and expectation, and the one exception that carries them all."""
 
 from __future__ import annotations
 

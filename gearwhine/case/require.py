@@ -1,4 +1,4 @@
-"""What a command needs and a case lacks."""
+"""Required tables: the error for a table that a command needs and a case lacks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Units at the door: ``"6.35 mm"`` in, ``0.00635`` out.
+"""Units of a case: quantities as text with a unit, such as ``"6.35 mm"``, to SI and back.
 
 A quantity is a number and a unit of plain symbols multiplied, divided and raised to whole powers. Text is
 held to that grammar before the unit registry sees any of it, so nothing in a case file is ever evaluated.

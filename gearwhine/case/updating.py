@@ -1,4 +1,4 @@
-"""The `[update]` table: which numbers of the case `gearwhine update` fits to the measured modes, and how."""
+"""Model updating of a case, `[update]`: the fitted parameters, and the modes they are fitted to."""
 
 from __future__ import annotations
 

@@ -135,7 +135,7 @@ def render(
             name=["--line"],
             negative=(),
             consume_multiple=False,
-            help="Draw the operating shape at the line nearest to this frequency [Hz] of the run in OUT. May be repeated.",
+            help="Draw the operating shape at the line of the run in OUT nearest to a frequency [Hz]. May be repeated.",
         ),
     ] = [],  # noqa: B006 - read only
     measured: Annotated[

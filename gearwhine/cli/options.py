@@ -42,7 +42,7 @@ class Common:
 NONE_GIVEN = Common()
 Fresh = Annotated[
     bool,
-    Parameter(name="--fresh", negative=(), help="Solve the housing's modes again, even if OUT holds them unchanged."),
+    Parameter(name="--fresh", negative=(), help="Solve the housing's modes again, even if OUT holds them."),
 ]
 FreshRun = Annotated[
     bool,

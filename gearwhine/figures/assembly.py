@@ -1,4 +1,4 @@
-"""A rotor with all that stands on it and under it, as it is drawn: gears, probes, unbalances, seats."""
+"""Rotor assembly as it is drawn: shaft, gears, probes, unbalances, bearings with their seats."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""The Campbell diagram: whirl frequencies and their damping over the speed of rotation."""
+"""Campbell diagram of a rotor: whirl frequencies and damping over the speed of rotation."""
 
 from collections.abc import Iterator, Sequence
 

@@ -1,4 +1,4 @@
-"""Model against measured frequencies with the band of ±5 %, and the errors below; with shapes, every MAC as a circle.
+"""Model frequencies over measured ones with a band of ±5 %, and their errors; with shapes, the MAC of each pair.
 
 Circles whose area is the MAC, at the frequencies of both modes, are the FMAC of Fotsch and Ewins (2000): one picture of
 shapes, frequencies and what the survey confuses.

@@ -1,4 +1,4 @@
-"""Along the path of contact: the load that a pair of teeth carries, how hard its flanks press, and how they slide."""
+"""Load sharing, contact pressure and sliding velocity along the path of contact."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,4 +1,4 @@
-"""The contact pattern: what every place of the flank carries while a pair of teeth passes through its mesh."""
+"""Contact pattern: load and pressure over the flank while a pair of teeth passes through its mesh."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,4 +1,4 @@
-"""What housing modes and bearings put into the leading lines of the sensors, as bars."""
+"""Transfer-path contributions of housing modes and bearings to the leading lines of the sensors, as bars."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""The undamped critical-speed map: critical speeds over the stiffness of the bearings, with the bearings themselves."""
+"""Undamped critical-speed map: critical speeds over bearing stiffness, with the bearings' own stiffness."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

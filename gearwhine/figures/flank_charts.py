@@ -1,4 +1,4 @@
-"""Flanks as an inspection chart has them: profile over the roll angle, helix across the face, pitch tooth by tooth."""
+"""Inspection charts of flanks: profile over the roll angle, helix across the face, pitch tooth by tooth."""
 
 from collections.abc import Callable, Sequence
 

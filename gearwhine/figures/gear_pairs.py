@@ -1,4 +1,4 @@
-"""The pictures of a case's gear pairs: which there are, and the files they go to."""
+"""Figures of a case's gear pairs, with their names."""
 
 from collections.abc import Iterator, Sequence
 

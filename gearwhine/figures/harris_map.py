@@ -1,4 +1,4 @@
-"""The Harris map: transmission error over a mesh period for a range of torques, and its swing over torque."""
+"""Harris map: transmission error over a mesh period for a range of torques, and its peak to peak over torque."""
 
 import numpy as np
 from matplotlib import colormaps

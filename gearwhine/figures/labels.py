@@ -1,4 +1,4 @@
-"""Labels in a row that do not touch each other, each with a leader to what it names."""
+"""Labels in a row without overlap, each with a leader."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

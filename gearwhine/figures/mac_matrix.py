@@ -1,4 +1,4 @@
-"""A matrix of likeness, such as the MAC: a cell for each two modes, its number where it fits, pairs outlined."""
+"""Correlation matrix such as the MAC: a cell for each two modes, its number where it fits, pairs outlined."""
 
 from collections.abc import Collection, Sequence
 

@@ -1,4 +1,4 @@
-"""Mesh stiffness over a mesh period, and which pair of teeth carries how much of the load."""
+"""Mesh stiffness over a mesh period, and the load shares of the tooth pairs."""
 
 import numpy as np
 import numpy.typing as npt

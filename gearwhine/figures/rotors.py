@@ -1,4 +1,4 @@
-"""The pictures of a case's rotors: which there are, and the files they go to."""
+"""Figures of a case's rotors, with their names."""
 
 from collections.abc import Iterator, Sequence
 

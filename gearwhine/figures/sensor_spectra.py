@@ -1,4 +1,4 @@
-"""Spectra of the sensors, a panel each, their leading lines named."""
+"""Sensor spectra, a panel each, their leading lines named."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""The drawing of a rotor to scale, alone or above a picture that shares its axis."""
+"""Shaft drawing to scale, alone or above a panel that shares its axis."""
 
 import math
 from collections.abc import Sequence

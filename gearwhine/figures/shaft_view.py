@@ -1,4 +1,4 @@
-"""The scale at which a shaft is drawn, the same along it and across it wherever that can be seen."""
+"""Drawing scale of a shaft, the same along it and across it where space allows."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The static deflection of a rotor under its load, and what its bearings carry."""
+"""Static deflection of a rotor under its load, and its bearing reactions."""
 
 import numpy as np
 import numpy.typing as npt

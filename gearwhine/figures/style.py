@@ -1,4 +1,4 @@
-"""How every figure looks: colours, sizes on paper, axes, and the file it goes to."""
+"""Figure style: colours, sizes on paper, axes, and saving to a file."""
 
 import warnings
 from collections.abc import Iterable, Iterator, Sequence

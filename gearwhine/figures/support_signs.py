@@ -1,4 +1,4 @@
-"""The signs under a shaft: a spring or a rolling bearing, on the ground, in a seat or on a pedestal."""
+"""Symbols of supports under a shaft: spring or rolling bearing; ground, seat or pedestal."""
 
 import numpy as np
 from matplotlib.axes import Axes

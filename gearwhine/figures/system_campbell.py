@@ -1,4 +1,4 @@
-"""The Campbell diagram of the whole machine: what moves in each mode by colour, shaft and mesh orders across."""
+"""Campbell diagram of the coupled machine: modes coloured by the part that moves, shaft and mesh orders across."""
 
 import numpy as np
 import numpy.typing as npt

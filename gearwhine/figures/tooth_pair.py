@@ -1,4 +1,4 @@
-"""A pair of gears where they mesh: teeth at true shape, the line of action, and where they touch."""
+"""Tooth pair in mesh: true tooth shapes, line of action and points of contact."""
 
 import math
 

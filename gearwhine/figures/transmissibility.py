@@ -1,4 +1,4 @@
-"""From transmission error at one mesh to mesh forces, bearing forces and sensors, over frequency."""
+"""Transmissibility: mesh forces, bearing forces and sensors per transmission error at one mesh, over frequency."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""The static transmission error of a gear pair: its curve with and without load, and the tones that it holds."""
+"""Static transmission error of a gear pair: its curve with and without load, and its harmonics."""
 
 import numpy as np
 import numpy.typing as npt

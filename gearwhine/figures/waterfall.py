@@ -1,4 +1,4 @@
-"""The waterfall: spectra at several speeds, one behind the other, with mesh orders and the housing's modes."""
+"""Waterfall diagram: spectra over speed, with mesh orders and the housing's natural frequencies."""
 
 from collections.abc import Sequence
 

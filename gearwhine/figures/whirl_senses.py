@@ -1,4 +1,4 @@
-"""How the sense of a whirl is told from another in every picture: by colour, by line, by word."""
+"""Forward and backward whirl in figures: colours, lines and words."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Whirl modes as orbits along the shaft, in oblique projection under its outline."""
+"""Whirl mode shapes as orbits along the shaft, in oblique projection under its outline."""
 
 import numpy as np
 import numpy.typing as npt

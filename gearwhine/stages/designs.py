@@ -1,4 +1,4 @@
-"""The housing of a case at any values of its fitted parameters: solved designs and what is near them."""
+"""Parametric housing: modes at any values of the fitted parameters, and surrogates about solved ones."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

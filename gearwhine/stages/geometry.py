@@ -1,4 +1,4 @@
-"""The geometry of a case's housing: box, CAD file or mesh file to a mesh in which every seat has its surface."""
+"""Housing mesh of a case, from a box, a CAD file or a mesh file, with a surface for each seat."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,4 +1,4 @@
-"""The housing of a case: geometry to mesh, mesh to certified modes, modes to strengths and comparison."""
+"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance."""
 
 import time
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Housing modes kept in the results folder, and read again in place of solving where the housing is unchanged.
+"""Mode cache: housing modes in the results folder, read again while the housing is unchanged.
 
 Modes are known again by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys
 that do not enter the modes, the materials it names, the places of the bearings for which the modes have attachments,

@@ -1,4 +1,4 @@
-"""The record that a march left in its blocks: its histories piece by piece, and their spectra."""
+"""Record of a time integration in blocks: histories block by block, and their spectra."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

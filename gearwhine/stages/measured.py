@@ -1,4 +1,4 @@
-"""What was measured on the housing, and where it lies on the model."""
+"""Measured modes of a case: read, aligned with the model, and mapped to its degrees of freedom."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Operating deflection shapes of a run that is on file: the line nearest to a frequency, and which modes make it up."""
+"""Operating deflection shapes of a stored run at the spectral lines nearest to given frequencies."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Measured frequency responses against those that the model has at the same points: likeness line by line."""
+"""Measured frequency responses beside the model's at the same points, with FRAC."""
 
 from dataclasses import dataclass, replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""How finely a transient is sampled, how much of it is kept, and what its spectra are taken over.
+"""Sampling of a transient: steps, record length, decimation and spectral windows.
 
 Stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times the
 highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record that

@@ -1,4 +1,4 @@
-"""Work on several tasks at once, by processes of this machine, where the tasks are long and their results small."""
+"""Parallel work by local processes, for long tasks with small results."""
 
 import tempfile
 import warnings

@@ -1,4 +1,4 @@
-"""A survey planned on the housing's modes: sensors, a place for the hammer, and files that a test program reads."""
+"""Survey planning on the housing modes: sensors, a hammer position, and files for a test program."""
 
 from dataclasses import dataclass
 from pathlib import Path

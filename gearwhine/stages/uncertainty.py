@@ -1,4 +1,4 @@
-"""The error that the modal basis may leave in sensors' lines, as documents tell it: for each line, and by bands."""
+"""Modal truncation error of sensors' lines, line by line and by bands."""
 
 from typing import Any
 

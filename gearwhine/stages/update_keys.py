@@ -1,4 +1,4 @@
-"""The parameters of a case's `[update]` as changes of the case: which numbers each one sets, and to what."""
+"""Parameters of a case's `[update]`: the numbers of the case that each one sets, and their values."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

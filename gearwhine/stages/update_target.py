@@ -1,4 +1,4 @@
-"""What an update's housing is to meet: the measured frequencies, the shapes where a survey holds some, and the rest."""
+"""Targets of an update: measured frequencies, and shapes where a survey holds some."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Updating a case's housing: its `[update]` numbers fitted to the measured modes, and what the fit is worth.
+"""Model updating of a case's housing: the search, and the validation of the fit.
 
 The search is made on a mesh of its own, coarse enough for many solves, that moves with the box, with that mesh's bias
 taken off. The box's own mesh decides: it judges every few solves, and the search ends with a few designs more there,

@@ -1,4 +1,4 @@
-"""A sweep from its points to their results: what is done already is read, the rest goes to the workers."""
+"""Running a sweep: points on file are read, the others are solved by the workers."""
 
 from __future__ import annotations
 

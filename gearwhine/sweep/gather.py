@@ -1,4 +1,4 @@
-"""A sweep's results in one labelled file, and its document."""
+"""Results of a sweep as one labelled dataset, and as a document."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A point on file: NetCDF4 with everything that a sweep gathers of it, written whole or not at all."""
+"""Point files of a sweep: NetCDF4, written whole or not at all."""
 
 from __future__ import annotations
 

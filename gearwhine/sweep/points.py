@@ -1,4 +1,4 @@
-"""The points of a sweep: the case with each combination of the swept values, checked before anything is solved."""
+"""Sweep points: the case with each combination of the swept values, checked before anything is solved."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Workers for a sweep: processes on this machine, or those of a Dask cluster that runs already."""
+"""Workers of a sweep: local processes, or those of a running Dask cluster."""
 
 from __future__ import annotations
 
