@@ -82,7 +82,7 @@ def draw_apart(
 
 
 def _follow(lines: IO[str], progress: Progress) -> dict[str, Any]:
-    """Pass on what is told, up to the answer; empty where there is none."""
+    """Forward progress up to the answer; empty where there is none."""
     for line in lines:
         try:
             told = json.loads(line)

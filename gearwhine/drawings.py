@@ -122,7 +122,7 @@ def draw_lines(
     place: Path,
     progress: Progress,
 ) -> list[dict[str, Any]]:
-    """Draw how the housing moves at lines of the run in ``folder``, into ``place``, and tell of them.
+    """Draw operating shapes at lines of the run in ``folder`` into ``place``; return their documents.
 
     Raises
     ------

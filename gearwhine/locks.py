@@ -41,7 +41,7 @@ def held(folder: Path) -> Iterator[None]:
 
 
 def in_use(folder: Path) -> bool:
-    """Whether a living process holds a folder's lock, or nobody can tell."""
+    """Whether a living process holds a folder's lock, or the lock cannot be read."""
     try:
         handle = os.open(folder, os.O_RDONLY)
     except OSError:

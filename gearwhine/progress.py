@@ -92,7 +92,7 @@ def _lines() -> Progress:
 
 
 def _time_left(begun: tuple[float, float], now: float, fraction: float) -> str:
-    """How much longer it takes at the pace so far, where that is long enough to be worth saying."""
+    """Estimated time left; empty where it is short."""
     passed, done = now - begun[0], fraction - begun[1]
     if done <= 0.0 or (left := passed * (1.0 - fraction) / done) < _WORTH_SAYING:
         return ""
@@ -101,5 +101,5 @@ def _time_left(begun: tuple[float, float], now: float, fraction: float) -> str:
 
 
 def _work(message: str) -> str:
-    """What a message is about, without its news."""
+    """Subject of a message, without its news."""
     return message.partition(":")[0]

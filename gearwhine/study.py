@@ -124,7 +124,7 @@ class Study:
         return self._housing
 
     def check(self) -> dict[str, Any]:
-        """What the case means: ratios, mesh frequencies, contact ratios, sizes. Nothing is solved."""
+        """Derived quantities of the case: ratios, mesh frequencies, contact ratios, sizes. Nothing is solved."""
         from gearwhine.stages.summary import check_document
 
         return check_document(self.case, self.progress)

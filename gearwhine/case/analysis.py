@@ -104,7 +104,7 @@ class HarmonicTorque(Table):
 
 
 class TorsionSpring(Table):
-    """What holds a rotor's turning at a station [m] against the ground: stiffness [N m/rad], damping [N m s/rad]."""
+    """Torsional support of a rotor at a station [m] against the ground: stiffness [N m/rad], damping [N m s/rad]."""
 
     rotor: Name
     at: LengthFromZero

@@ -79,7 +79,7 @@ def _named_speeds(draft: Draft) -> list[float]:
 
 
 def _ratios(draft: Draft) -> dict[str, Fraction]:
-    """Return each rotor's speed over the first driver's; nothing where that cannot be told."""
+    """Return each rotor's speed over the first driver's; empty where the train is not readable."""
     if draft.broken & {"rotor", "gear", "gear_pair"}:
         return {}
     if not draft.gear_pairs:

@@ -189,7 +189,7 @@ class Gear(Table):
 
 
 class ToothStiffness(Table):
-    """How stiff a pair's teeth are: a model by name, and the value [N/m] or file that it needs."""
+    """Tooth stiffness of a pair: a model by name, and the value [N/m] or file that it needs."""
 
     model: Literal[
         "potential-energy", "elastic-ring", "cornell", "weber-banaschek", "iso6336", "constant", "square", "table"
@@ -208,7 +208,7 @@ class ToothStiffness(Table):
 
 
 class ReliefAim(Table):
-    """What the best tip relief is to make least, in place of the peak-to-peak transmission error.
+    """Objective of the tip-relief search, in place of the peak-to-peak transmission error.
 
     `harmonics`: weights of the transmission error's amplitudes by the multiple of the mesh frequency. With `sensor` the
     level there, by the transmissibility, of those multiples, or of all below the model's limit.

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 def _shape(value: Any) -> str:
-    """Tell which form a value with several forms has been given in."""
+    """Form in which a value with several forms is given."""
     if isinstance(value, (dict, Table)):
         return "~table"
     return "~list" if isinstance(value, (list, tuple)) else "~scalar"

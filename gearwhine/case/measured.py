@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Content:
-    """What a file was when it was read: two cases are equal where its bytes are."""
+    """Content of a file when it was read: two cases are equal where its bytes are."""
 
     digest: str
     survey: SurveyData = field(compare=False)
@@ -42,7 +42,7 @@ class Landmark(Table):
 
 
 class Align(Table):
-    """`[measured.align]`: the survey's frame in the model's, told by three or more points."""
+    """`[measured.align]`: the survey's frame in the model's, by three or more points."""
 
     landmarks: tuple[Landmark, ...] = Field(min_length=3, max_length=MOST_ENTRIES)
 
@@ -142,5 +142,5 @@ class Measured(Table):
 
     @property
     def survey(self) -> SurveyData | None:
-        """What the file holds, in SI; None where the modes are listed in the case."""
+        """Content of the file, in SI; None where the modes are listed in the case."""
         return None if self._content is None else self._content.survey

@@ -20,7 +20,7 @@ class Plane(Table):
 
 
 class Patch(Table):
-    """Where something is fastened to the housing: exactly one of the keys in `places`."""
+    """Patch of the housing surface for a fixture: exactly one of the keys in `places`."""
 
     places: ClassVar[tuple[str, ...]] = ("box", "surface", "plane")
     """The keys that can say where; exactly one of them must."""

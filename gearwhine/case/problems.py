@@ -92,7 +92,7 @@ class Problem:
 
     @property
     def message(self) -> str:
-        """What was expected and what was found, without the place."""
+        """Expectation and value, without the key path."""
         if self.value is UNSAID:
             return f"expected {self.expected}"
         note = f" ({self.note})" if self.note else ""

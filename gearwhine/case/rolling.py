@@ -20,7 +20,7 @@ _Groove = Annotated[float, Quantity(units.RATIO, above=0.5, at_most=1.0)]
 
 
 class BearingLoad(Table):
-    """What a bearing carries on average: the force of the shaft on it [N]."""
+    """Mean load of a bearing: the force of the shaft on it [N]."""
 
     x: Force = 0.0
     y: Force = 0.0
@@ -43,7 +43,7 @@ class Stop(Table):
 
 
 class _Mounted(Table):
-    """How a bearing is mounted: its play, its preload, and the rows it has [m, N].
+    """Mounting of a bearing: clearance, preload and arrangement of rows [m, N].
 
     `clearance` is diametral and in running; a negative one is an interference. `preload` is axial: of a single row a
     spring's force on the shaft along `carries`, of two rows the force with which they press each other. `carries` is
@@ -163,7 +163,7 @@ class RollingGeometry(_Mounted):
 
 
 class Catalogue(Table):
-    """What a catalogue prints [m, rad]; the inside follows by estimate."""
+    """Main dimensions of a catalogue [m, rad]; the inside is estimated."""
 
     type: Literal["deep-groove", "angular-contact", "cylindrical-roller"]
     bore: PositiveLength

@@ -305,7 +305,7 @@ class Rotor(Table):
 
     @property
     def saved(self) -> RossModel | None:
-        """What the file holds; None where the shaft is described here."""
+        """Content of the ROSS file; None where the shaft is described here."""
         return self._saved
 
     @property

@@ -87,7 +87,7 @@ class PedestalDamping(_Radial):
 
 
 class Pedestal(Table):
-    """What a bearing on the ground stands on: a mass [kg] on springs and dashpots, free to move in x and y."""
+    """Pedestal of a bearing on the ground: a mass [kg] on springs and dashpots, free to move in x and y."""
 
     mass: Mass = 0.0
     stiffness: PedestalStiffness

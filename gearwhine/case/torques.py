@@ -33,7 +33,7 @@ class TorqueLine(Table):
 
 
 class TorqueHistory(Table):
-    """What is added to a torque over time [N m over s]: linear between the times, constant beyond."""
+    """Torque added over time [N m over s]: linear between the times, constant beyond."""
 
     time: tuple[Time, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
     torque: tuple[SignedTorque, ...] = Field(max_length=MOST_ENTRIES)
@@ -53,7 +53,7 @@ class TorqueHistory(Table):
 
 
 class TorqueRipple(Table):
-    """What swings about a torque: amplitude [N m], phase [rad], and an order of its shaft or a frequency [Hz]."""
+    """Harmonic ripple of a torque: amplitude [N m], phase [rad], and an order of its shaft or a frequency [Hz]."""
 
     amplitude: SignedTorque
     phase: Angle = 0.0

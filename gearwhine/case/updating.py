@@ -84,7 +84,7 @@ class UpdateParameter(Table):
 
 
 class ModelModes(Table):
-    """How many modes the model is known to have below a frequency [Hz]: from `least` to `most`."""
+    """Number of model modes below a frequency [Hz]: from `least` to `most`."""
 
     below: PositiveFrequency
     least: Annotated[int, Whole(0, MOST_ENTRIES)]

@@ -47,7 +47,7 @@ class DrawnProbe:
 
 @dataclass(frozen=True)
 class RotorAssembly:
-    """What the pictures of a rotor show of it.
+    """Rotor with the parts that its figures show.
 
     Parameters
     ----------

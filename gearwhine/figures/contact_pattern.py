@@ -83,7 +83,7 @@ def over_flank(
 
 
 def _reach(contact: ToothContact) -> tuple[float, float]:
-    """Where on the path slices can touch."""
+    """Range of the path on which slices can touch."""
     assert contact.faces is not None
     reach = float(np.abs(contact.faces.shift).max())
     return contact.touching_range[0] + reach, contact.touching_range[1] - reach
@@ -107,7 +107,7 @@ def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArr
 
 
 def _draw_lines(axes: Axes, pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh) -> None:
-    """Where pairs touch at one time, the middle of the mesh period."""
+    """Contact lines at one time, the middle of the mesh period."""
     assert contact.faces is not None
     row = int(np.abs(mesh.phases - 0.5).argmin())
     for position in mesh.positions[row][contact.pairs(mesh.phases[row : row + 1]).present[0]]:

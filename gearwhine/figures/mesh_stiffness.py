@@ -71,7 +71,7 @@ def _draw_shares(axes: Axes, contact: ToothContact, mesh: StaticMesh) -> None:
 
 
 def _name(before: int) -> str:
-    """Of a pair that entered so many mesh periods before the one drawn."""
+    """Name of a pair by the number of mesh periods since it entered."""
     if before <= 0:
         return "pair that enters at 0" if before == 0 else "pair that follows"
     return "pair before" if before == 1 else f"{before} pairs before"

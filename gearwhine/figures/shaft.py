@@ -39,7 +39,7 @@ class OutlinePanel:
 
     @property
     def remarks(self) -> list[str]:
-        """What a reader of the drawing must know."""
+        """Remarks below the drawing."""
         remarks = []
         if self.view.stretch > 1:
             remarks.append(f"diameters {self.view.stretch} times as large as lengths")

@@ -22,7 +22,7 @@ _STRETCHES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)
 
 @dataclass(frozen=True)
 class ShaftView:
-    """How a shaft lies on paper.
+    """Position and scale of a shaft on paper.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class ShaftView:
     half_height: float
 
     def paper(self, z: float) -> float:
-        """Where a place (m) on the shaft is, mm of paper from the left of the panel."""
+        """Position on paper of a station (m), mm from the left of the panel."""
         return (MM * z - self.low) / self.per_paper
 
     def length(self, paper: float) -> float:

@@ -15,7 +15,7 @@ _LINE = 0.7  # [points]
 
 
 def depth(assembly: RotorAssembly, bearing: Bearing) -> float:
-    """How far a bearing's sign reaches below the shaft's surface, mm of paper."""
+    """Depth of a bearing's symbol below the shaft's surface, mm of paper."""
     if bearing.name in assembly.seats:
         return _SIGN + _SEAT
     return _SIGN + _GROUND + (_MASS + _SPRING if bearing.pedestal is not None else 0.0)

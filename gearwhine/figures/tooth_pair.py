@@ -119,7 +119,7 @@ def _line_of_action(axes: Axes, pair: GearPairGeometry, phase: float, centre: Fl
 
 
 def _senses(axes: Axes, half: float) -> None:
-    """Arrows that tell how the gears turn: the driver counter-clockwise, the driven the other way."""
+    """Arrows of rotation: the driver counter-clockwise, the driven clockwise."""
     reach, height = 0.12 * half, 0.62 * half * _HEIGHT / PANEL_WIDTH
     for level, bend in ((-height, 0.18), (height, -0.18)):
         start, end = (0.9 * half, level), (0.9 * half - 2.0 * reach, level)

@@ -30,7 +30,7 @@ _AMPLITUDE_DECADES = 6.0  # shown below the highest
 
 @dataclass(frozen=True)
 class TorsionalReading:
-    """What is read at one place of a shaft.
+    """Torsional response at one station of a shaft.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ _DECADES = 5.0  # of a logarithmic amplitude, below its highest
 
 @dataclass(frozen=True)
 class ProbeResponse:
-    """What a probe reads over speed.
+    """Response at a probe over speed.
 
     Parameters
     ----------

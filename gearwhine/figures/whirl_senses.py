@@ -19,7 +19,7 @@ PLANAR = 0.05
 
 @dataclass(frozen=True)
 class Sense:
-    """A sense of whirl: its name, its colour, and the line that tells it where there is no colour."""
+    """Sense of whirl: its name, colour and line style."""
 
     name: str
     color: str

@@ -73,7 +73,7 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
 
 
 def local_direction(x: ComplexArray, y: ComplexArray) -> FloatArray:
-    """How circular the whirl of each place is, 1 counter-clockwise to −1 clockwise: 2 Im(x ȳ) / (|x|² + |y|²)."""
+    """Circularity of the whirl at each station, 1 counter-clockwise to −1 clockwise: 2 Im(x ȳ) / (|x|² + |y|²)."""
     size = np.abs(x) ** 2 + np.abs(y) ** 2
     return np.asarray(2.0 * (x * y.conj()).imag / np.where(size > 0.0, size, 1.0))
 

@@ -39,7 +39,7 @@ def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
 
 
 def check_places(case: Case, mesh: Mesh) -> None:
-    """See that all that is fastened to a case's housing, and every sensor, finds its place on the mesh.
+    """Require a place on the mesh for every fixture and sensor of a case's housing.
 
     Raises
     ------

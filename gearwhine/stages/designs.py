@@ -56,7 +56,7 @@ class HousingDesigns:
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """What is fitted."""
+        """Fitted parameters."""
         return tuple(number.parameter for number in self.case.numbers)
 
     @property
@@ -154,7 +154,7 @@ class HousingDesign:
         return Surrogate.about(self.coordinates, self.state, rates)
 
     def rates(self) -> list[ModelRate]:
-        """What each coordinate changes in the model, by central differences of what is linear in small steps."""
+        """Derivatives of the model by each coordinate, by central differences of quantities linear in small steps."""
         return [self._rate(number) for number in range(len(self.coordinates))]
 
     def _rate(self, number: int) -> ModelRate:

@@ -111,7 +111,7 @@ def solve_housing(
     folder: Path | None = None,
     fresh: bool = False,
 ) -> SolvedHousing:
-    """Mesh the housing and find its modes with their certificate; or read them where they are kept.
+    """Mesh the housing and solve its certified modes, or read them from the mode cache.
 
     Parameters
     ----------

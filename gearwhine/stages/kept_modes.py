@@ -25,7 +25,7 @@ _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab", "pypardiso")
 
 
 def solution_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, Any]:
-    """What the modes of a case's housing are solved from; its content key is that of the modes.
+    """Inputs of a case's housing modes; their content key is that of the modes.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def solution_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, An
 
 
 def find_modes(folder: Path, inputs: Mapping[str, Any]) -> tuple[room.ModeRecord | None, str | None]:
-    """The kept modes of these inputs, or None; and a warning where a file is there but cannot be used."""
+    """Cached modes of these inputs, or None; and a warning where the file cannot be used."""
     path = folder / MODES_FILE
     if not path.exists():
         return None, None

@@ -33,7 +33,7 @@ _REACH = 2.0  # of the shafts' modes in the basis that tells the error of the fi
 
 @dataclass(frozen=True)
 class SensorPlace:
-    """Where a sensor sits [m] and the unit vector along which it measures, shapes (3,)."""
+    """Sensor position [m] and the unit vector of its direction, shapes (3,)."""
 
     position: FloatArray
     direction: FloatArray
@@ -41,7 +41,7 @@ class SensorPlace:
 
 @dataclass(frozen=True)
 class HousingInMachine:
-    """What a machine takes of a solved housing: kilobytes, in place of its mesh and shapes.
+    """Solved housing reduced to the quantities that a machine needs: kilobytes, without mesh and shapes.
 
     Attributes
     ----------
@@ -51,10 +51,10 @@ class HousingInMachine:
     trusted_limit_hz : float
         Up to where they are complete [Hz].
     warnings : tuple of dict
-        What the user should know of it, as the documents have it.
+        Warnings about the housing, as in the documents.
     sensors : mapping of str to SensorPlace
     coarser : coupling.HousingComponent or None
-        The component with less of the modes above the limit: what their difference moves, the limit may be wrong by.
+        The component with fewer residual modes; the difference estimates the truncation error.
     """
 
     component: room.HousingComponent
@@ -66,7 +66,7 @@ class HousingInMachine:
 
 
 def housing_in_machine(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingInMachine:
-    """What a machine takes of a solved housing."""
+    """Reduce a solved housing to the quantities that a machine needs."""
     component, coarser = _housing_components(case, solved, progress)
     return HousingInMachine(
         component,
@@ -86,7 +86,7 @@ def build_machine(
     *,
     reach: float = 1.0,
 ) -> room.CoupledMachine:
-    """Couple the parts of a case at its speed of operation.
+    """Assemble the machine of a case at its operating speed.
 
     ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are kept.
 
@@ -184,7 +184,7 @@ def solve_machine(
     folder: Path | None = None,
     fresh: bool = False,
 ) -> tuple[SolvedHousing | None, tuple[LoadedGearPair, ...], room.CoupledMachine]:
-    """Solve the housing and the gears that the case has, and couple everything.
+    """Solve the housing and the gears of the case, and assemble the machine.
 
     ``housing`` is one that is solved already; ``folder`` and ``fresh`` are those of
     :func:`gearwhine.stages.housing.solve_housing`.
@@ -198,7 +198,7 @@ def solve_machine(
 
 
 def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
-    """What is kept of a rotor: a frequency limit [rad/s], or a number of modes of each kind."""
+    """Retained modes of a rotor: a frequency limit [rad/s], or a number of each kind."""
     given = case.rotor_named(rotor)
     if given.modes is not None:
         return None, given.modes

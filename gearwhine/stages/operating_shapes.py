@@ -143,7 +143,7 @@ def _leading(line: RunLine, solved: SolvedHousing) -> list[tuple[int, float, flo
 
 
 def _name(content: Any, frequency: float, spacing: float) -> str:
-    """What the sensors' tables call the line, if they tell of it."""
+    """Name of the line in the sensors' tables, if it is listed there."""
     if "line_name" not in content:
         return ""
     near = np.abs(content["line_frequency"].values - frequency) < 0.5 * spacing

@@ -31,7 +31,7 @@ _FILES = ("survey.uff", "survey.csv")
 
 @dataclass(frozen=True)
 class PlannedSurvey:
-    """A survey and what it is worth.
+    """Planned survey and its quality.
 
     Attributes
     ----------

@@ -148,7 +148,7 @@ def update_housing(
 
 
 def _sharing(threads: int, tasks: int) -> AbstractContextManager[Each]:
-    """Who shares tasks of one thread each; one task, or none, is done here."""
+    """Pool for single-thread tasks; one task is done in this process."""
     return side_by_side(min(threads, tasks, default_workers()))
 
 

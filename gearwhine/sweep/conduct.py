@@ -173,7 +173,7 @@ def _as_they_end(client: Client, futures: dict[Future[Any], int]) -> Iterator[tu
 
 
 def _teller(total: int, before: int, progress: Progress) -> Callable[[int], None]:
-    """Tell how many points are done and how long the rest will take, after so many of this run."""
+    """Progress by the number of points done, with an estimate of the time left."""
     start = time.perf_counter()
 
     def told(count: int) -> None:

@@ -89,7 +89,7 @@ def connected(
 
 
 def await_workers(client: Client, workers: int) -> None:
-    """Wait until so many workers are there. An interruption strikes outside of what waits.
+    """Wait for a number of workers; an interruption takes effect outside the waiting call.
 
     Raises
     ------
@@ -217,7 +217,7 @@ def _main_module_unseen() -> Iterator[None]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Let Dask log nothing: that a worker died is told in the sweep's own words where it matters."""
+    """Silence Dask's log: the sweep itself reports a dead worker."""
     loggers = [logging.getLogger(name) for name in ("distributed", "asyncio", "tornado", "bokeh")]
     before = [logger.level for logger in loggers]
     for logger in loggers:
