@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from math import pi
 from pathlib import Path
 from textwrap import wrap
 
@@ -19,6 +20,8 @@ PANEL_WIDTH = SHEET_WIDTH - LEFT - RIGHT
 NOTE, TICK, LABEL, TITLE = 6.5, 7.0, 7.5, 9.0  # letters on it [points]
 MM_PER_INCH = 25.4
 RPM = 9.549296585513721  # revolutions per minute of 1 rad/s
+HERTZ = 2.0 * pi  # rad/s of 1 Hz
+MILLI, MICRO, MEGA = 1e3, 1e6, 1e-6  # factors from m to mm, from m to µm, from Pa to MPa and from N/m to N/µm
 
 _IN_HEAD = 4  # so many lines are explained beside the title
 _NOTE_LETTERS = 124  # of a note in one line

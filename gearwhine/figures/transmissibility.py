@@ -8,21 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coupling import FrequencyResponse
-from gearwhine.figures.style import (
-    FOOT,
-    GREY,
-    HEAD,
-    NOTE,
-    PANEL_WIDTH,
-    SERIES,
-    panel,
-    sheet,
-    shortened,
-)
+from gearwhine.figures.style import FOOT, GREY, HEAD, HERTZ, NOTE, PANEL_WIDTH, SERIES, panel, sheet, shortened
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
 _MICROMETRE = 1e-6
 _RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 4.0  # of a panel and the room between two [mm]
 _DECADES = 4.0  # of amplitude that a panel shows at most
@@ -45,7 +34,7 @@ def draw_transmissibility(
     limit
         End of the frequency axis, Hz; that of the response where not given.
     """
-    frequencies = response.frequencies / _HERTZ
+    frequencies = response.frequencies / HERTZ
     resultants = {name: np.linalg.norm(force, axis=1) for name, force in response.bearing_force.items()}
     panels = [
         ("mesh force [N/µm]", {name: np.abs(force) for name, force in response.mesh_force.items()}),
