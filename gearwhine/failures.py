@@ -1,8 +1,5 @@
 """Failures of a command: exit codes and messages of wrong input, failed proofs and missing libraries."""
 
-import sys
-from collections.abc import Callable, Sequence
-
 
 class PartlyFailedError(RuntimeError):
     """Some of the work failed; what was done is on file, and the message says how much is missing."""
@@ -67,15 +64,3 @@ def explain(error: Exception) -> tuple[int, str | None]:
     if isinstance(error, OSError):
         return 1, f"{error.strerror or error}: {error.filename}" if error.filename else str(error)
     return 1, None
-
-
-def run_script(main: Callable[..., None], arguments: Sequence[str]) -> None:
-    """Run a script's main function, its failures in words and with the command's exit codes."""
-    try:
-        main(*arguments)
-    except Exception as error:
-        code, message = explain(error)
-        if message is None:
-            raise
-        sys.stderr.write(f"{message}\n")
-        sys.exit(code)

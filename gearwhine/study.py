@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,6 +13,7 @@ from gearwhine.case.checks import warnings_of
 from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
+    from coupling import Machine
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
     from gearwhine.drawings import ModeFormat
@@ -35,8 +37,8 @@ def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequenc
     source : str or path
         A case file (TOML), or the name of a bundled case.
     changes : mapping or sequence of str
-        Keys and their new values, ``{"housing.box.mesh_size": "20 mm"}``, or texts such as
-        ``"housing.box.mesh_size=20 mm"``.
+        Keys and their new values, numbers, texts, lists or tables, ``{"housing.box.mesh_size": "20 mm"}``; or texts
+        such as ``"housing.box.mesh_size=20 mm"``. An empty text takes a key out.
 
     Raises
     ------
@@ -122,6 +124,19 @@ class Study:
 
             self._housing = solve_housing(self.case, self.progress)
         return self._housing
+
+    @property
+    def machine(self) -> Machine:
+        """The shafts, gears, bearings and gear pairs of the case as one object, on its solved housing.
+
+        It has the constant torques of `[operation]`; torques over time, motion of the base and gravity stay in the
+        case, and :meth:`simulate` applies them.
+        """
+        from gearwhine.stages.machine import describe_machine, housing_in_machine
+
+        solved = self.housing
+        part = None if solved is None else housing_in_machine(self.case, solved, self.progress).component
+        return describe_machine(self.case, part)
 
     def check(self) -> dict[str, Any]:
         """Derived quantities of the case: ratios, mesh frequencies, contact ratios, sizes. Nothing is solved."""
@@ -272,7 +287,18 @@ class Study:
 
 
 def _text(value: object) -> str:
-    """A value as it stands behind ``--set KEY=``."""
+    """A value as it stands behind ``--set KEY=``, where a text needs no quotes."""
+    return value if isinstance(value, str) else _toml(value)
+
+
+def _toml(value: object) -> str:
+    """A value in TOML, on one line."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{json.dumps(key)} = {_toml(inner)}" for key, inner in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, str):
+        return json.dumps(value)
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -19,10 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import least_squares
 
-from gearwhine.case import Case, load_case
-from gearwhine.failures import run_script
-from gearwhine.stages.bearings import build_bearings
-from gearwhine.stages.build import build_rotor
+import gearwhine as gw
 from rotors import solve_lateral_modes, solve_torsional_modes
 
 FloatArray = npt.NDArray[np.float64]
@@ -128,10 +125,10 @@ def drawn(stage: Stage, sizes: Mapping[str, float]) -> list[str]:
     return [f"{key}={value:.12g}" for key, value in changes.items()]
 
 
-def own_frequencies(case: Case, name: str) -> FloatArray:
+def own_frequencies(machine: gw.Machine, name: str) -> FloatArray:
     """A rotor's first three lateral frequencies in a plane and first two elastic torsional ones [Hz], uncoupled."""
-    rotor = build_rotor(case, case.rotor_named(name))
-    supports = [bearing.mean_support for bearing in build_bearings(case, name)]
+    rotor = machine.rotor(name)
+    supports = [mounted.bearing.mean_support for mounted in machine.bearings if mounted.rotor == name]
     lateral = solve_lateral_modes(rotor, supports, count=3).frequencies[:3]
     torsional = solve_torsional_modes(rotor, count=3).frequencies[1:3]
     return np.concatenate([lateral, torsional]) / (2.0 * math.pi)
@@ -159,8 +156,8 @@ def _fitted(
         return dict(zip(free, np.exp(logarithms).tolist(), strict=True))
 
     def misfit(logarithms: FloatArray) -> FloatArray:
-        case = load_case("three-stage", drawn(stage, {**sizes, **trial(logarithms)})).case
-        found = own_frequencies(case, f"stage-{stage.number}")
+        study = gw.load("three-stage", drawn(stage, {**sizes, **trial(logarithms)}))
+        found = own_frequencies(study.machine, f"stage-{stage.number}")
         return np.concatenate([np.log(found / stage.table_hz) / _CLOSE, (logarithms - middle) / spread])
 
     start = np.log([sizes[size] for size in free])
@@ -170,7 +167,7 @@ def _fitted(
 def main() -> None:
     for stage in STAGES:
         changes = drawn(stage, find(stage))
-        found = own_frequencies(load_case("three-stage", changes).case, f"stage-{stage.number}")
+        found = own_frequencies(gw.load("three-stage", changes).machine, f"stage-{stage.number}")
         errors = 100.0 * (found / stage.table_hz - 1.0)
         print(
             f"stage {stage.number}:", ", ".join(f"{f:.2f} Hz ({e:+.2f} %)" for f, e in zip(found, errors, strict=True))
@@ -179,4 +176,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    run_script(main, ())
+    main()

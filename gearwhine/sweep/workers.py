@@ -14,7 +14,7 @@ from multiprocessing import resource_tracker
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from gearwhine.case import CaseError, Problem
 from gearwhine.failures import WorkersError
@@ -207,12 +207,14 @@ def _main_module_unseen() -> Iterator[None]:
     whole. The workers need only this package.
     """
     main = sys.modules["__main__"]
-    hidden: dict[str, Any] = {name: main.__dict__[name] for name in ("__file__", "__spec__") if name in main.__dict__}
-    main.__dict__.update(dict.fromkeys(hidden))
+    hidden = {name: main.__dict__[name] for name in ("__file__", "__spec__") if name in main.__dict__}
+    for name in hidden:
+        setattr(main, name, None)
     try:
         yield
     finally:
-        main.__dict__.update(hidden)
+        for name, value in hidden.items():
+            setattr(main, name, value)
 
 
 @contextmanager

@@ -1,19 +1,29 @@
-"""Campbell diagram of an overhung rotor by exact transfer matrices, with its critical speeds."""
+"""Campbell diagram of a rotor with two discs by exact transfer matrices, with its critical speeds.
+
+The rotor is example 5.9.1 of Friswell, Penny, Garvey and Lees, Dynamics of Rotating Machines (2010).
+"""
+
+import sys
 
 import numpy as np
 
 import gearwhine as gw
+from gearwhine.figures import draw_campbell
 from rotors import campbell
 
 steel = gw.ShaftMaterial(youngs_modulus=211e9, shear_modulus=81.2e9, density=7810.0)
-disc = gw.Disc(at=0.6, mass=12.0, polar_inertia=0.12, diametral_inertia=0.07)
-rotor = gw.Rotor("fan", [gw.Segment(0.6, 0.04, 0.0, steel)], [disc])
-bearings = [gw.Bearing.isotropic(name, at, 5e7) for name, at in (("left", 0.0), ("right", 0.4))]
+discs = [gw.Disc.from_dimensions(at, 0.07, diameter, 0.05, 7810.0) for at, diameter in ((0.5, 0.28), (1.0, 0.35))]
+rotor = gw.Rotor("rotor", [gw.Segment(1.5, 0.05, 0.0, steel)], discs)
+bearings = [gw.Bearing.isotropic(name, at, 1e6) for name, at in (("left", 0.0), ("right", 1.5))]
 
-speeds = np.linspace(0.0, gw.rpm(15000.0), 31)
-diagram = campbell(rotor, bearings, speeds, count=4)
-critical_rpm = [crossing.speed * 30.0 / np.pi for crossing in diagram.crossings()]
+speeds = gw.rpm(1.0) * np.linspace(0.0, 4000.0, 41)
+diagram = campbell(rotor, bearings, speeds, count=6)
+crossings = diagram.crossings()
 
 for speed, frequencies in zip(speeds[::10], diagram.frequencies[::10], strict=True):
-    print(f"{speed * 30 / np.pi:6.0f} rpm: " + "  ".join(f"{f / (2 * np.pi):7.2f} Hz" for f in frequencies[:4]))
-print("critical speeds: " + ", ".join(f"{speed:.0f} rpm" for speed in critical_rpm))
+    print(f"{speed / gw.rpm(1.0):6.0f} rpm: " + "  ".join(f"{f:7.2f} rad/s" for f in np.sort(frequencies)))
+print("critical speeds: " + ", ".join(f"{crossing.speed / gw.rpm(1.0):.0f} rpm" for crossing in crossings))
+damping = -diagram.eigenvalues.real / np.abs(diagram.eigenvalues)
+figure = draw_campbell("Two discs", speeds, diagram.frequencies, diagram.direction, damping)
+if len(sys.argv) > 1:
+    figure.savefig(sys.argv[1])

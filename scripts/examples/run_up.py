@@ -1,17 +1,20 @@
-"""Run-up of a gear pair on its shafts: orders of the mesh force over speed."""
+"""Run-up of a gear pair on its shafts: the mesh order passes through a resonance of the machine."""
 
+import sys
 from pathlib import Path
 
 import gearwhine as gw
 
 CASE = Path(__file__).with_name("two_gears.toml")
-RUN = "{ run = { from = '1500 rpm', to = '4500 rpm', time = '0.5 s' }, tolerance = 5e-3 }"
+RUN = {"from": "2200 rpm", "to": "3900 rpm", "time": "0.4 s"}
 
-study = gw.load(CASE, {"operation.speed": "4500 rpm", "transient": RUN})
+study = gw.load(CASE, {"operation.speed": "3900 rpm", "transient": {"run": RUN, "tolerance": 5e-3}})
 run = study.simulate()
-signature = run.solved.run_signature
-orders = signature.orders["mesh force pinion-wheel"]
-peak_speed = orders.speeds_rpm[orders.amplitudes[:, orders.orders.searchsorted(28.0)].argmax()]
+mesh_order = run.dataset["run_order_amplitude"].sel(run_signal="pinion -> wheel", named_order="1× pinion -> wheel")
+peak_rpm = float(mesh_order.idxmax("order_speed"))
 
-print(f"{signature.speeds_rpm[0]:.0f} to {signature.speeds_rpm[-1]:.0f} rpm; orders of {list(signature.orders)}")
-run.plot(next(name for name, _ in run.figures() if name.startswith("run-up-waterfall")))
+print(f"mesh force of the mesh order [N], peak, over speed [rpm]:\n{mesh_order.to_series()}")
+print(f"largest at {peak_rpm:.0f} rpm, where the mesh frequency is {28 * peak_rpm / 60:.0f} Hz")
+figure = run.plot("run-up-waterfall-pinion-wheel")
+if len(sys.argv) > 1:
+    figure.savefig(sys.argv[1])

@@ -1,19 +1,21 @@
-"""Periodic motion of a gear pair over speed, without marching: its branch through the mesh resonance."""
+"""Periodic motion of a gear pair over speed, found directly: its branch through a resonance of the machine."""
 
+import sys
 from pathlib import Path
-
-import numpy as np
 
 import gearwhine as gw
 
-study = gw.load(Path(__file__).with_name("two_gears.toml"))
-steady = study.steady(curve=True, points=40)
-curve = steady.solved.curve
-rpm = np.abs(curve.speeds) * 30.0 / np.pi
-loudest = float(rpm[curve.rms_compression[:, 0].argmax()])
+CASE = Path(__file__).with_name("two_gears.toml")
+SWEEP = {"from": "2700 rpm", "to": "3300 rpm", "step": "600 rpm"}
 
-print(
-    f"{len(rpm)} points from {rpm.min():.0f} to {rpm.max():.0f} rpm, {np.count_nonzero(~curve.stable)} of them unstable"
-)
-print(f"largest vibration of the teeth, {1e6 * curve.rms_compression.max():.3f} µm rms, at {loudest:.0f} rpm")
-steady.plot("steady-curve")
+study = gw.load(CASE, {"sweep.speed": SWEEP})
+steady = study.steady(curve=True, points=20)
+curve = steady.dataset.isel(contact=0)
+peak_rpm = float(curve["branch_speed"][curve["branch_peak_force"].values.argmax()])
+unstable = int((~curve["branch_stable"].astype(bool)).sum())
+
+print(f"{curve.sizes['branch_point']} points of the branch, {unstable} of them unstable")
+print(f"largest tooth force {float(curve['branch_peak_force'].max()):.0f} N at {peak_rpm:.0f} rpm")
+figure = steady.plot("steady-curve")
+if len(sys.argv) > 1:
+    figure.savefig(sys.argv[1])

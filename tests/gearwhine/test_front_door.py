@@ -127,6 +127,29 @@ def test_what_the_case_reader_refuses_objects_refuse_in_the_same_words(tmp_path:
         gw.load("small-gearbox", {"housing.box.mesh_size": "-3 mm"})
 
 
+def test_the_machine_of_a_case_is_the_one_that_its_analyses_solve() -> None:
+    study = gw.load("spur-pair")
+    machine = study.machine
+    assert isinstance(machine, gw.Machine)
+    assert machine.speeds == pytest.approx({"input": gw.rpm(5500.0), "output": -gw.rpm(5500.0)})
+    from coupling import coupled_modes
+
+    found = coupled_modes(machine.assemble().system).frequencies_hz
+    assert found == pytest.approx(study.system().dataset["system_frequency"].values, rel=1e-9)
+
+
+def test_changes_of_a_case_may_be_lists_and_tables() -> None:
+    run = {"from": "1500 rpm", "to": "4500 rpm", "time": "0.5 s"}
+    changes = {"transient": {"run": run, "tolerance": 1e-3}, "measured": {"frequencies": ["658 Hz", 1049.0]}}
+    case = gw.load("small-gearbox", changes).case
+    assert case.transient is not None
+    assert case.transient.run is not None
+    assert case.transient.tolerance == 1e-3
+    assert case.measured is not None
+    assert case.measured.frequencies == pytest.approx((658.0, 1049.0))
+    assert gw.load("small-gearbox", {"transient": ""}).case.transient is None
+
+
 def test_the_examples_of_docstrings_hold() -> None:
     import doctest
 

@@ -1,0 +1,55 @@
+"""The worked examples of whole cases: a bundled gearbox, the noise rig, and a parameter study."""
+
+import runpy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearwhine as gw
+
+# Module times teeth over two, at 20 degrees [m]: the pinion of `two_gears.toml`, and the rig's.
+BASE_RADIUS = 3e-3 * 28 / 2 * np.cos(np.radians(20.0))
+RIG_BASE_RADIUS = 3.175e-3 * 28 / 2 * np.cos(np.radians(20.0))
+
+
+def test_first_steps_find_all_modes_and_the_mesh_harmonics(example: Any, tmp_path: Path) -> None:
+    found = example("first_steps")
+    certificate = found["modes"].proofs["certificate"]
+    assert certificate["complete"]
+    assert certificate["expected"] == len(found["frequencies"])
+    # 28 teeth at 3000 rpm; what is beside the mesh harmonics comes from unbalance and runout.
+    assert float(found["spectrum"].idxmax()) % (28 * 50.0) == pytest.approx(0.0, abs=1e-6)
+    assert (tmp_path / "results" / "results.nc").is_file()
+
+
+def test_dynamic_factor_does_not_depend_on_torque(example: Any) -> None:
+    """While flanks stay together the equations are linear in the load, whatever the stiffness does over time."""
+    found = example("parameter_study", "sweep")
+    factor = found["dynamic_factor"].squeeze()
+    low, high = (factor.isel(operation_torque=number).values for number in (0, -1))
+    assert low == pytest.approx(high, rel=1e-5)
+    means = found["data"]["mesh_force_mean"].mean("gear_pair_0_damping_ratio").values.ravel()
+    assert means == pytest.approx(np.array([20.0, 80.0]) / BASE_RADIUS, rel=5e-3)
+
+
+def test_noise_rig_carries_its_torque_and_names_the_measured_modes(example: Any) -> None:
+    found = example("noise_rig_end_to_end", "rig")
+    assert found["mean_force"] == pytest.approx(71.77 / RIG_BASE_RADIUS, rel=2e-3)
+    # TM-104434, Table II.
+    pairs = found["run"].document["compare"]["pairs"]
+    measured = [658.0, 1049.0, 1710.0, 2000.0, 2276.0, 2536.0, 2722.0, 2962.0]
+    assert [pair["measured_hz"] for pair in pairs] == pytest.approx(measured)
+
+
+def test_figures_of_the_three_stage_train_are_redrawn(tmp_path: Path) -> None:
+    """TM-101442, Figs. 4 to 12; the torsional modes of stage 1 in Fig. 9 are a rigid rotation and those of Table I."""
+    script = runpy.run_path(str(Path(__file__).parents[2] / "scripts" / "redraw_three_stage.py"))
+    script["main"](str(tmp_path), "transient.revolutions=2", "transient.discard=1")
+    assert sorted(path.stem for path in tmp_path.iterdir()) == [f"figure-{number:02d}" for number in range(4, 13)]
+    data = gw.load("three-stage").rotors().dataset
+    figure = script["shapes"](data, "rotor_torsional_shape", [0], 3)
+    crossings = [np.count_nonzero(np.diff(np.sign(line.get_ydata()))) for line in figure.axes[0].lines[:3]]
+    assert crossings == [0, 1, 2]
+    assert data["rotor_torsional_frequency"].values[0, 1:3] == pytest.approx([355.0, 1090.0], rel=5e-3)

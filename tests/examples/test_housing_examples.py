@@ -1,0 +1,50 @@
+"""The worked examples of housings against masses, twins and an independent eigensolver."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+from scipy.sparse.linalg import eigsh
+
+
+def test_modes_of_a_step_file_are_those_of_its_solid(example: Any) -> None:
+    found = example("housing_modes_of_a_step_file")
+    housing, modes = found["housing"], found["modes"]
+    volume = 0.2 * 0.12 * 0.16 - 0.18 * 0.1 * 0.14 - np.pi * 0.025**2 * 0.01
+    matrices = housing.matrices()
+    # Ten-node tetrahedra take the bore's circle as parabolas.
+    assert matrices.total_mass == pytest.approx(7850.0 * volume, rel=1e-4)
+    free = np.setdiff1d(np.arange(3 * matrices.n_nodes), matrices.fixed)
+    stiffness, mass = (matrix.tocsc()[free][:, free] for matrix in (matrices.stiffness, matrices.mass))
+    eigenvalues = eigsh(stiffness, k=4, M=mass, sigma=0.0, return_eigenvectors=False)
+    frequencies = np.sqrt(np.sort(eigenvalues)) / (2.0 * np.pi)
+    below = frequencies[frequencies < 4000.0]
+    assert modes.frequencies_hz == pytest.approx(below, rel=1e-7)
+
+
+def test_update_finds_the_modulus_of_the_twin(example: Any) -> None:
+    """All frequencies are as √E, so that both the error before the fit and the fit itself have closed forms."""
+    found = example("compare_and_update")
+    before, fit = found["before"].document, found["fit"]
+    assert before["rms_error_percent"] == pytest.approx(100.0 * (np.sqrt(207.0 / 196.0) - 1.0), rel=1e-6)
+
+    def misfit(modulus: float) -> float:
+        """Six frequencies with 0.5 % of noise each, and the prior: 207 GPa, a third of the way to 180 GPa."""
+        error = (np.sqrt(modulus / 196.0) - 1.0) / 0.005
+        return 6.0 * error**2 + ((modulus - 207.0) / 9.0) ** 2
+
+    expected = minimize_scalar(misfit, bounds=(180.0, 230.0), method="bounded", options={"xatol": 1e-9}).x
+    assert float(fit.dataset["value_after"][0]) == pytest.approx(1e9 * expected, rel=1e-4)
+
+
+def test_modes_of_shafts_in_a_housing_are_those_of_its_matrices(example: Any) -> None:
+    found = example("housing_and_shafts_coupled")
+    system = found["coupled"].system
+    n = system.size
+    state = np.block([[np.zeros((n, n)), np.eye(n)], [-system.mean_stiffness, -system.mean_damping]])
+    eigenvalues = np.linalg.eigvals(state)
+    frequencies = np.sort(np.abs(eigenvalues[eigenvalues.imag > 1.0])) / (2.0 * np.pi)
+    elastic = found["modes"].frequencies_hz[found["modes"].frequencies_hz > 1.0]
+    assert elastic[:20] == pytest.approx(frequencies[:20], rel=1e-6)
+    assert found["machine"].mesh_frequencies[0] == pytest.approx(30 * 3000 / 60)
