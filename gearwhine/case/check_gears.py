@@ -42,7 +42,9 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
             continue
         for gear in (driver, driven):
             yield from _check_model(draft, index, pair, gear)
-        if driver.name in built and driven.name in built:
+        unequal = list(_unequal_teeth(index, driver, driven))
+        yield from unequal
+        if not unequal and driver.name in built and driven.name in built:
             yield from _check_pair(draft, index, pair, (driver, driven), (built[driver.name], built[driven.name]))
     known = known_pairs([gear for _, gear in draft.gears], draft.gear_pairs)
     for wrong in train_of_pairs(known).contradictions if known else ():
@@ -57,13 +59,10 @@ def _check_pair(
     draft: Draft, index: int, pair: GearPair, given: tuple[Gear, Gear], gears: tuple[BuiltGear, BuiltGear]
 ) -> Iterator[Finding]:
     """Yield why two gears do not mesh, at any distance or at that of their axes, or are not opposite each other."""
-    from coupling.gears import GearError, GearPairGeometry, MismatchedGearsError
+    from coupling.gears import GearError, GearPairGeometry
 
     try:
         GearPairGeometry(*gears)
-    except MismatchedGearsError:
-        yield from _unequal_teeth(index, *gears)
-        return
     except GearError as error:
         # Not for their distance, which is the one without backlash.
         yield Finding(("gear_pair", index), f"gears that can mesh; {error}", UNSAID)
@@ -107,27 +106,26 @@ def _check_distance(index: int, gears: tuple[BuiltGear, BuiltGear], distance: fl
         yield Finding(("gear_pair", index), f"axes closer together: the gears lose contact {shown}", UNSAID)
 
 
-def _unequal_teeth(index: int, driver: BuiltGear, driven: BuiltGear) -> Iterator[Finding]:
-    """Yield the size in which the teeth of two gears differ most."""
-    degrees = 180.0 / math.pi
-    sizes = {
-        "helix angle and opposite hands": (degrees * driver.helix_angle, degrees * driven.helix_angle),
-        "module": (driver.module, driven.module),
-        "pressure angle": (degrees * driver.pressure_angle, degrees * driven.pressure_angle),
-    }
+def _unequal_teeth(index: int, driver: Gear, driven: Gear) -> Iterator[Finding]:
+    """Yield a size in which the teeth of two gears do not fit each other."""
+    from coupling.gears.pair_geometry import mismatched_sizes
 
-    def difference(size: str) -> float:
-        first, second = sizes[size]
-        apart = first + second if size.startswith("helix") else first - second
-        return abs(apart) / max(abs(first), abs(second), 1e-300)
-
-    size = max(sizes, key=difference)
-    if size == "module":
-        shown = [millimetres(value) for value in sizes[size]]
+    modules, pressures, helices = (
+        (driver.tooth_module, driven.tooth_module),
+        (math.degrees(driver.pressure_angle), math.degrees(driven.pressure_angle)),
+        (math.degrees(driver.helix_angle), math.degrees(driven.helix_angle)),
+    )
+    sizes = ((gear.tooth_module, gear.pressure_angle, gear.helix_angle) for gear in (driver, driven))
+    unequal = mismatched_sizes(*sizes)
+    if "helix_angle" in unequal:
+        size, shown = "equal helix angle and opposite hands", [f"{angle:+g} deg" for angle in helices]
+    elif "pressure_angle" in unequal:
+        size, shown = "one pressure angle", [f"{angle:g} deg" for angle in pressures]
+    elif "module" in unequal:
+        size, shown = "one module", [millimetres(module) for module in modules]
     else:
-        shown = [f"{value:{'+g' if size.startswith('helix') else 'g'}} deg" for value in sizes[size]]
-    expected = f"gears of {'equal' if size.startswith('helix') else 'one'} {size}; "
-    expected += f'"{driver.name}" has {shown[0]}, "{driven.name}" {shown[1]}'
+        return
+    expected = f'gears of {size}; "{driver.name}" has {shown[0]}, "{driven.name}" {shown[1]}'
     yield Finding(("gear_pair", index, "driven"), expected)
 
 
