@@ -1,12 +1,12 @@
-"""Gears: from the shape of a tooth to the force that a gear mesh answers with.
+"""Gears: tooth geometry, tooth stiffness, tooth contact law and loaded transmission error.
 
-The chain, each link usable alone:
+The steps, each usable alone:
 
 >>> from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness
 >>> from coupling.gears import static_transmission_error, tooth_contact
 >>> wheel = Gear("wheel", teeth=62, module=2e-3, pressure_angle=0.349066, face_width=20e-3, bore=35e-3)
 >>> pair = GearPairGeometry(wheel, wheel)  # path of contact, working angle, backlash
->>> contact = tooth_contact(pair, PotentialEnergyStiffness())  # the law: k(s), d(s), damping
+>>> contact = tooth_contact(pair, PotentialEnergyStiffness())  # contact law: k(s), d(s), damping
 >>> loaded = static_transmission_error(contact, force=2000.0)  # mesh stiffness, sharing
 >>> round(pair.contact_ratio, 4)
 1.7898
@@ -17,19 +17,13 @@ Positions along the path of contact are in base pitches, phases in mesh periods,
 
 from coupling.gears.blank import Inertia
 from coupling.gears.centre_distance import profile_shift_sum, shifted_to, tip_shortening
-from coupling.gears.compliant_teeth import (
-    CompliantTeeth,
-    CornellStiffness,
-    ElasticRingStiffness,
-    PotentialEnergyStiffness,
-    WeberBanaschekStiffness,
-)
-from coupling.gears.cornell import cornell
+from coupling.gears.compliant_teeth import CompliantTeeth, ToothCompliance
+from coupling.gears.cornell import CornellStiffness
 from coupling.gears.corner_contact import FlankPlaces, corner_reach, flank_places
 from coupling.gears.crack import ToothCrack
 from coupling.gears.damping import equivalent_mass, mesh_damping
 from coupling.gears.deviation import flank_gap, pair_deviation
-from coupling.gears.elastic_ring import elastic_ring
+from coupling.gears.elastic_ring import ElasticRingStiffness
 from coupling.gears.errors import (
     ContactAccuracyError,
     GearError,
@@ -52,7 +46,7 @@ from coupling.gears.harris_map import HarrisMap, harris_map, transmission_error_
 from coupling.gears.hertz import LineContact, hertz_compliance, line_contact
 from coupling.gears.hunting import hunting_mesh
 from coupling.gears.involute import inverse_involute, involute
-from coupling.gears.iso6336 import Iso6336Values, iso6336_stiffness
+from coupling.gears.iso6336 import Iso6336Stiffness, Iso6336Values, iso6336_stiffness
 from coupling.gears.modifications import RootRelief, TipRelief
 from coupling.gears.optimal_relief import PeakToPeak, ReliefAim, ReliefOptimum, WeightedHarmonics, optimal_tip_relief
 from coupling.gears.outline import gear_outline, meshing_rotations, pair_outlines
@@ -79,7 +73,6 @@ from coupling.gears.static import (
 from coupling.gears.stiffness_models import (
     STIFFNESS_MODELS,
     ConstantStiffness,
-    Iso6336Stiffness,
     SquareStiffness,
     StiffnessModel,
     TableStiffness,
@@ -96,10 +89,10 @@ from coupling.gears.thickness import (
     span_measurement,
     tooth_thickness,
 )
-from coupling.gears.tooth_compliance import ToothCompliance, ToothModel, potential_energy
+from coupling.gears.tooth_compliance import PotentialEnergyStiffness
 from coupling.gears.tooth_contact import PairStates, ToothContact
 from coupling.gears.tooth_size import module_from_base_radius, module_from_diametral_pitch
-from coupling.gears.weber_banaschek import weber_banaschek
+from coupling.gears.weber_banaschek import WeberBanaschekStiffness
 
 __all__ = [
     "POINTS_OF_CONTACT",
@@ -153,7 +146,6 @@ __all__ = [
     "ToothCompliance",
     "ToothContact",
     "ToothCrack",
-    "ToothModel",
     "UndercutError",
     "Wear",
     "WeberBanaschekStiffness",
@@ -163,9 +155,7 @@ __all__ = [
     "contact_curvature_radius",
     "contact_modulus",
     "contact_pressure",
-    "cornell",
     "corner_reach",
-    "elastic_ring",
     "equivalent_mass",
     "face_slices",
     "flank_gap",
@@ -195,7 +185,6 @@ __all__ = [
     "path_of_contact",
     "pitch_gaps",
     "pointed_radius",
-    "potential_energy",
     "profile_shift_sum",
     "require_tip_thickness",
     "runout_error",
@@ -210,6 +199,5 @@ __all__ = [
     "tooth_outline",
     "tooth_thickness",
     "transmission_error_harmonics",
-    "weber_banaschek",
     "within_fitted_range",
 ]

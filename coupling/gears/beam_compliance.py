@@ -1,4 +1,4 @@
-"""The tooth as a beam of varying section: what it yields in bending, shear and compression under a load on its flank.
+"""Tooth compliance as a beam of varying section: bending, shear and axial compression under a load on the flank.
 
 A unit load at height ``y_o``, half thickness ``x_o`` and load angle ``beta`` bends the tooth with the moment
 ``cos(beta) (y_o - y) - sin(beta) x_o`` at height ``y``, shears it with ``cos(beta)`` and compresses it with
@@ -18,7 +18,7 @@ neighbouring slices forbid it: plane strain, ``E' = E / (1 - nu^2)``.  Shear is 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -27,7 +27,7 @@ from scipy.optimize import brentq
 
 from coupling.gears.errors import GearError
 from coupling.gears.geometry import Gear
-from coupling.gears.profile import fillet_points, flank_points, load_angle
+from coupling.gears.profile import ProfilePoints, fillet_points, flank_points, load_angle
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -55,7 +55,7 @@ def beam_compliance(
     Parameters
     ----------
     gear : Gear
-        Of a helical gear the section given; pair models take the normal one (:mod:`coupling.gears.normal_section`).
+        A spur gear; pair models of helical gears take their normal section (:mod:`coupling.gears.normal_section`).
     radius : ndarray
         Radii of the loaded points [m], from the form radius to the tip.
     foot : float
@@ -75,18 +75,9 @@ def beam_compliance(
     _check_on_flank(gear, radius)
     beta = load_angle(gear, radius)[..., None]
     load = flank_points(gear, beta)
-
-    middle, half = _interval(foot, gear.fillet_end)
-    fillet = fillet_points(gear, middle + half * _NODES)
-    # On the flank the interval ends at the load, so the points differ from load to load.
-    start = load_angle(gear, np.array(gear.form_radius))
-    middle_angle, half_angle = 0.5 * (beta + start), 0.5 * (beta - start)
-    flank = flank_points(gear, middle_angle + half_angle * _NODES)
-
     sine, cosine = np.sin(beta), np.cos(beta)
     bending, inverse_thickness = np.zeros(radius.shape), np.zeros(radius.shape)
-    for points, half_length in ((fillet, half), (flank, half_angle)):
-        climb = half_length * _WEIGHTS * points.height_rate
+    for points, climb in tooth_sections(gear, beta, foot, 0.5 + 0.5 * _NODES, 0.5 * _WEIGHTS):
         moment = cosine * (load.height - points.height) - sine * load.half_thickness
         bending = bending + np.sum(climb * moment**2 * 1.5 / points.half_thickness**3, axis=-1)
         inverse_thickness = inverse_thickness + np.sum(climb / (2.0 * points.half_thickness), axis=-1)
@@ -97,6 +88,38 @@ def beam_compliance(
         shear=1.2 * cosine**2 * inverse_thickness / (shear_modulus(gear) * width),
         axial=sine**2 * inverse_thickness / (modulus * width),
     )
+
+
+def tooth_sections(
+    gear: Gear, beta: FloatArray, foot: float, nodes: FloatArray, weights: FloatArray
+) -> Iterator[tuple[ProfilePoints, FloatArray]]:
+    """Sections of the tooth from its foot to the load, for integrals over its height.
+
+    Parameters
+    ----------
+    gear : Gear
+    beta : ndarray, shape (..., 1)
+        Load angles [rad].
+    foot : float
+        Where on the fillet the beam is held [rad].
+    nodes, weights : ndarray, shape (n,)
+        Quadrature on 0 ... 1, used on the fillet and on the flank.
+
+    Yields
+    ------
+    points : ProfilePoints
+        Sections of the fillet, then of the flank.
+    climb : ndarray
+        Their weights in an integral over the height [m].
+    """
+    # On the flank the interval ends at the load, so the points differ from load to load.
+    start = load_angle(gear, np.array(gear.form_radius))
+    length = np.asarray(gear.fillet_end - foot)
+    for points, span in (
+        (fillet_points(gear, foot + nodes * length), length),
+        (flank_points(gear, start + nodes * (beta - start)), beta - start),
+    ):
+        yield points, span * weights * points.height_rate
 
 
 def plane_modulus(gear: Gear, state: PlaneState) -> float:
@@ -151,10 +174,6 @@ def _on_fillet(gear: Gear, above: Callable[[float], float]) -> float:
     if above(shallow) <= 0.0:
         return shallow
     return float(brentq(above, shallow, deep, xtol=1e-13))
-
-
-def _interval(first: float, last: float) -> tuple[float, float]:
-    return 0.5 * (first + last), 0.5 * (last - first)
 
 
 def _check_on_flank(gear: Gear, radius: FloatArray) -> None:

@@ -1,9 +1,9 @@
-"""The body that carries the teeth: its mass and moments of inertia.
+"""Gear blank: mass and moments of inertia of the body that carries the teeth.
 
 The teeth count as a ring out to the reference circle, where they fill half the circumference.  A gear without a rim is
 a disc as wide as its face, down to its bore.  A gear with a rim is a ring of the full width down to the inside of the
-rim, and a web of its own thickness in the middle of the face from there to the bore; without a web the ring stands
-alone, and what carries it is given as a disc of the rotor.
+rim, and a web of its own thickness in the middle of the face from there to the bore; without a web the ring is
+alone, and its carrier is given as a disc of the rotor.
 """
 
 import math

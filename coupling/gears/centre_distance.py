@@ -1,4 +1,4 @@
-"""Centre distance and profile shifts, either from the other.
+"""Centre distance of a gear pair from its profile shifts, and profile shifts from a centre distance.
 
 Two gears mesh without backlash at the transverse pressure angle ``w`` of (ISO 21771)
 
@@ -24,12 +24,12 @@ def closing_pressure_angle(driver: Gear, driven: Gear, *, thinned: bool = False)
     ----------
     driver, driven : Gear
     thinned : bool
-        Of the teeth as thin as they are; else as thick as their profile shifts say.
+        Whether to take the tooth thinning into account.
 
     Raises
     ------
     InterferenceError
-        For teeth so thin that they do not close at any distance.
+        For teeth too thin to mesh without backlash at any distance.
     """
     gears = (driver, driven)
     shift = sum(gear.generating_shift if thinned else gear.profile_shift for gear in gears)
@@ -44,7 +44,7 @@ def closing_pressure_angle(driver: Gear, driven: Gear, *, thinned: bool = False)
 
 
 def profile_shift_sum(driver: Gear, driven: Gear, centre_distance: float) -> float:
-    """Sum of the profile shifts that closes two gears at a distance.
+    """Sum of the profile shifts with which two gears mesh without backlash at a distance.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def profile_shift_sum(driver: Gear, driven: Gear, centre_distance: float) -> flo
 
 
 def shifted_to(driver: Gear, driven: Gear, centre_distance: float) -> Gear:
-    """The driven gear with the profile shift that closes the pair at `centre_distance` [m], the driver as it is.
+    """Driven gear with the profile shift of a pair without backlash at `centre_distance` [m], the driver unchanged.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def shifted_to(driver: Gear, driven: Gear, centre_distance: float) -> Gear:
 
 
 def tip_shortening(driver: Gear, driven: Gear, centre_distance: float) -> float:
-    """How much both addenda must shrink so that profile shift leaves the tips the clearance of the basic rack.
+    """Tip shortening: reduction of both addenda that restores the tip clearance of the basic rack.
 
     Parameters
     ----------

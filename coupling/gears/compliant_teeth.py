@@ -1,27 +1,31 @@
-"""Stiffness of a pair from what its two teeth and their contact yield: the models that look at the tooth.
+"""Tooth pair stiffness from the compliances of two teeth and their contact: the base of all tooth models.
 
 The compliances of both teeth and of their contact add up, ``c(s) = c_k(s) + c_i(s) + h(F, s)``, and the stiffness is
 its inverse.  Where the contact is Weber's, ``h`` depends on the load F of the pair.  The dynamics need a stiffness that
 is a function of position alone; it is then frozen at the load that the model is given, as the secant through it, so
-that the deflection under that load is exact and that under others is not.  `PairCompliance.pair_compliance` with a
-force is exact at any.  A load that is not given is `REFERENCE_LINE_LOAD` times the face width.
+that the deflection is exact under that load and approximate under others.  `CompliantTeeth.pair_compliance` with a
+force is exact at any load.  A load that is not given is `REFERENCE_LINE_LOAD` times the face width.
 
 Neighbouring pairs stand on the same two bodies.  A load on one moves the other's flanks, along the line of action, by
 
     C(s) = c_k(s + 1, s) + c_i(s, s + 1),
 
 c_k and c_i the cross compliances of two neighbouring teeth of each gear (:mod:`coupling.gears.rim`): the twist of the
-body about its bore, which both feel in full, and the dent around the root.  As one load moves up its tooth the other
-moves down, so that C hardly changes while both touch, by less than 1 %; the law takes its mean for all pairs.
+body about its bore, which both teeth feel in full, and the dent around the root.  As one load moves up its tooth the
+other moves down, so that C varies by less than 1 % while both pairs touch; the law takes its mean for all pairs.
+
+A new tooth model is one subclass of `CompliantTeeth`: it gives the compliance of one tooth (`solve_tooth`) and, where
+neighbouring teeth share a body, that body (`shared_body`).  Its name in cases comes from the list in
+:mod:`coupling.gears.stiffness_models`.
 """
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from functools import partial
-from typing import Literal
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -29,18 +33,13 @@ import numpy.typing as npt
 from coupling.gears import piecewise
 from coupling.gears.beam_compliance import PlaneState
 from coupling.gears.chebyshev import by_few_values
-from coupling.gears.cornell import cornell_state, solved_cornell
-from coupling.gears.elastic_ring import solved_elastic_ring
 from coupling.gears.errors import StiffnessModelError
-from coupling.gears.foundation import RootSection
 from coupling.gears.geometry import Gear
 from coupling.gears.hertz import hertz_compliance, line_contact
-from coupling.gears.normal_section import Compliance, by_normal_section, cross_by_normal_section
+from coupling.gears.normal_section import Compliance, transverse_compliance
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
-from coupling.gears.rim import CrossCompliance, neighbour_compliance
-from coupling.gears.tooth_compliance import SolvedTooth, ToothCompliance, ToothModel, solved_potential_energy
-from coupling.gears.weber_banaschek import solved_weber_banaschek
+from coupling.gears.rim import neighbour_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -50,8 +49,35 @@ REFERENCE_LINE_LOAD = 300e3
 """Load per face width at which Weber's contact is taken where none is given [N/m]: within the 100 to 1600 N/mm that the
 constants of ISO 6336-1 are for."""
 
-
 _CROSS_NODES = 4
+
+
+@dataclass(frozen=True, eq=False)
+class ToothCompliance:
+    """Compliance of one tooth and the body under it, along the line of action [m/N].
+
+    Attributes
+    ----------
+    bending, shear, axial, foundation : ndarray
+        Of the tooth as a beam, and of the body it stands on; all of the shape of the radii of the loads.
+    rim : ndarray
+        Additional compliance of a rim on a thinner web, over a body of the teeth's full width.
+    """
+
+    bending: FloatArray
+    shear: FloatArray
+    axial: FloatArray
+    foundation: FloatArray
+    rim: FloatArray = field(default_factory=lambda: np.zeros(()))
+
+    @property
+    def total(self) -> FloatArray:
+        """Sum of all parts [m/N]."""
+        return self.bending + self.shear + self.axial + self.foundation + self.rim
+
+
+SolvedTooth = Callable[[FloatArray], ToothCompliance]
+"""One tooth, with all solved that does not depend on the load: from radii on its flank [m] to its compliance."""
 
 
 @dataclass(frozen=True)
@@ -61,35 +87,79 @@ class SharedBody:
     Attributes
     ----------
     state : {"plane-stress", "plane-strain"}
-    turning : bool
-        Whether the tooth's own compliance holds the twist of the whole body about its bore: one on a half plane has no
-        bore.
+    twists : bool
+        Whether the tooth's own compliance includes the twist of the whole body about its bore; a tooth on a half plane
+        has no bore.
     """
 
     state: PlaneState
-    turning: bool
+    twists: bool
 
 
+@dataclass(frozen=True)
 class CompliantTeeth(ABC):
     """A pair of teeth in series with their contact.
 
-    Attributes
+    Parameters
     ----------
     contact : {"yang-sun", "weber"}
-        See :mod:`coupling.gears.hertz`.
+        Contact compliance, see :mod:`coupling.gears.hertz`.
     force : float or None
         Load of the pair at which Weber's contact is frozen [N]; None for `REFERENCE_LINE_LOAD`.
+
+    Raises
+    ------
+    StiffnessModelError
+        For an unknown contact, or a force that is not above 0.
     """
 
-    contact: ContactModel
-    force: float | None
+    name: ClassVar[str]
+    """Name in cases and messages."""
+
+    contact: ContactModel = field(default="weber", kw_only=True)
+    force: float | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        if self.contact not in ("yang-sun", "weber"):
+            raise StiffnessModelError(
+                f"stiffness model {self.name!r}: contact must be 'yang-sun' or 'weber', got {self.contact!r}"
+            )
+        if self.force is not None and not (math.isfinite(self.force) and self.force > 0.0):
+            raise StiffnessModelError(f"stiffness model {self.name!r}: force must be above 0 N, got {self.force!r}")
 
     @abstractmethod
+    def solve_tooth(self, gear: Gear) -> SolvedTooth:
+        """Solve one tooth of a spur gear for loads at any radius from the form circle to the tip."""
+
     def shared_body(self, gear: Gear) -> SharedBody | None:
-        """What neighbouring teeth share of their gear's body; None where it is not known."""
+        """Body that neighbouring teeth share; None where each tooth stands on one of its own."""
+        return None
+
+    def tooth(self, gear: Gear, radius: npt.ArrayLike) -> ToothCompliance:
+        """Compliance of one tooth of a spur gear.
+
+        Parameters
+        ----------
+        gear : Gear
+        radius : array_like
+            Radii of the loaded points [m], from the form radius to the tip.
+
+        Returns
+        -------
+        ToothCompliance
+            Arrays of the shape of `radius`.
+
+        Raises
+        ------
+        GearError
+            For a radius off the involute flank.
+        StiffnessModelError
+            For a body outside the range of the model.
+        """
+        return self.solve_tooth(gear)(np.asarray(radius, dtype=np.float64))
 
     def shared_compliance(self, geometry: GearPairGeometry) -> float:
-        """What pairs of teeth in contact at once yield in common, of both gears [m/N].
+        """Compliance that pairs of teeth in contact at once share, of both gears [m/N].
 
         The mean over the positions at which two neighbouring pairs touch. Zero where the model has no body, or where
         the path of contact never holds two pairs.
@@ -106,41 +176,21 @@ class CompliantTeeth(ABC):
         moved = moved + driven(geometry.driven_radius(behind), geometry.driven_radius(ahead))
         return float(0.5 * weights @ moved)
 
-    def _neighbours(self, gear: Gear) -> CrossCompliance | None:
+    def _neighbours(self, gear: Gear) -> Compliance | None:
         body = self.shared_body(gear)
         if body is None:
             return None
+        return transverse_compliance(gear, lambda spur: neighbour_compliance(spur, body.state, twists=body.twists))
 
-        def solve(spur: Gear) -> CrossCompliance:
-            return neighbour_compliance(spur, body.state, turning=body.turning)
+    def teeth_compliance(self, geometry: GearPairGeometry) -> Compliance:
+        """Compliance of both teeth without their contact [m/N], as a function of the position in base pitches."""
 
-        if gear.helix_angle == 0.0:
-            return solve(gear)
-        moves = cross_by_normal_section(gear, solve)
-        return lambda behind, ahead: moves(behind, ahead) / math.cos(gear.base_helix_angle)
+        def total(spur: Gear) -> Compliance:
+            tooth = self.solve_tooth(spur)
+            return lambda radius: tooth(radius).total
 
-    @abstractmethod
-    def solved_tooth(self, gear: Gear) -> SolvedTooth:
-        """One tooth, with all that does not depend on the load's radius solved."""
-
-    def tooth(self, gear: Gear, radius: FloatArray) -> ToothCompliance:
-        """Compliance of one tooth under a load at `radius` [m]."""
-        return self.solved_tooth(gear)(radius)
-
-    def solved_teeth(self, geometry: GearPairGeometry) -> Compliance:
-        """Compliance of both teeth without their contact [m/N] by position in base pitches, solved for any."""
-        driver, driven = self._one_tooth(geometry.driver), self._one_tooth(geometry.driven)
+        driver, driven = (transverse_compliance(gear, total) for gear in (geometry.driver, geometry.driven))
         return lambda position: driver(geometry.driver_radius(position)) + driven(geometry.driven_radius(position))
-
-    def _one_tooth(self, gear: Gear) -> Compliance:
-        def solve(spur: Gear) -> Compliance:
-            solved = self.solved_tooth(spur)
-            return lambda radius: solved(radius).total
-
-        if gear.helix_angle == 0.0:
-            return solve(gear)
-        yields = by_normal_section(gear, solve)
-        return lambda radius: yields(radius) / math.cos(gear.base_helix_angle)
 
     def contact_compliance(
         self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None
@@ -159,7 +209,7 @@ class CompliantTeeth(ABC):
     def pair_compliance(
         self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None
     ) -> FloatArray:
-        """Compliance of one pair [m/N] at `position` in base pitches, without any table.
+        """Compliance of one pair [m/N] at `position` in base pitches, evaluated without a table.
 
         Parameters
         ----------
@@ -175,115 +225,13 @@ class CompliantTeeth(ABC):
             Same shape as `position`.
         """
         at = np.asarray(position, dtype=np.float64)
-        return self.solved_teeth(geometry)(at) + self.contact_compliance(geometry, at, force)
+        return self.teeth_compliance(geometry)(at) + self.contact_compliance(geometry, at, force)
 
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         """Stiffness [N/m] by position; the table is checked against the model to 1e-9."""
-        length, teeth = geometry.contact_ratio, self.solved_teeth(geometry)
+        length, teeth = geometry.contact_ratio, self.teeth_compliance(geometry)
 
         def stiffness(position: FloatArray) -> FloatArray:
-            yields = teeth(position) + self.contact_compliance(geometry, position)
-            return np.asarray(1.0 / yields, dtype=np.float64)
+            return np.asarray(1.0 / (teeth(position) + self.contact_compliance(geometry, position)), dtype=np.float64)
 
         return piecewise.tabulated(by_few_values(stiffness, length), length)
-
-    def _check(self, name: str) -> None:
-        if self.contact not in ("yang-sun", "weber"):
-            raise StiffnessModelError(
-                f"stiffness model {name!r}: contact must be 'yang-sun' or 'weber', got {self.contact!r}"
-            )
-        if self.force is not None and not (math.isfinite(self.force) and self.force > 0.0):
-            raise StiffnessModelError(f"stiffness model {name!r}: force must be above 0 N, got {self.force!r}")
-
-
-@dataclass(frozen=True)
-class PotentialEnergyStiffness(CompliantTeeth):
-    """Energy method with Sainsot's body and Yang & Sun's contact, as published by Ma et al. (2014).
-
-    Parameters
-    ----------
-    root_section : {"ma2014", "trochoid"}
-        See `coupling.gears.foundation.root_section_angle`; ignored when `tooth_model` is given.
-    tooth_model : callable or None
-        Another tooth model (gear, radii) -> `ToothCompliance` in place of `potential_energy`; its body is not known,
-        so each of its teeth stands on one of its own.
-    contact, force
-        See `CompliantTeeth`.
-    """
-
-    root_section: RootSection = "ma2014"
-    tooth_model: ToothModel | None = None
-    contact: ContactModel = "yang-sun"
-    force: float | None = None
-
-    def __post_init__(self) -> None:
-        self._check("potential-energy")
-
-    def shared_body(self, gear: Gear) -> SharedBody | None:
-        """See `CompliantTeeth`."""
-        return None if self.tooth_model is not None else SharedBody("plane-stress", turning=True)
-
-    def solved_tooth(self, gear: Gear) -> SolvedTooth:
-        """One tooth, with all that does not depend on the load's radius solved."""
-        if self.tooth_model is not None:
-            return partial(self.tooth_model, gear)
-        return solved_potential_energy(gear, self.root_section)
-
-
-@dataclass(frozen=True)
-class ElasticRingStiffness(CompliantTeeth):
-    """Energy method on an exact elastic ring, with Weber's contact; see :mod:`coupling.gears.elastic_ring`."""
-
-    state: PlaneState = "plane-stress"
-    contact: ContactModel = "weber"
-    force: float | None = None
-
-    def __post_init__(self) -> None:
-        self._check("elastic-ring")
-
-    def shared_body(self, gear: Gear) -> SharedBody | None:
-        """See `CompliantTeeth`."""
-        return SharedBody(self.state, turning=True)
-
-    def solved_tooth(self, gear: Gear) -> SolvedTooth:
-        """One tooth, with all that does not depend on the load's radius solved."""
-        return solved_elastic_ring(gear, self.state)
-
-
-@dataclass(frozen=True)
-class CornellStiffness(CompliantTeeth):
-    """Cornell (1981), with Weber's contact; see :mod:`coupling.gears.cornell`."""
-
-    state: PlaneState | None = None
-    contact: ContactModel = "weber"
-    force: float | None = None
-
-    def __post_init__(self) -> None:
-        self._check("cornell")
-
-    def shared_body(self, gear: Gear) -> SharedBody | None:
-        """See `CompliantTeeth`."""
-        return SharedBody(self.state or cornell_state(gear), turning=False)
-
-    def solved_tooth(self, gear: Gear) -> SolvedTooth:
-        """One tooth, with all that does not depend on the load's radius solved."""
-        return solved_cornell(gear, self.state)
-
-
-@dataclass(frozen=True)
-class WeberBanaschekStiffness(CompliantTeeth):
-    """Weber and Banaschek (1953), with Weber's contact; see :mod:`coupling.gears.weber_banaschek`."""
-
-    contact: ContactModel = "weber"
-    force: float | None = None
-
-    def __post_init__(self) -> None:
-        self._check("weber-banaschek")
-
-    def shared_body(self, gear: Gear) -> SharedBody | None:
-        """See `CompliantTeeth`."""
-        return SharedBody("plane-stress", turning=False)
-
-    def solved_tooth(self, gear: Gear) -> SolvedTooth:
-        """One tooth, with all that does not depend on the load's radius solved."""
-        return solved_weber_banaschek(gear)

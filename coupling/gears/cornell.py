@@ -1,4 +1,4 @@
-"""Cornell's tooth, as the NASA sources used it: a cantilever on an effective fillet, and O'Donnell's foundation.
+"""Cornell's tooth model (1981): a cantilever on an effective fillet section, and O'Donnell's foundation.
 
 R. W. Cornell, "Compliance and stress sensitivity of spur gear teeth", J. Mech. Design 103 (1981).  The beam's part is
 that of :mod:`coupling.gears.beam_compliance` from the effective fillet section up to the load, which stands where the
@@ -21,15 +21,17 @@ torque on a ring: the twist of the body is not in this model.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.beam_compliance import PlaneState, axis_crossing, beam_compliance, foot_at_slope
+from coupling.gears.compliant_teeth import CompliantTeeth, SharedBody, SolvedTooth, ToothCompliance
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import fillet_points, flank_points, load_angle
 from coupling.gears.rim import solved_rim
-from coupling.gears.tooth_compliance import SolvedTooth, ToothCompliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,52 +40,45 @@ EFFECTIVE_FILLET_ANGLE = math.radians(75.0)
 _WIDE = 5.0
 
 
-def cornell(gear: Gear, radius: FloatArray, state: PlaneState | None = None) -> ToothCompliance:
-    """Tooth compliance after Cornell (1981).
+@dataclass(frozen=True)
+class CornellStiffness(CompliantTeeth):
+    """Cornell's tooth (1981), with Weber's contact.
 
     Parameters
     ----------
-    gear : Gear
-    radius : ndarray
-        Radii of the loaded points [m], from the form radius to the tip.
     state : {"plane-stress", "plane-strain"} or None
         None for `cornell_state`.
-
-    Returns
-    -------
-    ToothCompliance
-        Arrays of the shape of `radius`.
-
-    Raises
-    ------
-    GearError
-        For a radius off the involute flank.
+    contact, force
+        See `CompliantTeeth`.
     """
-    return solved_cornell(gear, state)(radius)
 
+    name: ClassVar[str] = "cornell"
+    state: PlaneState | None = None
 
-def solved_cornell(gear: Gear, state: PlaneState | None = None) -> SolvedTooth:
-    """`cornell` of one tooth, for any radii."""
-    chosen = state or cornell_state(gear)
-    foot = foot_at_slope(gear, EFFECTIVE_FILLET_ANGLE)
-    section = fillet_points(gear, np.array(foot))
-    nu = gear.poisson_ratio
-    coupling = 2.0 * (1.0 - nu)
-    if chosen == "plane-strain":
-        coupling = 2.0 * (1.0 - nu - 2.0 * nu**2) / (1.0 - nu**2)
-    plane = 1.0 if chosen == "plane-stress" else 1.0 - nu**2
-    rim = solved_rim(gear, chosen)
+    def shared_body(self, gear: Gear) -> SharedBody:
+        """See `CompliantTeeth`."""
+        return SharedBody(self.state or cornell_state(gear), twists=False)
 
-    def tooth(radius: FloatArray) -> ToothCompliance:
-        radius = np.asarray(radius, dtype=np.float64)
-        beta = load_angle(gear, radius)
-        lever = (axis_crossing(gear, radius) - section.height) / (2.0 * section.half_thickness)
-        thrust = np.tan(beta) ** 2 / (2.4 * (1.0 + nu))
-        shape = 16.67 / math.pi * lever**2 + coupling * lever + 1.534 * (1.0 + thrust)
-        foundation = np.cos(beta) ** 2 * plane * shape / (gear.youngs_modulus * gear.face_width)
-        return ToothCompliance(*beam_compliance(gear, radius, foot, chosen), foundation=foundation, rim=rim(radius))
+    def solve_tooth(self, gear: Gear) -> SolvedTooth:
+        """See `CompliantTeeth`."""
+        state = self.state or cornell_state(gear)
+        foot = foot_at_slope(gear, EFFECTIVE_FILLET_ANGLE)
+        section = fillet_points(gear, np.array(foot))
+        nu = gear.poisson_ratio
+        coupling, plane = 2.0 * (1.0 - nu), 1.0
+        if state == "plane-strain":
+            coupling, plane = 2.0 * (1.0 - nu - 2.0 * nu**2) / (1.0 - nu**2), 1.0 - nu**2
+        rim = solved_rim(gear, state)
 
-    return tooth
+        def tooth(radius: FloatArray) -> ToothCompliance:
+            beta = load_angle(gear, radius)
+            lever = (axis_crossing(gear, radius) - section.height) / (2.0 * section.half_thickness)
+            thrust = np.tan(beta) ** 2 / (2.4 * (1.0 + nu))
+            shape = 16.67 / math.pi * lever**2 + coupling * lever + 1.534 * (1.0 + thrust)
+            foundation = np.cos(beta) ** 2 * plane * shape / (gear.youngs_modulus * gear.face_width)
+            return ToothCompliance(*beam_compliance(gear, radius, foot, state), foundation=foundation, rim=rim(radius))
+
+        return tooth
 
 
 def cornell_state(gear: Gear) -> PlaneState:

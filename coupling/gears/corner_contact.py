@@ -1,15 +1,15 @@
-r"""Contact beyond the path of contact: a tip's corner on the mating flank, before a pair enters and after it leaves.
+r"""Corner contact beyond the path of contact: a tip's corner on the mating flank, before entry and after exit.
 
-On the nominal motion a pair that is not yet at its path of contact stands apart by a small gap. A loaded mesh, its
-gears turned against each other by the deflection of the pairs that carry, closes it: the corner of the driven tip
+On the nominal motion a pair that is not yet at its path of contact is apart by a small gap. A loaded mesh, its
+gears rotated against each other by the deflection of the loaded pairs, closes it: the corner of the driven tip
 touches the driver's flank early, and the driver's own tip stays late. The force then comes and goes without a step,
 and the contact ratio grows with the load.
 
 The gap follows exactly from where the corner is. With the driver's tangent point on the line of action at angle
 zero, its flank's point at radius ``rho`` has the polar angle ``xi_k / rb_k - inv(rho)``, xi_k the distance of the
-nominal contact from that tangent point; in the same frame turned half round, the driven gear's tip is at
+nominal contact from that tangent point; in the same frame rotated by half a turn, the driven gear's tip is at
 ``xi_i / rb_i - inv(r_a,i)`` about its own centre. The corner lies at a radius ``rho`` and an angle ``theta`` about
-the driver's centre; the driver has to turn by ``theta - xi_k / rb_k + inv(rho)`` to meet it: the gap is that times
+the driver's centre; the driver has to rotate by ``theta - xi_k / rb_k + inv(rho)`` to meet it: the gap is that times
 rb_k. Leaving is entering with the gears exchanged. It begins with the square of the distance from the path.
 
 Where the gears are large and the gap small, the flank's radius there hardly differs from where the path ends
@@ -29,21 +29,21 @@ from coupling.gears.pair_geometry import GearPairGeometry
 FloatArray = npt.NDArray[np.float64]
 
 LARGEST_GAP = 0.03
-"""In modules: no load that teeth can bear closes a wider one."""
+"""In modules: no load that teeth can carry closes a wider gap."""
 LONGEST_REACH = 0.45
 """In base pitches, beyond either end of the path."""
 
 
 @dataclass(frozen=True, eq=False)
 class FlankPlaces:
-    """Where a pair of teeth touches, or would touch first, at positions on or beyond the path of contact.
+    """Contact points on both flanks at positions on or beyond the path of contact.
 
     Attributes
     ----------
     driver_roll_angle, driven_roll_angle : ndarray, shape (n,)
-        Of the places on the flanks [rad]; the tip's own for the gear whose corner touches.
+        Of the points on the flanks [rad]; the tip's own for the gear whose corner touches.
     gap : ndarray, shape (n,)
-        How far apart they are in nominal motion, along the line of action [m]; zero on the path.
+        Their distance in nominal motion, along the line of action [m]; zero on the path.
     """
 
     driver_roll_angle: FloatArray
@@ -52,7 +52,7 @@ class FlankPlaces:
 
 
 def flank_places(geometry: GearPairGeometry, position: npt.ArrayLike) -> FlankPlaces:
-    """Where flanks or corners meet at `position` in base pitches, on the path of contact and beyond."""
+    """Contact points of flanks or corners at `position` in base pitches, on the path of contact and beyond."""
     at = np.atleast_1d(np.asarray(position, dtype=np.float64))
     early = at < 0.0
     late = at > geometry.contact_ratio
@@ -71,9 +71,9 @@ def flank_places(geometry: GearPairGeometry, position: npt.ArrayLike) -> FlankPl
 
 
 def corner_reach(geometry: GearPairGeometry, largest_gap: float = LARGEST_GAP) -> tuple[float, float]:
-    """How far before and beyond the path of contact corners may touch [base pitches], both at least 0.
+    """Range of corner contact before and after the path of contact [base pitches], both at least 0.
 
-    To where the gap is `largest_gap` modules, at most `LONGEST_REACH`.
+    It ends where the gap is `largest_gap` modules, at most `LONGEST_REACH`.
     """
     widest = largest_gap * geometry.driver.module
 
@@ -92,15 +92,15 @@ def corner_reach(geometry: GearPairGeometry, largest_gap: float = LARGEST_GAP) -
 def _corner(
     roll: FloatArray, mating_roll: FloatArray, base: float, mating_base: float, mating_tip: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Roll angle of the flank's place that a corner would touch [rad], and the gap [m].
+    """Roll angle of the point of the flank that a corner would touch [rad], and the gap [m].
 
     ``roll``, ``mating_roll``: nominal contact's roll angles on the flank's gear and on the corner's.
     """
     tip_roll = np.sqrt((mating_tip / mating_base) ** 2 - 1.0)
-    turned = mating_roll - tip_roll + np.arctan(tip_roll)
+    angle = mating_roll - tip_roll + np.arctan(tip_roll)
     tangent_distance = base * roll + mating_base * mating_roll
-    x = base + mating_base - mating_tip * np.cos(turned)
-    y = tangent_distance - mating_tip * np.sin(turned)
+    x = base + mating_base - mating_tip * np.cos(angle)
+    y = tangent_distance - mating_tip * np.sin(angle)
     squared = x * x + y * y
     touched = np.sqrt(np.maximum(0.0, squared / base**2 - 1.0))
     gap = base * (np.arctan2(y, x) - roll + touched - np.arctan(touched))

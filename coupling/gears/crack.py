@@ -1,4 +1,4 @@
-r"""A crack at the foot of a tooth, and what the tooth yields more because of it.
+r"""Tooth root crack: its geometry, and the additional compliance of the cracked tooth.
 
 The crack runs from the root circle on the loaded side into the tooth, straight, across the whole face. Material beyond
 it carries no bending: above the crack the section that is left reaches from the sound flank to a line through the
@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.beam_compliance import shear_modulus
+from coupling.gears.beam_compliance import ROOT_CIRCLE, shear_modulus, tooth_sections
 from coupling.gears.errors import GearError, require_finite
 from coupling.gears.faults import check_tooth_number, require_tooth
 from coupling.gears.geometry import Gear
@@ -64,18 +64,18 @@ class ToothCrack:
         require_tooth(gear, self.tooth)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
-        """None: the flank stays where it is until it is loaded."""
+        """Zero: an unloaded flank does not move."""
         return np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """What the tooth yields more [m/N] for loads at roll angles [rad].
+        """Additional compliance of the tooth [m/N] for loads at roll angles [rad].
 
         Raises
         ------
         GearError
-            For a crack that leaves less than a tenth of some section of the tooth.
+            For a crack that leaves less than a tenth of any section of the tooth.
         """
-        low = fillet_points(gear, np.array(math.pi / 2.0))
+        low = fillet_points(gear, np.array(ROOT_CIRCLE))
         root = float(low.half_thickness)
         left = root - self.depth * math.sin(self.angle)
         least = _least_left(gear)
@@ -89,8 +89,7 @@ class ToothCrack:
         beta = load_angle(gear, np.clip(radius, gear.form_radius, gear.tip_radius))[..., None]
         load = flank_points(gear, beta)
         sine, cosine = np.sin(beta), np.cos(beta)
-        start = load_angle(gear, np.array(gear.form_radius))
-        # The section loses its slope where it meets the crack's line: panels keep the quadrature exact enough.
+        # The section has a corner where it meets the crack's line: panels keep the quadrature exact enough.
         edges = np.linspace(0.0, 1.0, _PANELS + 1)
         part = (0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 / _PANELS * _NODES).ravel()
         weight = np.tile(0.5 / _PANELS * _WEIGHTS, _PANELS)
@@ -98,17 +97,12 @@ class ToothCrack:
         corner = flank_points(gear, load_angle(gear, np.array(gear.tip_radius)))
         lean = np.maximum(0.0, corner.half_thickness - left) / (corner.height - low.height)
         total = np.zeros(radius.shape)
-        foot, end = math.pi / 2.0, gear.fillet_end
-        for points, length in (
-            (fillet_points(gear, foot + part * (end - foot)), np.asarray(end - foot)),
-            (flank_points(gear, start + part * (beta - start)), beta - start),
-        ):
-            climb = length * weight * points.height_rate
+        for points, climb in tooth_sections(gear, beta, ROOT_CIRCLE, part, weight):
             whole = 2.0 * points.half_thickness
-            kept = np.minimum(whole, points.half_thickness + left + lean * (points.height - low.height))
+            remaining = np.minimum(whole, points.half_thickness + left + lean * (points.height - low.height))
             moment = cosine * (load.height - points.height) - sine * load.half_thickness
-            bending = 12.0 * moment**2 * (kept**-3 - whole**-3) / modulus
-            stretching = (1.2 * cosine**2 / shear + sine**2 / modulus) * (1.0 / kept - 1.0 / whole)
+            bending = 12.0 * moment**2 * (remaining**-3 - whole**-3) / modulus
+            stretching = (1.2 * cosine**2 / shear + sine**2 / modulus) * (1.0 / remaining - 1.0 / whole)
             total = total + np.sum(climb * (bending + stretching), axis=-1)
         return np.asarray(total, dtype=np.float64)
 

@@ -1,4 +1,4 @@
-"""Damping of a gear mesh from a damping ratio."""
+"""Mesh damping: damping coefficient of a gear mesh from a damping ratio."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from coupling.gears.errors import GearError
 def equivalent_mass(
     driver_inertia: float, driven_inertia: float, driver_base_radius: float, driven_base_radius: float
 ) -> float:
-    """Mass of the two gears turning against each other, along the line of action [kg].
+    """Equivalent mass of the two gears rotating against each other, along the line of action [kg].
 
     ``J_k J_i / (J_k R_i^2 + J_i R_k^2)``, inertias [kg m^2], base radii [m].
 
@@ -35,11 +35,11 @@ def mesh_damping(ratio: float, mean_stiffness: float, equivalent_mass: float) ->
     Parameters
     ----------
     ratio : float
-        Fraction of critical damping of the gears turning against each other.
+        Fraction of critical damping of the two gears rotating against each other.
     mean_stiffness : float
         Mean mesh stiffness [N/m].
     equivalent_mass : float
-        See the function of this name [kg].
+        See `equivalent_mass` [kg].
     """
     if not (ratio >= 0.0 and mean_stiffness > 0.0 and equivalent_mass > 0.0):
         raise GearError(

@@ -1,4 +1,4 @@
-"""How far a pair of flanks is short of the perfect involutes along its path of contact, and beyond it."""
+"""Profile deviation of a tooth pair from perfect involutes, along its path of contact and beyond."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from coupling.gears.piecewise import PiecewiseCubic
 FloatArray = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-13
-"""What the cubics may miss of a deviation [m]."""
-_APART = 1e-9
+"""Largest error of the cubics [m]."""
+SAME_CORNER = 1e-9
 """Corners nearer to each other than this, in base pitches, are one."""
 
 
 def flank_gap(gear: Gear, roll_angle: FloatArray) -> FloatArray:
-    """Material that a gear's flank is short of the involute [m], at roll angles [rad]; negative where it has more."""
+    """Material missing from a gear's flank below the involute [m], at roll angles [rad]; negative for excess."""
     tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
     gap = np.zeros_like(roll_angle)
     if gear.tip_relief is not None:
@@ -44,7 +44,7 @@ def pair_deviation(
 ) -> PiecewiseCubic:
     """Gap between the flanks of a pair in nominal motion, over [start, end] in base pitches [m].
 
-    The sum of what both flanks lack, by their modifications, deviations and faults, and with corner contact of the gap
+    Sum of the gaps of both flanks, by their modifications, deviations and faults; with corner contact also of the gap
     to a corner where the position lies beyond the path of contact.
 
     Parameters
@@ -53,7 +53,7 @@ def pair_deviation(
     start, end : float
         Positions; 0 and the contact ratio are the ends of the path.
     corner_contact : bool
-        Whether teeth meet with their corners beyond it; else as if their flanks went on.
+        Whether corners touch beyond it; else the flanks continue.
     faults : pair of tuples
         Of the driver's tooth and of the driven gear's.
     """
@@ -76,9 +76,7 @@ def pair_deviation(
     for gear, locate, own in zip(gears, (geometry.driver_position, geometry.driven_position), faults, strict=True):
         rolls = [*_corners(gear), *(roll for fault in own for roll in fault.corners(gear, pitch_roll))]
         corners += [locate(roll) for roll in rolls]
-    inner = np.array(sorted(corner for corner in corners if start + _APART < corner < end - _APART))
-    breaks = np.concatenate([[start], inner, [end]])
-    breaks = breaks[np.concatenate([[True], np.diff(breaks) > _APART])]
+    breaks = piecewise.with_corners(np.array([start, end]), corners, SAME_CORNER)
     return piecewise.fitted(gap, breaks, TOLERANCE)
 
 

@@ -1,4 +1,4 @@
-"""What can be wrong with a gear, a pair or a contact, each with a name of its own."""
+"""Errors of gears: one exception for each way in which a gear, a gear pair or a contact cannot be built."""
 
 import math
 
@@ -8,19 +8,19 @@ class GearError(ValueError):
 
 
 class UndercutError(GearError):
-    """The tool cuts away the foot of the involute."""
+    """Undercut: the tool cuts away the foot of the involute."""
 
 
 class PointedToothError(GearError):
-    """The two flanks meet below the tip circle."""
+    """Pointed teeth: the two flanks meet below the tip circle."""
 
 
 class ThinTipError(PointedToothError):
-    """The teeth are thinner at their tips than wanted."""
+    """The teeth are thinner at the tip than the required least thickness."""
 
 
 class InterferenceError(GearError):
-    """A tip digs into the mating root, or the teeth jam between each other's flanks."""
+    """Interference: a tip cuts into the mating root, or the teeth jam in each other's spaces."""
 
 
 class NoContactError(GearError):
@@ -32,11 +32,11 @@ class MismatchedGearsError(GearError):
 
 
 class StiffnessModelError(GearError):
-    """A stiffness model asked for something outside its range."""
+    """A stiffness model is unknown, or used outside its range."""
 
 
 class ContactAccuracyError(RuntimeError):
-    """A table or an equilibrium missed its own accuracy check."""
+    """A table or an equilibrium fails its own accuracy check."""
 
 
 def require_finite(what: str, value: float, *, minimum: float = -math.inf, strict: bool = False) -> None:

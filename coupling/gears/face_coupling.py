@@ -1,9 +1,9 @@
-r"""How strongly neighbouring slices of a tooth hold each other: the coupling of its face.
+r"""Shear coupling of neighbouring slices of a tooth across its face.
 
 A tooth whose deflection varies across the face, ``W(z) phi(y)``, is a plate of thickness t(y) held at its foot. phi is
 the deflection of a slice as a beam under a load at the middle of the path of contact, with its bending and its shear,
-psi the turning of its sections; both are 1 in the measure of the loaded point's deflection. Where W has a slope, the
-plate's normals may turn across the face by ``chi(y) W'`` and do so in the way of least energy (Mindlin's plate):
+psi the rotation of its sections; both are 1 in the measure of the loaded point's deflection. Where W has a slope, the
+plate's normals rotate across the face by ``chi(y) W'`` with the least energy (Mindlin's plate):
 
     T = min over chi of  int 5/6 G t (phi - chi)^2 + G t^3/12 (psi + chi')^2 dy,        chi = 0 at the foot,
 
@@ -19,7 +19,7 @@ from scipy.linalg import solveh_banded
 
 from coupling.gears.beam_compliance import shear_modulus
 from coupling.gears.geometry import Gear
-from coupling.gears.profile import tooth_outline
+from coupling.gears.profile import tooth_side
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -28,19 +28,19 @@ _LAYERS = 300
 
 
 def tooth_coupling(gear: Gear, radius: float) -> float:
-    """T of one tooth [N], with the load at `radius` [m]."""
-    across, along = tooth_outline(gear, _OUTLINE)[: 2 * _OUTLINE - 1].T
+    """Shear coupling T of one tooth across its face [N], with the load at `radius` [m]."""
+    across, along = tooth_side(gear, _OUTLINE)
     height = along - along[0]
     load = float(np.interp(radius, np.hypot(across, along), height))
     edges = np.linspace(0.0, height[-1], _LAYERS + 1)
     step = edges[1]
     y = 0.5 * (edges[1:] + edges[:-1])
-    thickness = -2.0 * np.interp(y, height, across)
+    thickness = 2.0 * np.interp(y, height, across)
     shear = shear_modulus(gear)
-    # The slice as a beam: section turning psi, deflection phi, of a unit load.
+    # The slice as a beam: section rotation psi, deflection phi, of a unit load.
     below = y < load
-    turning = _summed(np.where(below, (load - y) * 12.0 / (gear.youngs_modulus * thickness**3), 0.0) * step)
-    psi = 0.5 * (turning[1:] + turning[:-1])
+    rotation = _summed(np.where(below, (load - y) * 12.0 / (gear.youngs_modulus * thickness**3), 0.0) * step)
+    psi = 0.5 * (rotation[1:] + rotation[:-1])
     deflection = _summed((psi + np.where(below, 1.2 / (shear * thickness), 0.0)) * step)
     unit = float(np.interp(load, edges, deflection))
     phi, psi = 0.5 * (deflection[1:] + deflection[:-1]) / unit, psi / unit

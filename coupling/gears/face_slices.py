@@ -1,9 +1,9 @@
-r"""Contact across the face: a pair of teeth as slices that are coupled to each other.
+r"""Load distribution across the face: a pair of teeth as coupled slices.
 
 Where the flanks are not alike across the face (helical, crowned, misaligned), the load spreads along the contact
 line as the teeth yield. The face of width b is cut into slices at places z, each with its own position on the path
-of contact, ``s + eps_beta z / b``, and its own gap. The field ``w(z)`` by which both teeth and their bodies give way is
-that of a foundation which passes shear on (Pasternak's; for gears: Ajmi and Velex, Mech. Mach. Theory 40, 2005),
+of contact, ``s + eps_beta z / b``, and its own gap. The deflection ``w(z)`` of both teeth and their bodies is
+that of a foundation with shear stiffness (Pasternak's; for gears: Ajmi and Velex, Mech. Mach. Theory 40, 2005),
 
     k_b w - T w'' = q,        w' = 0 at the ends of the face,
 
@@ -12,8 +12,8 @@ their coupling; contact adds, wherever there is any,
 
     q = k_h (delta - gap - w) >= 0,
 
-k_h the stiffness of the flattening per width. So a slice that carries takes its neighbours along, and a tooth's ends,
-with nothing beyond them, are softer. Alike across the face it is the spur gear's law exactly.
+k_h the stiffness of the flattening per width. So a loaded slice deflects its neighbours, and the free ends of a
+tooth are softer. Uniform across the face it is the spur gear's law exactly.
 
 T is that of both teeth in series (:mod:`coupling.gears.face_coupling`).
 """
@@ -39,17 +39,17 @@ IntArray = npt.NDArray[np.intp]
 
 DEFAULT_SLICES = 61
 FINE_SLICES = 241
-"""Where steep edges cross the face. A slice is in a pit or out of it: as the edge goes on, the load on it steps by the
-share of one slice, a few per cent of the mesh's with `DEFAULT_SLICES`."""
+"""Number of slices where steep edges cross the face. A slice is inside or outside a pit: as the edge moves, the load
+steps by the share of one slice, a few per cent of the mesh's with `DEFAULT_SLICES`."""
 _NO_SPAN = 1e-6
-"""In base pitches: a line of contact that is no longer along the path enters and turns all at once."""
+"""In base pitches: a line of contact with a shorter span along the path counts as one point of it."""
 _MOST_ROUNDS = 200
 _ALONE_ROUNDS = 8
 
 
 @dataclass(frozen=True, eq=False)
 class FaceSlices:
-    """The slices of a pair's common face.
+    """Slices of a pair's common face.
 
     Attributes
     ----------
@@ -58,9 +58,9 @@ class FaceSlices:
     width : float
         Of each [m].
     shift : ndarray, shape (n,)
-        What each adds to the position of the pair [base pitches].
+        Their offsets to the position of the pair [base pitches].
     gap : ndarray, shape (n,)
-        What the flanks lack there, over their profiles' own [m].
+        Gap of the flanks there, in addition to that of their profiles [m].
     flattening : float
         k_h, load per width over the flattening of the contact [N/m per m].
     coupling : float
@@ -81,7 +81,7 @@ class FaceSlices:
 
     @property
     def half_span(self) -> float:
-        """Half of what a slice spans along the path of contact [base pitches]; 0 for one of a spur gear."""
+        """Half the span of a slice along the path of contact [base pitches]; 0 for a spur gear."""
         span = float(np.ptp(self.shift))
         return 0.5 * span / (self.z.size - 1) if span > _NO_SPAN else 0.0
 
@@ -93,9 +93,9 @@ class FaceLoads:
     Attributes
     ----------
     line_load, line_tangent : ndarray, shape (p, n)
-        Load per width [N/m], transverse, and its rise by compression [N/m per m].
+        Load per width [N/m], transverse, and its derivative by compression [N/m per m].
     force, tangent : ndarray, shape (p,)
-        Of each pair [N], and its rise by compression [N/m].
+        Of each pair [N], and its derivative by compression [N/m].
     """
 
     line_load: FloatArray
@@ -122,7 +122,7 @@ def face_slices(
     misalignment : float
         Angle between the flanks in the plane of action [rad], open towards +z where it is positive.
     count : int or None
-        How many; None for `DEFAULT_SLICES`, or `FINE_SLICES` of helical teeth with a spall across their face.
+        Number of slices; None for `DEFAULT_SLICES`, or `FINE_SLICES` of helical teeth with a spall across their face.
     """
     b = geometry.face_width
     if count is None:
@@ -155,7 +155,7 @@ def _has_pits(geometry: GearPairGeometry) -> bool:
 def tooth_stiffness(slices: FaceSlices, stiffness: FloatArray) -> FloatArray:
     """k_b [N/m per m] from the stiffness of a pair over its whole face [N/m], flattening included.
 
-    A pair so stiff that the flattening alone would yield more is taken to yield half by it.
+    The flattening takes at most half of the pair's compliance.
     """
     whole = stiffness / slices.face_width
     return np.asarray(1.0 / np.maximum(1.0 / whole - 1.0 / slices.flattening, 0.5 / whole), dtype=np.float64)
@@ -181,7 +181,7 @@ def load_faces(
     Raises
     ------
     ContactAccuracyError
-        Where the set of touching slices does not settle.
+        Where the set of touching slices does not converge.
     """
     touching = meeting & (compression[:, None] > gap)
     fixed, rising = _fields(slices, base, gap, touching)
@@ -214,14 +214,14 @@ def balance_faces(
     slices, base, gap, meeting
         As for `load_faces`, of all pairs of all meshes.
     owner : ndarray of int, shape (p,)
-        Which mesh a pair belongs to.
+        Mesh of each pair.
     force : ndarray, shape (m,)
         Load of each mesh along the line of action [N].
 
     Raises
     ------
     ContactAccuracyError
-        Where the set of touching slices does not settle, or the loads do not balance to rounding.
+        Where the set of touching slices does not converge, or the loads do not balance to rounding.
     """
     meshes = force.size
     nearest = np.full(meshes, np.inf)
@@ -274,7 +274,7 @@ def balance_faces(
 def _touching_alone(
     slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, owner: IntArray, force: FloatArray
 ) -> BoolArray:
-    """Which slices would touch if none took its neighbours along: most of those that do, and found without them."""
+    """Slices in contact without their coupling: a close first guess of those in contact with it."""
     spring = meeting / (1.0 / base + 1.0 / slices.flattening)
     pushed = spring * gap
     touching = meeting
@@ -283,7 +283,7 @@ def _touching_alone(
         offset = np.bincount(owner, (pushed * touching).sum(axis=1), force.size)
         with np.errstate(divide="ignore", invalid="ignore"):
             compression = np.where(stiffness > 0.0, (force / slices.width + offset) / stiffness, 0.0)
-        # From every slice that could touch the set shrinks to the right one.
+        # The set shrinks from every slice that could touch to those in contact.
         touches = meeting & (gap < compression[owner, None])
         if (touches == touching).all():
             break
@@ -294,7 +294,7 @@ def _touching_alone(
 def _loads(
     slices: FaceSlices, gap: FloatArray, touching: BoolArray, deep: FloatArray, fixed: FloatArray, rising: FloatArray
 ) -> FaceLoads:
-    """What faces carry whose fields are known, at compressions `deep` (p, 1)."""
+    """Loads of faces with known fields, at compressions `deep` (p, 1)."""
     load = np.where(touching, slices.flattening * (deep - gap - (fixed + deep * rising)), 0.0)
     tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
     return FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
@@ -314,7 +314,7 @@ def _fields(
     beside = np.full(diagonal.shape, -link)
     beside[:, -1] = 0.0  # where one pair's face ends and the next one's begins
     right = np.stack([-(flat * gap), flat])
-    # One symmetric tridiagonal matrix of all pairs, diagonally dominant; its two right-hand sides as LAPACK has them.
+    # One symmetric, diagonally dominant tridiagonal matrix of all pairs, with two right-hand sides in LAPACK's order.
     _, _, fields, info = dptsv(
         diagonal.ravel(), beside.ravel()[:-1], right.reshape(2, -1).T, overwrite_d=1, overwrite_e=1, overwrite_b=1
     )

@@ -1,13 +1,13 @@
-r"""The force of a pair whose face is loaded unevenly, as a table that a compiled kernel can read.
+r"""Lookup tables of the tooth contact law for the compiled kernels.
 
-Force, tangent and energy of such a pair (:mod:`coupling.gears.face_slices`) depend on its position s and on the
-compression ``u`` beyond its first touch. On a grid of both they are bicubic: with ``u = a r^2`` the grid is fine where
-contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is
-that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's slope, whatever
-the table may miss of the slices' own solution, and motion on it conserves energy. Beyond the last ``u`` the force goes
-on with its tangent t, which is a cell too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 to wherever it leads. Where
-a corner of the profiles, such as a spall's edge, meets the first slice of the face and the last, which is at once over
-a spur gear's, the splines along the positions end and begin.
+Uneven load across the face: force, tangent and energy of such a pair (:mod:`coupling.gears.face_slices`) depend on its
+position s and on the compression ``u`` beyond its first touch. On a grid of both they are bicubic: with ``u = a r^2``
+the grid is fine where contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across
+it, and its energy is that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the
+energy's derivative, whatever the error of the table, and motion on it conserves energy. Beyond the last ``u`` the force
+goes on with its tangent t, which is a cell too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 upward. Where a corner
+of the profiles, such as a spall's edge, meets the first slice of the face and the last, which is at once over a spur
+gear's, the splines along the positions end and begin.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
+from coupling.gears import piecewise
 from coupling.gears.face_slices import FaceSlices, load_faces, tooth_stiffness
 from coupling.gears.pair_curves import PairCurves, corners_of
 
@@ -28,10 +29,10 @@ IntArray = npt.NDArray[np.int64]
 Weight = Callable[[FloatArray], FloatArray]
 
 CELL = 20
-POSITIONS = 160
-DEPTHS = 24
+_POSITIONS = 160
+_DEPTHS = 24
 _DEEPEST = 0.02
-"""In modules: compression up to which the table goes, beyond what evens out the face."""
+"""Depth of the table in modules, in addition to the compression that evens out the face."""
 _FEWEST = 4
 """Intervals between corners, at least."""
 _APART = 1e-6
@@ -63,9 +64,18 @@ class FaceTable:
 
 @dataclass(frozen=True, eq=False)
 class FaceState:
-    """The slices of pairs at given positions, (p, n) each.
+    """Slices of pairs at given positions, arrays of shape (p, n).
 
-    Stiffness of a pair whose whole face were like the slice [N/m], k_b [N/m per m], gap [m], whether they can touch.
+    Attributes
+    ----------
+    whole : ndarray
+        Stiffness of a pair whose whole face were like the slice [N/m].
+    base : ndarray
+        k_b [N/m per m].
+    gap : ndarray
+        [m]
+    meeting : ndarray of bool
+        Whether the slice is where it can touch.
     """
 
     whole: FloatArray
@@ -99,9 +109,9 @@ def face_table(
     slices : FaceSlices
     kinds : tuple of PairCurves
     module : float
-        Of the gears [m]; it sets how deep the table goes.
+        Of the gears [m]; it sets the depth of the table.
     weights : sequence of callable
-        What each slice's force counts, by its place on the path of contact [base pitches]. With w of them the table
+        Weight of each slice's force, by its position on the path of contact [base pitches]. With w of them the table
         holds w kinds for each of `kinds`, one after another.
     breaks : sequence of float
         Places on the path where a weight has a corner.
@@ -110,31 +120,31 @@ def face_table(
     pieces = _pieces(_breaks(kinds, reach, breaks))
     knots = np.concatenate([*(piece[:-1] for piece in pieces[:-1]), pieces[-1]])
     deepest = _DEEPEST * module + 1.5 * float(np.ptp(slices.gap))
-    unit = deepest / DEPTHS**2
-    compressions = unit * np.arange(DEPTHS + 1.0) ** 2
+    unit = deepest / _DEPTHS**2
+    compressions = unit * np.arange(_DEPTHS + 1.0) ** 2
     factors = [slices.width * weight(knots[:, None] + slices.shift) for weight in weights]
     touches, cells = [], []
     for number in range(len(kinds)):
         state = face_state(slices, kinds, knots, np.full(knots.size, number))
         gap = np.where(state.meeting, state.gap, np.inf).min(axis=1)
-        # At the very ends nothing may meet for rounding: as at the next position.
+        # At the very ends rounding may leave no slice in contact: the next position is taken.
         gap = np.where(np.isfinite(gap), gap, np.nanmax(np.where(np.isfinite(gap), gap, np.nan)))
-        shape = (knots.size, DEPTHS + 1, slices.z.size)
-        base, gaps = np.repeat(state.base, DEPTHS + 1, axis=0), np.repeat(state.gap, DEPTHS + 1, axis=0)
-        meeting = np.repeat(state.meeting, DEPTHS + 1, axis=0)
+        shape = (knots.size, _DEPTHS + 1, slices.z.size)
+        base, gaps = np.repeat(state.base, _DEPTHS + 1, axis=0), np.repeat(state.gap, _DEPTHS + 1, axis=0)
+        meeting = np.repeat(state.meeting, _DEPTHS + 1, axis=0)
         loads = load_faces(slices, base, gaps, meeting, (gap[:, None] + compressions).ravel())
         for factor in factors:
             force = np.einsum("pdz,pz->pd", loads.line_load.reshape(shape), factor)
             tangent = np.einsum("pdz,pz->pd", loads.line_tangent.reshape(shape), factor)
             force[:, 0] = 0.0
-            rise = tangent * 2.0 * unit * np.arange(DEPTHS + 1.0)
+            rise = tangent * 2.0 * unit * np.arange(_DEPTHS + 1.0)
             touches.append(_powers(pieces, gap[:, None])[:, 0])
             cells.append(_cells(_powers(pieces, force), _powers(pieces, rise), unit))
     return FaceTable(knots, np.array(touches), np.stack(cells, axis=1), unit)
 
 
 def _breaks(kinds: tuple[PairCurves, ...], reach: float, others: Sequence[float]) -> FloatArray:
-    """Ends of the positions, and between them where corners come to the face and leave it, `reach` from its middle."""
+    """Ends of the positions, and between them those where corners enter and leave the face, `reach` from its middle."""
     start, end = kinds[0].stiffness.knots[[0, -1]]
     curves = [curve for kind in kinds for curve in (kind.stiffness, kind.deviation)]
     corners = np.concatenate([*(corners_of(curve) for curve in curves), others])
@@ -146,8 +156,8 @@ def _breaks(kinds: tuple[PairCurves, ...], reach: float, others: Sequence[float]
 
 def _pieces(breaks: FloatArray) -> list[FloatArray]:
     """Knots from each break to the next, both included, as evenly spaced as the breaks allow."""
-    spacing = (breaks[-1] - breaks[0]) / POSITIONS
-    # Rounding must not cost an interval more.
+    spacing = (breaks[-1] - breaks[0]) / _POSITIONS
+    # Rounding must not add an interval.
     counts = np.maximum(np.ceil(np.diff(breaks) / spacing - 1e-9).astype(int), _FEWEST)
     return [
         np.linspace(low, high, count + 1)
@@ -157,12 +167,13 @@ def _pieces(breaks: FloatArray) -> list[FloatArray]:
 
 def _powers(pieces: list[FloatArray], values: FloatArray) -> FloatArray:
     """Cubic splines through columns of values at each piece's knots, (m, columns, 4), in a variable from 0 to 1."""
-    found, first = [], 0
-    for knots in pieces:
-        coefficients = np.asarray(CubicSpline(knots, values[first : first + knots.size], axis=0).c)[::-1]
-        found.append(np.moveaxis(coefficients, 0, -1) * (knots[1] - knots[0]) ** np.arange(4))
-        first += knots.size - 1
-    return np.asarray(np.concatenate(found), dtype=np.float64)
+    firsts = np.cumsum([0, *(knots.size - 1 for knots in pieces)])
+    return np.concatenate(
+        [
+            piecewise.unit_coefficients(CubicSpline(knots, values[first : first + knots.size], axis=0))
+            for knots, first in zip(pieces, firsts[:-1], strict=True)
+        ]
+    )
 
 
 def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
@@ -177,7 +188,7 @@ def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
         ],
         axis=-1,
     )
-    # Beyond: straight in the compression, so of second degree in rho.
+    # Beyond the table: linear in the compression, so of second degree in rho.
     last = low.shape[1]
     straight = rise[:, -1] / (2.0 * last)
     beyond = np.stack([force[:, -1], rise[:, -1], straight, 0.0 * straight], axis=-1)

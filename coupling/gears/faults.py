@@ -1,4 +1,4 @@
-"""Teeth that are damaged: worn, spalled, missing; cracks are in :mod:`coupling.gears.crack`.
+"""Tooth faults: wear, spalls, missing teeth; cracks are in :mod:`coupling.gears.crack`.
 
 A fault changes the pairs that its tooth belongs to: it takes material off the flank, makes the contact softer, or
 both. All are given on the gear, by the number of the tooth in the order in which teeth come into mesh.
@@ -17,7 +17,7 @@ from coupling.gears.geometry import Gear
 FloatArray = npt.NDArray[np.float64]
 
 NEVER = 1.0
-"""Gap of a tooth that is not there [m]: nothing ever closes it."""
+"""Gap of a missing tooth [m], wider than any load closes."""
 _EDGE = 0.1
 """Part of a spall's length over which its edges rise, as a contact of finite width rides over them."""
 
@@ -33,8 +33,8 @@ class Wear:
     tooth : int or None
         Which tooth; None for all.
     shape : {"sliding", "uniform"}
-        In proportion to the sliding, so nothing at the pitch point and `depth` at that end of the flank which lies
-        farther from it; or the same all over.
+        In proportion to the sliding, so zero at the pitch point and `depth` at the end of the flank farther from it;
+        or uniform.
     """
 
     depth: float
@@ -60,7 +60,7 @@ class Wear:
         return np.asarray(self.depth * np.abs(roll_angle - pitch_roll_angle) / farthest, dtype=np.float64)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """None: the depth worn off is small beside the tooth."""
+        """Zero: the worn depth is small compared with the tooth."""
         return np.zeros_like(roll_angle)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
@@ -72,7 +72,7 @@ class Wear:
 class Spall:
     """A pit in the flank of one tooth, across all of the face or a part of it.
 
-    Across all of the face the contact falls into it by `depth`. Across a part, the rest of the face carries: the
+    Across all of the face the contact drops into it by `depth`. Across a part, the rest of the face carries: the
     flattening of the contact, inversely proportional to the width, grows by ``1 / (1 - width / face_width)``. Its edges
     rise over a tenth of its length.
 
@@ -121,7 +121,7 @@ class Spall:
         return self.depth * self._inside(roll_angle) if self.across_face(gear) else np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """What the contact flattens more, ``4 (1 - nu^2) / (pi E b)`` over the whole face (Yang and Sun, 1985)."""
+        """Additional flattening of the contact: ``4 (1 - nu^2) / (pi E b)`` over a whole face (Yang and Sun, 1985)."""
         if self.across_face(gear):
             return np.zeros_like(roll_angle)
         part = self._part_of_face(gear)
@@ -150,7 +150,7 @@ class Spall:
 
 @dataclass(frozen=True)
 class MissingTooth:
-    """A tooth that is broken off: its pairs carry nothing."""
+    """A broken-off tooth, whose pairs carry no load."""
 
     tooth: int
 
@@ -162,11 +162,11 @@ class MissingTooth:
         require_tooth(gear, self.tooth)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
-        """A gap that no mesh closes."""
+        """Gap wider than any load closes."""
         return np.full_like(roll_angle, NEVER)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """None that matters."""
+        """Zero: such a pair carries nothing."""
         return np.zeros_like(roll_angle)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
@@ -181,7 +181,7 @@ def check_tooth_number(name: str, tooth: int | None) -> None:
 
 
 def require_tooth(gear: Gear, tooth: int | None) -> None:
-    """Raise `GearError` where a gear has no tooth of a fault's number."""
+    """Raise `GearError` where a gear has no tooth of this number."""
     if tooth is not None and tooth >= gear.teeth:
         raise GearError(
             f"gear {gear.name!r}: a fault is on tooth {tooth}; the teeth are numbered 0 to {gear.teeth - 1}"

@@ -1,6 +1,6 @@
-"""How a made flank differs from its design, as a gear inspection reports it.
+"""Flank deviations (ISO 1328-1) of a made flank from its design: profile and helix deviations.
 
-Deviations are those of ISO 1328-1, normal to the flank in the transverse plane, so along the line of action, and
+Deviations are normal to the flank in the transverse plane, so along the line of action, and
 positive where there is too much material. Profile deviations vary with the roll angle from the form circle to the tip,
 helix deviations across the face.
 """
@@ -28,7 +28,7 @@ class ProfileDeviation:
     Parameters
     ----------
     slope : float
-        Profile slope deviation f_Halpha [m]: what the tip stands out over the form circle.
+        Profile slope deviation f_Halpha [m]: excess of the tip over the form circle.
     form : float
         Profile form deviation f_falpha [m]: height of the waves from trough to crest.
     waves : float
@@ -36,7 +36,7 @@ class ProfileDeviation:
     phase : float
         Of the waves at the middle of the flank [rad].
     crowning : float
-        Profile crowning C_alpha [m]: what is taken off at both ends.
+        Profile crowning C_alpha [m]: material removed at both ends.
     table : tuple of (float, float)
         A measured profile: roll angle [rad], deviation [m]; straight lines between, held beyond its ends.
     """
@@ -85,11 +85,11 @@ class HelixDeviation:
     Parameters
     ----------
     slope : float
-        Helix slope deviation f_Hbeta [m]: what the right end stands out over the left one.
+        Helix slope deviation f_Hbeta [m]: excess of the right end over the left one.
     crowning : float
-        Lead crowning C_beta [m]: what is taken off at both ends.
+        Lead crowning C_beta [m]: material removed at both ends.
     end_relief, end_relief_length : float
-        Amount at the ends [m], and how far it reaches from each [m].
+        Amount at the ends [m], and its length from each end [m].
     """
 
     slope: float = 0.0

@@ -1,4 +1,4 @@
-"""How much a tooth sinks because the gear's body gives way under it (Sainsot, Velex & Duverger 2004).
+"""Gear body (fillet foundation) compliance under a tooth after Sainsot, Velex & Duverger (2004).
 
 The body is an elastic ring.  With load angle ``beta``, load height ``u`` above the root circle and root
 thickness ``S`` along the root circle, the deflection along the load is
@@ -17,8 +17,8 @@ of action, which grows as h^2 and is the reason why P does.  A gear in one piece
 the formula less that twist in closed form.  The dent hardly depends on the bore (within 10 % over the whole
 range for 28 teeth and more); it is taken at h = 3, in the middle of the range, where the twist is small.
 
-The formula reads the ring at the middle of the root arc, and published cases take u to the loaded point of the flank.
-Both make it soft: see :mod:`coupling.gears.elastic_ring` for the same ring without either.
+The formula takes the deflection at the middle of the root arc, and published cases take u to the loaded point of the
+flank.  Both make the body too soft: see :mod:`coupling.gears.elastic_ring` for the same ring without either.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ THICKNESS_RANGE = (1.4, 7.0)
 ANGLE_RANGE = (0.01, 0.12)
 """Range of theta [rad] that the polynomials were fitted over."""
 _SOLID_THICKNESS = 3.0
-"""The h at which a gear without a bore reads the polynomials, twist taken off."""
+"""The h at which the polynomials are evaluated for a gear without a bore, less the twist."""
 
 
 def held_radius(gear: Gear) -> float | None:
@@ -63,7 +63,7 @@ def held_radius(gear: Gear) -> float | None:
 
 
 def root_section_angle(gear: Gear, root_section: RootSection) -> float:
-    """Half angle of the tooth on the root circle [rad], by the chosen reading.
+    """Half angle of the tooth on the root circle [rad], by the chosen definition.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def root_section_angle(gear: Gear, root_section: RootSection) -> float:
     Raises
     ------
     StiffnessModelError
-        For an unknown reading.
+        For an unknown definition.
     """
     if root_section == "trochoid":
         return root_half_angle(gear)
@@ -109,7 +109,7 @@ def foundation_compliance(gear: Gear, radius: FloatArray, root_section: RootSect
     radius : ndarray
         Radii of the loaded points [m].
     root_section : {"ma2014", "trochoid"}
-        How the tooth's width on the root circle is read, see `root_section_angle`.
+        Definition of the tooth's width on the root circle, see `root_section_angle`.
 
     Returns
     -------
@@ -142,7 +142,7 @@ def foundation_compliance(gear: Gear, radius: FloatArray, root_section: RootSect
 
 
 def _ring_twist(gear: Gear, thickness: float) -> float:
-    """Turning of a ring held at its bore under the torque of a unit load, along the line of action [m/N]."""
+    """Twist of a ring held at its bore under the torque of a unit load, along the line of action [m/N]."""
     shear_modulus = gear.youngs_modulus / (2.0 * (1.0 + gear.poisson_ratio))
     relative_base = gear.base_radius / gear.root_circle_radius
     return relative_base**2 * (thickness**2 - 1.0) / (4.0 * math.pi * shear_modulus * gear.face_width)
@@ -155,5 +155,5 @@ def _thickness(gear: Gear) -> float:
         return _SOLID_THICKNESS
     thickness = gear.root_circle_radius / held
     nearest = min(max(thickness, THICKNESS_RANGE[0]), THICKNESS_RANGE[1])
-    # An h of exactly 1.4 or 7 may come out a rounding error beyond.
+    # Rounding may put an h of exactly 1.4 or 7 beyond the range.
     return nearest if math.isclose(thickness, nearest, rel_tol=1e-9) else thickness

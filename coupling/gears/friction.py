@@ -1,13 +1,13 @@
-r"""Sliding friction of a mesh under a steady load: its force, which turns at the pitch point, its moments, its loss.
+r"""Mesh friction under a steady load: sliding friction force, moments on both gears, power loss and efficiency.
 
 At the distances xi_k and xi_i of a contact from both tangent points the flanks move along each other, across the line
 of action, with ``w_k xi_k`` and ``w_i xi_i``; these are equal at the pitch point. Before it the driven flank is the
-faster one and draws the driver's along with mu F, after it the force is turned round. With t the direction in which the
+faster one and draws the driver's along with mu F, after it the force is reversed. With t the direction in which the
 driver's flank moves, on the driver
 
     Q = sum_j mu F_j sgn(w_i xi_i - w_k xi_k),        M_k = sum_j mu F_j sgn(...) xi_k,
 
-on the driven gear -Q and, against its turning, ``sum_j mu F_j sgn(...) xi_i``; the power lost is
+on the driven gear -Q and, against its rotation, ``sum_j mu F_j sgn(...) xi_i``; the power lost is
 ``sum_j mu F_j |w_k xi_k - w_i xi_i|``. The loads are those without friction, F_j the normal ones: those in the
 transverse plane over cos(beta_b), the flanks of helical gears sliding in that plane too.
 """
@@ -40,11 +40,11 @@ class MeshFriction:
     force : ndarray, shape (n,)
         Q on the driver, across the line of action in the direction in which its flanks move [N].
     driver_moment, driven_moment : ndarray, shape (n,)
-        On the driver in the sense of its turning, on the driven gear against its own [N m].
+        On the driver in the sense of its rotation, on the driven gear against its own [N m].
     loss : ndarray, shape (n,)
-        Energy lost per radian of the driver's turning [J/rad]: with the driver's speed, the power.
+        Energy lost per radian of the driver's rotation [J/rad]: times the driver's speed, the power loss.
     efficiency : float
-        What is left of the work put in, in the mean over the mesh period.
+        Output work over input work, mean over the mesh period.
     """
 
     phases: FloatArray
@@ -64,7 +64,7 @@ def mesh_friction(
     ----------
     geometry : GearPairGeometry
     contact : ToothContact
-        What `mesh` was solved with.
+        Contact law with which `mesh` was solved.
     mesh : StaticMesh
         With phases over whole mesh periods.
     coefficient : float
@@ -81,12 +81,12 @@ def mesh_friction(
         forces = mesh.line_loads * contact.faces.width
     else:
         positions, half, forces = mesh.positions[..., None], 0.0, mesh.pair_forces[..., None]
-    turned, placed = turned_share(positions, half, geometry.pitch_point_position, geometry.contact_ratio)
+    signed, moment = turned_share(positions, half, geometry.pitch_point_position, geometry.contact_ratio)
     normal = coefficient * forces / math.cos(geometry.driver.base_helix_angle)
     # Before the pitch point the force is positive, and both distances are straight lines along the path.
-    across, by_place = -(normal * turned).sum(axis=(1, 2)), -(normal * placed).sum(axis=(1, 2))
+    across, by_position = -(normal * signed).sum(axis=(1, 2)), -(normal * moment).sum(axis=(1, 2))
     driver_moment, driven_moment = (
-        gear.base_radius * (roll(0.0) * across + (roll(1.0) - roll(0.0)) * by_place)
+        gear.base_radius * (roll(0.0) * across + (roll(1.0) - roll(0.0)) * by_position)
         for gear, roll in (
             (geometry.driver, geometry.driver_roll_angle),
             (geometry.driven, geometry.driven_roll_angle),

@@ -1,4 +1,4 @@
-r"""The friction of a tooth contact, compiled: shares of the mesh force that act across the line of action.
+r"""Tooth friction, compiled: shares of the mesh force that act across the line of action.
 
 With the elastic forces E_j of the pairs at the positions s_j, and F the whole force with its damping, which the pairs
 are taken to share as they share the elastic one, friction pushes with
@@ -6,7 +6,7 @@ are taken to share as they share the elastic one, friction pushes with
     mu F A,    A = sum_j E_j sgn(s_j - s_C) / sum_j E_j,        mu F B,    B = sum_j E_j sgn(s_j - s_C) s_j / sum_j E_j
 
 along the directions in which a pair at s slides, ``a + s b``. Where a line of contact lies across the path, its slices
-turn one after another, each under its own load: sums over slices stand for the E_j (:mod:`coupling.gears.sliding`).
+reverse one after another, each under its own load: sums over slices replace the E_j (:mod:`coupling.gears.sliding`).
 With A and B go their slopes by the compression, so that Newton's tangent, no longer symmetric, is exact: k_j being that
 of each pair by the pairs' own compression x, ``A' = (sum_j k_j sgn(...) - A k) / E dx/d delta``.
 
@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.kernels import PRECISE, nearness, number_at, pair_rise, pairs_compression, place
+from coupling.gears.kernels import PRECISE, locate, nearness, number_at, pair_rise, pairs_compression
 from coupling.gears.law_table import FIRST_PAIR, HUNTING, KIND_STEP, PAIR, PAIRS, PAIRS_AT
 from rotors.compiled import counted, uncounted
 
@@ -37,47 +37,47 @@ def friction_shares(
         As for `coupling.gears.kernels.tooth_force`.
     law : ndarray
     at : int
-        Where the numbers begin of the contact's law or, with ``by_slices``, of `SlidingFriction.shares`.
+        Index at which the numbers begin of the contact law or, with ``by_slices``, of `SlidingFriction.shares`.
     by_slices : bool
-        Whether a line of contact turns piece by piece.
+        Whether the sliding of a line of contact reverses slice by slice.
     pitch_point, path_end : float
         As in `coupling.gears.sliding.SlidingFriction`.
     """
-    number, interval, u, _ = place(law, at, phase)
-    # The pairs' own compression, behind what the bodies of their gears yield.
-    pressed, gain = pairs_compression(law, at, number, interval, u, compression, PRECISE)
+    number, interval, u, _ = locate(law, at, phase)
+    # The pairs' own compression, without that of their gears' bodies.
+    own, gain = pairs_compression(law, at, number, interval, u, compression, PRECISE)
     pairs = int(number_at(law, at + PAIRS))
     hunting, first = int(number_at(law, at + HUNTING)), int(number_at(law, at + FIRST_PAIR))
     pairs_at = at + int(number_at(law, at + PAIRS_AT))
-    # Shares hold three kinds for one: the force, the force turned, the force turned and placed.
+    # Shares hold three kinds for each: the force, the signed force, and the signed force times its position.
     next_kind = int(number_at(law, at + KIND_STEP))
-    elastic, stiff, across, across_slope, by_place, by_place_slope = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    elastic, stiff, across, across_slope, moments, moments_slope = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for pair in range(pairs):
         start = pairs_at + PAIR * (pairs * interval + pair)
-        approach, here = nearness(law, at, hunting, int(number) - first - pair, u, pressed, start)
+        approach, here = nearness(law, at, hunting, int(number) - first - pair, u, own, start)
         if approach <= 0.0:
             continue
         force, k, _ = pair_rise(law, at, here, u, approach)
         if by_slices:
-            turned, turned_slope, _ = pair_rise(law, at, here + next_kind, u, approach)
-            placed, placed_slope, _ = pair_rise(law, at, here + 2 * next_kind, u, approach)
+            signed, signed_slope, _ = pair_rise(law, at, here + next_kind, u, approach)
+            moment, moment_slope, _ = pair_rise(law, at, here + 2 * next_kind, u, approach)
         else:
-            # Beyond the path it is a corner that slides, there where the path ends.
+            # Beyond the path the corner slides, at the end of the path.
             position = min(max(phase - number + (first + pair), 0.0), path_end)
             sign = 1.0 if position > pitch_point else (-1.0 if position < pitch_point else 0.0)
-            turned, turned_slope = sign * force, sign * k
-            placed, placed_slope = position * turned, position * turned_slope
+            signed, signed_slope = sign * force, sign * k
+            moment, moment_slope = position * signed, position * signed_slope
         elastic += force
         stiff += k
-        across += turned
-        across_slope += turned_slope
-        by_place += placed
-        by_place_slope += placed_slope
+        across += signed
+        across_slope += signed_slope
+        moments += moment
+        moments_slope += moment_slope
     if elastic <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
-    a, b = across / elastic, by_place / elastic
+    a, b = across / elastic, moments / elastic
     rise = gain / elastic
-    return a, b, (across_slope - a * stiff) * rise, (by_place_slope - b * stiff) * rise
+    return a, b, (across_slope - a * stiff) * rise, (moments_slope - b * stiff) * rise
 
 
 @counted()

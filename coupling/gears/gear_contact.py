@@ -1,4 +1,4 @@
-"""From two gears and a stiffness model to the law of their contact."""
+"""Contact law of two gears with a tooth stiffness model."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ def tooth_contact(
     geometry : GearPairGeometry
     model : StiffnessModel
         See `coupling.gears.stiffness_models`.  A model of the whole mesh (range exactly one base pitch, when
-        the contact ratio is not) leaves no single pairs to relieve: the deviation is then zero.  Pitch deviations
-        remain, as if each mesh period were one pair's alone.
+        the contact ratio is not) has no single pairs: the profile deviation is then zero.  Pitch deviations remain,
+        one pair for each mesh period.
     damping : float
         Damping coefficient [N s/m], e.g. from `mesh_damping`.
     corner_contact : bool
         Whether pairs touch beyond their path of contact as well, where a load closes the gap to a corner.
     faces : FaceSlices or None
-        From `face_slices`, where the face is not loaded evenly; None for the same load all over it.
+        From `face_slices`, where the face is not loaded evenly; None for a uniform load.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A gear pair as it is specified, and its mesh under the mean torque: contact law, damping, transmission error."""
+"""Gear pair: its specification, and its mesh under the mean torque: contact law, damping, transmission error."""
 
 import math
 from dataclasses import dataclass, replace
@@ -19,39 +19,38 @@ from coupling.gears.stiffness_models import (
     SquareStiffness,
     StiffnessModel,
     TableStiffness,
-    stiffness_model,
+    stiffness_under_load,
 )
 from coupling.gears.tooth_contact import ToothContact
 
-_FADING = 0.1  # part of the mean compression from which on the damping of the mesh is all there
-_ROUNDED_BACKLASH = 1e-3  # modules: backlash below it is the rounding of printed sizes
+_FADING = 0.1  # part of the mean compression above which the mesh is fully damped
+_BACKLASH_DIFFERENCE = 0.1  # part of the designed backlash by which a given one may differ without a warning
 _MESH_SPRINGS = (ConstantStiffness, SquareStiffness, TableStiffness)  # models of the mesh, not of a pair of teeth
-_LOAD_DEPENDENT = ("elastic-ring", "cornell", "weber-banaschek")
 
 
 @dataclass(frozen=True)
 class GearPair:
-    """How two gears of a machine mesh.
+    """Specification of a gear pair of a machine.
 
     Attributes
     ----------
     driver, driven : str
         Names of the gears.
     stiffness : StiffnessModel or str
-        Of the teeth; a name of :data:`coupling.gears.STIFFNESS_MODELS` stands for that model at the load of the pair.
+        Of the teeth; a key of :data:`coupling.gears.STIFFNESS_MODELS` means that model at the load of the pair.
     damping_ratio : float
-        Fraction of critical damping of the two gears that turn against each other.
+        Fraction of critical damping of the two gears rotating against each other.
     damping : float, optional
         Damping coefficient of the mesh [N s/m], in place of the ratio.
     backlash : float, optional
-        Gap of the back flanks along the line of action [m]; None: that of the teeth's thickness and the centre
-        distance, and where these leave none the back flanks never touch.
+        Gap of the back flanks along the line of action [m]; None: that of tooth thickness and centre distance; where
+        these leave none the back flanks never touch.
     friction : float
         Coefficient of friction between the teeth.
     misalignment : float
         Angle between the flanks in the plane of action, open towards +z [rad].
     corner_contact : bool, optional
-        Whether teeth touch beyond their path of contact; None: where the stiffness model is one of pairs of teeth.
+        Whether teeth touch beyond their path of contact; None: with a stiffness model of pairs of teeth.
     """
 
     driver: str
@@ -74,15 +73,23 @@ class GearPair:
     def backlash_of(self, geometry: GearPairGeometry) -> float | None:
         """Gap of the back flanks along the line of action [m]; None where they never touch.
 
-        A backlash below the rounding of printed sizes is none: nominal gears at their nominal distance have teeth as
-        thick as the spaces, and no allowance from which a backlash would follow.
+        See `GearPairGeometry.designed_backlash` where none is given.
         """
-        if self.backlash is not None:
-            return self.backlash
-        return geometry.backlash if geometry.backlash > _ROUNDED_BACKLASH * geometry.driver.module else None
+        return geometry.designed_backlash if self.backlash is None else self.backlash
+
+    def backlash_warning(self, geometry: GearPairGeometry) -> str | None:
+        """Sentence where a given backlash differs from that of tooth thickness and centre distance; else None."""
+        made = geometry.designed_backlash
+        if self.backlash is None or made is None or abs(self.backlash - made) <= _BACKLASH_DIFFERENCE * made:
+            return None
+        return (
+            f"{geometry.label}: the backlash of {1e3 * self.backlash:.4g} mm is not the {1e3 * made:.4g} mm that the "
+            "thickness of the teeth and the distance of the shafts leave along the line of action; leave 'backlash' "
+            "out for that"
+        )
 
     def face_slices(self, geometry: GearPairGeometry, sense: int) -> FaceSlices | None:
-        """Slices of the face where the load spreads unevenly over it; None where it does not.
+        """Face slices for an uneven load across the face; None for a uniform one.
 
         Parameters
         ----------
@@ -97,12 +104,12 @@ class GearPair:
         return face_slices(geometry, sense=sense, misalignment=self.misalignment)
 
     def require_sound_faults(self, geometry: GearPairGeometry) -> None:
-        """Refuse damaged teeth with which nothing can be solved, without solving anything.
+        """Refuse faults for which the mesh has no solution, before it is solved.
 
         Raises
         ------
         GearError
-            For a crack through the foot of a tooth, or so many missing teeth that at some phase none meet.
+            For a crack through the foot of a tooth, or too many missing teeth for any to meet at some phase.
         """
         gears = (geometry.driver, geometry.driven)
         for gear in gears:
@@ -130,9 +137,9 @@ class LoadedGearPair:
     contact : ToothContact
         Contact law with its damping.
     static : StaticMesh
-        Over one mesh period, the first.
+        Over the first mesh period.
     hunting : StaticMesh or None
-        Over the whole hunting period, where pitch deviations or damaged teeth make the mesh periods differ.
+        Over the whole hunting period, where mesh periods differ by pitch deviations or damaged teeth.
     mesh_frequency : float or None
         [Hz]; None where no speed is given.
     """
@@ -147,7 +154,7 @@ class LoadedGearPair:
 
     @property
     def torque(self) -> float:
-        """On the driver, that the mesh carries [N m]."""
+        """Torque on the driver that the mesh carries [N m]."""
         return self.static.force * self.geometry.driver.base_radius
 
     @property
@@ -157,7 +164,7 @@ class LoadedGearPair:
 
     @property
     def has_single_pairs(self) -> bool:
-        """Whether the model is of pairs of teeth, which share the load, or of the mesh as one spring."""
+        """Whether the model describes pairs of teeth, which share the load, and not the mesh as one spring."""
         return math.isclose(self.contact.contact_ratio, self.geometry.contact_ratio, rel_tol=1e-9)
 
 
@@ -176,9 +183,9 @@ def load_gear_pair(
     pair : GearPair
     geometry : GearPairGeometry
     torque : float
-        Mean torque that the pair takes off its driver [N m], of either sign.
+        Mean torque that the pair takes from its driver [N m], of either sign.
     inertias : tuple of float
-        Polar inertia that turns with the driver and with the driven gear [kg m²], for the damping ratio.
+        Polar inertia that rotates with the driver and with the driven gear [kg m²], for the damping ratio.
     speed : float, optional
         Signed speed of the driver [rad/s].
 
@@ -188,7 +195,8 @@ def load_gear_pair(
         Where the pair cannot carry the torque, or its stiffness model does not fit the geometry.
     """
     force = abs(torque) / geometry.driver.base_radius
-    model = _stiffness_under_load(pair.stiffness, geometry, force)
+    given = pair.stiffness
+    model = stiffness_under_load(given, geometry, force) if isinstance(given, str) else given
     contact = tooth_contact(
         geometry,
         model,
@@ -196,7 +204,7 @@ def load_gear_pair(
         faces=pair.face_slices(geometry, 1 if speed is None or speed >= 0.0 else -1),
     )
     static = static_transmission_error(contact, force)
-    # The ratio is of the mesh as it vibrates about its mean load, as linear analyses take it.
+    # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses.
     mean_stiffness = static.mean_stiffness if force > 0.0 else contact.mean_stiffness
     damping = _damping_coefficient(pair, geometry, mean_stiffness, inertias)
     contact = contact.with_damping(damping, _FADING * force / contact.mean_stiffness)
@@ -207,20 +215,6 @@ def load_gear_pair(
 
 def _missing(gear: Gear) -> tuple[MissingTooth, ...]:
     return tuple(fault for fault in gear.faults if isinstance(fault, MissingTooth))
-
-
-def _stiffness_under_load(given: StiffnessModel | str, geometry: GearPairGeometry, force: float) -> StiffnessModel:
-    """The stiffness model; one that is named, at the load of the pair."""
-    if not isinstance(given, str):
-        return given
-    if given == "iso6336" and force > 0.0:
-        # F_t / b: tangential force at the reference circle over the common width, as the norm's load per width.
-        tangential = force * geometry.driver.base_radius / geometry.driver.pitch_radius
-        return stiffness_model(given, specific_load=tangential / geometry.face_width)
-    if given in _LOAD_DEPENDENT and force > 0.0:
-        # Their Hertzian contact stiffens with the load; it is frozen where one pair carries all of it.
-        return stiffness_model(given, force=force)
-    return stiffness_model(given)
 
 
 def _damping_coefficient(

@@ -1,8 +1,8 @@
-"""One external gear, spur or helical: tooth proportions, and the radii and angles that follow.
+"""External gear, spur or helical: tooth proportions, and the radii and angles that follow from them.
 
 The tooth is what a basic rack generates (ISO 53, ISO 21771).  Module ``m``, pressure angle ``alpha``, profile shift
-``x`` (positive outward) and the heights are those of the rack's normal section; everything that turns, touches or is
-drawn lives in the transverse plane.  With ``z`` teeth and helix angle ``beta`` on the reference cylinder:
+``x`` (positive outward) and the heights are those of the rack's normal section; rotation,
+contact and drawings are in the transverse plane.  With ``z`` teeth and helix angle ``beta`` on the reference cylinder:
 
     transverse module          m_t = m / cos(beta)             tan(alpha_t) = tan(alpha) / cos(beta)
     reference radius           r = m_t z / 2                   tip radius   r_a = r + (h_a + x) m
@@ -45,7 +45,7 @@ _STEEPEST_HELIX = math.radians(60.0)
 
 
 class Fault(Protocol):
-    """What a damaged tooth changes."""
+    """Damage of one tooth, or of all teeth of a gear."""
 
     @property
     def tooth(self) -> int | None:
@@ -53,7 +53,7 @@ class Fault(Protocol):
         ...
 
     def require_fit(self, gear: Gear) -> None:
-        """Raise `GearError` where it cannot be on a tooth of this gear."""
+        """Raise `GearError` where no tooth of this gear can have it."""
         ...
 
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
@@ -61,11 +61,11 @@ class Fault(Protocol):
         ...
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """What the tooth yields more than a sound one [m/N], for loads at roll angles [rad]."""
+        """Additional compliance over a sound tooth [m/N], for loads at roll angles [rad]."""
         ...
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
-        """Roll angles where either has a corner [rad]."""
+        """Roll angles at which gap or compliance has a corner [rad]."""
         ...
 
 
@@ -76,7 +76,7 @@ class Gear:
     Parameters
     ----------
     name : str
-        What messages call it.
+        Name in messages.
     teeth : int
         Number of teeth, at least 5.
     module : float
@@ -104,16 +104,16 @@ class Gear:
         Distance from the shaft line to the gear's centre [m], and the angle of that offset from x at
         zero rotation [rad].
     pitch_deviations : tuple of float
-        Index (cumulative pitch) deviation of each tooth: how far it stands from its ideal place, along the arc of
-        the working pitch circle [m].  One for each tooth in the order in which they come into mesh, tooth 0 at
+        Index (cumulative pitch) deviation of each tooth: its distance from the ideal place, along the arc of the
+        working pitch circle [m].  One for each tooth in the order in which they come into mesh, tooth 0 at
         phase 0; none for a perfect pitch.  Positive where the working flank stands ahead, so that it touches
         early: a driver's tooth displaced in the sense of its rotation, a driven gear's against it.  The whole
         tooth is displaced, so its idle flank is behind by as much.  Each mesh of a gear counts from its own
         tooth 0, and reads the signs for its own working flanks.
     profile_deviation : ProfileDeviation or None
-        How the profile of all flanks differs from its design.
+        Deviation of the profile of all flanks from its design.
     helix_deviation : HelixDeviation or None
-        How all flanks differ from it across the face.
+        Deviation of all flanks from their design across the face.
     faults : tuple of Fault
         Damaged teeth (:mod:`coupling.gears.faults`).
     helix_angle : float
@@ -123,11 +123,11 @@ class Gear:
     web_thickness : float or None
         Width of the disc between rim and bore [m]; None for a rim alone.
     tooth_thinning : float
-        How much thinner a tooth is than its profile shift says, so that there is backlash: in the normal section,
-        along the reference circle [m].
+        Reduction of the tooth thickness below that of the profile shift, for backlash: in the normal section, along
+        the reference circle [m].
     allow_undercut : bool
-        Take a gear whose rack cuts away the foot of the involute; its flank then begins where trochoid and involute
-        cross.
+        Whether to accept a gear whose rack cuts away the foot of the involute; its flank then begins where trochoid
+        and involute cross.
 
     Raises
     ------
@@ -165,19 +165,21 @@ class Gear:
 
     def __post_init__(self) -> None:
         _check_numbers(self)
-        _check_tooth(self)
-        _check_flanks(self)
+        _check_body(self)
+        _check_rack(self)
+        _check_flank(self)
+        _check_modifications(self)
 
     # ------------------------------------------------------- transverse plane
 
     @property
     def transverse_module(self) -> float:
-        """Diameter of the reference circle over teeth [m]."""
+        """Transverse module [m]: reference diameter over number of teeth."""
         return self.module / math.cos(self.helix_angle)
 
     @property
     def transverse_pressure_angle(self) -> float:
-        """Pressure angle on the reference circle [rad]."""
+        """Transverse pressure angle on the reference circle [rad]."""
         if self.helix_angle == 0.0:
             return self.pressure_angle  # to the last bit
         return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
@@ -189,27 +191,27 @@ class Gear:
 
     @cached_property
     def base_radius(self) -> float:
-        """Radius of the circle the involute unwinds from [m]."""
+        """Base circle radius, of the circle from which the involute unwinds [m]."""
         return self.pitch_radius * math.cos(self.transverse_pressure_angle)
 
     @cached_property
     def tip_radius(self) -> float:
-        """Outer radius [m]."""
+        """Tip circle radius [m]."""
         return self.pitch_radius + (self.addendum + self.profile_shift) * self.module
 
     @property
     def root_circle_radius(self) -> float:
-        """Radius of the bottom of the tooth space [m]."""
+        """Root circle radius [m]."""
         return self.pitch_radius - (self.dedendum - self.generating_shift) * self.module
 
     @cached_property
     def base_pitch(self) -> float:
-        """Distance between neighbouring flanks along the line of action, in the transverse plane [m]."""
+        """Transverse base pitch: distance of neighbouring flanks along the line of action [m]."""
         return 2.0 * math.pi * self.base_radius / self.teeth
 
     @cached_property
     def form_radius(self) -> float:
-        """Radius where the fillet's trochoid ends and the involute begins [m]."""
+        """Form circle radius, at which the fillet's trochoid ends and the involute begins [m]."""
         if self.is_undercut:
             height, across, _ = self.rack_corner_arc.trochoid(self.pitch_radius, self.fillet_end)
             return math.hypot(height, across)
@@ -225,17 +227,17 @@ class Gear:
 
     @property
     def lead(self) -> float:
-        """Length of shaft over which a tooth turns once round [m], negative for a left hand; infinite for a spur."""
+        """Lead of the helix [m], negative for a left-hand one; infinite for a spur gear."""
         return self.teeth * self.axial_pitch
 
     @property
     def axial_pitch(self) -> float:
-        """Distance of neighbouring teeth along the shaft [m], signed as `helix_angle`; infinite for a spur."""
+        """Axial pitch of neighbouring teeth [m], signed as `helix_angle`; infinite for a spur gear."""
         return math.inf if self.helix_angle == 0.0 else math.pi * self.module / math.sin(self.helix_angle)
 
     @property
     def virtual_teeth(self) -> float:
-        """Teeth of the spur gear like this gear's normal section, ``z / (cos(beta_b)^2 cos(beta))``."""
+        """Virtual number of teeth, of the spur gear of the normal section: ``z / (cos(beta_b)^2 cos(beta))``."""
         return self.teeth / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
 
     def helix_angle_at(self, radius: float) -> float:
@@ -246,7 +248,7 @@ class Gear:
 
     @property
     def generating_shift(self) -> float:
-        """Profile shift ``x_E`` at which the rack stands that cuts the teeth as thin as they are, in modules."""
+        """Generating profile shift ``x_E``, of the rack that cuts the teeth with their thinning, in modules."""
         return self.profile_shift - self.tooth_thinning / (2.0 * self.module * math.tan(self.pressure_angle))
 
     @property
@@ -330,7 +332,7 @@ class Gear:
 
     @property
     def inertia(self) -> Inertia:
-        """Mass and moments of inertia of the blank, see :mod:`coupling.gears.blank`."""
+        """Mass and moments of inertia of the blank."""
         bore_radius, inside = 0.5 * self.bore, self.rim_inner_radius
         if inside is None:
             return hollow_disc(self.density, self.face_width, self.pitch_radius, bore_radius)
@@ -356,8 +358,27 @@ class Gear:
         return self.inertia.diametral
 
 
+def require_tip_thickness(gear: Gear, least: float = 0.2) -> None:
+    """Raise `ThinTipError` where a tooth's tip is too thin to be hardened or to carry load.
+
+    Parameters
+    ----------
+    gear : Gear
+    least : float
+        Least normal thickness of the tip, in modules; 0.2 is customary for ground and through-hardened teeth, 0.4 for
+        case-hardened ones.
+    """
+    thickness = 2.0 * gear.tip_half_angle * gear.tip_radius * math.cos(gear.helix_angle_at(gear.tip_radius))
+    if thickness < least * gear.module:
+        raise ThinTipError(
+            f"gear {gear.name!r}: the teeth are {thickness * 1e3:.4g} mm thick at the tip, "
+            f"{thickness / gear.module:.3g} modules; at least {least:g} modules are wanted. "
+            f"Reduce profile_shift ({gear.profile_shift:g}) or addendum ({gear.addendum:g})"
+        )
+
+
 def _check_numbers(gear: Gear) -> None:
-    """Raise `GearError` for a number outside its range, each by itself."""
+    """Raise `GearError` for a single number outside its range."""
     label = f"gear {gear.name!r}: "
     if type(gear.teeth) is not int or gear.teeth < 5:
         raise GearError(f"{label}teeth must be a whole number of at least 5, got {gear.teeth!r}")
@@ -386,34 +407,8 @@ def _check_numbers(gear: Gear) -> None:
         raise GearError(f"{label}helix_angle must be -60 to 60 degrees in rad, got {gear.helix_angle!r} rad")
 
 
-def _check_tooth(gear: Gear) -> None:
-    """Raise `GearError` or one of its kinds for teeth that no rack cuts, or no body carries."""
-    _check_body(gear)
-    _check_rack(gear)
-    _check_foot(gear)
-    _check_tip(gear)
-
-
-def require_tip_thickness(gear: Gear, least: float = 0.2) -> None:
-    """Raise `ThinTipError` where a tooth's tip is too thin to be hardened or to carry load.
-
-    Parameters
-    ----------
-    gear : Gear
-    least : float
-        Least normal thickness of the tip, in modules; 0.2 is customary for ground and through-hardened teeth, 0.4 for
-        case-hardened ones.
-    """
-    thickness = 2.0 * gear.tip_half_angle * gear.tip_radius * math.cos(gear.helix_angle_at(gear.tip_radius))
-    if thickness < least * gear.module:
-        raise ThinTipError(
-            f"gear {gear.name!r}: the teeth are {thickness * 1e3:.4g} mm thick at the tip, "
-            f"{thickness / gear.module:.3g} modules; at least {least:g} modules are wanted. "
-            f"Reduce profile_shift ({gear.profile_shift:g}) or addendum ({gear.addendum:g})"
-        )
-
-
 def _check_body(gear: Gear) -> None:
+    """Raise `GearError` where bore, rim and web do not fit into each other."""
     label = f"gear {gear.name!r}: "
     if gear.root_circle_radius <= 0.5 * gear.bore:
         raise GearError(
@@ -436,6 +431,7 @@ def _check_body(gear: Gear) -> None:
 
 
 def _check_rack(gear: Gear) -> None:
+    """Raise `GearError` or `PointedToothError` where no rack has the proportions."""
     label = f"gear {gear.name!r}: "
     full = gear.full_rack_tip_radius
     if full < 0.0:
@@ -455,7 +451,8 @@ def _check_rack(gear: Gear) -> None:
         )
 
 
-def _check_foot(gear: Gear) -> None:
+def _check_flank(gear: Gear) -> None:
+    """Raise `GearError`, `UndercutError` or `PointedToothError` where the teeth have no flank from foot to tip."""
     label = f"gear {gear.name!r}: "
     if gear.is_undercut and not gear.allow_undercut:
         least = gear.least_generating_shift + gear.profile_shift - gear.generating_shift
@@ -470,10 +467,6 @@ def _check_foot(gear: Gear) -> None:
             raise UndercutError(f"{label}the rack cuts the teeth off at their feet; raise profile_shift")
     if gear.tip_radius <= gear.form_radius:
         raise GearError(f"{label}the tip circle lies below the start of the involute; raise the addendum")
-
-
-def _check_tip(gear: Gear) -> None:
-    label = f"gear {gear.name!r}: "
     if gear.tip_half_angle <= 0.0:
         raise PointedToothError(
             f"{label}the teeth are pointed below the tip circle; reduce profile_shift "
@@ -481,8 +474,8 @@ def _check_tip(gear: Gear) -> None:
         )
 
 
-def _check_flanks(gear: Gear) -> None:
-    """Raise `GearError` for modifications that begin off the flank, and faults on teeth that are not there."""
+def _check_modifications(gear: Gear) -> None:
+    """Raise `GearError` for modifications that begin off the flank, and faults on missing tooth numbers."""
     label = f"gear {gear.name!r}: "
     tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
     if gear.tip_relief is not None:

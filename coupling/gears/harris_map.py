@@ -1,7 +1,7 @@
-"""Transmission error over a mesh period for a range of loads: the map that S. L. Harris drew (Proc. IMechE 172, 1958).
+"""Harris map: transmission error over a mesh period for a range of loads (S. L. Harris, Proc. IMechE 172, 1958).
 
-Without load a modified profile shows as it is cut; with load the teeth bend and the modification is used up. Near the
-load that it is made for the curve is flat; below and above it is not.
+Without load the transmission error is the profile modification itself; under load the deflection of the teeth takes it
+up. The curve is flat near the design load of the modification, and rises below and above it.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class HarrisMap:
 
     @property
     def quietest(self) -> float:
-        """The load of those given with the least peak to peak [N]."""
+        """Load with the least peak-to-peak transmission error of those given [N]."""
         return float(self.forces[int(self.peak_to_peak.argmin())])
 
 
@@ -75,8 +75,7 @@ def harris_map(contact: ToothContact, forces: npt.ArrayLike, phases: npt.ArrayLi
 def transmission_error_harmonics(mesh: StaticMesh, count: int = 8) -> FloatArray:
     """Amplitudes of the first harmonics of the mesh frequency in the transmission error [m], (count,).
 
-    Of the curve drawn straight between its points over one mesh period, exactly: a curve with a step has the harmonics
-    of a step.
+    Exact for the polygon through the points of one mesh period: a curve with a step has the harmonics of a step.
 
     Raises
     ------
@@ -89,8 +88,8 @@ def transmission_error_harmonics(mesh: StaticMesh, count: int = 8) -> FloatArray
     x = np.append(phases, phases[0] + 1.0)
     y = np.append(values, values[0])
     w = 2.0 * np.pi * np.arange(1, count + 1)[:, None]
-    turn = np.exp(-1j * w * x)
-    # The integral of a straight piece times e^{-iwx}, by parts.
+    phasor = np.exp(-1j * w * x)
+    # Integral of a straight segment times e^{-iwx}, by parts.
     slope = np.diff(y) / np.diff(x)
-    integral = ((y * turn)[:, :-1] - (y * turn)[:, 1:]) / (1j * w) + slope * (turn[:, 1:] - turn[:, :-1]) / w**2
+    integral = ((y * phasor)[:, :-1] - (y * phasor)[:, 1:]) / (1j * w) + slope * (phasor[:, 1:] - phasor[:, :-1]) / w**2
     return np.asarray(2.0 * np.abs(integral.sum(axis=1)))

@@ -1,4 +1,4 @@
-r"""How far two flanks press into each other: a constant, and Weber's law that depends on the load.
+r"""Hertzian contact compliance of two flanks: Yang & Sun's constant, and Weber's load-dependent law.
 
 Two cylinders pressed together with the force F touch on a strip of half width (Hertz)
 
@@ -9,9 +9,9 @@ Mechanics*, section 5.6) by
 
     delta = 2 F (1 - nu^2) / (pi E b) * (ln(2 t / a) - nu / (2 (1 - nu)))
 
-In plane problems there is no approach of far points: the depth must be said.  It is the tooth's axis on the line of
-action, ``t = x / cos(beta)``, because tooth models give the axis' motion; a finite-element model finds the two to add
-up (tests/validation).  With the load the strip widens: the stiffness ``dF/d delta`` grows with the logarithm of F, from
+In plane problems the approach of far points is unbounded: a depth must be chosen.  It is the tooth's axis on the line
+of action, ``t = x / cos(beta)``, because tooth models give the axis' motion; in a finite-element model the two add up
+(tests/validation).  With the load the strip widens: the stiffness ``dF/d delta`` grows with the logarithm of F, from
 nothing at first touch.
 
 The constant of Yang & Sun (1985), ``pi E b / (4 (1 - nu^2))`` for equal materials, has neither load nor depth.  It is
@@ -75,7 +75,7 @@ class LineContact:
         )
 
     def approach(self, force: npt.ArrayLike) -> FloatArray:
-        """How far the axes of the two teeth approach by the flattening alone [m], under `force` [N]."""
+        """Approach of the axes of the two teeth by the flattening alone [m], under `force` [N]."""
         return _positive(force) * self.secant_compliance(force)
 
     def secant_compliance(self, force: npt.ArrayLike) -> FloatArray:

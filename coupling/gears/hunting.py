@@ -1,8 +1,8 @@
-"""The loaded mesh over the whole hunting period, each mesh period that differs from the others solved once.
+"""Hunting period: the loaded mesh over it, with each different mesh period solved once.
 
-What a mesh period is like depends on the pairs that can touch in it: their pitch gaps, and which of them are of damaged
-teeth. One cracked tooth makes a few mesh periods different from all others, however long the hunting period is; only
-pitch deviations of both gears make every one its own.
+Mesh periods differ by the pairs that can touch in them: by their pitch gaps and their damaged teeth. One cracked tooth
+makes a few mesh periods different from all others, however long the hunting period is; only pitch deviations of both
+gears make every mesh period different.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from coupling.gears.tooth_contact import ToothContact
 FloatArray = npt.NDArray[np.float64]
 
 _AT_ONCE = 1000
-"""Phases solved together: more would leave the processor's cache where the face is in slices."""
+"""Phases solved together: more, with face slices, exceed the processor's cache."""
 
 
 def hunting_mesh(contact: ToothContact, force: float, points: int = 60) -> StaticMesh:
@@ -37,7 +37,7 @@ def hunting_mesh(contact: ToothContact, force: float, points: int = 60) -> Stati
     Returns
     -------
     StaticMesh
-        What `static_transmission_error` gives at the phases of ``contact.hunting_period`` mesh periods.
+        Result of `static_transmission_error` at the phases of ``contact.hunting_period`` mesh periods.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def hunting_mesh(contact: ToothContact, force: float, points: int = 60) -> Stati
 
 
 def _different_periods(contact: ToothContact) -> tuple[IntArray, IntArray]:
-    """The first of every kind of mesh period, and of which kind each of the hunting period is."""
+    """First mesh period of every kind, and the kind of each mesh period of the hunting period."""
     start, end = contact.touching_range
     entered = np.arange(contact.hunting_period)[:, None] - np.arange(math.floor(start), math.ceil(end))
     own = [

@@ -1,4 +1,4 @@
-"""The involute function and its inverse."""
+"""Involute function and its inverse."""
 
 from __future__ import annotations
 

@@ -23,10 +23,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
+from coupling.gears import piecewise
 from coupling.gears.errors import StiffnessModelError
 from coupling.gears.geometry import Gear
 from coupling.gears.pair_geometry import GearPairGeometry
+from coupling.gears.piecewise import PiecewiseCubic
 
 _PER_MM_AND_UM = 1e9
 """N/(mm um) in N/m per metre of face width."""
@@ -100,9 +103,34 @@ def iso6336_stiffness(geometry: GearPairGeometry, specific_load: float | None = 
 
 
 def blank_factor(gear: Gear) -> float:
-    """Gear blank factor C_R, 1 for a disc and for a rim alone (of which the norm says nothing)."""
+    """Gear blank factor C_R, 1 for a disc and for a rim alone (which the norm does not cover)."""
     if gear.rim_thickness is None or gear.web_thickness is None:
         return 1.0
     web = min(max(gear.web_thickness / gear.face_width, 0.2), 1.2)
     rim = max(gear.rim_thickness / gear.module, 1.0)
     return 1.0 + math.log(web) / (5.0 * math.exp(rim / 5.0))
+
+
+@dataclass(frozen=True)
+class Iso6336Stiffness:
+    """ISO 6336-1 method B as a curve: a parabola with the norm's maximum and the norm's mean.
+
+    The norm gives two numbers, c' at the middle of the path and the mean of the mesh
+    ``c_gamma = c' (0.75 eps + 0.25)``.  The parabola ``c' (1 - kappa (2 s/eps - 1)^2)`` has both exactly
+    with ``kappa = 0.75 (1 - 1/eps)``.
+
+    Parameters
+    ----------
+    specific_load : float or None
+        Tangential load per face width, F_t K_A / b [N/m]; below 100 N/mm the norm lowers the stiffness.
+    """
+
+    name: ClassVar[str] = "iso6336"
+    specific_load: float | None = None
+
+    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
+        """Stiffness [N/m] by position."""
+        norm = iso6336_stiffness(geometry, specific_load=self.specific_load)
+        largest = norm.single_pair * geometry.face_width
+        ends = largest * (0.25 + 0.75 / geometry.contact_ratio)
+        return piecewise.quadratic(ends, largest, ends, geometry.contact_ratio)

@@ -1,13 +1,13 @@
-"""The tooth contact law, compiled: scalars and a row of numbers in, scalars out, no allocation.
+"""Tooth contact force, compiled: scalars and a row of numbers in, scalars out, no allocation.
 
 Importing this module imports numba.  The law is derived in :mod:`coupling.gears.tooth_contact`; what describes the
 contact is laid out by :mod:`coupling.gears.law_table` and comes from `ToothContact.kernel_arguments`:
 ``tooth_force(phase, compression, rate, *contact.kernel_arguments)``.
 
-What costs time here is not arithmetic but what goes on around it. Each argument is copied at every call: hence one
-array. Numba counts an array in and out of a function, atomically, unless it can prove that it need not: hence entries
-are read one by one, never through views, nothing can raise (division follows numpy), and small functions are put in
-place. It looks at every index for being negative, counted from the end: hence `number_at`.
+The overhead of calls costs more time here than the arithmetic. Each argument is copied at every call: hence one array.
+Numba counts references to an array atomically at each call, unless it can prove that it need not: hence entries are
+read one by one, never through views, nothing can raise (division follows numpy), and small functions are inlined. It
+checks every index for being negative, counted from the end: hence `number_at`.
 """
 
 from __future__ import annotations
@@ -48,24 +48,24 @@ TangentForce = tuple[float, float, float, float, float, int]
 
 _NEWTON_STEPS = 60
 _DOUBT = 1e-12
-"""Part of the compression that may be rounding of where a pair begins to touch."""
+"""Part of the compression within which a pair's first touch is rounding."""
 PRECISE, _NEAR_ENOUGH = 1e-9, 1e-4
-"""Corrections after which the pairs' compression is exact to rounding: as it is, or with one more Newton step."""
+"""Corrections after which the pairs' compression is exact to rounding: at once, or after one more Newton step."""
 
 
 @inner(inline="always")
 def number_at(law: FloatArray, index: int) -> float:
-    """A number of the law's, at an index that is not negative."""
+    """Number of the law at an index that is not negative."""
     value: float = law[np.uint64(index)]
     return value
 
 
 @inner(inline="always")
-def place(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, float]:
-    """Periods gone, interval of the period, place in it from 0 to 1, and one over its width."""
+def locate(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, float]:
+    """Whole periods, interval of the period, position in it from 0 to 1, and one over its width."""
     number = np.floor(phase)
     x = phase - number
-    if x >= 1.0:  # a phase a hair below a whole number rounds up
+    if x >= 1.0:  # a phase just below a whole number rounds up
         x -= 1.0
         number += 1.0
     interval = int(number_at(law, at + HEADER + int(x * number_at(law, at + PARTS))))
@@ -81,9 +81,9 @@ def place(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, fl
 def nearness(
     law: FloatArray, at: int, hunting: int, entered: int, u: float, compression: float, here: int
 ) -> tuple[float, int]:
-    """By how much a pair's flanks are pressed together [m], negative where they are apart, and where its numbers begin.
+    """Penetration of a pair's flanks [m], negative where they are apart, and the index of its numbers.
 
-    ``here``: where those of the same pair begin if it is of the first kind; ``entered``: phase at which it entered.
+    ``here``: index of the same pair's numbers if it is of the first kind; ``entered``: phase at which it entered.
     """
     if hunting > 0:
         entry = at + int(number_at(law, at + ENTERING_AT)) + ENTERING * (entered % hunting)
@@ -97,9 +97,9 @@ def nearness(
 def face_force(
     law: FloatArray, cell: int, unit: float, per_unit: float, p: float, begin: float, rho: float
 ) -> tuple[float, float, float, float]:
-    """Force, tangent, energy and the energy's slope by p of a pair whose face is loaded unevenly.
+    """Force, tangent, energy and the energy's derivative by p of a pair with an uneven load across its face.
 
-    ``cell``: where its numbers begin, see :mod:`coupling.gears.face_table`; ``unit (begin + rho)^2`` is the compression
+    ``cell``: index of its numbers, see :mod:`coupling.gears.face_table`; ``unit (begin + rho)^2`` is the compression
     beyond first touch, ``per_unit`` is 1 / ``unit``.
     """
     # The force's cubic in rho at this p, and how it changes with p: Horner's scheme for both at once.
@@ -163,9 +163,9 @@ def face_rise(
 
 @inner(fastmath={"contract"}, inline="always")
 def pair_rise(law: FloatArray, at: int, here: int, u: float, approach: float) -> tuple[float, float, float]:
-    """Force, tangent and its slope of a pair whose flanks are pressed together by ``approach`` > 0.
+    """Force, tangent and the tangent's derivative of a pair with a penetration ``approach`` > 0.
 
-    ``here``: where its numbers begin.
+    ``here``: index of its numbers.
     """
     unit = number_at(law, at + DEPTH_UNIT)
     if unit > 0.0:
@@ -185,13 +185,13 @@ def pair_rise(law: FloatArray, at: int, here: int, u: float, approach: float) ->
 def pairs_compression(
     law: FloatArray, at: int, number: float, interval: int, u: float, compression: float, precision: float
 ) -> tuple[float, float]:
-    """Compression of the pairs behind what their gears' bodies yield, and its rise by that of the mesh.
+    """Compression of the pairs without that of their gears' bodies, and its derivative by that of the mesh.
 
-    The first is the root of ``x + C F(x) = compression``, which rises all along, by Newton's method between bounds. It
-    stops where the curvature of F would change a step by no more than ``precision`` parts of the whole way, and takes
-    that in: what is left is of the next order.
+    The first is the root of ``x + C F(x) = compression``, whose left side increases, by Newton's method between bounds.
+    The iteration stops where the curvature of F changes a step by no more than ``precision`` of the whole compression,
+    and adds that change: the error is of the next order.
 
-    ``number``, ``interval``, ``u``: as `place` gives them.
+    ``number``, ``interval``, ``u``: from `locate`.
     """
     shared = number_at(law, at + SHARED)
     if shared == 0.0:
@@ -228,7 +228,7 @@ def pairs_compression(
         gain = 1.0 / (1.0 + shared * tangent)
         step = excess * gain
         bend = 0.5 * shared * curvature * gain * step * step
-        # Where a pair is about to touch or to part its force bends the more the nearer it is.
+        # The curvature of a pair's force grows towards its first touch.
         if abs(bend) <= small and abs(step) <= max(0.25 * nearest, 0.01 * small):
             x -= step + bend
             break
@@ -240,13 +240,13 @@ def pairs_compression(
 
 @uncounted(fastmath={"contract"})
 def ranked_nearness(phase: float, compression: float, law: FloatArray, at: int, rank: int) -> float:
-    """Compression of the mesh beyond that at which as many as ``rank`` pairs begin to touch [m]; -inf with fewer pairs.
+    """Penetration of the ``rank``-th most compressed tooth pair, by the mesh's compression [m]; -inf without one.
 
-    So ``rank`` pairs or more touch where it is positive, as `tooth_force` counts them, whose other arguments these are.
-    Unlike their number it tells how far the next change is. Before the pair touches, those nearer than it carry and
-    their gears' bodies yield by ``c F``.
+    At least ``rank`` pairs touch where it is positive, as `tooth_force` counts them, with the same arguments. Unlike
+    their number it gives the distance to the next change. Before the pair touches, the pairs ahead of it carry the load
+    and their gears' bodies deflect by ``c F``.
     """
-    number, interval, u, _ = place(law, at, phase)
+    number, interval, u, _ = locate(law, at, phase)
     pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
     start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
     first = int(number) - int(number_at(law, at + FIRST_PAIR))
@@ -276,9 +276,9 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     compression, rate : float
         Compression of the contact [m] and its rate [m/s].
     law : ndarray
-        Numbers of `coupling.gears.law_table`, of this law and perhaps of others before and after it.
+        Numbers of `coupling.gears.law_table`, of this law alone or of several laws in a row.
     at : int
-        Where those of this law begin.
+        Index at which those of this law begin.
 
     Returns
     -------
@@ -296,7 +296,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     """
     if compression <= number_at(law, at + FIRST_TOUCH):
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
-    number, interval, u, per_width = place(law, at, phase)
+    number, interval, u, per_width = locate(law, at, phase)
     pairs = int(number_at(law, at + PAIRS))
     hunting = int(number_at(law, at + HUNTING))
     unit = number_at(law, at + DEPTH_UNIT)
@@ -314,7 +314,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
         x, _ = pairs_compression(law, at, number, interval, u, compression, _NEAR_ENOUGH)
     first = int(number) - int(number_at(law, at + FIRST_PAIR))
     doubt = _DOUBT * abs(compression) if shared > 0.0 else 0.0
-    # Pairs leave the set that touches at the mesh's own compression as the bodies take their share, one round each.
+    # Pairs in contact at the mesh's whole compression lose contact as the bodies take their share, one round each.
     for _ in range(pairs + 1):
         force, tangent, energy, slope, slope_by_x, curve = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         touching, deepest, nearest = 0, 0.0, math.inf
@@ -352,11 +352,11 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
                 slope += (pull - 0.5 * k_slope * approach) * approach
                 slope_by_x += pull
                 curve += 0.5 * k_slope
-        # By how much the pairs are pressed together less than x, with these touching.
+        # Excess of x over the pairs' compression with these in contact.
         excess = (x - compression + shared * force) / (1.0 + shared * tangent)
         touches = uneven or excess < nearest
         if abs(excess - nearest) <= doubt and not uneven:
-            # Within rounding of its touch a pair counts where the search for that moment says so.
+            # Within rounding of its first touch a pair counts if the search for that event counts it.
             touches = ranked_nearness(phase, compression, law, at, touching) > 0.0
         if touches:
             energy += excess * (0.5 * excess * tangent - force)
@@ -376,7 +376,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
         tangent += damping * rate / damping_depth * gain
         damping *= deepest / damping_depth
     if force + damping * rate < 0.0:
-        # Teeth do not pull: the damping takes no more than the springs give, and all of that.
+        # Teeth do not pull: the damping absorbs at most the springs' force, here all of it.
         return 0.0, 0.0, -force / rate, energy, slope, touching
     return force + damping * rate, tangent, damping, energy, slope, touching
 

@@ -1,19 +1,19 @@
-r"""The numbers of a contact law, laid out for the compiled kernel: one row of numbers, whatever the law holds.
+r"""Memory layout of a tooth contact law: one row of numbers for the compiled kernels.
 
-The teeth of a mesh are a base pitch apart, so the phase places all of its pairs at once: pair j is at ``x + j``, x the
+The teeth of a mesh are a base pitch apart, so the phase fixes the positions of all pairs: pair j is at ``x + j``, x the
 phase's fraction. All curves of all pairs are therefore cut at common knots of x, and one look-up finds what the law
 needs of every pair. An interval is found by an index instead of a search: the period is cut into equal parts, and each
-names the interval in which it begins; from there it is few steps forward, mostly none.
+names the interval in which it begins; from there the search goes forward by few steps, mostly none.
 
 The row begins with `HEADER` numbers, at the places named below; then come
 
 * the parts, with the number of an interval each;
 * the intervals, `INTERVAL` numbers each: where it begins and one over its width. One more begins at 1, where steps end;
 * the pairs, `PAIR` numbers each, by kind of pair, interval and pair. First the cubic of its gap [m] in a variable from
-  0 to 1 over the interval; then that of its stiffness [N/m] or, where the load spreads over the face, the number of its
-  column of cells, and where in it the interval begins and how long it is. A pair that cannot be there has an infinite
+  0 to 1 over the interval; then that of its stiffness [N/m] or, for an uneven load across the face, the number of its
+  column of cells, and the begin and length of the interval in it. A pair outside the range of contact has an infinite
   gap;
-* the pairs of the hunting period, `ENTERING` numbers each: what pitch deviations add to the gap of the pair that enters
+* the pairs of the hunting period, `ENTERING` numbers each: the gap by pitch deviations of the pair that enters
   at phase n, at n mod h [m], and its kind; none where all pairs are alike;
 * the cells of `coupling.gears.face_table`, `CELL` numbers each, by depth, kind and position;
 * with cells, the guesses: the pairs' part of the mesh's compression in the mean over the mesh period, both counted from
@@ -35,7 +35,7 @@ from coupling.gears.piecewise import PiecewiseCubic
 FloatArray = npt.NDArray[np.float64]
 
 FIRST_TOUCH, PARTS, INTERVALS, PAIRS, FIRST_PAIR, KIND_STEP = 0, 1, 2, 3, 4, 5
-"""Compression below which no pair touches [m]; how many parts, intervals, and pairs at once; j of the first pair; the
+"""Compression below which no pair touches [m]; numbers of parts, intervals, and pairs at once; j of the first pair; the
 distance from one kind's pairs to the next one's."""
 DAMPING, DAMPING_DEPTH, HUNTING, DEPTH_UNIT, DEPTHS, DEPTH_STEP = 6, 7, 8, 9, 10, 11
 """Damping [N s/m] and the depth over which it fades in [m]; pairs of the hunting period; unit of the cells' depth [m],
@@ -43,8 +43,8 @@ DAMPING, DAMPING_DEPTH, HUNTING, DEPTH_UNIT, DEPTHS, DEPTH_STEP = 6, 7, 8, 9, 10
 INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT = 12, 13, 14, 15
 """Where these begin; the parts begin at `HEADER`."""
 SHARED, GUESS_AT = 16, 17
-"""What all pairs together yield in common, by the bodies of their gears [m/N]; where the guesses begin of the part
-of the mesh's compression that leaves the pairs, by the depth of cells."""
+"""Compliance that all pairs share, of their gears' bodies [m/N]; where the first guesses of the pairs' fraction of the
+mesh's compression begin, by the depth of cells."""
 HEADER = 18
 INTERVAL, PAIR, ENTERING = 2, 8, 2
 
@@ -62,7 +62,7 @@ def law_table(
     damping_depth: float,
     shared_compliance: float = 0.0,
 ) -> FloatArray:
-    """The law's numbers in a row.
+    """Row of numbers of a contact law.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def law_table(
     pairs = np.concatenate([first, second], axis=-1)
     parts = _PARTS_PER_INTERVAL * (knots.size - 1)
     begins = np.minimum(np.searchsorted(knots, np.arange(parts) / parts + _HAIR, side="right") - 1, knots.size - 2)
-    # But where contact ends within rounding of a period, the sliver between both is looked up as well.
+    # Where contact ends within rounding of a period, the sliver between both is included in the search.
     begins -= (begins > 0) & (np.diff(knots)[begins - 1] < 2.0 * _HAIR)
     intervals = np.column_stack([knots, np.append(1.0 / np.diff(knots), 0.0)])
     # No cubic c0 + c1 u + ... falls below c0 and its negative coefficients together on 0 <= u <= 1.
@@ -109,16 +109,16 @@ def law_table(
 
 
 def _guesses(table: FaceTable, first_touch: float, shared: float) -> FloatArray:
-    """Part of the mesh's compression that is left to the pairs, in the mean over the period, by depth."""
+    """Fraction of the mesh's compression in the pairs, without the shared bodies, mean over the period, by depth."""
     depths = np.arange(table.cells.shape[0], dtype=np.float64)
     compression = table.depth_unit * depths**2
     beyond = np.maximum(0.0, first_touch + compression[:, None] - table.first_touch[0, :, 0])
-    # Straight between depths, and beyond the last.
+    # Linear between depths, and beyond the last.
     depth = np.sqrt(beyond / table.depth_unit)
     below = np.minimum(depth.astype(np.int64), depths.size - 2)
     force, column = table.cells[:, 0, :, 0], np.arange(below.shape[1])
-    pressed = force[below, column] + (depth - below) * (force[below + 1, column] - force[below, column])
-    mesh = compression + shared * (pressed @ np.diff(table.knots))
+    mean_force = force[below, column] + (depth - below) * (force[below + 1, column] - force[below, column])
+    mesh = compression + shared * (mean_force @ np.diff(table.knots))
     left = np.interp(compression, mesh, compression)
     left[1:] /= compression[1:]
     left[0] = left[1]

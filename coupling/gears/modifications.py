@@ -1,4 +1,4 @@
-"""Profile modifications: material taken off the flank on purpose, near the tip or near the root.
+"""Profile modifications: tip relief and root relief, material taken off the flank on purpose.
 
 Depths are normal to the flank, so along the line of action, and grow with the roll angle from nothing where the
 relief begins to the full amount where the flank ends: in proportion (``"linear"``) or with the square of it
@@ -32,7 +32,7 @@ class TipRelief:
     start_roll_angle : float or None
         Roll angle where the relief begins [rad]; zero roll is the base circle.
     length : float or None
-        In its place: how far from the tip the relief begins, along the line of action [m].
+        In its place: distance from the tip to the start of the relief, along the line of action [m].
     shape : {"linear", "parabolic"}
 
     Raises

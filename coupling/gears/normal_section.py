@@ -1,8 +1,8 @@
-r"""The teeth of a helical gear in their normal section: spur gears of virtual teeth.
+r"""Normal section of a helical gear: spur gears with the virtual number of teeth.
 
 A helical tooth bends in the plane normal to its flank. There it is the tooth of a spur gear of the normal module with
 ``z_n = z / (cos^2 beta_b cos beta)`` teeth (ISO 21771), and the contact is at ``rho_n = rho_t / cos beta_b`` from that
-gear's base circle, so at the same part of the flank from its foot to its tip. With the load ``F_t / cos beta_b`` on
+gear's base circle, so at the same fraction of the flank from its foot to its tip. With the load ``F_t / cos beta_b`` on
 the length ``b / cos beta_b``, and the deflection seen in the transverse plane as ``delta_n / cos beta_b``, the
 compliance along the transverse line of action is
 
@@ -22,10 +22,10 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.geometry import Gear
-from coupling.gears.rim import CrossCompliance
 
 FloatArray = npt.NDArray[np.float64]
-Compliance = Callable[[FloatArray], FloatArray]
+Compliance = Callable[..., FloatArray]
+"""From one array of positions or radii for each load to a compliance [m/N]; the shapes broadcast."""
 
 
 def normal_section_gears(gear: Gear) -> tuple[tuple[Gear, float], ...]:
@@ -36,42 +36,44 @@ def normal_section_gears(gear: Gear) -> tuple[tuple[Gear, float], ...]:
     return tuple((_spur(gear, teeth), weight) for teeth, weight in weights if weight > 0.0)
 
 
-def by_normal_section(gear: Gear, solve: Callable[[Gear], Compliance]) -> Compliance:
-    """Compliance c_n of one helical tooth [m/N] by transverse radii [m], where `solve` gives that of a spur gear's."""
-    sections = [(weight, solve(spur), _mapped(gear, spur)) for spur, weight in normal_section_gears(gear)]
+def transverse_compliance(gear: Gear, solve: Callable[[Gear], Compliance]) -> Compliance:
+    """Compliance of teeth along the transverse line of action, from that of the spur gears of their normal section.
 
-    def compliance(radius: FloatArray) -> FloatArray:
-        total = np.zeros_like(radius)
-        for weight, tooth, mapped in sections:
-            total = total + weight * tooth(mapped(radius))
-        return np.asarray(total, dtype=np.float64)
+    Parameters
+    ----------
+    gear : Gear
+        Spur or helical.
+    solve : callable
+        From a spur gear to the compliance of its teeth [m/N] by the radii of the loads [m], one array for each load.
+
+    Returns
+    -------
+    callable
+        From transverse radii [m] of the same loads to ``c_n / cos(beta_b)`` [m/N].
+    """
+    if gear.helix_angle == 0.0:
+        return solve(gear)
+    sections = [(weight, solve(spur), _spur_radius(gear, spur)) for spur, weight in normal_section_gears(gear)]
+
+    def compliance(*radii: FloatArray) -> FloatArray:
+        total: FloatArray = np.zeros(np.broadcast_shapes(*(radius.shape for radius in radii)))
+        for weight, of_spur, spur_radius in sections:
+            total = total + weight * of_spur(*map(spur_radius, radii))
+        return np.asarray(total / math.cos(gear.base_helix_angle), dtype=np.float64)
 
     return compliance
 
 
-def cross_by_normal_section(gear: Gear, solve: Callable[[Gear], CrossCompliance]) -> CrossCompliance:
-    """The same of two neighbouring teeth: what a load on one moves the other [m/N], by the radii of both loads [m]."""
-    sections = [(weight, solve(spur), _mapped(gear, spur)) for spur, weight in normal_section_gears(gear)]
-
-    def compliance(behind: FloatArray, ahead: FloatArray) -> FloatArray:
-        total = np.zeros(np.broadcast_shapes(behind.shape, ahead.shape))
-        for weight, teeth, mapped in sections:
-            total = total + weight * teeth(mapped(behind), mapped(ahead))
-        return np.asarray(total, dtype=np.float64)
-
-    return compliance
-
-
-def _mapped(gear: Gear, spur: Gear) -> Compliance:
-    """From transverse radii to those at the same part of the spur gear's flank [m]."""
+def _spur_radius(gear: Gear, spur: Gear) -> Callable[[FloatArray], FloatArray]:
+    """From transverse radii to those at the same fraction of the spur gear's flank [m]."""
     low, high = _reach(gear, np.array([gear.form_radius, gear.tip_radius]))
     foot, tip = _reach(spur, np.array([spur.form_radius, spur.tip_radius]))
 
-    def mapped(radius: FloatArray) -> FloatArray:
+    def spur_radius(radius: FloatArray) -> FloatArray:
         share = (_reach(gear, radius) - low) / (high - low)
         return np.asarray(np.hypot(spur.base_radius, foot + share * (tip - foot)), dtype=np.float64)
 
-    return mapped
+    return spur_radius
 
 
 def _reach(gear: Gear, radius: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Optimal tip relief: amount and length that make the transmission error, or what follows from it, least."""
+"""Optimal tip relief: amount and length with the least transmission error, or least weighted harmonics of it."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ FloatArray = npt.NDArray[np.float64]
 _GRID = 14
 _POINTS = 128
 _HIGHEST = 32
-"""Multiple of the mesh frequency that an aim may weigh."""
+"""Highest multiple of the mesh frequency with a weight."""
 _LONGEST = 0.95
-"""In halves of the path of contact: how far the relief may reach from the tip."""
+"""Longest relief from the tip, in halves of the path of contact."""
 _DEEPEST = 3.0
-"""In mean deflections at the largest load: how deep the relief may be."""
+"""Largest amount of relief, in mean deflections at the largest load."""
 
 
 class ReliefAim(Protocol):
-    """What a relief is to make least, of the loaded transmission error over one mesh period."""
+    """Objective of a relief: a value of the loaded transmission error over one mesh period."""
 
     def of(self, mesh: StaticMesh) -> float:
-        """Value at a loaded mesh, at least 0."""
+        """Value of the objective for a loaded mesh, at least 0."""
 
 
 @dataclass(frozen=True)
@@ -86,26 +86,26 @@ class WeightedHarmonics:
 
 @dataclass(frozen=True, eq=False)
 class ReliefOptimum:
-    """The best relief, the same on both gears, and what was tried on the way.
+    """Optimal relief, the same on both gears, and the grid of the search.
 
     Attributes
     ----------
     relief : TipRelief or None
-        By its length along the line of action; None where none that was tried is better than no relief.
+        By its length along the line of action; None where no relief of the search is better than none.
     geometry : GearPairGeometry
         The pair with it.
     value : ndarray, shape (f,)
-        What is aimed at with it, at each load.
+        Objective with it, at each load.
     value_unmodified : ndarray, shape (f,)
-        The same without any tip relief: its largest is never below that of `value`.
+        Objective without any tip relief: its largest is never below that of `value`.
     peak_to_peak : ndarray, shape (f,)
         Transmission error with it at each load [m].
     unmodified : ndarray, shape (f,)
-        The same without any tip relief [m].
+        Transmission error without any tip relief at each load [m].
     amounts, lengths : ndarray, shapes (a,), (l,)
-        Tried on a grid [m].
+        Grid of the search [m].
     tried : ndarray, shape (a, l)
-        Largest value over the loads there.
+        Largest objective over the loads on the grid.
     """
 
     relief: TipRelief | None
@@ -121,7 +121,7 @@ class ReliefOptimum:
 
 @dataclass(frozen=True, eq=False)
 class _Known:
-    """A stiffness that relief does not change, computed once."""
+    """Stiffness of the pair, which relief does not change, computed once."""
 
     stiffness: PiecewiseCubic
     shared: float
@@ -144,10 +144,10 @@ def optimal_tip_relief(
     searched_faces: FaceSlices | None = None,
     aim: ReliefAim | None = None,
 ) -> ReliefOptimum:
-    """Tip relief of both gears that makes an aim least, its largest value over the given loads.
+    """Tip relief of both gears that minimises an objective, its largest value over the given loads.
 
-    Amount and length are tried on a grid, and the best place of it is improved by the method of Nelder and Mead. The
-    best is held against no relief at all, and given only where it is better. Any tip relief that the gears have is
+    Amount and length are varied on a grid, and its best point is improved by the method of Nelder and Mead. The result
+    is compared with no relief at all, and returned only where it is better. Any tip relief that the gears have is
     replaced; their other modifications and deviations stay.
 
     Parameters
@@ -155,7 +155,7 @@ def optimal_tip_relief(
     geometry : GearPairGeometry
     model : StiffnessModel
     forces : sequence of float
-        Loads along the line of action [N], above 0; one, or those between which the gears work.
+        Loads along the line of action [N], above 0; one, or the range of operation.
     shape : {"linear", "parabolic"}
     corner_contact, faces
         As for `tooth_contact`.
@@ -202,7 +202,7 @@ def optimal_tip_relief(
 
     coarse = faces if searched_faces is None else searched_faces
     bare, plain = contact_of(None)
-    # Counted from first touch, which a crown or a deviation puts before or after nominal motion.
+    # Counted from first touch, which crowning or a deviation shifts from nominal motion.
     loaded, unloaded = (static_transmission_error(plain, force) for force in (max(forces), 0.0))
     deflection = loaded.mean_transmission_error - unloaded.mean_transmission_error
     longest = _LONGEST * 0.5 * geometry.path_length
@@ -218,7 +218,7 @@ def optimal_tip_relief(
     found = minimize(scaled, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-12, "maxfev": 200})
     relief: TipRelief | None = TipRelief(float(found.x[0] * deepest), length=float(found.x[1] * longest), shape=shape)
     pair, contact = contact_of(relief)
-    # The judgement is by all slices of the face, for which the search may be too coarse.
+    # The comparison uses all slices of the face; the search may use fewer.
     with_it, without = meshes(contact), meshes(plain)
     value, value_without = (np.array([target.of(mesh) for mesh in each]) for each in (with_it, without))
     if not value.max() < value_without.max():

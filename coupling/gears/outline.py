@@ -1,10 +1,10 @@
-"""Whole gears as points for drawing, by themselves and placed in mesh.
+"""Gear outlines: whole gears as polygons for drawing, alone and placed in mesh.
 
 Placing a pair: at phase p the pair of teeth with number 0 touches at p base pitches along the path of contact.  Seen
 from its gear's centre, a flank point of roll angle ``u`` is ``atan(u)`` beyond the tangent point of the line of action
 and ``psi - inv(atan(u))`` from its tooth's axis, psi half the tooth's angle on the base circle; so the axis is
 ``u - psi`` beyond the tangent point.  The tangent points are at the working pressure angle w from the line of centres.
-With that line at ``zeta`` from x, and the driver turning in
+With that line at ``zeta`` from x, and the driver rotating in
 the sense s = +1 (counter-clockwise) or -1, the axes of the two teeth stand at
 
     driver:  zeta + s (u_k - w - psi_k)          driven:  zeta + pi + s (u_i - w - psi_i).
@@ -20,7 +20,7 @@ import numpy.typing as npt
 from coupling.gears.errors import GearError
 from coupling.gears.geometry import Gear
 from coupling.gears.pair_geometry import GearPairGeometry
-from coupling.gears.profile import fillet_points, flank_points, load_angle, root_half_angle
+from coupling.gears.profile import root_half_angle, tooth_side
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,7 +43,7 @@ def gear_outline(
     centre : tuple of float
         Where the gear's centre is [m].
     axial_position : float
-        Which transverse plane of a helical gear [m]: a right-hand tooth turns by ``tan(beta) z / r``.
+        Which transverse plane of a helical gear [m]: a right-hand tooth rotates by ``tan(beta) z / r``.
     points : int
         Points on each fillet and each flank, at least 2.
 
@@ -57,15 +57,15 @@ def gear_outline(
     tooth = _tooth_and_space(gear, points)
     twist = math.tan(gear.helix_angle) * axial_position / gear.pitch_radius
     angles = rotation + twist + 2.0 * math.pi * np.arange(gear.teeth) / gear.teeth
-    turned = tooth[None, :] * np.exp(1j * angles)[:, None]
-    outline = turned.ravel() + complex(*centre)
+    rotated = tooth[None, :] * np.exp(1j * angles)[:, None]
+    outline = rotated.ravel() + complex(*centre)
     return np.column_stack([outline.real, outline.imag])
 
 
 def meshing_rotations(
     pair: GearPairGeometry, phase: float, *, centre_line_angle: float = 0.0, sense: int = 1
 ) -> tuple[float, float]:
-    """How far driver and driven gear are turned at a phase, so that their working flanks touch.
+    """Rotation angles of driver and driven gear at a phase, with their working flanks in contact.
 
     Parameters
     ----------
@@ -118,12 +118,8 @@ def pair_outlines(
 
 def _tooth_and_space(gear: Gear, points: int) -> npt.NDArray[np.complex128]:
     """The outline from the root of the tooth on the x axis to the root of the next one, in complex coordinates."""
-    fillet = fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, points))
-    ends = load_angle(gear, np.array([gear.form_radius, gear.tip_radius]))
-    flank = flank_points(gear, np.linspace(ends[0], ends[1], points))
-    side = np.concatenate([fillet.height, flank.height[1:]]) + 1j * np.concatenate(
-        [fillet.half_thickness, flank.half_thickness[1:]]
-    )
+    across, along = tooth_side(gear, points)
+    side = along + 1j * across
     arc = np.linspace(-1.0, 1.0, max(3, points // 4))[1:-1]
     tip = gear.tip_radius * np.exp(1j * gear.tip_half_angle * arc)
     middle = math.pi / gear.teeth

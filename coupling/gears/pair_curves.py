@@ -1,4 +1,4 @@
-"""How stiff a pair of teeth is along its path of contact, and how far apart its flanks are."""
+"""Tooth pair: stiffness and profile deviation of a pair of teeth along its path of contact."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from coupling.gears import piecewise
 from coupling.gears.corner_contact import LARGEST_GAP, LONGEST_REACH, corner_reach, flank_places
-from coupling.gears.deviation import pair_deviation
+from coupling.gears.deviation import SAME_CORNER, pair_deviation
 from coupling.gears.errors import GearError
 from coupling.gears.faults import MissingTooth
 from coupling.gears.pair_geometry import GearPairGeometry
@@ -20,16 +20,14 @@ from coupling.gears.piecewise import PiecewiseCubic
 
 FloatArray = npt.NDArray[np.float64]
 
-_SAME_KNOT = 1e-9
-"""Knots nearer to each other than this, in base pitches, are one."""
 _SLOPE_JUMP = 1e-5
-"""A slope that jumps by less than this part of the largest one does so by the fit of a smooth curve."""
+"""Part of the largest slope below which a jump of slope is an error of the fit."""
 _STIFFNESS_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class PairCurves:
-    """How stiff a pair of teeth is along the path of contact, and how far apart its flanks are.
+    """Stiffness and profile deviation of a pair of teeth along the path of contact.
 
     Attributes
     ----------
@@ -98,33 +96,33 @@ def pair_kinds(
 
 
 def behind_shared(curves: PairCurves, shared: float) -> PairCurves:
-    """The same pair behind a compliance that it shares with others, `shared` [m/N]: ``1/k' = 1/k - C``."""
+    """The same pair without the compliance that it shares with others, `shared` [m/N]: ``1/k' = 1/k - C``."""
     if shared == 0.0:
         return curves
     alone = curves.stiffness
 
-    def behind(position: FloatArray) -> FloatArray:
+    def without(position: FloatArray) -> FloatArray:
         stiffness = alone(position)
         return np.asarray(stiffness / (1.0 - shared * stiffness), dtype=np.float64)
 
-    largest = float(behind(alone.knots).max())
-    return replace(curves, stiffness=piecewise.fitted(behind, alone.knots, _STIFFNESS_TOLERANCE * largest))
+    largest = float(without(alone.knots).max())
+    return replace(curves, stiffness=piecewise.fitted(without, alone.knots, _STIFFNESS_TOLERANCE * largest))
 
 
 def corners_of(curve: PiecewiseCubic) -> FloatArray:
-    """Inner knots where a curve's slope jumps by more than the fit of a smooth one leaves."""
+    """Inner knots where the slope of a curve jumps by more than the error of the fit."""
     widths = np.diff(curve.knots)
     after = curve.coefficients[1:, 1] / widths[1:]
     before = (curve.coefficients[:-1] @ np.array([0.0, 1.0, 2.0, 3.0])) / widths[:-1]
     largest = float(np.max(np.abs(after), initial=0.0))
-    # A slope beside which the whole curve hardly changes over its range is none.
+    # Slopes over which the curve changes by less than 1e-9 of its value do not count.
     least = 1e-9 * float(np.abs(curve.coefficients[:, 0]).max())
     jumps = np.abs(after - before) > max(_SLOPE_JUMP * largest, least, 1e-30)
     return np.asarray(curve.knots[1:-1][jumps], dtype=np.float64)
 
 
 def _weakened(geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: PairFaults) -> PiecewiseCubic:
-    """Stiffness of a pair of teeth with faults: their compliance comes on top."""
+    """Stiffness of a pair of teeth with faults, whose compliances add to its own."""
     if not any(faults):
         return stiffness
     sides = (
@@ -142,8 +140,5 @@ def _weakened(geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: Pai
         return np.asarray(1.0 / compliance, dtype=np.float64)
 
     corners = [locate(roll) for gear, locate, own in sides for f in own for roll in f.corners(gear, pitch_roll)]
-    knots = stiffness.knots
-    inner = [corner for corner in corners if knots[0] < corner < knots[-1]]
-    breaks = np.unique(np.concatenate([knots, inner]))
-    breaks = breaks[np.concatenate([[True], np.diff(breaks) > _SAME_KNOT])]
+    breaks = piecewise.with_corners(stiffness.knots, corners, SAME_CORNER)
     return piecewise.fitted(weakened, breaks, _STIFFNESS_TOLERANCE * stiffness.mean)

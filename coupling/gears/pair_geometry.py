@@ -1,4 +1,4 @@
-"""Two gears in mesh on parallel shafts: working centre distance, path of contact, and who touches where.
+"""Gear pair on parallel shafts: working pressure angle, centre distance, backlash, path of contact, contact ratio.
 
 Everything is in the transverse plane, where a pair of helical gears is a pair of spur gears whose phase moves along
 the face.  Position along the path of contact is counted in base pitches: a pair of teeth comes into contact at
@@ -30,9 +30,10 @@ from coupling.gears.involute import involute
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# What printed sizes are rounded to (module 3.175 mm for 8 teeth per inch, printed as 3.1748).
-_ROUNDED = 1e-3
-# One per cent of a module is what cutting thins a tooth for backlash anyway.
+PRINTED_ROUNDING = 1e-3
+"""Relative rounding of printed sizes, as of a module of 3.175 mm (8 teeth per inch) printed as 3.1748. Module, pressure
+angle and helix angle of a pair agree within it, and a backlash of less, in modules, is none."""
+# One per cent of a module: as much as cutting thins a tooth for backlash.
 _ALLOWED_JAM = 0.01
 
 
@@ -44,8 +45,8 @@ class GearPairGeometry:
     ----------
     driver, driven : Gear
     centre_distance : float or None
-        Distance of the shafts [m]; None for the distance without backlash of teeth as thick as their profile shifts
-        say, so that any `tooth_thinning` becomes backlash.
+        Distance of the shafts [m]; None for the distance without backlash of teeth that are not thinned, so that any
+        `tooth_thinning` becomes backlash.
 
     Raises
     ------
@@ -71,12 +72,12 @@ class GearPairGeometry:
 
     @property
     def label(self) -> str:
-        """What messages call the pair."""
+        """Name of the pair in messages."""
         return f"gear pair {self.driver.name!r} -> {self.driven.name!r}"
 
     @property
     def ratio(self) -> float:
-        """Teeth of the driven over teeth of the driver: speeds divide by it."""
+        """Gear ratio, teeth of the driven over teeth of the driver: speeds divide by it."""
         return self.driven.teeth / self.driver.teeth
 
     @cached_property
@@ -91,7 +92,7 @@ class GearPairGeometry:
 
     @cached_property
     def close_pressure_angle(self) -> float:
-        """Transverse pressure angle [rad] of the mesh without backlash, of the teeth as thick as they are.
+        """Transverse pressure angle [rad] of the mesh without backlash, thinning included.
 
         ``inv(w) = inv(alpha_t) + 2 tan(alpha_n) (x_k + x_i) / (z_k + z_i)``, x the generating shifts.
         """
@@ -99,21 +100,21 @@ class GearPairGeometry:
 
     @cached_property
     def working_centre_distance(self) -> float:
-        """Distance of the shafts [m]."""
+        """Working centre distance of the shafts [m]."""
         if self.centre_distance is not None:
             return self.centre_distance
         return self.base_radii_sum / math.cos(self.working_pressure_angle)
 
     @cached_property
     def working_pressure_angle(self) -> float:
-        """Angle of the line of action to the common tangent of the pitch circles, transverse [rad]."""
+        """Transverse working pressure angle, of the line of action to the common tangent of the pitch circles [rad]."""
         if self.centre_distance is None:
             return closing_pressure_angle(self.driver, self.driven)
         return math.acos(self.base_radii_sum / self.centre_distance)
 
     @property
     def working_pitch_radii(self) -> tuple[float, float]:
-        """Radii of driver and driven gear that roll on each other [m]."""
+        """Working pitch radii of driver and driven gear, which roll on each other [m]."""
         cosine = math.cos(self.working_pressure_angle)
         return self.driver.base_radius / cosine, self.driven.base_radius / cosine
 
@@ -124,7 +125,7 @@ class GearPairGeometry:
 
     @property
     def backlash(self) -> float:
-        """Gap of the idle flanks along their line of action, in the transverse plane [m].
+        """Backlash: gap of the idle flanks along their line of action, in the transverse plane [m].
 
         From centre distance and tooth thicknesses, ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
         teeth would jam.
@@ -132,17 +133,25 @@ class GearPairGeometry:
         return 2.0 * self.base_radii_sum * (involute(self.working_pressure_angle) - involute(self.close_pressure_angle))
 
     @property
+    def designed_backlash(self) -> float | None:
+        """The backlash where the design has one; None below `PRINTED_ROUNDING` modules.
+
+        Nominal gears at their nominal distance have teeth as thick as the spaces, without an allowance for backlash.
+        """
+        return self.backlash if self.backlash > PRINTED_ROUNDING * self.driver.module else None
+
+    @property
     def normal_backlash(self) -> float:
-        """Shortest distance of the idle flanks, what a feeler gauge finds [m]: ``backlash cos(beta_b)``."""
+        """Normal backlash, the shortest distance of the idle flanks [m]: ``backlash cos(beta_b)``."""
         return self.backlash * math.cos(self.driver.base_helix_angle)
 
     @property
     def circumferential_backlash(self) -> float:
-        """How far a working pitch circle turns freely, as an arc [m]: ``backlash / cos(w)``."""
+        """Circumferential backlash, on the working pitch circles [m]: ``backlash / cos(w)``."""
         return self.backlash / math.cos(self.working_pressure_angle)
 
     def tip_clearance(self, gear: Gear) -> float:
-        """Gap between the tip circle of `gear`, one of the two, and the other's root circle [m]."""
+        """Tip clearance between the tip circle of `gear`, one of the two, and the other's root circle [m]."""
         other = self.driven if gear is self.driver else self.driver
         return self.working_centre_distance - gear.tip_radius - other.root_circle_radius
 
@@ -160,12 +169,12 @@ class GearPairGeometry:
 
     @property
     def overlap_ratio(self) -> float:
-        """How many pitches a helical tooth enters earlier at one end of the face, ``b sin(beta) / (pi m_n)``."""
+        """Overlap ratio of helical teeth, ``b sin(beta) / (pi m_n)``."""
         return self.face_width * abs(math.sin(self.driver.helix_angle)) / (math.pi * self.driver.module)
 
     @property
     def total_contact_ratio(self) -> float:
-        """Contact ratio with the overlap, the mean number of pairs that touch somewhere along the face."""
+        """Total contact ratio, transverse and overlap: the mean number of pairs that touch somewhere along the face."""
         return self.contact_ratio + self.overlap_ratio
 
     @property
@@ -185,12 +194,12 @@ class GearPairGeometry:
         return self._back_flank_shift % 1.0
 
     def meeting_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
-        """Teeth of driver and driven gear in the pairs that enter at whole phases `number`."""
+        """Mating teeth of driver and driven gear in the pairs that enter at whole phases `number`."""
         n = np.asarray(number, dtype=np.int64)
         return n % self.driver.teeth, n % self.driven.teeth
 
     def meeting_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
-        """Teeth whose idle flanks meet in the pairs that enter at whole phases `number` of the idle flanks.
+        """Mating teeth of the idle flanks in the pairs that enter at whole phases `number` of the idle flanks.
 
         With B the offset before its whole periods are dropped, the idle flank of driver tooth n is at
         ``s = B - p + n`` and so belongs to the pair that enters at ``-n - floor(B)`` of ``frac(B) - p``.  Its mate is
@@ -287,7 +296,7 @@ def mismatched_sizes(
     return tuple(
         name
         for name, (first, second) in zip(names, pairs, strict=True)
-        if not math.isclose(first, second, rel_tol=_ROUNDED)
+        if not math.isclose(first, second, rel_tol=PRINTED_ROUNDING)
     )
 
 
@@ -327,7 +336,7 @@ def _check_distance(pair: GearPairGeometry) -> None:
 
 
 def _check_contact(pair: GearPairGeometry) -> None:
-    """Raise where the flanks lose each other, or a tip goes where the other gear has no flank."""
+    """Raise where the contact ratio is below one, or a tip reaches below the other gear's flank or into its root."""
     if pair.contact_ratio < 1.0:
         raise NoContactError(
             f"{pair.label}: the contact ratio is {pair.contact_ratio:.4f}, below 1, at a centre distance of "

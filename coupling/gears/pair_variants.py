@@ -1,4 +1,4 @@
-"""Pairs of teeth that are not like the others, because a tooth of theirs is damaged."""
+"""Pitch deviations and faulty teeth: how the pairs of teeth of the hunting period differ."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PairFaults = tuple[tuple[Fault, ...], tuple[Fault, ...]]
 
 @dataclass(frozen=True, eq=False)
 class PairVariants:
-    """The kinds of pairs in a mesh.
+    """Kinds of tooth pairs in a mesh, by the faults of their teeth.
 
     Attributes
     ----------
@@ -32,8 +32,8 @@ class PairVariants:
 
 
 def pair_variants(geometry: GearPairGeometry) -> PairVariants:
-    """Which pairs of teeth have which faults, over the hunting period."""
-    everywhere: PairFaults = (_of(geometry.driver, None), _of(geometry.driven, None))
+    """Faults of every pair of teeth over the hunting period."""
+    everywhere: PairFaults = (_faults_of(geometry.driver, None), _faults_of(geometry.driven, None))
     kinds: dict[tuple[int, int], int] = {(-1, -1): 0}
     faults = [everywhere]
     damaged = [{fault.tooth for fault in gear.faults} - {None} for gear in (geometry.driver, geometry.driven)]
@@ -45,7 +45,7 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
             pair = (key[0], key[1])
             if pair not in kinds:
                 kinds[pair] = len(faults)
-                faults.append((_of(geometry.driver, pair[0]), _of(geometry.driven, pair[1])))
+                faults.append((_faults_of(geometry.driver, pair[0]), _faults_of(geometry.driven, pair[1])))
             found[n] = kinds[pair]
         return found
 
@@ -55,6 +55,6 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
     return PairVariants(tuple(faults), of_pair, of_back_pair)
 
 
-def _of(gear: Gear, tooth: int | None) -> tuple[Fault, ...]:
+def _faults_of(gear: Gear, tooth: int | None) -> tuple[Fault, ...]:
     """Faults of a tooth, with those of all teeth; of a sound one for None or -1."""
     return tuple(fault for fault in gear.faults if fault.tooth is None or fault.tooth == tooth)

@@ -1,4 +1,4 @@
-"""The named points of the path of contact, and how the flanks slide there.
+"""Path of contact: its named points (SAP, LPSTC, pitch point, HPSTC, EAP), and the specific sliding.
 
 With the distances ``xi_k, xi_i`` of the contact from the two tangent points, the flanks' points move along the tangent
 of the flanks with ``omega_k xi_k`` and ``omega_i xi_i``.  The specific sliding of a flank is the difference over its
@@ -53,7 +53,7 @@ class PathOfContact:
 def path_of_contact(pair: GearPairGeometry) -> PathOfContact:
     """The named points of a pair's path of contact.
 
-    With a contact ratio of two or more no tooth is ever alone: LPSTC and HPSTC are still where the pair before leaves
+    With a contact ratio of two or more no tooth carries alone: LPSTC and HPSTC are still where the pair before leaves
     (one base pitch before the end) and where the next pair enters (one after the start).
     """
     length = pair.contact_ratio

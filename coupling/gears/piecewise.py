@@ -1,4 +1,4 @@
-"""Smooth functions as piecewise cubics, in plain arrays that a compiled kernel can hold.
+"""Piecewise cubics: smooth functions in plain arrays that a compiled kernel can hold.
 
 On each interval ``f = c0 + c1 u + c2 u^2 + c3 u^3`` with ``u`` running from 0 to 1.
 """
@@ -12,14 +12,14 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from coupling.gears.errors import ContactAccuracyError, GearError
 
 FloatArray = npt.NDArray[np.float64]
 
 NARROWEST = 1e-7
-"""Intervals this short are split no further."""
+"""Shortest interval that is split."""
 _MOST_INTERVALS = 20_000
 _NODES = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
 _BETWEEN = np.array([1.0 / 6.0, 0.5, 5.0 / 6.0])
@@ -51,36 +51,21 @@ class PiecewiseCubic:
             raise GearError("a piecewise cubic needs increasing knots and finite coefficients")
 
     def __call__(self, position: npt.ArrayLike, derivative: int = 0) -> FloatArray:
-        """Value at `position`, or its first derivative (`derivative` = 1); ends are held outside."""
-        u = np.clip(np.asarray(position, dtype=np.float64), self.knots[0], self.knots[-1])
-        interval = np.searchsorted(self.knots[1:-1], u, side="right")
-        width = self._widths.take(interval)
-        c0, c1, c2, c3 = self._columns
-        # In place: of many positions it is the passing of memory that costs.
-        u = (u - self.knots.take(interval)) / width
-        if derivative == 1:
-            value = c1.take(interval) + u * (2.0 * c2.take(interval) + 3.0 * u * c3.take(interval))
-            return np.asarray(value / width, dtype=np.float64)
-        value = c3.take(interval)
-        for column in (c2, c1, c0):
-            value = np.multiply(value, u, out=value) if value.ndim else value * u
-            value += column.take(interval)
-        return np.asarray(value, dtype=np.float64)
+        """Value at `position`, or its first derivative (`derivative` = 1); outside the range at its nearest end."""
+        inside = np.clip(np.asarray(position, dtype=np.float64), self.knots[0], self.knots[-1])
+        return np.asarray(self._polynomial(inside, derivative), dtype=np.float64)
 
     @cached_property
-    def _columns(self) -> FloatArray:
-        return np.ascontiguousarray(self.coefficients.T)
-
-    @cached_property
-    def _widths(self) -> FloatArray:
-        return np.diff(self.knots)
+    def _polynomial(self) -> PPoly:
+        """The same in powers of (x - knot), highest first."""
+        powers = np.diff(self.knots)[:, None] ** np.arange(4)
+        return PPoly(np.ascontiguousarray((self.coefficients / powers).T[::-1]), self.knots)
 
     @property
     def mean(self) -> float:
         """Mean value over the whole range."""
-        widths = np.diff(self.knots)
-        integrals = self.coefficients @ np.array([1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0])
-        return float(np.sum(widths * integrals) / np.sum(widths))
+        start, end = float(self.knots[0]), float(self.knots[-1])
+        return float(self._polynomial.integrate(start, end)) / (end - start)
 
     def on_knots(self, knots: FloatArray) -> PiecewiseCubic:
         """The same function with more knots, or on a wider range, where its ends are held.
@@ -123,6 +108,15 @@ class PiecewiseCubic:
         return np.stack(moved, axis=-1)
 
 
+def with_corners(knots: FloatArray, corners: npt.ArrayLike, apart: float) -> FloatArray:
+    """Knots with the corners within their range among them, without those nearer than `apart` to another one."""
+    inner = np.unique(np.asarray(corners, dtype=np.float64))
+    inner = inner[(inner > knots[0]) & (inner < knots[-1])]
+    above = np.searchsorted(knots, inner)
+    inner = inner[np.minimum(inner - knots[above - 1], knots[above] - inner) > apart]
+    return np.sort(np.concatenate([knots, inner[np.diff(inner, prepend=-np.inf) > apart]]))
+
+
 def constant(value: float, length: float) -> PiecewiseCubic:
     """The same value on ``[0, length]``."""
     return PiecewiseCubic(np.array([0.0, length]), np.array([[value, 0.0, 0.0, 0.0]]))
@@ -141,7 +135,7 @@ def polyline(knots: FloatArray, values: FloatArray) -> PiecewiseCubic:
 
 
 def fitted(function: Callable[[FloatArray], FloatArray], breaks: FloatArray, tolerance: float) -> PiecewiseCubic:
-    """Cubics through a continuous function, split until they follow it.
+    """Cubics through a continuous function, with intervals halved until they follow it.
 
     Parameters
     ----------
@@ -180,7 +174,7 @@ def fitted(function: Callable[[FloatArray], FloatArray], breaks: FloatArray, tol
 
 
 def tabulated(function: Callable[[FloatArray], FloatArray], length: float, tolerance: float = 1e-9) -> PiecewiseCubic:
-    """Cubic spline of a smooth function on a uniform grid over ``[0, length]``, as fine as it needs.
+    """Cubic spline of a smooth function on a uniform grid over ``[0, length]``, refined until it follows it.
 
     Parameters
     ----------
@@ -209,7 +203,7 @@ def tabulated(function: Callable[[FloatArray], FloatArray], length: float, toler
             error = float(np.max(np.abs(table(elsewhere) - function(elsewhere)))) / largest
         if error <= tolerance:
             return table
-        # A spline's error falls with the fourth power of the spacing; few calls cost less than few points.
+        # A spline's error falls with the fourth power of the spacing; a call costs more than its points.
         finer = 2 ** max(1, min(3, math.ceil(math.log2(max(error / tolerance, 1.0)) / 4.0)))
         intervals *= finer
         points = np.linspace(0.0, length, 2 * intervals + 1)
@@ -236,8 +230,12 @@ def through_points(position: FloatArray, values: FloatArray, intervals: int = 40
     return _from_scipy(PchipInterpolator(knots, curve(knots)))
 
 
-def _from_scipy(curve: CubicSpline | PchipInterpolator) -> PiecewiseCubic:
-    """Scipy's powers of (x - knot), highest first, to powers of u, lowest first."""
-    knots = np.asarray(curve.x, dtype=np.float64)
-    powers = np.diff(knots)[:, None] ** np.arange(4)
-    return PiecewiseCubic(knots, np.ascontiguousarray(np.asarray(curve.c, dtype=np.float64)[::-1].T * powers))
+def unit_coefficients(curve: PPoly) -> FloatArray:
+    """Coefficients of a scipy cubic in the variable u of each interval, c0 ... c3 in the last axis, (n, ..., 4)."""
+    highest_first = np.moveaxis(np.asarray(curve.c, dtype=np.float64), 0, -1)
+    widths = np.diff(curve.x).reshape(-1, *(1,) * (highest_first.ndim - 1))
+    return np.ascontiguousarray(highest_first[..., ::-1] * widths ** np.arange(4))
+
+
+def _from_scipy(curve: PPoly) -> PiecewiseCubic:
+    return PiecewiseCubic(np.asarray(curve.x, dtype=np.float64), unit_coefficients(curve))

@@ -1,13 +1,13 @@
-"""The gap that the pitch deviations of two meeting teeth leave between their flanks.
+"""Pitch gap: gap that the pitch deviations of two mating teeth leave between their flanks.
 
-A tooth that stands ahead by ``f`` along the arc of the working pitch circle has turned by ``f / r_w`` and its flank
+A tooth that is ahead by ``f`` along the arc of the working pitch circle has rotated by ``f / r_w`` and its flank
 has moved by ``rb f / r_w = f cos(w)`` along the line of action, w the working pressure angle.  With the driver's
 tooth m and the driven gear's tooth n the pair's gap is
 
     d(s) + f_pair,    f_pair = -(f_k[m] + f_i[n]) cos(w),
 
 constant while the pair is in contact.  The idle flanks of the same teeth are behind where the working ones are
-ahead: there the sign turns, and other teeth meet (`GearPairGeometry.meeting_back_teeth`).
+ahead: there the sign is opposite, and other teeth mate (`GearPairGeometry.meeting_back_teeth`).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
     -------
     ndarray, shape (h,)
         f_pair of the pair that enters at phase n, at n mod h [m].  h is the least common multiple of the numbers
-        of teeth, of the one gear's alone where the other's teeth are all alike, and 0 where those of both are.
+        of teeth; of one gear's alone where the other's teeth are all alike; 0 where the teeth of both are alike.
     """
     return -_lead(geometry, *geometry.meeting_teeth(hunting_numbers(geometry)))
 
@@ -59,7 +59,7 @@ def hunting_numbers(geometry: GearPairGeometry) -> IntArray:
 
 
 def _lead(geometry: GearPairGeometry, driver_teeth: IntArray, driven_teeth: IntArray) -> FloatArray:
-    """How far the working flanks of pairs of teeth stand ahead along the line of action [m]."""
+    """Lead of the working flanks of pairs of teeth along the line of action [m]."""
     lead = _deviations(geometry.driver)[driver_teeth] + _deviations(geometry.driven)[driven_teeth]
     return np.asarray(lead * math.cos(geometry.working_pressure_angle), dtype=np.float64)
 

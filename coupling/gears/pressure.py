@@ -1,4 +1,4 @@
-r"""Contact pressure between two flanks: Hertz's line contact, at every place of the path of contact.
+r"""Hertzian contact pressure of two flanks: line contact at every position of the path of contact.
 
 In the normal section the flanks are cylinders for the narrow strip in which they touch. With ``xi_k, xi_i`` the
 distances of the contact from the two tangent points of the line of action, in the transverse plane, and beta_b the
@@ -16,8 +16,8 @@ the same: q is the transverse load per face width. At the pitch point this is IS
 ``Z_H Z_E sqrt(F_t (u + 1) / (d_1 b u))``.
 
 Beyond the path of contact a corner touches, and within a strip's width of its ends an edge does. An edge has no radius
-of its own: what the formula would say there is about the flanks, not about the edge, whose pressure its rounding
-decides and wear soon lowers. So pressure is given on the path alone; a load beyond it has the pressure NaN.
+of its own: the formula would give the pressure of the flanks, not of the edge, which depends on its rounding and soon
+falls by wear. So pressure is given on the path alone; a load beyond it has the pressure NaN.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from coupling.gears.tooth_contact import ToothContact
 FloatArray = npt.NDArray[np.float64]
 
 _ROUNDING = 1e-12
-"""How far beyond its ends a place still counts as on the path [base pitches]."""
+"""Distance beyond the ends within which a position counts as on the path [base pitches]."""
 
 
 def contact_modulus(pair: GearPairGeometry) -> float:
@@ -64,7 +64,7 @@ def contact_pressure(pair: GearPairGeometry, position: npt.ArrayLike, line_load:
     ----------
     pair : GearPairGeometry
     position : array_like
-        Places along the path of contact [base pitches].
+        Positions along the path of contact [base pitches].
     line_load : array_like
         Transverse load per face width there [N/m], at least 0; broadcast with `position`.
 
@@ -102,10 +102,10 @@ def mesh_pressure(pair: GearPairGeometry, contact: ToothContact, mesh: StaticMes
     Returns
     -------
     ndarray, shape (n, m) or (n, m, s)
-        Of each pair at each phase; of every slice of its face where the load is not the same all over it.
+        Of each pair at each phase; of every slice of its face for an uneven load.
     """
     if contact.faces is None or mesh.line_loads is None:
         return contact_pressure(pair, mesh.positions, mesh.pair_forces / pair.face_width)
-    # Rounding of the balance may leave a slice that just touches a pull of nothing.
+    # Rounding of the equilibrium may leave a tiny negative load on a slice that just touches.
     loads = np.maximum(mesh.line_loads, 0.0)
     return contact_pressure(pair, mesh.positions[..., None] + contact.faces.shift, loads)

@@ -1,4 +1,4 @@
-"""The outline of a tooth: involute flank and the true trochoid of the root fillet.
+"""Tooth profile: involute flank and the true trochoid of the root fillet.
 
 Coordinates are the tooth's own: `height` along its axis from the gear's centre, `half_thickness` across.
 Each curve has a parameter in which it is smooth, so that integrals over the tooth converge fast:
@@ -31,7 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ProfilePoints:
-    """Points of one side of a tooth, and how fast the curve climbs.
+    """Points of one side of a tooth, and the derivative of their height.
 
     Attributes
     ----------
@@ -91,6 +91,18 @@ def root_half_angle(gear: Gear) -> float:
     return gear.rack_corner[1] / gear.pitch_radius
 
 
+def tooth_side(gear: Gear, points: int) -> tuple[FloatArray, FloatArray]:
+    """Half thickness and height [m] of one side of a tooth, from the root circle to the tip, (2 * points - 1,) each.
+
+    `points` are those on each curve, fillet and flank.
+    """
+    fillet = fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, points))
+    angles = load_angle(gear, np.array([gear.form_radius, gear.tip_radius]))
+    flank = flank_points(gear, np.linspace(angles[0], angles[1], points))
+    across = np.concatenate([fillet.half_thickness, flank.half_thickness[1:]])
+    return across, np.concatenate([fillet.height, flank.height[1:]])
+
+
 def tooth_outline(gear: Gear, points: int = 60) -> FloatArray:
     """Outline of one tooth about its own axis, root to tip to root.
 
@@ -109,11 +121,7 @@ def tooth_outline(gear: Gear, points: int = 60) -> FloatArray:
     --------
     coupling.gears.outline.gear_outline : all teeth, at any rotation and place.
     """
-    fillet = fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, points))
-    angles = load_angle(gear, np.array([gear.form_radius, gear.tip_radius]))
-    flank = flank_points(gear, np.linspace(angles[0], angles[1], points))
-    across = np.concatenate([fillet.half_thickness, flank.half_thickness[1:]])
-    along = np.concatenate([fillet.height, flank.height[1:]])
+    across, along = tooth_side(gear, points)
     left = np.column_stack([-across, along])
     right = np.column_stack([across, along])[::-1]
     return np.vstack([left, right])

@@ -1,11 +1,11 @@
-"""The basic rack that cuts a gear, and the root fillet that the tip corner of its tooth leaves.
+"""Basic rack (ISO 53) that cuts a gear, and the trochoid of the root fillet that the tip corner of its tooth cuts.
 
 A rack (hob, rack cutter, grinding worm) is straight along its teeth, so its section by the gear's transverse plane
 rolls on the gear's pitch circle as a plane figure, and the outline of the gear is the envelope of that section.  For a
 helical gear the section is the normal profile (ISO 53) stretched by ``1 / cos(beta)`` along the pitch line: the flanks
 stay straight, at the transverse pressure angle ``tan(alpha_t) = tan(alpha_n) / cos(beta)``, and the round corner of
-radius ``rho`` becomes an ellipse of half axes ``rho / cos(beta)`` along and ``rho`` across the pitch line.  Nothing is
-approximated by that; what is left out is that a hob has a finite number of cutting edges.
+radius ``rho`` becomes an ellipse of half axes ``rho / cos(beta)`` along and ``rho`` across the pitch line.  This is
+exact; the finite number of cutting edges of a hob is left out.
 
 The corner's point with the outward normal at ``gamma`` below the pitch line is, from the centre of the ellipse,
 
@@ -14,7 +14,7 @@ The corner's point with the outward normal at ``gamma`` below the pitch line is,
 c towards the flank and e towards the bottom, with the radius of curvature ``R = rho / (k^3 cos(beta)^2)``.  By the law
 of gearing it cuts when its normal passes through the pitch point (Litvin & Fuentes, Gear Geometry and Applied Theory,
 2004).  With the centre ``depth`` below the pitch line and ``across`` from the tooth's axis, D = depth + e, the
-gear of pitch radius ``r`` has then turned by ``turn``, and the point is ``reach`` away from the pitch point:
+gear of pitch radius ``r`` has then rotated by ``turn``, and the point is ``reach`` away from the pitch point:
 
     turn = (across - c + D cot(gamma)) / r,     reach = D / sin(gamma),
     r turn' = (R - reach) / sin(gamma),         reach' = r turn' cos(gamma)      (derivatives by gamma).
@@ -120,7 +120,7 @@ class RackCorner:
     helix_angle: float
 
     def trochoid(self, pitch_radius: float, gamma: npt.ArrayLike) -> TrochoidPoints:
-        """What the corner cuts out of a gear.
+        """Trochoid that the corner cuts into a gear.
 
         Parameters
         ----------

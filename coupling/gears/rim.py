@@ -1,4 +1,4 @@
-"""The body under a tooth as an exact elastic ring, and what a rim on a web adds to it.
+"""Gear body compliance: an exact elastic ring under a tooth, and the additional compliance of a rim on a web.
 
 The load of a tooth is carried to the root circle as a force ``cos(beta)`` across the tooth's axis, ``sin(beta)`` along
 it, and the torque ``rb`` about the gear's centre.  With the flexibility of the rigid root arc
@@ -9,10 +9,10 @@ it, and the torque ``rb`` about the gear's centre.  With the flexibility of the 
 The ring is held at its bore.  A gear in one piece with its shaft (``bore = 0``) has no such place: its ring is held at
 a third of the root circle, and the twist of the whole ring, which is the shaft's own, is left out.
 
-A rim with a web of another width is two rings.  Its share is what they yield more than one ring of the teeth's width
-down to the same bore; finite elements of two widths agree within 4 % (tests/validation).  All of it is in the plane of
-the gear: a web that is not in the middle of the face, and spokes, also tilt the rim, which is not here.  A rim alone
-(no web) is held at its inside.
+A rim with a web of another width is two rings.  Its share is their compliance less that of one ring of the teeth's
+width down to the same bore; finite elements of two widths agree within 4 % (tests/validation).  The model is plane: a
+web off the middle of the face, and spokes, also tilt the rim, which is left out.  A rim alone (no web) is held at its
+inside.
 """
 
 from __future__ import annotations
@@ -28,33 +28,33 @@ from coupling.gears.errors import StiffnessModelError
 from coupling.gears.foundation import held_radius
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import load_angle, root_half_angle
-from coupling.gears.ring_body import Annulus, neighbour_flexibility, root_flexibility
+from coupling.gears.ring_body import Annulus, neighbour_flexibility, root_flexibility, twist_flexibility
 
 FloatArray = npt.NDArray[np.float64]
 
 SOLID_HOLD = 1.0 / 3.0
-"""Where a gear without a bore is held, in root circle radii."""
+"""Radius at which a gear without a bore is held, in root circle radii."""
 
 
 BodyCompliance = Callable[[FloatArray], FloatArray]
-"""From radii of loaded points [m] to what the body yields there along the line of action [m/N], of the same shape."""
+"""From radii of loaded points [m] to the compliance of the body along the line of action [m/N], of the same shape."""
 CrossCompliance = Callable[[FloatArray, FloatArray], FloatArray]
 """From radii of the loaded points of two teeth [m] to the motion of one by a unit load on the other [m/N]."""
 
 
 def solved_ring(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
-    """The body of the teeth's full width, solved once for loads at any radius.
+    """Compliance of a body of the teeth's full width, solved once for loads at any radius.
 
     Parameters
     ----------
     gear : Gear
     state : {"plane-stress", "plane-strain"}
     """
-    return _solved(gear, (Annulus(_hold(gear), 1.0, gear.face_width),), state, turning=held_radius(gear) is not None)
+    return _solved(gear, (Annulus(_hold(gear), 1.0, gear.face_width),), state, twists=held_radius(gear) is not None)
 
 
 def solved_rim(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
-    """What the body yields beyond that of `solved_ring` because rim and web are not one, solved once.
+    """Additional compliance of a rim on a thinner web over `solved_ring`, solved once for loads at any radius.
 
     Zero for a gear without a rim or with a rim alone.
 
@@ -67,12 +67,12 @@ def solved_rim(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance
         return lambda radius: np.zeros(np.shape(radius))
     rings = _rings(gear)
     plain = (Annulus(_hold(gear), 1.0, gear.face_width),)
-    with_rim, without = (_solved(gear, body, state, turning=True) for body in (rings, plain))
+    with_rim, without = (_solved(gear, body, state, twists=True) for body in (rings, plain))
     return lambda radius: with_rim(radius) - without(radius)
 
 
-def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, turning: bool = True) -> CrossCompliance:
-    """What a load on one tooth moves the flank of the next one, along the line of action [m/N].
+def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, twists: bool = True) -> CrossCompliance:
+    """Cross compliance of two neighbouring teeth: motion of one flank by a load on the other, along the line of action.
 
     Both teeth are rigid on their root arcs, each loaded on the same side; their own flexure is not felt next door. The
     twist of the ring between the held circle and the root circle is felt by both teeth in full.
@@ -82,9 +82,9 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, turn
     gear : Gear
         A spur gear.
     state : {"plane-stress", "plane-strain"}
-    turning : bool
+    twists : bool
         Whether the twist of the whole body is counted; never that of a gear in one piece with its shaft. Without it the
-        bore and the rim are left out too, as by a tooth on a half plane: what is left is the dent of a solid gear.
+        bore and the rim are left out too, as for a tooth on a half plane: the dent of a solid gear remains.
 
     Returns
     -------
@@ -92,10 +92,10 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, turn
         From radii [m] of the loads on a tooth and on the next one in the sense of the loads (shapes that broadcast) to
         the compliance.
     """
-    rings = _rings(gear) if turning else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
+    rings = _rings(gear) if twists else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
     nu, kappa = gear.poisson_ratio, _kolosov(gear, state)
     cross = neighbour_flexibility(rings, root_half_angle(gear), nu, kappa, 2.0 * math.pi / gear.teeth)
-    if not (turning and held_radius(gear) is not None):
+    if not (twists and held_radius(gear) is not None):
         cross = cross.copy()
         cross[1, 1] -= _whole_twist(rings, nu)
     torque = gear.base_radius / gear.root_circle_radius
@@ -111,12 +111,12 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, turn
     return compliance
 
 
-def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, turning: bool) -> BodyCompliance:
-    """Work of a unit load on the root arc; `turning` keeps the twist of the whole body."""
+def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, twists: bool) -> BodyCompliance:
+    """Work of a unit load on the root arc; `twists` keeps the twist of the whole body."""
     nu = gear.poisson_ratio
     arc = root_flexibility(rings, root_half_angle(gear), nu, _kolosov(gear, state))
     torque = gear.base_radius / gear.root_circle_radius
-    twist = 0.0 if turning else _whole_twist(rings, nu)
+    twist = 0.0 if twists else _whole_twist(rings, nu)
 
     def compliance(radius: FloatArray) -> FloatArray:
         beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
@@ -129,10 +129,8 @@ def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, turning: 
 
 
 def _whole_twist(rings: tuple[Annulus, ...], nu: float) -> float:
-    """Twist of the whole body under a torque alone, times E and width: the same whatever the tractions."""
-    width = rings[-1].width
-    turned = sum(width / ring.width * (ring.inner**-2 - ring.outer**-2) for ring in rings)
-    return (1.0 + nu) / (2.0 * math.pi) * turned
+    """Twist of the whole body under a torque alone, times E and width, independent of the tractions."""
+    return (1.0 + nu) / (2.0 * math.pi) * twist_flexibility(rings)
 
 
 def _kolosov(gear: Gear, state: PlaneState) -> float:
@@ -162,6 +160,6 @@ def _rings(gear: Gear) -> tuple[Annulus, ...]:
 
 
 def _hold(gear: Gear) -> float:
-    """Where the body is held, in root circle radii."""
+    """Radius at which the body is held, in root circle radii."""
     held = held_radius(gear)
     return SOLID_HOLD if held is None else held / gear.root_circle_radius

@@ -1,4 +1,4 @@
-r"""The gear's body under one tooth: an elastic ring, exactly.
+r"""Elastic ring: exact flexibility of a gear's body under its teeth.
 
 The body is a flat ring between the root circle (radius 1 here) and a circle where it is held.  Tractions on the root
 circle are split into waves ``n`` around it.  In one wave the displacements are combinations of powers of ``r`` that
@@ -8,8 +8,9 @@ stress, ``3 - 4 nu`` in plane strain:
     2 mu (u_r + i u_t) = e^{-i t} (kappa phi(z) - z conj(phi'(z)) - conj(psi(z)))
     s_r - i s_rt       = phi' + conj(phi') - e^{2 i t} (conj(z) phi'' + psi')
 
-so that each wave is four numbers: two conditions at the held circle, two at the root circle.  A rim on a thinner web is
-two such rings, one in the other: what the web yields at its outer circle is the condition at the rim's inner one.
+so that each wave has four coefficients: two conditions at the held circle, two at the root circle.  A rim on a thinner
+web is two such rings, one in the other: the flexibility of the web at its outer circle is the condition at the rim's
+inner one.
 
 The tooth stands on the arc ``|t| < theta``.  A beam's sections stay plane, so the arc moves as a rigid one, and the
 tractions under it are those that make the energy least among all that carry the load (Castigliano): those of a rigid
@@ -34,14 +35,14 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 _SHAPES = 8
-"""Chebyshev polynomials in each traction: the compliance is within 1e-4 of where more of them go."""
+"""Chebyshev polynomials in each traction: the compliance is within 1e-4 of its limit."""
 _WAVES_ACROSS = 60.0
-"""The last wave counted has n theta of this; those beyond act on a half plane and are summed in closed form."""
+"""n theta of the last wave that is counted; those beyond act on a half plane and are summed in closed form."""
 
 _POINTS = 100
 """Points of quadrature on the arc, an even number, enough beyond `_WAVES_ACROSS` for all digits."""
 _FADED = 25.0
-"""A wave n with n ln(outer / inner) beyond this is 1e-11 of itself at the inside."""
+"""A wave n with n ln(outer / inner) above this has decayed to 1e-11 at the inside."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Annulus:
 
 @dataclass(frozen=True, eq=False)
 class RootFlexibility:
-    """How the rigid root arc gives way, times E and width.
+    """Flexibility of the rigid root arc, times E and width.
 
     Attributes
     ----------
@@ -156,7 +157,7 @@ def _stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, 
     """Solve the rigid stamp on a ring."""
     last = math.ceil(_WAVES_ACROSS / half_angle)
     waves = np.arange(1, last + 1)
-    # Waves shorter than the outermost ring is thick never reach its inside.
+    # Waves much shorter than the thickness of the outermost ring do not reach its inside.
     deep = math.ceil(_FADED / math.log(rings[-1].outer / rings[-1].inner))
     flexibility = np.concatenate(
         [
@@ -176,7 +177,7 @@ def _stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, 
     ]
     # Beyond, J_k J_l averages to +-1 / (pi n theta) and the flexibility falls as 1/n: all terms of a block alike.
     tail = half_angle * last / (last + 0.5) * np.diagonal(flexibility[-1])
-    twist, breathing = _twist(rings), _breathing(rings, kappa)
+    twist, breathing = twist_flexibility(rings), _breathing(rings, kappa)
     # Across the axis: radial tractions odd, tangential ones even.  Shifted by a quarter wave, tangential changes sign.
     lateral = _energy(content[1], content[0], flexibility, -1.0, tail)
     whole = np.where(even == 0, math.pi * half_angle, 0.0)
@@ -210,7 +211,7 @@ def _stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, 
 
 
 def _multiples(last: int, angle: FloatArray) -> npt.NDArray[np.complex128]:
-    """``e^{i n angle}`` for n = 1 ... `last`, (last, points): products of few exponentials, which cost more."""
+    """``e^{i n angle}`` for n = 1 ... `last`, (last, points), as products of few exponentials."""
     few = math.ceil(math.sqrt(last))
     ones, tens = np.outer(np.arange(1, few + 1), angle), np.outer(few * np.arange(few), angle)
     turns = np.exp(1j * tens)[:, None] * np.exp(1j * ones)
@@ -255,7 +256,7 @@ def _wave_flexibility(rings: tuple[Annulus, ...], waves: npt.NDArray[np.int64], 
 def _short_wave_flexibility(waves: npt.NDArray[np.int64], kappa: float) -> FloatArray:
     """`_wave_flexibility` of a full disc of radius 1: of the growing solutions alone."""
     n = waves.astype(np.float64)
-    # Rows: what z^(n+1) and z^(n-1) weigh under each traction, from their two tractions inverted.
+    # Rows: weights of z^(n+1) and z^(n-1) under each traction, from the inverse of their two tractions.
     determinant = 2.0 * (n**2 - 1.0)
     first = np.array([n - 1.0, n - 1.0]) / determinant
     second = np.array([-(n + 1.0) * n, (n + 1.0) * (2.0 - n)]) / determinant
@@ -276,7 +277,7 @@ def _fields(radius: float, ring: Annulus, waves: npt.NDArray[np.int64], kappa: f
     grow, fade = outward**n, inward**n
     r = radius
     if waves.size == 1 and waves[0] == 1:
-        # z^0 moves the ring as one, and the force along the axis of a wave of one asks for a logarithm.
+        # z^0 is the rigid-body motion of the ring, and the resultant force of wave 1 needs a logarithm.
         log, inside = math.log(outward), inward**2
         columns = [
             _potential(2.0 * one, grow * outward, grow * outward / r, kappa, 1.0),
@@ -307,8 +308,8 @@ def _potential(
     return (kappa - k) * power, side * (kappa + k) * power, k * (3.0 - k) * rate, side * k * (k - 1.0) * rate
 
 
-def _twist(rings: tuple[Annulus, ...]) -> float:
-    """Turning of the root circle (times 2 mu) under a uniform tangential traction 1 on it."""
+def twist_flexibility(rings: tuple[Annulus, ...]) -> float:
+    """Rotation of the root circle (times 2 mu) under a uniform tangential traction 1 on it."""
     outermost = rings[-1].width
     return sum(outermost / ring.width * (ring.inner**-2 - ring.outer**-2) for ring in rings)
 

@@ -1,4 +1,4 @@
-"""Transmission error of gears that sit off-centre on their shafts."""
+"""Runout: transmission error of gears that are eccentric on their shafts."""
 
 from __future__ import annotations
 

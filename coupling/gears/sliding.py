@@ -1,4 +1,4 @@
-r"""How the flanks of a gear pair slide, as the contact law's friction needs it.
+r"""Sliding friction of a gear pair: sliding velocity of the flanks along the path of contact, for the contact law.
 
 A pair of teeth at the position s along the path of contact, in base pitches, touches ``xi_k = xi_k0 + s p_b`` from the
 driver's tangent point and ``xi_i = xi_i0 - s p_b`` from the driven gear's. Its flanks slide along each other across the
@@ -6,17 +6,17 @@ line of action by
 
     w(s) = w_k xi_k - w_i xi_i = W_a + s W_b,        W_a = w_k xi_k0 - w_i xi_i0,    W_b = (w_k + w_i) p_b
 
-(speeds w by their amounts), which turns at the pitch point. Coulomb's friction on the pair's normal force
+(speeds w by their magnitude), which reverses at the pitch point. Coulomb's friction on the pair's normal force
 ``F_j / cos(beta_b)``, F_j in the transverse plane, is ``mu F_j / cos(beta_b) sgn(w(s_j))``; see
 :mod:`coupling.gears.friction_kernels` for the sum over the pairs.
 
-On a helical face every slice has its own place x on the path, its own load q and its own turning. What a pair then
-gives to the sums are integrals over its line of contact,
+On a helical face every slice has its own position x on the path, its own load q and its own reversal. The
+contributions of a pair to the sums are then integrals over its line of contact,
 
     E_j = int q dz,      int q sgn(x - s_C) dz,      int q x sgn(x - s_C) dz,
 
-functions of the place of the face's middle and of the compression beyond first touch alone, as the force itself is:
-they are tables of the same kind (:mod:`coupling.gears.face_table`). A slice that the pitch point lies in counts by its
+functions of the position of the face's middle and of the compression beyond first touch alone, as the force itself is:
+they are tables of the same kind (:mod:`coupling.gears.face_table`). A slice that contains the pitch point counts by its
 parts before and behind it.
 """
 
@@ -41,19 +41,19 @@ LARGEST_COEFFICIENT = 0.5
 
 @dataclass(frozen=True, eq=False)
 class SlidingFriction:
-    """Coulomb friction of a pair of gears: how much, and where along the path of contact it turns.
+    """Coulomb friction of a gear pair: its coefficient, and where along the path of contact it reverses.
 
     Attributes
     ----------
     coefficient : float
         mu over the cosine of the base helix angle: friction force by the pair's force in the transverse plane.
     pitch_point : float
-        Where the sliding turns [base pitches].
+        Position at which the sliding reverses [base pitches].
     path_end : float
         End of the path of contact, where corners slide [base pitches].
     shares : ndarray
-        Numbers of `coupling.gears.law_table` for the three integrals over a line of contact that turns piece by piece,
-        in three kinds of pairs for each kind; empty where lines of contact turn all at once.
+        Numbers of `coupling.gears.law_table` for the three integrals over a line of contact that reverses slice by
+        slice, in three kinds of pairs for each kind; empty where lines of contact reverse as a whole.
     """
 
     coefficient: float
@@ -63,7 +63,7 @@ class SlidingFriction:
 
     @property
     def event_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) at which the force steps, turning all at once with a straight line of contact."""
+        """Phases in [0, 1) at which the friction force steps, for lines of contact that reverse as a whole."""
         return () if self.shares.size else (self.pitch_point % 1.0,)
 
 
@@ -81,7 +81,7 @@ def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coeffici
     Raises
     ------
     GearError
-        For a coefficient that is not from 0 to 0.5, or a contact that knows no single pairs of teeth.
+        For a coefficient outside 0 to 0.5, or a contact law without single pairs of teeth.
     """
     require_finite("friction coefficient", coefficient, minimum=0.0)
     if coefficient > LARGEST_COEFFICIENT:
@@ -94,40 +94,40 @@ def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coeffici
     friction = SlidingFriction(
         coefficient / math.cos(geometry.driver.base_helix_angle), geometry.pitch_point_position, geometry.contact_ratio
     )
-    return replace(friction, shares=_shares(contact, friction)) if _turns_by_slices(contact) else friction
+    return replace(friction, shares=_shares(contact, friction)) if _reverses_by_slices(contact) else friction
 
 
 def turned_share(
     place: npt.ArrayLike, half: float, pitch_point: float, path_end: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Means of sgn(x - s_C) and of x sgn(x - s_C) over ``place - half <= x <= place + half``, what lies on the path.
+    """Means of sgn(x - s_C) and of x sgn(x - s_C) over the part of ``place - half <= x <= place + half`` on the path.
 
-    Beyond the path it is a corner that slides, there where the path ends.
+    Beyond the path the corner slides, at the end of the path.
 
     Parameters
     ----------
     place : array_like
         Places along the path [base pitches].
     half, pitch_point, path_end : float
-        [base pitches]; `half` 0 for a line of contact that turns all at once.
+        [base pitches]; `half` 0 for a line of contact that reverses as a whole.
     """
     at = np.asarray(place, dtype=np.float64)
     low, high = np.clip(at - half, 0.0, path_end), np.clip(at + half, 0.0, path_end)
-    turn = np.clip(pitch_point, low, high)
+    reversal = np.clip(pitch_point, low, high)
     length = high - low
     point = length <= 0.0
     length = np.where(point, 1.0, length)
-    sign = np.where(point, np.sign(low - pitch_point), (high + low - 2.0 * turn) / length)
-    placed = np.where(point, low * np.sign(low - pitch_point), (0.5 * (high**2 + low**2) - turn**2) / length)
-    return sign, placed
+    sign = np.where(point, np.sign(low - pitch_point), (high + low - 2.0 * reversal) / length)
+    moment = np.where(point, low * np.sign(low - pitch_point), (0.5 * (high**2 + low**2) - reversal**2) / length)
+    return sign, moment
 
 
-def _turns_by_slices(contact: ToothContact) -> bool:
+def _reverses_by_slices(contact: ToothContact) -> bool:
     return contact.faces is not None and contact.faces.half_span > 0.0
 
 
 def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:
-    """The three integrals as the numbers of a law."""
+    """The three integrals as numbers in the layout of a contact law."""
     faces = contact.faces
     assert faces is not None
 

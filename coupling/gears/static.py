@@ -1,9 +1,9 @@
-"""The mesh under a steady load: static transmission error, mesh stiffness, load sharing.
+"""Loaded transmission error: static equilibrium of the mesh under a steady load, with mesh stiffness and load sharing.
 
-At each phase the pairs' compression ``x`` carries the load: ``sum_j k'_j max(0, x - d_j) = F``.  The left
+At each phase the pairs' forces balance the load, ``sum_j k'_j max(0, x - d_j) = F``, x their compression.  The left
 side is piecewise linear and increasing, so with the pairs sorted by deviation the answer is exact: with the n
 least relieved pairs touching ``x = (F + sum k'_j d_j) / sum k'_j``, and n is the number for which this lies
-above the n-th and not above the next deviation.  What the pairs share comes on top, ``delta = x + C F``
+above the n-th and not above the next deviation.  The shared compliance adds, ``delta = x + C F``
 (:mod:`coupling.gears.tooth_contact`): under a constant load it is constant, and only shifts the transmission error.
 """
 
@@ -23,9 +23,9 @@ from coupling.gears.tooth_contact import PairStates, ToothContact
 FloatArray = npt.NDArray[np.float64]
 
 _HAIR = 1e-9
-"""Compression at which an unloaded face shows its stiffness [m]."""
-_BESIDE = 1e-9
-"""How far beside an event the limits of a stepping curve are taken, in mesh periods."""
+"""Compression for the tangent stiffness of an unloaded face [m]."""
+_EVENT_DISTANCE = 1e-9
+"""Distance from an event of the phases for both limits of a step, in mesh periods."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,17 +39,17 @@ class StaticMesh:
     phases : ndarray, shape (n,)
         Mesh periods.
     transmission_error : ndarray, shape (n,)
-        Compression of the mesh under the load [m]: how far the driven gear lags, along the line of action.
+        Compression of the mesh under the load [m]: lag of the driven gear along the line of action.
     positions : ndarray, shape (n, m)
-        Where the pairs are along the path of contact [base pitches].
+        Positions of the pairs along the path of contact [base pitches].
     pair_forces : ndarray, shape (n, m)
         Force of each [N].
     tangent_stiffness : ndarray, shape (n,)
-        Stiffness of the pairs that touch, dF/d delta [N/m].
+        Stiffness of the pairs in contact, dF/d delta [N/m].
     secant_stiffness : ndarray, shape (n,)
         Load over the compression beyond first touch [N/m]; the tangent at no load.
     line_loads : ndarray, shape (n, m, s), or None
-        Load per width on every slice of each pair's face [N/m]; None where it is the same all over.
+        Load per width on every slice of each pair's face [N/m]; None for a uniform load.
     """
 
     force: float
@@ -73,12 +73,12 @@ class StaticMesh:
 
     @property
     def peak_to_peak_transmission_error(self) -> float:
-        """Largest less smallest transmission error [m]."""
+        """Peak-to-peak transmission error [m]."""
         return float(np.ptp(self.transmission_error))
 
     @property
     def mean_stiffness(self) -> float:
-        """Mean of the tangent stiffness over the whole periods that `phases` cover [N/m]."""
+        """Mean mesh stiffness under the load: mean tangent stiffness over the whole periods of `phases` [N/m]."""
         return period_mean(self.phases, self.tangent_stiffness)
 
 
@@ -91,7 +91,7 @@ def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 
     points : int
         Equally spaced phases of a period before the events are added.
     periods : int
-        Mesh periods; `ToothContact.hunting_period` for all that pitch deviations bring.
+        Mesh periods; `ToothContact.hunting_period` for all pitch deviations.
 
     Returns
     -------
@@ -100,8 +100,8 @@ def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 
     """
     even = (np.arange(points) + 0.5) / points
     events = np.array(contact.event_phases)
-    beside = np.concatenate([events - _BESIDE, events + _BESIDE, np.array(contact.corner_phases)]) % 1.0
-    period = np.unique(np.concatenate([even, beside]))
+    limits = np.concatenate([events - _EVENT_DISTANCE, events + _EVENT_DISTANCE, np.array(contact.corner_phases)]) % 1.0
+    period = np.unique(np.concatenate([even, limits]))
     return np.asarray((np.arange(periods)[:, None] + period).ravel(), dtype=np.float64)
 
 
@@ -116,10 +116,10 @@ def static_transmission_error(
     force : float
         Load along the line of action, torque over base radius [N], at least 0.
     phases : array_like, shape (n,), or None
-        Mesh periods; None for one period, `mesh_period_phases`: with pitch deviations that in which teeth 0 enter,
-        so that means over the hunting period need its phases given.
+        Mesh periods; None for one period, `mesh_period_phases`: with pitch deviations the one in which teeth 0 enter;
+        means over the hunting period need its phases given.
     states : PairStates or None
-        ``contact.pairs(phases)``, from a caller with many loads at the same phases.
+        ``contact.pairs(phases)``, computed once for many loads at the same phases.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def static_transmission_error(
     Raises
     ------
     GearError
-        For a negative or non-finite load, or where so many teeth are missing that none meet.
+        For a negative or non-finite load, or where too many teeth are missing for any to meet.
     ContactAccuracyError
         If the pairs' forces miss the load by more than rounding.
     """
@@ -147,16 +147,16 @@ def static_transmission_error(
     later = np.where(np.isfinite(gap), gap - first, 0.0)
     sum_stiffness = np.cumsum(stiffness, axis=1)
     candidate = first + (force + np.cumsum(stiffness * later, axis=1)) / sum_stiffness
-    # The n-th candidate stands while it exceeds the n-th gap; the first always does (or equals it).
-    stands = (candidate > gap) & np.isfinite(gap)
-    stands[:, 0] = True
-    touching = np.argmin(np.column_stack([stands, np.zeros(at.size, dtype=bool)]), axis=1) - 1
+    # The n-th candidate holds while it exceeds the n-th gap; the first always does (or equals it).
+    holds = (candidate > gap) & np.isfinite(gap)
+    holds[:, 0] = True
+    touching = np.argmin(np.column_stack([holds, np.zeros(at.size, dtype=bool)]), axis=1) - 1
     rows = np.arange(at.size)
     compression = candidate[rows, touching]
     tangent = sum_stiffness[rows, touching]
 
     forces = states.stiffness * np.maximum(0.0, compression[:, None] - states.deviation)
-    # Rounding of delta - d, times the stiffness, is the least that any solution leaves.
+    # Rounding of delta - d, times the stiffness, is the least residual of any solution.
     rounding = 64.0 * np.finfo(np.float64).eps * (force + tangent * np.abs(compression))
     imbalance = np.abs(forces.sum(axis=1) - force)
     if np.any(imbalance > rounding + 1e-300):
@@ -182,7 +182,7 @@ def _require_teeth(states: PairStates, at: FloatArray) -> None:
 
 
 def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArray, states: PairStates) -> StaticMesh:
-    """The loaded mesh where the load spreads unevenly over the face."""
+    """Loaded mesh with an uneven load across the face."""
     assert states.faces is not None
     rows, columns = np.nonzero(states.present)
     base, meeting = states.faces.base, states.faces.meeting
@@ -190,7 +190,7 @@ def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArr
     if force > 0.0:
         compression, loads = balance_faces(faces, base, gap, meeting, rows, np.full(at.size, force))
     else:
-        # Without load the first slice just touches; the stiffness is that of a hair's compression.
+        # Without load the first slice just touches; the stiffness is that at a small compression.
         compression = states.deviation.min(axis=1)
         loads = load_faces(faces, base, gap, meeting, compression[rows] + _HAIR)
         loads = replace(loads, force=0.0 * loads.force, line_load=0.0 * loads.line_load)
@@ -207,7 +207,7 @@ def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArr
 
 
 def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
-    """Stiffness of all pairs on the path of contact, as if none were relieved [N/m], at `phases` (n,)."""
+    """Mesh stiffness with all pairs on the path of contact touching [N/m], at `phases` (n,)."""
     return contact.mesh_stiffness(phases, sound=False)
 
 

@@ -1,9 +1,8 @@
-"""Stiffness of one pair of teeth along the path of contact, by named models.
+"""Tooth stiffness models by name: stiffness of one pair of teeth along the path of contact.
 
-Every model is a small frozen dataclass with one method, ``pair_stiffness(geometry)``, that returns the
-stiffness of a single pair [N/m along the line of action] as a function of the position in base pitches.
-Its range is the range of contact: the contact ratio, or exactly 1 for models that describe the whole mesh
-as one spring.
+Every model is a small frozen dataclass with one method, ``pair_stiffness(geometry)``, that returns the stiffness of a
+single pair [N/m along the line of action] as a function of the position in base pitches.  Its range is the range of
+contact: the contact ratio, or exactly 1 for models that describe the whole mesh as one spring.
 
 ============================  =====================================================================
 name                          model
@@ -18,37 +17,37 @@ name                          model
 ``"table"``                   given values, of a pair or of the whole mesh
 ============================  =====================================================================
 
-The first four know the bodies of the gears, which pairs in contact at once share (`shared_compliance`).  The others
-state the stiffness of a pair or of the mesh as it is given, and pairs stand side by side.
+The first four, subclasses of `CompliantTeeth`, know the bodies of the gears, which pairs in contact at once share
+(`shared_compliance`).  The others state the stiffness of a pair or of the mesh as it is given, and the pairs act in
+parallel.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from dataclasses import dataclass, replace
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import piecewise
-from coupling.gears.compliant_teeth import (
-    CornellStiffness,
-    ElasticRingStiffness,
-    PotentialEnergyStiffness,
-    WeberBanaschekStiffness,
-)
+from coupling.gears.compliant_teeth import CompliantTeeth
+from coupling.gears.cornell import CornellStiffness
+from coupling.gears.elastic_ring import ElasticRingStiffness
 from coupling.gears.errors import StiffnessModelError
-from coupling.gears.iso6336 import iso6336_stiffness
+from coupling.gears.iso6336 import Iso6336Stiffness
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
+from coupling.gears.tooth_compliance import PotentialEnergyStiffness
+from coupling.gears.weber_banaschek import WeberBanaschekStiffness
 
 FloatArray = npt.NDArray[np.float64]
 
 
 class StiffnessModel(Protocol):
-    """Whatever can say how stiff a pair of teeth is along its path of contact."""
+    """Stiffness of a pair of teeth along its path of contact."""
 
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         """Stiffness [N/m] by position in base pitches, from 0 to the contact ratio (or 1)."""
@@ -57,40 +56,16 @@ class StiffnessModel(Protocol):
 
 @runtime_checkable
 class SharingModel(StiffnessModel, Protocol):
-    """A model that knows the bodies under the teeth, and what pairs in contact at once share of them."""
+    """A stiffness model with the compliance that pairs in contact at once share: that of the gears' bodies."""
 
     def shared_compliance(self, geometry: GearPairGeometry) -> float:
-        """What pairs of teeth in contact at once yield in common [m/N]."""
+        """Compliance that pairs of teeth in contact at once share [m/N]."""
         ...
 
 
 def shared_compliance(model: StiffnessModel, geometry: GearPairGeometry) -> float:
-    """What pairs of teeth in contact at once yield in common [m/N]; 0 of a model that states stiffnesses alone."""
+    """Compliance that pairs of teeth in contact at once share [m/N]; 0 for a model that states stiffnesses alone."""
     return model.shared_compliance(geometry) if isinstance(model, SharingModel) else 0.0
-
-
-@dataclass(frozen=True)
-class Iso6336Stiffness:
-    """ISO 6336-1 method B as a curve: a parabola with the norm's maximum and the norm's mean.
-
-    The norm gives two numbers, c' at the middle of the path and the mean of the mesh
-    ``c_gamma = c' (0.75 eps + 0.25)``.  The parabola ``c' (1 - kappa (2 s/eps - 1)^2)`` has both exactly
-    with ``kappa = 0.75 (1 - 1/eps)``.
-
-    Parameters
-    ----------
-    specific_load : float or None
-        Tangential load per face width, F_t K_A / b [N/m]; below 100 N/mm the norm lowers the stiffness.
-    """
-
-    specific_load: float | None = None
-
-    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
-        """Stiffness [N/m] by position."""
-        norm = iso6336_stiffness(geometry, specific_load=self.specific_load)
-        largest = norm.single_pair * geometry.face_width
-        ends = largest * (0.25 + 0.75 / geometry.contact_ratio)
-        return piecewise.quadratic(ends, largest, ends, geometry.contact_ratio)
 
 
 @dataclass(frozen=True)
@@ -105,11 +80,12 @@ class SquareStiffness:
         In place of the geometry's, where a source prints the ratio but not the teeth.
     """
 
+    name: ClassVar[str] = "square"
     value: float
     contact_ratio: float | None = None
 
     def __post_init__(self) -> None:
-        _require_positive("square", self.value)
+        _require_positive(self)
         if self.contact_ratio is not None and not 1.0 <= self.contact_ratio < math.inf:
             raise StiffnessModelError(
                 f"stiffness model 'square': contact_ratio must be at least 1, got {self.contact_ratio!r}"
@@ -122,12 +98,13 @@ class SquareStiffness:
 
 @dataclass(frozen=True)
 class ConstantStiffness:
-    """The mesh is one spring of stiffness `value` [N/m], whatever the teeth do."""
+    """The mesh is one spring of constant stiffness `value` [N/m]."""
 
+    name: ClassVar[str] = "constant"
     value: float
 
     def __post_init__(self) -> None:
-        _require_positive("constant", self.value)
+        _require_positive(self)
 
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         """Stiffness [N/m] over one mesh period."""
@@ -148,6 +125,7 @@ class TableStiffness:
         [N/m], positive.
     """
 
+    name: ClassVar[str] = "table"
     position: FloatArray
     stiffness: FloatArray
 
@@ -184,19 +162,20 @@ class TableStiffness:
         )
 
 
-_MODELS: dict[str, Callable[..., StiffnessModel]] = {
-    "potential-energy": PotentialEnergyStiffness,
-    "elastic-ring": ElasticRingStiffness,
-    "cornell": CornellStiffness,
-    "weber-banaschek": WeberBanaschekStiffness,
-    "iso6336": Iso6336Stiffness,
-    "square": SquareStiffness,
-    "constant": ConstantStiffness,
-    "table": TableStiffness,
+STIFFNESS_MODELS: dict[str, Callable[..., StiffnessModel]] = {
+    model.name: model
+    for model in (
+        PotentialEnergyStiffness,
+        ElasticRingStiffness,
+        CornellStiffness,
+        WeberBanaschekStiffness,
+        Iso6336Stiffness,
+        SquareStiffness,
+        ConstantStiffness,
+        TableStiffness,
+    )
 }
-
-STIFFNESS_MODELS: tuple[str, ...] = tuple(_MODELS)
-"""Names that `stiffness_model` knows."""
+"""All models by their names in cases: a new model is added here."""
 
 
 def stiffness_model(name: str, **parameters: object) -> StiffnessModel:
@@ -207,14 +186,41 @@ def stiffness_model(name: str, **parameters: object) -> StiffnessModel:
     StiffnessModelError
         For an unknown name, or parameters that the model does not take or misses.
     """
-    if name not in _MODELS:
-        raise StiffnessModelError(f"unknown stiffness model {name!r}; expected one of {', '.join(_MODELS)}")
+    if name not in STIFFNESS_MODELS:
+        raise StiffnessModelError(f"unknown stiffness model {name!r}; expected one of {', '.join(STIFFNESS_MODELS)}")
     try:
-        return _MODELS[name](**parameters)
+        return STIFFNESS_MODELS[name](**parameters)
     except TypeError as error:
         raise StiffnessModelError(f"stiffness model {name!r}: {error}") from error
 
 
-def _require_positive(name: str, value: float) -> None:
-    if not (math.isfinite(value) and value > 0.0):
-        raise StiffnessModelError(f"stiffness model {name!r}: value must be above 0 N/m, got {value!r}")
+def stiffness_under_load(name: str, geometry: GearPairGeometry, force: float) -> StiffnessModel:
+    """Model by name at the load of a pair, where it depends on the load.
+
+    Parameters
+    ----------
+    name : str
+        A key of `STIFFNESS_MODELS`.
+    geometry : GearPairGeometry
+    force : float
+        Mean load along the line of action [N]; 0 for the model's own reference load.
+
+    Raises
+    ------
+    StiffnessModelError
+        See `stiffness_model`.
+    """
+    model = stiffness_model(name)
+    if force > 0.0 and isinstance(model, Iso6336Stiffness):
+        # F_t / b: tangential force at the reference circle over the common width, as the norm's load per width.
+        tangential = force * geometry.driver.base_radius / geometry.driver.pitch_radius
+        return replace(model, specific_load=tangential / geometry.face_width)
+    if force > 0.0 and isinstance(model, CompliantTeeth) and model.contact == "weber":
+        # The Hertzian contact stiffens with the load; it is frozen where one pair carries all of it.
+        return replace(model, force=force)
+    return model
+
+
+def _require_positive(model: SquareStiffness | ConstantStiffness) -> None:
+    if not (math.isfinite(model.value) and model.value > 0.0):
+        raise StiffnessModelError(f"stiffness model {model.name!r}: value must be above 0 N/m, got {model.value!r}")

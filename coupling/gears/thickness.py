@@ -1,8 +1,8 @@
-"""How thick a tooth is, and what a shop measures to know it.
+"""Tooth thickness, and its measurement: chordal thickness, base tangent length (span), dimension over balls.
 
 On the cylinder of radius ``r_y`` a tooth spans the half angle ``psi - inv(alpha_y)`` with ``cos(alpha_y) = rb / r_y``
-and psi its half angle on the base circle; normal to the helix it is thinner by ``cos(beta_y)``.  All figures are of the
-teeth as they are, thinning included; formulas after ISO 21771.
+and psi its half angle on the base circle; normal to the helix it is thinner by ``cos(beta_y)``.  All values include the
+thinning; formulas after ISO 21771.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ CUSTOMARY_BALL = 1.728
 
 
 class ChordalThickness(NamedTuple):
-    """What a tooth caliper reads: thickness along the chord, and the depth of its bar below the tip [m]."""
+    """Chordal thickness and chordal height below the tip, as a tooth caliper reads them [m]."""
 
     thickness: float
     height: float
@@ -35,9 +35,9 @@ class SpanMeasurement:
     teeth : int
         Teeth between the anvils.
     length : float
-        What the micrometer reads [m].
+        Base tangent length [m].
     contact_radius : float
-        Where its anvils touch [m].
+        Radius at which the anvils touch [m].
     """
 
     teeth: int
@@ -54,9 +54,9 @@ class BallMeasurement:
     diameter : float
         Of a ball [m].
     length : float
-        What the micrometer reads over the balls [m].
+        Dimension over the balls [m].
     centre_radius, contact_radius : float
-        Where the balls' centres are, and where they touch the flanks [m].
+        Radii of the balls' centres, and of their contact with the flanks [m].
     """
 
     diameter: float
@@ -100,7 +100,7 @@ def chordal_thickness(gear: Gear, radius: float | None = None) -> ChordalThickne
     ----------
     gear : Gear
     radius : float or None
-        Where [m]; None for the reference circle.
+        Radius of the measurement [m]; None for the reference circle.
     """
     radius = gear.pitch_radius if radius is None else radius
     curvature = radius / math.cos(gear.helix_angle_at(radius)) ** 2

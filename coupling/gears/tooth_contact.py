@@ -1,22 +1,22 @@
-r"""The contact law of a gear pair: what its teeth answer to a compression of the mesh.
+r"""Tooth contact law of a gear pair: contact force, stiffness and stored energy by the compression of the mesh.
 
-At phase ``p`` (mesh periods of the driver) pairs are at ``s_j = frac(p) + j``, j any whole number that puts them
-between the ends of where they can touch.  Each has a stiffness ``k(s)`` and a profile deviation ``d(s)``, the gap that
-it has in nominal motion.  With the compression ``delta`` of the mesh along the line of action and its rate ``v``:
+At phase ``p`` (mesh periods of the driver) pairs are at ``s_j = frac(p) + j``, j all whole numbers with positions
+in the range of contact.  Each has a stiffness ``k(s)`` and a profile deviation ``d(s)``, its gap in
+nominal motion.  With the compression ``delta`` of the mesh along the line of action and its rate ``v``:
 
     F = E + c r v,        E = sum_j k'(s_j) max(0, x - d(s_j)),        delta = x + C E,        1/k' = 1/k - C
     U = sum_j 1/2 k'(s_j) max(0, x - d(s_j))^2 + 1/2 C E^2,            r = min(1, max_j(x - d(s_j)) / depth)
 
-C is the compliance that the pairs share: the twist of both gears' bodies, which all teeth of a gear feel alike, and the
-dent in them that a tooth's neighbour is in (:mod:`coupling.gears.rim`). The load is on it as a whole, so it stands in
-series with the pairs, which are side by side, and x is the compression that it leaves them. One pair alone has its own
-k again; the compliance of two pairs is the matrix with 1/k(s_j) on its diagonal and C beside it. With C = 0, of models
-that state a pair's stiffness without its bodies, k' = k and x = delta.
+C is the compliance that the pairs share: the twist of both gears' bodies, which moves all teeth of a gear alike, and
+the dent of the body under a neighbouring tooth (:mod:`coupling.gears.rim`). It carries the whole load, so it is in
+series with the pairs, which are in parallel, and x is their compression without it. One pair alone has its own k again;
+the compliance of two pairs is the matrix with 1/k(s_j) on its diagonal and C beside it. With C = 0, of models that
+state a pair's stiffness without its bodies, k' = k and x = delta.
 
 The damping fades in over the first ``depth`` of compression: full at first touch, the force would jump at every
-impact, and would pull just before the teeth part.  ``dU/d delta = F - c r v``; the teeth's turning does the work
-``dU/dp`` per mesh period on the contact besides (the parametric power ``dU/dp * dp/dt``), which an energy balance
-of a prescribed speed has to carry.
+impact, and would pull just before the teeth part.  ``dU/d delta = F - c r v``; the rotation of the teeth also does the
+work ``dU/dp`` per mesh period on the contact (the parametric power ``dU/dp * dp/dt``), which an energy balance at a
+prescribed speed has to include.
 The mesh never pulls: where the damping would take F below zero, F is zero and the springs' power is lost.  The whole
 mesh may separate, and returns through the same law.
 
@@ -30,7 +30,7 @@ motion projected on the mirrored line of action, less the backlash), and ``dU/dp
 pitch gaps come with `ToothContact.back_flanks`.
 
 Where contact is held to the theoretical path, ``0 <= s < eps``, a deflected tooth without relief comes in and goes
-out with a step in force, as in the sources.  The step stands exactly at `event_phases`.  With corner contact
+out with a step in force, as in the sources.  The step is exactly at `event_phases`.  With corner contact
 (:mod:`coupling.gears.corner_contact`) pairs touch beyond the path too, over a gap that grows with the distance from
 it, and the force has no steps; ``k`` is held there at what it is at the end of the path.
 
@@ -59,19 +59,19 @@ FloatArray = npt.NDArray[np.float64]
 KernelArguments = tuple[FloatArray, int]
 
 _MEAN_PHASES = 256
-"""Of a mesh whose lines of contact lie across the path, so that its stiffness is smooth."""
+"""Phases for the mean stiffness of helical teeth, whose mesh stiffness is smooth."""
 
 
 @dataclass(frozen=True, eq=False)
 class PairPlaces:
-    """Where the pairs of teeth are at some phases, at most m of them at once.
+    """Positions of the pairs of teeth at n phases, at most m pairs at once.
 
     Attributes
     ----------
     position : ndarray, shape (n, m)
         Position along the path of contact, base pitches.
     present : ndarray of bool, shape (n, m)
-        Whether the pair is where it can touch.
+        Whether the pair is in the range of contact.
     kind : ndarray of int, shape (n, m)
         Number of the kind of pair.
     entered : ndarray of int, shape (n, m)
@@ -86,18 +86,18 @@ class PairPlaces:
 
 @dataclass(frozen=True, eq=False)
 class PairStates(PairPlaces):
-    """The same pairs, how stiff and how relieved they are.
+    """Positions, stiffness and deviation of the pairs of teeth.
 
     Attributes
     ----------
     stiffness : ndarray, shape (n, m)
-        Behind the shared compliance [N/m], 0 where absent, and of an uneven face, whose slices have theirs.
+        Without the shared compliance [N/m]; 0 where absent, and for an uneven face, whose slices have their own.
     deviation : ndarray, shape (n, m)
-        Gap by profile and pitch [m], infinite where absent; that of first touch where the face is not even.
+        Gap by profile and pitch [m], infinite where absent; at first touch for an uneven face.
     pitch_gap : ndarray, shape (n, m)
-        The part of the gap that pitch deviations make [m].
+        Gap by pitch deviations alone [m].
     faces : FaceState or None
-        Where the face is not even, the slices of the pairs that are present, row by row, without their pitch gaps.
+        For an uneven face, the slices of the pairs that are present, row by row, without their pitch gaps.
     """
 
     stiffness: FloatArray
@@ -108,36 +108,36 @@ class PairStates(PairPlaces):
 
 @dataclass(frozen=True, eq=False)
 class ToothContact:
-    """The contact law's numbers, ready for the kernels.
+    """Tooth contact law of a gear pair.
 
     Attributes
     ----------
     contact_ratio : float
         Length of a pair's contact in base pitches.
     stiffness : PiecewiseCubic
-        Stiffness of one pair that carries alone, its gears' bodies included [N/m], over the positions where it can
-        touch: [0, contact_ratio], or more with corners.
+        Stiffness of one pair that carries alone, its gears' bodies included [N/m], over its range of contact:
+        [0, contact_ratio], or more with corner contact.
     deviation : PiecewiseCubic
         Gap of one pair [m] over the same range.
     damping : float
-        Damping coefficient while the mesh is pressed together [N s/m].
+        Damping coefficient while the mesh is compressed [N s/m].
     back_flank_offset : float
         Phase of the idle flanks, see `GearPairGeometry.back_flank_offset`.
     pitch_gaps, back_pitch_gaps : ndarray, shape (h,)
-        What pitch deviations add to the gap of the pair that enters at phase n, at n mod h [m], on the working and
-        on the idle flanks; empty for none.
+        Gap by pitch deviations of the pair that enters at phase n, at n mod h [m], on the working and on the idle
+        flanks; empty for none.
     damping_depth : float
-        Compression up to which the damping fades in [m]; 0 for all of it at first touch.
+        Compression up to which the damping fades in [m]; 0 for full damping at first touch.
     variants : tuple of PairCurves
         Of pairs of damaged teeth, numbered from 1; pairs of sound teeth are number 0.
     pair_variants, back_pair_variants : ndarray of int, shape (h,)
-        Which of them the pair is that enters at phase n, at n mod h; empty where all are alike.
+        Variant of the pair that enters at phase n, at n mod h; empty where all are alike.
     faces : FaceSlices or None
         Slices of the face where it is not loaded evenly; positions are then those of the middle of the face.
     module : float
-        Of the gears [m]; how deep the table for the kernels goes is counted in it. Needed with `faces` alone.
+        Of the gears [m], which sets the depth of the table for the kernels. Needed with `faces` alone.
     shared_compliance : float
-        What pairs in contact at once yield in common, C [m/N]; below that of any pair alone.
+        Compliance that pairs in contact at once share, C [m/N]; below that of any pair alone.
     """
 
     contact_ratio: float
@@ -200,9 +200,9 @@ class ToothContact:
 
     @property
     def kernel_arguments(self) -> KernelArguments:
-        """What `coupling.gears.kernels.tooth_force` wants after phase, compression and rate.
+        """Arguments of `coupling.gears.kernels.tooth_force` after phase, compression and rate.
 
-        The row of numbers of `coupling.gears.law_table`, and where it begins.
+        The row of numbers of `coupling.gears.law_table`, and the index at which it begins.
         """
         return self._law, 0
 
@@ -223,17 +223,17 @@ class ToothContact:
 
     @cached_property
     def kinds(self) -> tuple[PairCurves, ...]:
-        """Every kind of pair behind the shared compliance, that of sound teeth first."""
+        """Curves of every kind of pair without the shared compliance, that of sound teeth first."""
         return tuple(behind_shared(curves, self.shared_compliance) for curves in self._alone)
 
     @property
     def _alone(self) -> tuple[PairCurves, ...]:
-        """Every kind of pair as if it carried alone."""
+        """Curves of every kind of pair that carries alone."""
         return (PairCurves(self.stiffness, self.deviation), *self.variants)
 
     @property
     def touching_range(self) -> tuple[float, float]:
-        """First and last position where a pair can touch [base pitches]: 0 and the contact ratio, or beyond."""
+        """Range of contact of a pair [base pitches]: from 0 to the contact ratio, or wider with corner contact."""
         start, end = self._slice_range
         reach = 0.0 if self.faces is None else float(np.abs(self.faces.shift).max())
         return start - reach, end + reach
@@ -249,7 +249,7 @@ class ToothContact:
 
     @property
     def hunting_numbers(self) -> int:
-        """Pairs that differ, h: 0 where all are alike."""
+        """Number of different pairs of the hunting period, h: 0 where all are alike."""
         return max(self.pitch_gaps.size, self.pair_variants.size)
 
     @property
@@ -259,7 +259,7 @@ class ToothContact:
 
     @cached_property
     def mean_stiffness(self) -> float:
-        """Mean over a mesh period of the stiffness with all pairs on the path touching [N/m]."""
+        """Mean mesh stiffness over a mesh period, with all pairs on the path in contact [N/m]."""
         inner = self.stiffness.knots[(self.stiffness.knots > 0.0) & (self.stiffness.knots < self.contact_ratio)]
         if self.shared_compliance == 0.0:
             on_path = self.stiffness.on_knots(np.concatenate([[0.0], inner, [self.contact_ratio]]))
@@ -276,21 +276,21 @@ class ToothContact:
         return float(np.sum(0.5 * width[:, None] * weights * values))
 
     def mesh_stiffness(self, phases: npt.ArrayLike, *, sound: bool = True) -> FloatArray:
-        """Stiffness of all pairs on the path of contact, as if none were relieved [N/m].
+        """Mesh stiffness with all pairs on the path of contact touching, as without profile deviations [N/m].
 
         Parameters
         ----------
         phases : array_like, shape (n,)
             Mesh periods.
         sound : bool
-            Whether to take all pairs for those of sound teeth.
+            Whether to treat all teeth as sound.
         """
-        places = self.places(phases)
+        places = self.pair_positions(phases)
         shift, half = (np.zeros(1), 0.0) if self.faces is None else (self.faces.shift, self.faces.half_span)
         at = places.position[..., None] + shift
         end = self.contact_ratio
         if half > 0.0:
-            # What of a slice lies on the path.
+            # The fraction of a slice that lies on the path.
             part = (np.clip(at + half, 0.0, end) - np.clip(at - half, 0.0, end)) / (2.0 * half)
         else:
             part = ((at >= 0.0) & (at < end)).astype(np.float64)
@@ -306,11 +306,11 @@ class ToothContact:
 
     @property
     def event_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) where a pair enters its path of contact (0) or leaves it, ascending.
+        """Phases in [0, 1) at which a pair enters its path of contact (0) or leaves it, ascending.
 
-        Empty where the load spreads over the face, since pairs then come and go slice by slice, and for a mesh that
-        is one unchanging number of pairs, i.e. a whole contact ratio with a stiffness and a deviation that join up at
-        the period's ends in value and slope, and all pairs alike.
+        Empty for an uneven face, whose pairs enter and leave slice by slice, and for a constant number of pairs: a
+        whole contact ratio with a stiffness and a deviation that continue over the period's ends in value and slope,
+        and all pairs alike.
         """
         if self.faces is not None:
             return ()
@@ -326,12 +326,12 @@ class ToothContact:
 
     @property
     def back_flank_event_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) where a pair of idle flanks would enter or leave, ascending."""
+        """Phases in [0, 1) at which a pair of idle flanks would enter or leave, ascending."""
         return tuple(sorted((self.back_flank_offset - phase) % 1.0 for phase in self.event_phases))
 
     @property
     def corner_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) where the slope of a deviation or of a stiffness jumps (a relief begins), ascending."""
+        """Phases in [0, 1) at which the slope of a deviation or a stiffness jumps (a relief begins), ascending."""
         if self.faces is not None:
             return ()
         found: set[float] = set()
@@ -342,9 +342,9 @@ class ToothContact:
 
     @property
     def back_flanks(self) -> ToothContact:
-        """The law of the idle flanks by their own phase: the same, with the gaps and kinds of their own pairs.
+        """Contact law of the idle flanks by their own phase: the same law with the gaps and kinds of their own pairs.
 
-        A helical face runs through it from the other end.
+        A helical face passes through the mesh from its other end.
         """
         if not self.hunting_numbers and self.faces is None:
             return self
@@ -361,8 +361,8 @@ class ToothContact:
         """The same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
         return replace(self, damping=damping, damping_depth=depth)
 
-    def places(self, phases: npt.ArrayLike) -> PairPlaces:
-        """Where the pairs are at `phases` (n,)."""
+    def pair_positions(self, phases: npt.ArrayLike) -> PairPlaces:
+        """Positions of the pairs at `phases` (n,)."""
         phase = np.atleast_1d(np.asarray(phases, dtype=np.float64))
         number = np.floor(phase)
         fraction = phase - number
@@ -377,8 +377,8 @@ class ToothContact:
         return PairPlaces(position, present, kind, entered)
 
     def pairs(self, phases: npt.ArrayLike) -> PairStates:
-        """Where the pairs are at `phases` (n,), and how stiff and how relieved they are."""
-        places = self.places(phases)
+        """Positions, stiffness and deviation of the pairs at `phases` (n,)."""
+        places = self.pair_positions(phases)
         position, present, kind, entered = places.position, places.present, places.kind, places.entered
         stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
         state = None
@@ -398,10 +398,10 @@ class ToothContact:
         states = self.pairs(phases)
         total = np.atleast_1d(np.asarray(compression, dtype=np.float64))
         own = total
-        # The pairs' force is convex in their own compression: from above Newton's method only lets pairs go.
+        # The pairs' force is convex in their own compression: from above Newton's method only releases pairs.
         for _ in range(states.stiffness.shape[1] + 1):
             touching = states.stiffness * (states.deviation < own[:, None])
-            pressed = np.where(touching > 0.0, own[:, None] - states.deviation, 0.0)
-            excess = own - total + self.shared_compliance * (touching * pressed).sum(axis=1)
+            depth = np.where(touching > 0.0, own[:, None] - states.deviation, 0.0)
+            excess = own - total + self.shared_compliance * (touching * depth).sum(axis=1)
             own = own - excess / (1.0 + self.shared_compliance * touching.sum(axis=1))
         return np.asarray(states.stiffness * np.maximum(0.0, own[:, None] - states.deviation), dtype=np.float64)

@@ -1,4 +1,4 @@
-"""The size of a gear's teeth, its normal module, from what else a drawing may give."""
+"""Normal module of a gear from its base radius or its diametral pitch."""
 
 from __future__ import annotations
 

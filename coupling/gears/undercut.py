@@ -1,4 +1,4 @@
-"""Where the fillet of an undercut tooth cuts off its involute.
+"""Undercut: where the trochoid of the fillet cuts off the involute.
 
 A rack whose straight flank reaches deeper than ``r sin(alpha_t)^2`` below the pitch line swings its corner through the
 foot of the involute.  Trochoid and involute then no longer touch; they cross, and the flank begins at the crossing: the

@@ -1,4 +1,4 @@
-"""Weber and Banaschek's tooth: the first exact energies of tooth and half plane, the root of ISO 6336's stiffness.
+"""Weber-Banaschek tooth model (1953): exact energies of tooth and half plane, the root of ISO 6336's stiffness.
 
 C. Weber and K. Banaschek, *Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern*, Schriftenreihe
 Antriebstechnik 11, 1953.  Everything is in plane strain.  With ``y`` along the tooth's axis from its root section, the
@@ -21,56 +21,45 @@ the half plane they come from.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.beam_compliance import ROOT_CIRCLE, axis_crossing, beam_compliance
+from coupling.gears.compliant_teeth import CompliantTeeth, SharedBody, SolvedTooth, ToothCompliance
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import fillet_points, load_angle
 from coupling.gears.rim import solved_rim
-from coupling.gears.tooth_compliance import SolvedTooth, ToothCompliance
 
 FloatArray = npt.NDArray[np.float64]
 
 
-def weber_banaschek(gear: Gear, radius: FloatArray) -> ToothCompliance:
-    """Tooth compliance after Weber and Banaschek (1953).
+@dataclass(frozen=True)
+class WeberBanaschekStiffness(CompliantTeeth):
+    """Weber and Banaschek's tooth (1953), with Weber's contact; parameters as of `CompliantTeeth`."""
 
-    Parameters
-    ----------
-    gear : Gear
-    radius : ndarray
-        Radii of the loaded points [m], from the form radius to the tip.
+    name: ClassVar[str] = "weber-banaschek"
 
-    Returns
-    -------
-    ToothCompliance
-        Arrays of the shape of `radius`.
+    def shared_body(self, gear: Gear) -> SharedBody:
+        """See `CompliantTeeth`."""
+        return SharedBody("plane-stress", twists=False)
 
-    Raises
-    ------
-    GearError
-        For a radius off the involute flank.
-    """
-    return solved_weber_banaschek(gear)(radius)
+    def solve_tooth(self, gear: Gear) -> SolvedTooth:
+        """See `CompliantTeeth`."""
+        section = fillet_points(gear, np.array(ROOT_CIRCLE))
+        nu = gear.poisson_ratio
+        coupling = 2.0 * (1.0 - 2.0 * nu) / (1.0 - nu)
+        rim = solved_rim(gear, "plane-strain")
 
+        def tooth(radius: FloatArray) -> ToothCompliance:
+            beta = load_angle(gear, radius)
+            lever = (axis_crossing(gear, radius) - section.height) / (2.0 * section.half_thickness)
+            thrust = (1.0 - nu) / 2.4 * np.tan(beta) ** 2
+            shape = 18.0 / math.pi * lever**2 + coupling * lever + 4.8 / math.pi * (1.0 + thrust)
+            foundation = np.cos(beta) ** 2 * (1.0 - nu**2) * shape / (gear.youngs_modulus * gear.face_width)
+            beam = beam_compliance(gear, radius, ROOT_CIRCLE, "plane-strain")
+            return ToothCompliance(*beam, foundation=foundation, rim=rim(radius))
 
-def solved_weber_banaschek(gear: Gear) -> SolvedTooth:
-    """`weber_banaschek` of one tooth, for any radii."""
-    section = fillet_points(gear, np.array(ROOT_CIRCLE))
-    nu = gear.poisson_ratio
-    coupling = 2.0 * (1.0 - 2.0 * nu) / (1.0 - nu)
-    rim = solved_rim(gear, "plane-strain")
-
-    def tooth(radius: FloatArray) -> ToothCompliance:
-        radius = np.asarray(radius, dtype=np.float64)
-        beta = load_angle(gear, radius)
-        lever = (axis_crossing(gear, radius) - section.height) / (2.0 * section.half_thickness)
-        thrust = (1.0 - nu) / 2.4 * np.tan(beta) ** 2
-        shape = 18.0 / math.pi * lever**2 + coupling * lever + 4.8 / math.pi * (1.0 + thrust)
-        foundation = np.cos(beta) ** 2 * (1.0 - nu**2) * shape / (gear.youngs_modulus * gear.face_width)
-        beam = beam_compliance(gear, radius, ROOT_CIRCLE, "plane-strain")
-        return ToothCompliance(*beam, foundation=foundation, rim=rim(radius))
-
-    return tooth
+        return tooth

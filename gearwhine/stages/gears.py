@@ -15,8 +15,6 @@ from gearwhine.stages.build import build_gear, build_rotor, gear_inertia
 
 FloatArray = npt.NDArray[np.float64]
 
-# In modules: backlash below it is the rounding of printed sizes.
-_ROUNDED = 1e-3
 # Part of the geometry's backlash by which a given one may differ without a word.
 _DIFFERS = 0.1
 
@@ -70,8 +68,8 @@ def build_pair(given: GivenPair, number: int = 0) -> GearPair:
 
 def backlash_doubts(pair: GivenPair, geometry: room.GearPairGeometry) -> list[dict[str, str]]:
     """A warning where the given backlash is not the one that thicknesses and distance of the shafts say."""
-    made = geometry.backlash
-    if pair.backlash is None or made <= _ROUNDED * geometry.driver.module:
+    made = geometry.designed_backlash
+    if pair.backlash is None or made is None:
         return []
     if abs(pair.backlash - made) <= _DIFFERS * made:
         return []

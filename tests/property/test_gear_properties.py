@@ -20,7 +20,6 @@ from coupling.gears import (
     involute,
     iso6336_stiffness,
     piecewise,
-    potential_energy,
     static_transmission_error,
     tooth_contact,
 )
@@ -118,7 +117,7 @@ def test_exchanging_the_gears_keeps_the_idle_flanks_phase(pair: GearPairGeometry
 def test_compliance_knows_no_size(gear: Gear, scale: float) -> None:
     # Plane elasticity: the same shape at another size, the same width, is as stiff.
     scaled = replace(gear, module=scale * gear.module, bore=scale * gear.bore, tip_relief=None, root_relief=None)
-    small, large = (potential_energy(g, np.array(g.pitch_radius)).total for g in (gear, scaled))
+    small, large = (PotentialEnergyStiffness().tooth(g, np.array(g.pitch_radius)).total for g in (gear, scaled))
     assert float(large) == pytest.approx(float(small), rel=1e-9)
 
 

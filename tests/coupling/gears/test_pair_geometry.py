@@ -15,7 +15,9 @@ from coupling.gears import (
     MismatchedGearsError,
     NoContactError,
     involute,
+    piecewise,
 )
+from coupling.gears.gear_pair import GearPair
 
 ALPHA = math.radians(20.0)
 PINION = Gear("pinion", 21, 3e-3, ALPHA, 15e-3, profile_shift=0.25)
@@ -154,3 +156,25 @@ def test_a_tip_that_reaches_below_the_involute_is_interference() -> None:
     blunt = Gear("pinion", 18, 3e-3, ALPHA, 15e-3, dedendum=1.25, root_radius=1.4e-3)
     with pytest.raises(InterferenceError, match="below the involute of 'pinion'"):
         GearPairGeometry(blunt, Gear("wheel", 200, 3e-3, ALPHA, 12e-3))
+
+
+def test_a_given_backlash_is_held_against_that_of_the_teeth() -> None:
+    assert PAIR.designed_backlash is None  # closed teeth at their own distance
+    thin = GearPairGeometry(replace(PINION, tooth_thinning=60e-6), replace(WHEEL, tooth_thinning=40e-6))
+    made = thin.designed_backlash
+    assert made == thin.backlash > 0.0
+    pair = GearPair("pinion", "wheel")
+    assert pair.backlash_of(thin) == made
+    assert replace(pair, backlash=2.0 * made).backlash_of(thin) == 2.0 * made
+    assert pair.backlash_warning(thin) is None
+    assert replace(pair, backlash=1.05 * made).backlash_warning(thin) is None
+    assert replace(pair, backlash=2.0 * made).backlash_warning(PAIR) is None
+    said = replace(pair, backlash=2.0 * made).backlash_warning(thin)
+    assert said is not None
+    assert f"{2e3 * made:.4g} mm is not the {1e3 * made:.4g} mm" in said
+
+
+def test_corners_beside_the_ends_of_a_curve_do_not_cut_it_short() -> None:
+    knots = np.array([0.0, 0.5, 1.0])
+    found = piecewise.with_corners(knots, [1.0 - 1e-10, 0.25, 0.25 + 1e-10, 0.5 + 1e-10, 1e-10, 1.5, -1.0, 0.75], 1e-9)
+    np.testing.assert_array_equal(found, [0.0, 0.25, 0.5, 0.75, 1.0])

@@ -49,7 +49,7 @@ def test_uniform_tractions_are_lames_and_the_twist_of_a_tube() -> None:
     system = np.array([[inner, 1.0 / inner], [modulus / (1.0 - NU), -modulus / (1.0 + NU)]])
     a, b = np.linalg.solve(system, [0.0, 1.0])
     assert ring_body._breathing(ring(1.0 / inner), STRESS) == pytest.approx(2.0 * shear * (a + b), rel=1e-12)
-    assert ring_body._twist(ring(1.0 / inner)) == pytest.approx(1.0 / inner**2 - 1.0, rel=1e-12)
+    assert ring_body.twist_flexibility(ring(1.0 / inner)) == pytest.approx(1.0 / inner**2 - 1.0, rel=1e-12)
 
 
 def test_a_bonded_stamp_on_an_incompressible_half_plane_turns_by_a_known_angle() -> None:

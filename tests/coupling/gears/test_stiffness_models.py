@@ -1,13 +1,16 @@
 """The named stiffness models, and the piecewise cubics that carry them."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 import pytest
 
 from coupling.gears import (
     STIFFNESS_MODELS,
+    CompliantTeeth,
     ContactAccuracyError,
     Gear,
     GearError,
@@ -22,6 +25,7 @@ from coupling.gears import (
     piecewise,
     stiffness_model,
 )
+from gearwhine.case.gears import ToothStiffness
 
 ALPHA = math.radians(20.0)
 GEAR = Gear("gear", 28, 3.175e-3, ALPHA, 6.35e-3, bore=25e-3)
@@ -35,14 +39,22 @@ def test_table_of_the_energy_method_is_the_energy_method() -> None:
     np.testing.assert_allclose(model.pair_stiffness(PAIR)(position), exact, rtol=1e-8)
 
 
-def test_another_tooth_model_takes_the_place_of_the_energy_method() -> None:
-    def springs(gear: Gear, radius: np.ndarray) -> ToothCompliance:
-        none = np.zeros_like(radius)
-        return ToothCompliance(none, none, none, np.full_like(radius, 1e-9 / gear.teeth))
+def test_a_tooth_model_is_one_subclass() -> None:
+    class Springs(CompliantTeeth):
+        name = "springs"
 
-    stiffness = PotentialEnergyStiffness(tooth_model=springs).pair_stiffness(PAIR)
+        def solve_tooth(self, gear: Gear) -> Callable[[np.ndarray], ToothCompliance]:
+            def tooth(radius: np.ndarray) -> ToothCompliance:
+                none = np.zeros_like(radius)
+                return ToothCompliance(none, none, none, np.full_like(radius, 1e-9 / gear.teeth))
+
+            return tooth
+
+    model = Springs(contact="yang-sun")
     hertz = 4.0 * (1.0 - 0.09) / (math.pi * 207e9 * 6.35e-3)
+    stiffness = model.pair_stiffness(PAIR)
     np.testing.assert_allclose(stiffness([0.0, 0.3, 1.1]), 1.0 / (hertz + 1e-9 / 28 + 1e-9 / 41), rtol=1e-12)
+    assert model.shared_compliance(PAIR) == 0.0
 
 
 def test_norm_curve_has_the_norms_maximum_and_mean() -> None:
@@ -73,8 +85,10 @@ def test_norm_numbers_gears_by_size_not_by_role() -> None:
 
 
 def test_models_by_name() -> None:
-    assert set(STIFFNESS_MODELS[:4]) == {"potential-energy", "elastic-ring", "cornell", "weber-banaschek"}
-    assert STIFFNESS_MODELS[4:] == ("iso6336", "square", "constant", "table")
+    names = list(STIFFNESS_MODELS)
+    assert set(names[:4]) == {"potential-energy", "elastic-ring", "cornell", "weber-banaschek"}
+    assert names[4:] == ["iso6336", "square", "constant", "table"]
+    assert set(get_args(ToothStiffness.model_fields["model"].annotation)) == set(names)
     assert stiffness_model("square", value=2e8).pair_stiffness(PAIR).mean == 2e8
     assert float(stiffness_model("square", value=2e8).pair_stiffness(PAIR).knots[-1]) == PAIR.contact_ratio
     assert float(stiffness_model("constant", value=2e8).pair_stiffness(PAIR).knots[-1]) == 1.0

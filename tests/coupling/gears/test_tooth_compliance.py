@@ -16,7 +16,6 @@ from coupling.gears import (
     foundation_compliance,
     hertz_compliance,
     iso6336_stiffness,
-    potential_energy,
     tooth_contact,
     tooth_outline,
     within_fitted_range,
@@ -53,7 +52,7 @@ def test_energy_integrals_over_the_sampled_outline(gear: Gear, fraction: float) 
     area = simpson(1.0 / (2.0 * x * width), x=y)
     shear = 1.2 * math.cos(beta) ** 2 * area * 2.0 * (1.0 + gear.poisson_ratio) / modulus
     axial = math.sin(beta) ** 2 * area / modulus
-    tooth = potential_energy(gear, np.array(radius))
+    tooth = PotentialEnergyStiffness().tooth(gear, np.array(radius))
     assert float(tooth.bending) == pytest.approx(bending, rel=1e-5)
     assert float(tooth.shear) == pytest.approx(shear, rel=1e-6)
     assert float(tooth.axial) == pytest.approx(axial, rel=1e-6)
@@ -71,7 +70,7 @@ def test_flank_integral_by_adaptive_quadrature() -> None:
 
     flank, _ = quad(inverse_thickness, low, high, epsabs=0.0, epsrel=1e-13)
     radii = rb * np.sqrt(1.0 + np.array([low, high]) ** 2)
-    tooth = potential_energy(gear, radii)
+    tooth = PotentialEnergyStiffness().tooth(gear, radii)
     per_angle = tooth.axial / np.sin(np.array([low, high]) - psi) ** 2 * gear.youngs_modulus * gear.face_width
     assert per_angle[1] - per_angle[0] == pytest.approx(flank, rel=1e-10)
 
@@ -79,7 +78,7 @@ def test_flank_integral_by_adaptive_quadrature() -> None:
 def test_bending_grows_toward_the_tip_and_arrays_keep_their_shape() -> None:
     gear = GEARS[0]
     radii = np.linspace(gear.form_radius, gear.tip_radius, 12).reshape(3, 4)
-    tooth = potential_energy(gear, radii)
+    tooth = PotentialEnergyStiffness().tooth(gear, radii)
     assert tooth.total.shape == (3, 4)
     assert np.all(np.diff(tooth.foundation.ravel()) > 0.0)
     assert np.all(np.diff(tooth.bending.ravel()[3:]) > 0.0)
@@ -90,7 +89,7 @@ def test_loads_act_on_the_flank_only() -> None:
     gear = GEARS[0]
     for radius in (gear.root_circle_radius, 1.01 * gear.tip_radius, math.nan):
         with pytest.raises(GearError, match="loads act on the flank"):
-            potential_energy(gear, np.array([radius]))
+            PotentialEnergyStiffness().tooth(gear, np.array([radius]))
 
 
 def test_hertz_of_two_half_planes() -> None:

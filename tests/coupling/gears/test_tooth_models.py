@@ -16,14 +16,10 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     StiffnessModelError,
     WeberBanaschekStiffness,
-    cornell,
-    elastic_ring,
     iso6336_stiffness,
     line_contact,
-    potential_energy,
     stiffness_model,
     tooth_outline,
-    weber_banaschek,
 )
 from coupling.gears.beam_compliance import axis_crossing, beam_compliance, foot_at_height, foot_at_slope
 from coupling.gears.compliant_teeth import REFERENCE_LINE_LOAD
@@ -57,7 +53,7 @@ def test_weber_and_banaschek_in_their_printed_numbers(gear: Gear) -> None:
     tooth += 3.1 * thrust * simpson(1.0 / thickness, x=height)
     body = 5.2 * (lever / thickness[0]) ** 2 + lever / thickness[0] + 1.4 * thrust
     printed = math.cos(beta) ** 2 / (gear.youngs_modulus * gear.face_width) * np.array([tooth, body])
-    found = weber_banaschek(gear, np.array(radius))
+    found = WeberBanaschekStiffness().tooth(gear, np.array(radius))
     assert float(found.foundation) == pytest.approx(printed[1], rel=0.01)
     assert float(found.bending + found.shear + found.axial) == pytest.approx(printed[0], rel=0.01)
 
@@ -93,8 +89,8 @@ def test_cornells_foundation_in_its_printed_form() -> None:
     scale = np.cos(beta) ** 2 / (207e9 * 6.35e-3)
     narrow = scale * (5.306 * ratio**2 + 1.4 * ratio + thrust)
     wide = scale * 0.91 * (5.306 * ratio**2 + 2.0 * 0.52 / 0.91 * ratio + thrust)
-    np.testing.assert_allclose(cornell(RIG, radius).foundation, narrow, rtol=1e-4)
-    np.testing.assert_allclose(cornell(RIG, radius, "plane-strain").foundation, wide, rtol=1e-4)
+    np.testing.assert_allclose(CornellStiffness().tooth(RIG, radius).foundation, narrow, rtol=1e-4)
+    np.testing.assert_allclose(CornellStiffness("plane-strain").tooth(RIG, radius).foundation, wide, rtol=1e-4)
     assert cornell_state(RIG) == "plane-stress"
     assert cornell_state(WIDE) == "plane-strain"
 
@@ -103,7 +99,7 @@ def test_the_ring_takes_the_tooth_from_the_height_of_the_root_circle() -> None:
     foot = foot_at_height(RIG, RIG.root_circle_radius)
     assert float(fillet_points(RIG, np.array(foot)).height) == pytest.approx(RIG.root_circle_radius, rel=1e-12)
     radius = np.array([RIG.pitch_radius])
-    tooth, whole = elastic_ring(RIG, radius), potential_energy(RIG, radius)
+    tooth, whole = ElasticRingStiffness().tooth(RIG, radius), PotentialEnergyStiffness().tooth(RIG, radius)
     assert 0.9 * whole.shear < tooth.shear < whole.shear
     # Plane strain: bending and compression by 1 - nu^2, shear the same.
     strained = beam_compliance(RIG, radius, state="plane-strain")
@@ -111,7 +107,7 @@ def test_the_ring_takes_the_tooth_from_the_height_of_the_root_circle() -> None:
     np.testing.assert_allclose(strained.axial, 0.91 * whole.axial, rtol=1e-12)
     np.testing.assert_allclose(strained.shear, whole.shear, rtol=1e-12)
     with pytest.raises(GearError, match="'plane-stress' or 'plane-strain', got 'thick'"):
-        elastic_ring(RIG, radius, "thick")  # type: ignore[arg-type]
+        ElasticRingStiffness("thick").tooth(RIG, radius)  # type: ignore[arg-type]
 
 
 def test_webers_approach_is_the_integral_of_the_strain_under_a_hertzian_strip() -> None:
