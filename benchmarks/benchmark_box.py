@@ -38,7 +38,7 @@ def benchmark_box(mesh_size: float) -> Problem:
     )
     mesh = mesh_box(BoxGeometry(size=SIZE, wall=WallThickness.uniform(WALL), bores=bores), mesh_size)
     low, high = mesh.bounds
-    pads = []
+    pads: list[Support] = []
     for x in (low[0], high[0] - PAD):
         for z in (low[2], high[2] - PAD):
             box = ((x, -1e-6, z), (x + PAD, 1e-6, z + PAD))

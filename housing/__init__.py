@@ -1,25 +1,22 @@
-"""The housing: from a mesh to modes that are proved complete, ports, comparison with measured modes, pictures.
+"""Housing: finite-element model, natural modes proved complete, correlation with measured modes, pictures.
 
-What the room offers:
-
-- :class:`Material`, :func:`assemble` -- stiffness and mass (:class:`Matrices`) of a meshed solid;
-  :func:`mass_properties` -- its mass and centre of mass, from the geometry alone.
-- :class:`Support`, :func:`fixed_freedoms` -- what holds it; :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, each
-  on a :class:`Patch` -- what else is fastened to it; :func:`attach` -- the matrices with all of these.
-- :func:`bolted_joint` -- the springs that a preloaded bolt and the parts under its head stand for.
-- :func:`rigid_body` -- mass, centre of gravity and inertia of the whole (:class:`RigidBody`).
-- :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`; :func:`modal_damping` -- what
-  dashpots do to them.
-- :class:`Seat`, :func:`seat_matrix`, :class:`Sensor`, :func:`sensor_port` -- where the rest of the machine meets it.
-- :func:`attach_ports` -- residual :class:`Attachments`, which make the static compliance at ports exact.
-- :func:`receptance`, :func:`select_modes`, :func:`effective_mass` -- what each mode carries between ports, and of mass.
+- :class:`Housing` -- mesh, materials, fixtures, seats and sensors in one description; its :meth:`~Housing.modes` are
+  certified :class:`HousingModes`.
+- :class:`Material`; :class:`Support`, :class:`Mount` and :class:`Joint` (with a :class:`Bushing`), :class:`LumpedMass`,
+  each on a :class:`Patch` -- fixtures; :func:`bolted_joint`, :func:`cover_joints` -- preloaded bolts.
+- :class:`Seat`, :class:`Sensor` -- the ports at which the rest of the machine meets it.
+- :func:`assemble`, :func:`attach` -- stiffness and mass of the solid, and of the solid with its fixtures.
+- :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`, by block Lanczos or scipy's
+  ``eigsh``; :func:`modal_damping` -- their damping by dashpots.
+- :func:`attach_ports` -- residual attachment modes, which make the static compliance at ports exact.
+- :func:`receptance`, :func:`effective_mass` -- frequency response between ports, and effective modal masses.
 - :func:`health_report` -- mass, rigid motions, grounding, orthogonality, static error: each with its bound.
-- :func:`write_modes`, :func:`read_modes` -- all of it on file, as a :class:`ModeRecord`.
-- :func:`survey_grid`, :func:`dominance`, :func:`compare_by_dominance`, :func:`compare_by_shapes` -- model against
-  measured modes; ``housing.correlation`` has the criteria.
-- ``housing.measured`` -- files of measured modes and responses, and where on the model they were measured.
-- ``housing.gltf`` -- mode shapes as models that move, for any 3D viewer.
-- ``housing.pictures``, ``housing.animations`` -- shapes drawn off-screen; not imported here, since they bring VTK.
+- :func:`write_modes`, :func:`read_modes` -- a solved housing on file.
+- :func:`compare_by_dominance`, :func:`compare_by_shapes` -- correlation of model and measured modes.
+
+Further sub-modules: ``housing.correlation`` (assurance criteria), ``housing.measured`` (files of measured modes and
+responses, identification, alignment), ``housing.updating`` (model updating); pictures, animations and 3D models of mode
+shapes, which are not imported here because they bring VTK.
 """
 
 from housing.assembly import assemble

@@ -1,6 +1,5 @@
-"""Shapes that move, as films: GIF by Pillow, MP4 by ffmpeg where there is one."""
+"""Animations of mode shapes and operating deflection shapes: GIF by Pillow, MP4 by ffmpeg where there is one."""
 
-import os
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
@@ -10,6 +9,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.drawn_shapes import DrawnHousing, DrawnShape
 from housing.errors import EncoderUnavailableError
 from housing.scene import Scene
@@ -17,8 +17,8 @@ from housing.scene import Scene
 FilmFormat = Literal["gif", "mp4"]
 Image = npt.NDArray[np.uint8]
 
-_FRAMES = 24  # of one period; even, so that half of them mirror the others where all moves in one phase
-_FRAME = 80  # how long each is shown [ms]
+_FRAMES = 24  # of one period; even, so that half of them mirror the others where the motion has one phase
+_FRAME = 80  # duration of each [ms]
 _PAPER = 240  # all three colours of a pixel above it: the background and its soft edges
 _PERIODS = 4  # of an MP4, which players show once; a GIF goes round
 
@@ -69,7 +69,7 @@ def animate_shapes(
     size : tuple of int
         Width and height [pixels], both even.
     progress : callable
-        Told what is filmed.
+        Called with a line of text before each shape.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def animate_shapes(
     Raises
     ------
     RendererUnavailableError, EncoderUnavailableError
-        Where nothing here draws without a screen, or encodes MP4.
+        Where no library draws without a screen, or no program encodes MP4.
     """
     encoder = find_encoder() if film == "mp4" else ""
     folder.mkdir(parents=True, exist_ok=True)
@@ -88,12 +88,11 @@ def animate_shapes(
             progress(f"filming {shape.title}")
             frames = list(_frames(scene, shape))
             path = folder / f"{shape.name}.{film}"
-            temporary = path.with_name(f".{path.name}.part")
-            if film == "gif":
-                _write_gif(frames, temporary)
-            else:
-                _write_mp4(encoder, frames, temporary)
-            os.replace(temporary, path)
+            with atomic_file(path) as staged:
+                if film == "gif":
+                    _write_gif(frames, staged)
+                else:
+                    _write_mp4(encoder, frames, staged)
             files.append(path)
     return files
 
@@ -111,12 +110,12 @@ def _frames(scene: Scene, shape: DrawnShape) -> Iterator[Image]:
 
 
 def _write_gif(frames: Sequence[Image], path: Path) -> None:
-    """One palette for all frames, from three of them: no colour flickers, and only what moves is stored anew."""
+    """One palette for all frames, from three of them: no colour flickers, and only moving parts are stored anew."""
     from PIL import Image as Pillow
 
     # Each colour counts once, however much of it there is: most of a frame is white.
     pixels = np.concatenate([frame.reshape(-1, 3) for frame in frames[:: len(frames) // 3]])
-    pixels = pixels[(pixels < _PAPER).any(axis=1)]  # what is nearly white becomes so
+    pixels = pixels[(pixels < _PAPER).any(axis=1)]  # nearly white pixels become white
     palette = Pillow.fromarray(np.unique(pixels, axis=0)[None]).quantize(colors=255, method=Pillow.Quantize.MEDIANCUT)
     palette.putpalette([255, 255, 255, *(palette.getpalette() or [])[: 3 * 255]])
     images = [Pillow.fromarray(frame).quantize(palette=palette, dither=Pillow.Dither.NONE) for frame in frames]

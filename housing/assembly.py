@@ -1,7 +1,7 @@
 """Stiffness and mass of an elastic solid, assembled by blocks of 3 x 3 between pairs of nodes.
 
-A displacement field takes the scalar shape functions N_a three times over, so all that an element contributes
-is in the products of their gradients,
+Each component of the displacement field has the scalar shape functions N_a, so that the matrices of an element follow
+from the products of their gradients,
 
     G[a j, b l] = ∫ ∂_j N_a ∂_l N_b dV,        m[a, b] = ρ ∫ N_a N_b dV,
 
@@ -34,7 +34,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _WORKING_SET = 2**20  # numbers in the gradient products of one chunk: 8 MB
-_BENT = 1e-9  # how far from half way an edge's node may be by rounding, as a part of the element
+_BENT = 1e-9  # rounding of a middle node's distance from the middle of its edge, as a part of the element
 
 
 def assemble(
@@ -55,7 +55,7 @@ def assemble(
     materials : mapping of str to Material, optional
         The material of each named volume of the mesh.
     threads : int
-        How many threads compute elements; the result is the same to the last bit for any number.
+        Number of threads that compute elements; the result is the same to the last bit for any number.
     chunk : int, optional
         Elements computed at a time, by each thread; by default as many as keep its arrays to a few tens of MB.
 
@@ -115,7 +115,7 @@ class _Chunk:
 
 @dataclass(frozen=True)
 class _Contribution:
-    """What a chunk adds: slots in the pattern, shape (n,), K by components, shape (9, n), and m, shape (n,)."""
+    """Contribution of a chunk: slots in the pattern, shape (n,), K by components, shape (9, n), and m, shape (n,)."""
 
     slots: IntArray
     stiffness: FloatArray
@@ -136,7 +136,7 @@ def _chunks(mesh: Mesh, size: int | None) -> Iterator[_Chunk]:
 
 
 def straight_elements(points: FloatArray, block: ElementBlock) -> npt.NDArray[np.bool_]:
-    """Which elements are affine tetrahedra: those whose edges' nodes, where they have some, lie half way."""
+    """Whether each element is an affine tetrahedron: its middle nodes, where it has some, lie half way."""
     if block.of.corners != "tetra":
         return np.zeros(len(block), dtype=bool)
     if block.of.order == 1:
@@ -173,7 +173,7 @@ def _in_order(
 
 
 def _node_graph(mesh: Mesh) -> sparse.csr_array:
-    """Which nodes share an element with one of no lower number, rows in order; each entry is its place."""
+    """Graph of nodes that share an element, upper triangle, rows in order; each entry is its own place."""
     incidence = mesh.incidence
     graph = sparse.csr_array(sparse.triu(incidence.T @ incidence, format="csr"))
     graph.sort_indices()
@@ -248,7 +248,7 @@ def _point_volumes(determinant: FloatArray, weights: FloatArray) -> FloatArray:
 
 
 def _folded(mesh: Mesh) -> HousingError:
-    """What to say of a mesh with folded elements."""
+    """Error for a mesh with folded elements."""
     folded = np.concatenate([_folds(mesh, block) for block in mesh.blocks])
     x, y, z = mesh.centers[np.argmax(folded)]
     return HousingError(
@@ -258,7 +258,7 @@ def _folded(mesh: Mesh) -> HousingError:
 
 
 def _folds(mesh: Mesh, block: ElementBlock) -> npt.NDArray[np.bool_]:
-    """Which elements have no positive volume at a point of the mass's or the stiffness's quadrature."""
+    """Whether each element has a negative volume at a quadrature point of mass or stiffness."""
     folds = np.zeros(len(block), dtype=bool)
     for degree in {2 * block.of.order, stiffness_degree(block.of, affine=False)}:
         reference = shape_functions(block.kind, quadrature(block.kind, degree)[0])[1]

@@ -1,4 +1,4 @@
-"""Residual attachments as labelled arrays, and back: how they stand in a mode-set file."""
+"""Residual modes in a mode file: conversion to labelled arrays and back."""
 
 from collections.abc import Mapping
 
@@ -12,10 +12,10 @@ _PORTS = ("loaded_motion", "moved_motion")
 
 
 def attachment_arrays(attachments: Attachments | None) -> dict[str, LabelledArray]:
-    """The arrays that hold attachments and their proof; nothing where there are none.
+    """The arrays of residual modes and their proof; empty where there are none.
 
-    Attachments without a single shape, at ports that bring nothing new, keep their proof: a dimension of length 0
-    means another thing in NetCDF.
+    An empty set, at ports whose response the modes hold already, keeps its proof; its arrays are left out, because a
+    dimension of length 0 has another meaning in NetCDF.
     """
     if attachments is None:
         return {}
@@ -41,7 +41,7 @@ def attachment_arrays(attachments: Attachments | None) -> dict[str, LabelledArra
 
 
 def attachments_of(arrays: Mapping[str, LabelledArray], n_nodes: int) -> Attachments | None:
-    """The attachments that these arrays were made of, equal bit for bit.
+    """The residual modes that these arrays were made of, equal bit for bit.
 
     Raises
     ------

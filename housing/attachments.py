@@ -1,4 +1,4 @@
-"""What is fastened to the housing's field: anything that adds to its matrices through the motion of a patch.
+"""Fixtures: supports, mounts, joints and masses that add to the matrices of the solid through the motion of a patch.
 
 The motion of a patch is a few numbers r = P u of the nodes' displacements u. Springs, dashpots or a mass that act on
 r, with small matrices K₆, C₆ or M₆, are Pᵀ K₆ P, Pᵀ C₆ P and Pᵀ M₆ P on the nodes, by the equality of work.
@@ -19,18 +19,18 @@ from meshes import Mesh
 FloatArray = npt.NDArray[np.float64]
 
 MOST_PATCH_NODES = 2000
-"""Nodes that one attachment may tie. Each pair of them joins the matrices: 2000 are 36 million entries."""
+"""Largest number of nodes of one fixture. Each pair of them joins the matrices: 2000 nodes are 36 million entries."""
 
 
 class Attachment(Protocol):
-    """A support, a mount, a joint, a lumped mass: it knows what it adds to the matrices of a mesh."""
+    """A fixture: a support, mount, joint or lumped mass, with its additions to the matrices of a mesh."""
 
     @property
     def name(self) -> str:
         """Its name, for messages."""
 
     def additions(self, mesh: Mesh) -> Additions:
-        """What it adds.
+        """Its additions to stiffness, mass, damping and fixed degrees of freedom.
 
         Raises
         ------
@@ -59,14 +59,14 @@ def port_additions(
     mass: FloatArray | None = None,
     damping: FloatArray | None = None,
 ) -> Additions:
-    """Small symmetric matrices on the motions of a port, as what they add to the nodes.
+    """Project small symmetric matrices on the motions of a port to the nodes: Pᵀ S P.
 
     Parameters
     ----------
     port : scipy.sparse.csr_array, shape (n_motions, 3 n_nodes)
         P.
     name : str
-        What the port belongs to, for the message.
+        Owner of the port, for the message.
     stiffness, mass, damping : ndarray, shape (n_motions, n_motions), optional
 
     Raises

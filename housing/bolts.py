@@ -1,4 +1,4 @@
-"""A preloaded bolt and the parts that it clamps, as springs between two patches.
+"""Bolted joint: stiffness of a preloaded bolt and of the parts that it clamps, as springs between two patches.
 
 While the preload holds, bolt and clamped parts deflect together: their stiffnesses add. Sources: Budynas and Nisbett,
 "Shigley's Mechanical Engineering Design", 9th ed., sections 8-4 and 8-5 (bolt, Eq. 8-17; cone of pressure of half
@@ -27,7 +27,7 @@ _COARSE_PITCHES = (0.5, 0.7, 0.8, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0,
 
 @dataclass(frozen=True)
 class BoltedJoint:
-    """Stiffnesses of a bolt and of what it clamps.
+    """Stiffnesses of a bolt and of the parts that it clamps.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ def frustum_stiffness(
     youngs_modulus : float
         [Pa].
     outer : float
-        Diameter that the part leaves for it [m]; from there on it is a cylinder.
+        Largest diameter within the part [m]; from there on it is a cylinder.
     """
     cone = min(thickness, max(outer - small_diameter, 0.0) / (2 * _TAN))
     wide = small_diameter + 2 * cone * _TAN

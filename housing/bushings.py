@@ -1,4 +1,4 @@
-"""Springs and dashpots in all six motions: mounts to the ground, joints between two patches."""
+"""Bushings: springs and dashpots in all six motions, as mounts to the ground or joints between two patches."""
 
 from dataclasses import dataclass
 
@@ -17,12 +17,12 @@ Six = tuple[float, float, float, float, float, float]
 Axes = tuple[Point, Point, Point]
 
 GLOBAL_AXES: Axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-_SQUARE = 1e-9  # by how much axes may miss being unit vectors at right angles
+_SQUARE = 1e-9  # largest deviation of axes from unit vectors at right angles
 
 
 @dataclass(frozen=True)
 class Axial:
-    """Four amounts that know one axis, such as a bolt's or a rubber buffer's.
+    """Stiffness or damping that is symmetric about one axis, such as a bolt's or a rubber buffer's.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Bushing:
 
     @classmethod
     def along(cls, axis: Point, stiffness: Axial, damping: Axial | None = None) -> "Bushing":
-        """Springs and dashpots that know one axis, of any length; it becomes the own z.
+        """Springs and dashpots that are symmetric about an axis, given by a vector of any length; it becomes the own z.
 
         Raises
         ------
@@ -89,13 +89,13 @@ class Bushing:
         return np.asarray(turn.T @ np.diag(amounts) @ turn)
 
     def additions(self, port: sparse.csr_array, name: str) -> Additions:
-        """What it adds where it resists the six motions of a port of shape (6, 3 n_nodes)."""
+        """Matrices that it adds where it resists the six motions of a port of shape (6, 3 n_nodes)."""
         stiffness, damping = self.matrix(self.stiffness), self.matrix(self.damping)
         return port_additions(port, name=name, stiffness=stiffness, damping=damping)
 
 
 def axes_along(axis: Point, across: Point | None = None) -> Axes:
-    """Right-handed axes whose z is a direction of any length, and whose x is as near as can be to another one.
+    """Right-handed axes whose z has a given direction, and whose x is as near as possible to another one.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def axes_along(axis: Point, across: Point | None = None) -> Axes:
     """
     along = _unit(np.array(axis, dtype=np.float64), f"axis {axis}")
     if across is None:
-        # The global axis farthest from it: for what knows one axis, any other across it is as good.
+        # The global axis farthest from it: with one axis of symmetry every direction across it is equivalent.
         across = GLOBAL_AXES[int(np.argmin(np.abs(along)))]
     given = _unit(np.array(across, dtype=np.float64), f"axis {across}")
     x = _unit(given - (given @ along) * along, f"axis {across} beside {axis}", least=1e-6)
@@ -142,9 +142,8 @@ class Mount:
 class Joint:
     """A joint: six springs and dashpots between two patches, such as a bolt between a cover and its flange.
 
-    What it resists is the motion of the second patch relative to the first, each taken as a rigid body's at one and
-    the same point, δ = (P₂ - P₁) u. So a motion that both share as one rigid body meets nothing, however far apart
-    they are.
+    It resists the motion of the second patch relative to the first, each taken as a rigid body's at one and the same
+    point, δ = (P₂ - P₁) u. A rigid motion that both share therefore meets no resistance, however far apart they are.
 
     Attributes
     ----------

@@ -1,11 +1,11 @@
-"""The proof of a set of modes: that none is missing, none stands twice, and each is accurate."""
+"""Certificate of a set of modes: none is missing, none stands twice, and each is accurate."""
 
 from dataclasses import dataclass
 
 RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
 NOT_COUNTED = -1
-"""Stands for the modes that there are where no inertia was asked for."""
+"""Stands for the expected number of modes where no inertia was computed."""
 
 
 @dataclass(frozen=True)
@@ -17,14 +17,14 @@ class Certificate:
     limit : float
         The circular frequency up to which the set is complete [rad/s].
     expected : int
-        Modes below the limit by the inertia of K - limit² M; :data:`NOT_COUNTED` where nobody counted.
+        Modes below the limit by the inertia of K - limit² M; :data:`NOT_COUNTED` where it was not computed.
     found : int
         Modes in the set.
     max_residual : float
         Largest of |K φ - λ M φ| / ((λ + limit² + floor) |M φ|): the limit gives rigid modes a scale too, and the
         floor is never so small that the rounding of K alone would exceed the bound.
     max_overlap : float
-        Largest |φᵢᵀ M φⱼ| of two modes: without it one mode found twice would hide another that is missing.
+        Largest |φᵢᵀ M φⱼ| of two modes: a mode found twice, which would hide a missing one, has an overlap of 1.
     """
 
     limit: float

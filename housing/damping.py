@@ -1,4 +1,4 @@
-"""Damping of the housing's modes by what is attached to it."""
+"""Modal damping: damping of the housing's modes by dashpots, mounts and joints."""
 
 import numpy as np
 import numpy.typing as npt
@@ -13,13 +13,13 @@ def modal_damping(modes: ModeSet, matrices: Matrices) -> FloatArray:
     """Φᵀ C Φ: dashpots, and mounts and joints that damp, in the coordinates of mass-normalised modes.
 
     With the modes' own ratios ζ the equation of motion is q'' + (diag(2ζω) + Φᵀ C Φ) q' + diag(ω²) q = f. A dashpot
-    stands where it stands and couples the modes: the matrix is full. Residual attachments, where the mode set has
-    them, follow the modes.
+    acts at one place and so couples the modes: the matrix is full. Residual modes, where the mode set has them, follow
+    the modes.
 
     Returns
     -------
     ndarray, shape (n, n)
-        n modes and attachments [1/s], symmetric, positive semidefinite.
+        n modes and residual modes [1/s], symmetric, positive semidefinite.
     """
     shapes = modes.shapes.reshape(len(modes.shapes), -1)
     if modes.attachments is not None:

@@ -1,4 +1,4 @@
-"""Which modes dominate: how strongly each carries a force at the bearing seats to the housing's skin.
+"""Dominant modes, ranked by the transfer of a force at the bearing seats to the motion of the housing's skin.
 
 The eight modes that TM-104434 keeps of its 25 "represent a major part of the total global vibration"; the rule
 by which they were chosen is not printed. Here dominance is the lateral acceleration strength
@@ -53,7 +53,7 @@ class Dominance:
         return float(np.log(ranked[count - 1] / ranked[count])) if len(ranked) > count else float("inf")
 
     def gaps(self, chosen: IntArray, band: tuple[float, float]) -> tuple[float, float]:
-        """How clearly some modes stand above the others in a band: by acceleration, and the less of the other two.
+        """Gaps between some modes and the others in a band: by acceleration, and the smaller one of the other measures.
 
         ln(weakest chosen / strongest left out); negative where the measure would choose other modes, infinite where
         there are no others.

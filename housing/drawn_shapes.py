@@ -1,4 +1,4 @@
-"""Shapes made ready to be drawn: a housing's skin at rest, and motions of it with their captions."""
+"""Drawn shapes: a housing's skin at rest, and its mode shapes or harmonic motions with captions."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class DrawnHousing:
     triangles : ndarray of int, shape (n_triangles, 3)
         Places in ``rest``.
     nodes : ndarray of int, shape (n_points,)
-        Which of the mesh's nodes these are.
+        Their node numbers in the mesh.
     """
 
     rest: FloatArray
@@ -55,7 +55,7 @@ class DrawnShape:
     motion : ndarray of float or complex, shape (n_points, 3)
         U, to any scale. A real one moves in one phase; a complex one may run around.
     quantity : str
-        What the colours show, with its unit.
+        Quantity shown by the colours, with its unit.
     largest : float
         That quantity where the motion is largest.
 

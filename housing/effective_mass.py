@@ -1,12 +1,12 @@
-"""Effective modal mass: how much of the housing's mass each mode moves when its ground is shaken.
+"""Effective modal mass: share of each mode in the housing's mass under rigid motion of the ground.
 
 For a ground that moves rigidly, u = q + R s(t), the free degrees of freedom are driven by -M R s''. In the mode r that
-is the participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is a mass: the one that, hung on a spring
-of the mode's frequency, would pull at the ground as the mode does. Over all modes of the free degrees of freedom
+is the participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is the mass of the oscillator of the mode's
+frequency that exerts the same force on the ground. Over all modes of the free degrees of freedom
 
     Σ_r L_r² = Rᵀ M R,
 
-by completeness, so that what the kept modes lack of it is known. A free body's rigid modes carry all of it; elastic
+by completeness, so that the share of the discarded modes is known. A free body's rigid modes carry all of it; elastic
 modes are M-orthogonal to R and carry none. A fixed patch moves with the ground: its own mass is in no mode.
 """
 
@@ -34,7 +34,7 @@ class EffectiveMass:
     total : ndarray, shape (6,)
         Of the whole body.
     free : ndarray, shape (6,)
-        Of the degrees of freedom that no support fixes: what all the modes together reach.
+        Of the degrees of freedom that no support fixes: the sum over all modes.
     center : ndarray, shape (3,)
         Centre of gravity [m].
     """
@@ -61,7 +61,7 @@ class EffectiveMass:
 
     @property
     def missing(self) -> FloatArray:
-        """What modes above the limit hold of it, as a part of the whole body's, shape (6,)."""
+        """Of the modes above the limit, as a part of the whole body's, shape (6,)."""
         return np.asarray((self.free - self.mass.sum(axis=0)) / self.total)
 
 
@@ -71,7 +71,7 @@ def effective_mass(matrices: Matrices, points: FloatArray, modes: ModeSet) -> Ef
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes, with what holds them.
+        Of n_nodes nodes, with supports.
     points : ndarray, shape (n_nodes, 3)
         Their places [m].
     modes : ModeSet

@@ -1,4 +1,4 @@
-"""Volume and centroid of a meshed body from its boundary alone, by the divergence theorem."""
+"""Enclosed volume and centroid of a meshed body from its boundary alone, by the divergence theorem."""
 
 import numpy as np
 import numpy.typing as npt
@@ -12,10 +12,10 @@ _DEGREE = 6  # of p (p·n) on a curved quadratic facet: nothing is left to the q
 
 
 def enclosed(mesh: Mesh) -> tuple[float, FloatArray]:
-    """What the boundary encloses: V = ∮ p·n dA / 3 and V c = ∮ p (p·n) dA / 4.
+    """Volume and centroid enclosed by the boundary: V = ∮ p·n dA / 3 and V c = ∮ p (p·n) dA / 4.
 
-    Nothing of the elements' own quadrature has a part in it, so that it checks theirs. With n dA the cross product
-    of the facet's tangents both integrands are polynomials, and taken exactly on curved facets too.
+    The result is independent of the elements' own quadrature and so checks it. With n dA the cross product of the
+    facet's tangents both integrands are polynomials, integrated exactly on curved facets too.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What can go wrong between a mesh and its modes."""
+"""Errors of the housing's model, its modes and its measured data."""
 
 
 class HousingError(ValueError):
@@ -6,7 +6,7 @@ class HousingError(ValueError):
 
 
 class IncompleteModesError(RuntimeError):
-    """The modes found are not all there are, or not accurate enough: nothing is returned rather than a gap."""
+    """The modes found are incomplete or not accurate enough: an incomplete set is never returned."""
 
 
 class FactorizationError(RuntimeError):
@@ -14,7 +14,7 @@ class FactorizationError(RuntimeError):
 
 
 class ReductionError(RuntimeError):
-    """A reduced housing fails its own proof; the message says by how much and what to try."""
+    """A reduced housing fails its own proof; the message gives the error and what to try."""
 
 
 class HealthError(RuntimeError):
@@ -30,8 +30,8 @@ class MeasuredDataError(HousingError):
 
 
 class RendererUnavailableError(RuntimeError):
-    """No library that draws without a screen is on this machine, or it fails; the message says what to do."""
+    """No library that draws without a screen is installed, or it fails; the message says what to do."""
 
 
 class EncoderUnavailableError(RuntimeError):
-    """No program that encodes films is on this machine, or it fails; the message says what to do."""
+    """No program that encodes films is installed, or it fails; the message says what to do."""

@@ -1,4 +1,4 @@
-"""The factorisation of a sparse symmetric matrix as an object: factor once, solve many, know the inertia."""
+"""Sparse LDLᵀ factorisation of a symmetric matrix as an object: factor once, solve many, read the inertia."""
 
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -10,11 +10,11 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import FactorizationError
-from housing.solvers import NumericFactor, PardisoSolver, RslabSolver, SuperluSolver, can_import
+from housing.solvers import NumericFactor, RslabSolver, SuperluSolver, can_import
 from housing.symmetric import SymmetricMatrix
 
 FloatArray = npt.NDArray[np.float64]
-Backend = Literal["rslab", "superlu", "pardiso"]
+Backend = Literal["rslab", "superlu"]
 
 _RESIDUAL_BOUND = 1e-8
 _ERROR_BOUND = 1e-2  # of a solution: 1e-8 is usual, and a singular matrix gives 1 and more
@@ -30,11 +30,11 @@ class _Solver(Protocol):
 
 @dataclass(frozen=True)
 class Factorization:
-    """A = L D Lᵀ.
+    """The factor of a symmetric matrix, A = L D Lᵀ.
 
     Attributes
     ----------
-    backend : {"rslab", "superlu", "pardiso"}
+    backend : {"rslab", "superlu"}
     size : int
         Order of the matrix.
     fill : int
@@ -43,8 +43,7 @@ class Factorization:
         Negative eigenvalues of A. By Sylvester's law of inertia, for A = K - σM this is the number of
         eigenvalues of (K, M) below σ.
     seconds : float
-        Time taken by the factorisation [s]; the first of a :class:`Factorizer` includes finding the ordering, or what
-        was left to wait of it.
+        Time taken by the factorisation [s]; the first of a :class:`Factorizer` includes the rest of the ordering.
     """
 
     backend: Backend
@@ -64,9 +63,8 @@ class Factorizer:
 
     Parameters
     ----------
-    backend : {"rslab", "superlu", "pardiso"}, optional
-        rslab where it can be imported, else SuperLU in symmetric mode, about ten times slower. PARDISO of the Math
-        Kernel Library is taken where it is asked for, through the package pypardiso.
+    backend : {"rslab", "superlu"}, optional
+        rslab where it can be imported, else SuperLU in symmetric mode, about ten times slower.
     threads : int
         Workers of the factorisation; SuperLU has one.
 
@@ -81,14 +79,14 @@ class Factorizer:
         self._solver: _Solver
         if self.backend == "superlu":
             self._solver = SuperluSolver()
-        elif not can_import(module := {"rslab": "rslab", "pardiso": "pypardiso"}[self.backend]):
-            raise FactorizationError(f"the backend {self.backend} needs the package {module}, which is not installed")
+        elif not can_import("rslab"):
+            raise FactorizationError("the backend rslab needs the package rslab, which is not installed")
         else:
-            self._solver = RslabSolver(threads) if self.backend == "rslab" else PardisoSolver(threads)
+            self._solver = RslabSolver(threads)
         self._ordering: Future[None] | None = None
 
     def order_ahead(self, matrix: SymmetricMatrix) -> None:
-        """Begin to find the ordering for matrices of this one's pattern in a thread of its own; the caller goes on.
+        """Begin to find the ordering for matrices of this pattern in a background thread.
 
         The first call of :meth:`factor` waits for it.
         """
@@ -104,7 +102,7 @@ class Factorizer:
         FactorizationError
             Where the matrix is singular to working precision, or a solution leaves a relative residual above 1e-8.
         MemoryError
-            Where the factor needs more memory than is available: rslab's is foreseen, before any of it is taken.
+            Where the factor needs more memory than is available; rslab estimates it before it allocates any.
         """
         if not isinstance(matrix, SymmetricMatrix):
             matrix = SymmetricMatrix.of(matrix)

@@ -1,7 +1,7 @@
-"""A housing's matrices on the degrees of freedom that are not fixed.
+"""Stiffness and mass on the free degrees of freedom, and the shifted matrix K - σM.
 
-Every shifted matrix K - σM of a search for modes has one sparsity pattern, so that where each of its entries comes
-from is found once: a shift is then one pass over the entries, and no sparse matrix is ever cut or converted.
+Every shifted matrix K - σM of a search for modes has one sparsity pattern, so that the source of each entry is found
+once. A new shift is then one pass over the entries, and no sparse matrix is cut or converted.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -31,20 +31,20 @@ class FreeSystem:
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes, with what holds them.
+        Of n_nodes nodes, with supports.
     threads : int
         That multiply K and M with vectors; the products are the same to the last bit for any number.
 
     Attributes
     ----------
     free : ndarray of int, shape (n,)
-        Those left, among the 3 n_nodes.
+        Free degrees of freedom, among the 3 n_nodes.
     threads : int
 
     Raises
     ------
     HousingError
-        Where none is left.
+        Where every degree of freedom is fixed.
     """
 
     def __init__(self, matrices: Matrices, *, threads: int = 1) -> None:

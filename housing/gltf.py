@@ -1,4 +1,4 @@
-"""Mode shapes as models that move: binary glTF 2.0 (GLB), which any viewer of 3D models opens.
+"""Animated 3D models of mode shapes: binary glTF 2.0 (GLB), which any viewer of 3D models opens.
 
 Each file holds one mode: the outer surface at rest, the displacement as a morph target, its amplitude as colours, and
 an animation that swings the target's weight as a sine. The layout follows the glTF 2.0 specification (Khronos Group,
@@ -6,7 +6,6 @@ an animation that swings the target's weight as a sine. The layout follows the g
 """
 
 import json
-import os
 import struct
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.modes import ModeSet
 from housing.skin import DRAWN_SCALE, Skin, check_numbers, drawn_name, outer_skin
 from meshes import Mesh
@@ -26,7 +26,7 @@ _FLOAT, _UNSIGNED_INT = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 _TRIANGLES = 4
 _PERIOD = 2.0  # of the animation [s], whatever the mode's own
-_FRAMES = 48  # straight pieces of a sine that no eye tells from it
+_FRAMES = 48  # linear pieces of a sine, visually smooth
 
 
 def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder: Path) -> list[Path]:
@@ -57,9 +57,8 @@ def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder
     files = []
     for number in numbers:
         path = folder / f"{drawn_name(modes, number)}.glb"
-        temporary = path.with_name(f".{path.name}.part")
-        temporary.write_bytes(_model(mesh, skin, modes, number))
-        os.replace(temporary, path)
+        with atomic_file(path) as staged:
+            staged.write_bytes(_model(mesh, skin, modes, number))
         files.append(path)
     return files
 

@@ -1,4 +1,4 @@
-"""What holds the housing as a whole: which rigid motions the supports leave free, and what each support carries."""
+"""Grounding check: rigid motions that the supports leave free, and the stiffness of each support."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ _NAMED = 0.3  # a free motion is called after the directions that make up this m
 
 @dataclass(frozen=True)
 class SupportHold:
-    """What one support does for the body as a whole.
+    """Stiffness of one support against rigid motions of the body.
 
     Attributes
     ----------
@@ -42,14 +42,14 @@ class SupportHold:
 
 @dataclass(frozen=True)
 class Grounding:
-    """How the supports hold the body.
+    """Rigid motions of the body that the supports leave free, and the stiffness of each support.
 
     Attributes
     ----------
     free_motions : int
         Rigid motions that neither fixed freedoms nor springs resist: as many rigid modes belong to the housing.
     free_directions : tuple of str
-        What these motions are made of.
+        Main components of these motions.
     supports : tuple of SupportHold
     """
 
@@ -59,7 +59,7 @@ class Grounding:
 
 
 def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArray) -> Grounding:
-    """How the supports hold the body as a whole.
+    """Find the rigid motions that the supports leave free.
 
     A rigid motion r is free where it moves no fixed freedom and strains no spring: where
     rᵀ [Σ_fixed R Rᵀ + Σ_springs R K Rᵀ] r vanishes, each of the two sums taken by its own size, and
@@ -69,7 +69,7 @@ def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArra
     ----------
     mesh : Mesh
     supports : sequence of Support or Mount
-        Whatever stands on the ground.
+        All that connect to the ground.
     center : ndarray, shape (3,)
         Centre of gravity [m].
     """
@@ -101,7 +101,7 @@ def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArra
 
 
 def _spring_stiffness(mesh: Mesh, support: Support | Mount, fields: FloatArray) -> FloatArray:
-    """Rᵀ K R of what the support's springs add to the stiffness, with the six rigid motions R, shape (6, 6)."""
+    """Rᵀ K R of the stiffness K of the support's springs, with the six rigid motions R, shape (6, 6)."""
     added = support.additions(mesh).stiffness
     return np.asarray(fields.T @ (added.matrix(len(mesh.points)) @ fields)) if len(added) else np.zeros((6, 6))
 

@@ -1,8 +1,8 @@
-"""A health report of a solved housing, in the manner of the checks that a Craig-Bampton model is handed over with.
+"""Health report: checks of a solved housing, like those delivered with a Craig-Bampton model.
 
-Each line holds a figure, the bound it must keep, and what it was taken from. Figures that would make numbers wrong are
-essential: :meth:`HealthReport.require` raises for them. The others are for the engineer to judge, such as a housing
-whose supports leave it free to move.
+Each line holds a figure, its bound, and its source. A line is essential where a figure beyond its bound makes results
+wrong: :meth:`HealthReport.require` raises for it. The others are for the engineer to judge, such as a housing whose
+supports leave it free to move.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ FloatArray = npt.NDArray[np.float64]
 
 MASS_BOUND = 1e-6  # of mass, and of the centre over the diagonal: curved elements are integrated closely, not exactly
 REGULAR_BOUND = 1e-9
-STRAIN_BOUND = 1e-10  # what rounding leaves of K R is some 1e-14
+STRAIN_BOUND = 1e-10  # rounding of K R is about 1e-14
 SYMMETRY_BOUND = 1e-12
 
 
@@ -40,9 +40,9 @@ class HealthLine:
     name : str
     value : float
     bound : float or None
-        What the value may be at most; None where it is for information only.
+        Largest permitted value; None where the value is for information only.
     why : str
-        What was compared, or what the value means.
+        Comparison made, or meaning of the value.
     essential : bool
         Whether a value beyond its bound makes the results wrong.
     """
@@ -69,7 +69,7 @@ class HealthReport:
     body : RigidBody
         Mass, centre of gravity and inertia from the mass matrix.
     grounding : Grounding
-        What holds the body as a whole.
+        Rigid motions left free by the supports.
     """
 
     lines: tuple[HealthLine, ...]
@@ -82,7 +82,7 @@ class HealthReport:
         return all(line.ok for line in self.lines)
 
     def require(self) -> None:
-        """Let nothing wrong go on.
+        """Raise where a check fails that makes results wrong.
 
         Raises
         ------
@@ -113,11 +113,11 @@ def health_report(
     unsupported, supported : Matrices
         The bare solid, and the same with all that is fastened to it.
     supports : sequence of Support or Mount
-        What of this stands on the ground.
+        Those of its fixtures that connect to the ground.
     modes : ModeSet
-        Of ``supported`` with what the supports fix, with or without attachments.
+        Of ``supported``, with or without residual modes.
     mass : float
-        By geometry: Σ density x volume, with what else was put on [kg].
+        By geometry: Σ density x volume, with lumped masses [kg].
     center : ndarray, shape (3,), optional
         Centre of gravity by geometry, where it is known [m].
     """
@@ -174,7 +174,7 @@ def _mass_lines(
 def _matrix_lines(mesh: Mesh, unsupported: Matrices, supported: Matrices, body: RigidBody) -> list[HealthLine]:
     stiffness = unsupported.stiffness
     fields = rigid_motions(mesh.points, body.center).reshape(-1, 6)
-    # Each entry of K R is a sum that cancels; its terms, taken without their signs, are what to measure it by.
+    # Each entry of K R is a sum that cancels; its scale is the sum of the terms' absolute values.
     strained = np.linalg.norm(stiffness @ fields, axis=0) / np.linalg.norm(abs(stiffness) @ np.abs(fields), axis=0)
     asymmetry = max(_asymmetry(supported.stiffness), _asymmetry(supported.mass))
     return [
@@ -252,7 +252,7 @@ def _port_lines(modes: ModeSet) -> list[HealthLine]:
 
 
 def _asymmetry(matrix: sparse.csr_array) -> float:
-    """|A x - Aᵀ x| / |A x| for a random x: as telling as every entry's difference, and far cheaper to find."""
+    """|A x - Aᵀ x| / |A x| for a random x: detects any asymmetry like a comparison of entries, at far less cost."""
     probe = np.random.default_rng(0).standard_normal(matrix.shape[0])
     forward = matrix @ probe
     return float(np.linalg.norm(forward - matrix.T @ probe) / np.linalg.norm(forward))

@@ -1,4 +1,4 @@
-"""Arrays with their dimensions, units and names, as results go to files, and the digest of such arrays."""
+"""Labelled arrays: values with dimensions, unit and name; and the SHA-256 digest of such arrays."""
 
 import hashlib
 import json
@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 @dataclass(frozen=True)
 class LabelledArray:
-    """An array that says what it is.
+    """An array with its dimensions, unit and name.
 
     Attributes
     ----------
@@ -23,9 +23,9 @@ class LabelledArray:
     units : str
         ``"1"`` where it has none.
     long_name : str
-        What it is, in words.
+        Name of the quantity in words.
     attributes : mapping of str to str
-        Whatever else is to be said of it.
+        Further attributes.
     """
 
     dimensions: tuple[str, ...]
@@ -41,7 +41,7 @@ class LabelledArray:
 
 
 def canonical_json(document: Mapping[str, Any]) -> str:
-    """A document as the one JSON text that equal documents share: keys in order, no blanks, no NaN."""
+    """Canonical JSON of a document, the same for equal documents: keys in order, no blanks, no NaN."""
     return json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 

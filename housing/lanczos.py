@@ -1,4 +1,4 @@
-"""Block Lanczos on the shifted inverse: the lowest modes of K φ = λ M φ from few sweeps over a factor.
+"""Block Lanczos eigensolver on the shifted inverse: the lowest modes of K φ = λ M φ from few sweeps over a factor.
 
 With A = (K - σM)⁻¹ M, self-adjoint in the product of M, A φ = ν φ and λ = σ + 1/ν. From an M-orthonormal block V₁ the
 recurrence
@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from housing.errors import IncompleteModesError
 from housing.symmetric import Operator
-from housing.tall import Tall
+from housing.tall import BlockAlgebra
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -32,7 +32,7 @@ TOLERANCE = 1e-9
 """Of a Ritz pair's residual, as a part of ν."""
 
 _BLOCK = 8
-_DEPENDENT = 1e-11  # what is left of a column, as a part of it, where it lay in the basis
+_DEPENDENT = 1e-11  # remainder of a column, as a part of it, below which it lay in the basis
 _NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
 _ORTHONORMAL = 1e-14  # how far products of a new block's columns may be from those of orthonormal ones
 _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
@@ -60,13 +60,13 @@ def shift_invert(
     shift : float
         σ [rad²/s²].
     count : int
-        How many.
+        Number of modes.
     above : bool
-        Whether the shift lies above the modes wanted, which are then all there are below it, rather than below them.
+        Whether the shift lies above the modes wanted, which are then all modes below it, rather than below them.
     seed : int
         Of the random starting block; each also doubles its width.
     threads : int
-        That orthogonalise; the modes are the same to the last bit for any number.
+        Number of threads that orthogonalise; the modes are the same to the last bit for any number.
     tolerance : float
         Of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of that.
 
@@ -85,19 +85,19 @@ def shift_invert(
     n = mass.shape[0]
     width = min(_BLOCK * 2**seed, n)
     most = min(n, 8 * count + 40 * width)
-    # The system gives memory to what is used of it.
+    # The operating system allocates only the pages that are used.
     basis, inertia = (np.empty((n, most + width), order="F") for _ in range(2))
     small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
 
-    tall = Tall(n, threads)
+    algebra = BlockAlgebra(n, threads)
     start = np.random.default_rng(seed).standard_normal((n, width))
-    found = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, tall)
+    found = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, algebra)
     begin, size, checked = 0, 0, 0
     while found.block.shape[1] and size + found.block.shape[1] <= most + width:
         previous, begin, size = begin, size, size + found.block.shape[1]
         basis[:, begin:size], inertia[:, begin:size] = found.block, found.inertia
-        found = _orthonormal(basis[:, :size], inertia[:, :size], size - previous, solve(found.inertia), mass, tall)
+        found = _orthonormal(basis[:, :size], inertia[:, :size], size - previous, solve(found.inertia), mass, algebra)
         small[:size, begin:size] = found.projections[:size]
         remainder = found.projections[size:]
         whole = found.block.shape[1] == 0
@@ -114,8 +114,8 @@ def shift_invert(
                 step = outside / wanted
                 norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))
                 order = np.argsort(1.0 / wanted)
-                vectors = tall.combined(found.block, (step / norms)[:, order])
-                tall.subtract(vectors, basis[:, :size], -(mixture / norms)[:, order])
+                vectors = algebra.combined(found.block, (step / norms)[:, order])
+                algebra.subtract(vectors, basis[:, :size], -(mixture / norms)[:, order])
                 return shift + 1.0 / wanted[order], vectors
         small[size : size + len(remainder), begin:size] = remainder
         small[begin:size, size : size + len(remainder)] = remainder.T
@@ -127,7 +127,7 @@ def shift_invert(
 
 @dataclass(frozen=True)
 class _Addition:
-    """What a block adds to a basis of m vectors.
+    """Extension of a basis of m vectors by a block.
 
     Attributes
     ----------
@@ -145,38 +145,47 @@ class _Addition:
 
 
 def _orthonormal(
-    basis: FloatArray, inertia_of_basis: FloatArray, recent: int, block: FloatArray, mass: Operator, tall: Tall
+    basis: FloatArray,
+    inertia_of_basis: FloatArray,
+    recent: int,
+    block: FloatArray,
+    mass: Operator,
+    algebra: BlockAlgebra,
 ) -> _Addition:
-    """What a block adds to a basis V, given M V.
+    """Orthonormalise a block against a basis V, given M V.
 
-    First its last vectors are taken off, so many as are recent: in exact arithmetic that is everything. Then, once
-    more, all of it.
+    First the ``recent`` last vectors of the basis are projected out, which in exact arithmetic is everything; then all
+    of them.
     """
     within = np.zeros((basis.shape[1], block.shape[1]))
     last = slice(basis.shape[1] - recent, None)
-    within[last] = tall.products(inertia_of_basis[:, last], block)
-    tall.subtract(block, basis[:, last], within[last])
-    again = tall.products(inertia_of_basis, block)
-    tall.subtract(block, basis, again)
+    within[last] = algebra.products(inertia_of_basis[:, last], block)
+    algebra.subtract(block, basis[:, last], within[last])
+    again = algebra.products(inertia_of_basis, block)
+    algebra.subtract(block, basis, again)
     within += again
     inertia = mass @ block
-    products = tall.products(block, inertia)
+    products = algebra.products(block, inertia)
     left = np.sqrt(np.maximum(products.diagonal(), 0.0))
     given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
     kept = left > _DEPENDENT * given
     values, turn = np.linalg.eigh(products[np.ix_(kept, kept)] / np.outer(left[kept], left[kept]))
     mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
     mixture[kept] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[kept, None]
-    new, new_inertia, shares = tall.combined(block, mixture), tall.combined(inertia, mixture), mixture.T @ products
+    new, new_inertia, shares = (
+        algebra.combined(block, mixture),
+        algebra.combined(inertia, mixture),
+        mixture.T @ products,
+    )
     if new.shape[1]:
-        # Scaling up what is left of a block that nearly lay in the basis scales up its rounding: once more.
+        # Scaling up the remainder of a block that nearly lay in the basis scales up its rounding: once more.
         if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
-            tall.subtract(new, basis, tall.products(inertia_of_basis, new))
+            algebra.subtract(new, basis, algebra.products(inertia_of_basis, new))
             new_inertia = mass @ new
-            shares = tall.products(new, inertia)
-        own = tall.products(new, new_inertia)
+            shares = algebra.products(new, inertia)
+        own = algebra.products(new, new_inertia)
         if np.abs(own - np.eye(len(own))).max() > _ORTHONORMAL:
             unit = np.linalg.inv(np.linalg.cholesky(own)).T
-            new, new_inertia = tall.combined(new, unit), tall.combined(new_inertia, unit)
-            shares = tall.products(new, inertia)
+            new, new_inertia = algebra.combined(new, unit), algebra.combined(new_inertia, unit)
+            shares = algebra.products(new, inertia)
     return _Addition(new, new_inertia, np.vstack([within, shares]))

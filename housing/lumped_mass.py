@@ -1,4 +1,4 @@
-"""Lumped masses: a sensor on a point of the surface, a motor bracket on a patch of it."""
+"""Lumped masses: point masses on the surface, and rigid bodies on a patch, such as a motor on its bracket."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 Tensor = tuple[Point, Point, Point]
 
 NO_INERTIA: Tensor = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-_ROUNDING = 1e-9  # of the tensor's trace: what typed numbers may miss of a thin body's
+_ROUNDING = 1e-9  # of the tensor's trace: rounding of numbers typed for a thin body
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class LumpedMass:
 
     On a patch the body has the six motions r = P u of the patch's middle, and adds Pᵀ M₆ P to the mass matrix, with M₆
     the mass matrix of the rigid body about that point: total mass, centre of gravity and inertia of the housing change
-    exactly as rigid-body mechanics says, whatever the mesh. A point of a solid has no rotation, so there is only the
-    mass itself.
+    exactly as rigid-body mechanics demands, on any mesh. A point of a solid has no rotation, so that only the mass
+    itself acts there.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class LumpedMass:
     mass : float
         [kg].
     patch : Patch, optional
-        What it is fastened to; either this or ``position``.
+        Patch that it is fastened to; either this or ``position``.
     position : tuple of float, optional
         A point [m]; the nearest one of the surface carries the mass.
     inertia : three rows of three floats

@@ -1,4 +1,4 @@
-"""Mass and its centre, from the geometry of the elements alone."""
+"""Mass properties of a meshed solid: mass and centre of mass from the geometry of the elements."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MassProperties:
-    """What a solid weighs, and where.
+    """Mass and centre of mass of a solid.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class MassProperties:
 def mass_properties(mesh: Mesh, material: Material, materials: Mapping[str, Material] | None = None) -> MassProperties:
     """Mass and centre of mass of a meshed solid, curved sides included.
 
-    They need no mass matrix, and so can prove one: translations and rotations must find the same mass in it.
+    They need no mass matrix, and serve to check one: its rigid-body mass must be the same.
 
     Parameters
     ----------

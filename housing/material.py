@@ -1,4 +1,4 @@
-"""The housing's material."""
+"""Material: linear elastic and isotropic; Lamé's constants, and the constants of each element of a mesh."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -10,7 +10,7 @@ from scipy import sparse
 from housing.node_blocks import NOTHING, Additions, NodeBlocks
 
 FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int32]
+Int32Array = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -18,8 +18,7 @@ class Matrices:
     """Stiffness and mass on one sparsity pattern of 3 x 3 blocks, rows in order (block compressed sparse rows).
 
     Both are symmetric, and only the blocks on and above the diagonal are kept. The solid's own mass is scalar,
-    m ⊗ I₃, and it has no damping; what is attached to it (a rigid body, a dashpot) has neither of these forms and
-    stands beside.
+    m ⊗ I₃, and it has no damping; the mass and damping of fixtures (a rigid body, a dashpot) are kept separately.
 
     Attributes
     ----------
@@ -28,19 +27,19 @@ class Matrices:
     neighbors : ndarray of int, shape (n_blocks,)
         The column node of each block, ascending within a row from the node itself.
     blocks : ndarray, shape (n_blocks, 3, 3)
-        Stiffness K [N/m], attachments included.
+        Stiffness K [N/m], fixtures included.
     node_mass : ndarray, shape (n_blocks,)
         Scalar mass m of the solid [kg].
     attached_mass : NodeBlocks
-        Mass beyond m ⊗ I₃ [kg], on pairs of the pattern.
+        Mass of fixtures beyond m ⊗ I₃ [kg], on pairs of the pattern.
     attached_damping : NodeBlocks
         C [N s/m].
     fixed : ndarray of int
         Degrees of freedom that supports hold at zero, ascending.
     """
 
-    pointer: IntArray
-    neighbors: IntArray
+    pointer: Int32Array
+    neighbors: Int32Array
     blocks: FloatArray
     node_mass: FloatArray
     attached_mass: NodeBlocks = NOTHING
@@ -79,7 +78,7 @@ class Matrices:
 
     @cached_property
     def damping(self) -> sparse.csr_array:
-        """C [N s/m] of what is attached, shape (3 n_nodes, 3 n_nodes), symmetric; empty where nothing damps."""
+        """C [N s/m] of the fixtures, shape (3 n_nodes, 3 n_nodes), symmetric; empty where nothing damps."""
         return self.attached_damping.matrix(self.n_nodes)
 
     def shifted(self, shift: float) -> sparse.csr_array:
@@ -105,9 +104,9 @@ class Matrices:
         return diagonal
 
     def plus(self, additions: Additions) -> "Matrices":
-        """The matrices with something attached.
+        """The matrices with a fixture added.
 
-        Pairs of nodes that share no element and are now tied, by stiffness or by mass, join the pattern.
+        Pairs of nodes that share no element and are now coupled, by stiffness or by mass, join the pattern.
         """
         stiffness, mass = additions.stiffness.upper, additions.mass.upper
         own = self._keys
@@ -140,7 +139,7 @@ class Matrices:
         return replace(self, fixed=np.union1d(self.fixed, np.asarray(freedoms, dtype=np.int64)))
 
     @cached_property
-    def rows(self) -> IntArray:
+    def rows(self) -> Int32Array:
         """The row node of each block, shape (n_blocks,)."""
         return np.repeat(np.arange(self.n_nodes, dtype=np.int32), np.diff(self.pointer))
 
@@ -153,8 +152,8 @@ class Matrices:
         return blocks.rows * self.n_nodes + blocks.columns
 
     @cached_property
-    def _whole(self) -> tuple[IntArray, IntArray, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
-        """The pattern with what lies below the diagonal: its pointer and neighbours, where each block is kept, and
+    def _whole(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+        """The pattern of both triangles: its pointer and neighbours, where each block is kept, and
         whether it stands there transposed."""
         upper = np.flatnonzero(self.neighbors != self.rows)
         places = np.concatenate([np.arange(len(self.neighbors)), upper])

@@ -1,15 +1,15 @@
-"""Memory that is free for a large array, and the refusal of work that would not fit."""
+"""Available memory, and the refusal of work that would exceed it."""
 
 import os
 from pathlib import Path
 
 
 def available_memory(*, system: Path = Path("/")) -> float:
-    """Bytes that this process can still have: the least of what the machine, its group and its own limit leave.
+    """Memory that this process can still allocate: the least of the machine's, its control group's and its own limit.
 
     The machine's is MemAvailable and SwapFree of ``/proc/meminfo``; the group's, of a container or a batch job, is the
     limit of the control group less its use without files that can be dropped; its own is RLIMIT_AS less the address
-    space that is taken. What a system does not tell is infinite.
+    space in use. A limit that the system does not report is infinite.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def available_memory(*, system: Path = Path("/")) -> float:
 
 
 def check_memory(needed: float, what: str) -> None:
-    """Refuse work before it is begun.
+    """Refuse work that needs more memory than is available.
 
     Parameters
     ----------

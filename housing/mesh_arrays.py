@@ -1,4 +1,4 @@
-"""A mesh as labelled arrays, and back: how a mesh stands in a file."""
+"""Mesh in a file: conversion of a mesh to labelled arrays and back."""
 
 from collections.abc import Mapping, Sequence
 
@@ -16,8 +16,8 @@ def mesh_arrays(mesh: Mesh) -> dict[str, LabelledArray]:
 
     Elements stand in ``elements_1``, ``elements_2``, ... with their kind as an attribute. The facets of all named
     surfaces stand one after another in ``facets_KIND``, and ``facet_block_surface``, ``facet_block_kind`` and
-    ``facet_block_size`` say which and how many belong together; the elements of named volumes likewise. What has no
-    entries is left out, because a dimension of length 0 means another thing in NetCDF.
+    ``facet_block_size`` give the surface, kind and number of each block; the elements of named volumes likewise. Empty
+    arrays are left out, because a dimension of length 0 has another meaning in NetCDF.
     """
     arrays = {"point": LabelledArray(("node", "component"), mesh.points, "m", "node coordinates")}
     for number, (kind, nodes) in enumerate(((block.kind, block.nodes) for block in mesh.blocks), start=1):

@@ -1,18 +1,17 @@
-"""A mode set on file: everything that later work takes from a solved housing, as labelled NetCDF4.
+"""Mode file: a solved housing as labelled NetCDF4, written whole and read back with its proof.
 
-The file opens in xarray, ncdump and whatever else reads NetCDF4 or HDF5. It holds the mesh, the modes with their
-certificate, the bearing seats' and sensors' motions, what the modes were solved from, and a digest.
+The file opens in xarray, ncdump and every other reader of NetCDF4 or HDF5. It holds the mesh, the modes with their
+certificate, the motions of bearing seats and sensors, the inputs of the solution, and a digest.
 
-What stands for the proof on reading: the certificate was made where the stiffness and mass matrices were at hand, and
-the digest (SHA-256 over every array, label and attribute) shows that what is read is, bit for bit, what was proved.
-That finds every damage; it is no signature against forgery.
+The certificate was made with the stiffness and mass matrices at hand. The digest (SHA-256 over every array, label and
+attribute) proves on reading that the content is, bit for bit, that of the certified set. It detects damage; it is no
+signature against forgery.
 """
 
-import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
+from housing.atomic_file import atomic_file
 from housing.errors import HousingError, ModeFileError
 from housing.labelled import LabelledArray, digest
 from housing.mode_record import ModeRecord, record_arrays, record_attributes, record_of
@@ -47,19 +46,17 @@ def write_modes(path: str | Path, record: ModeRecord) -> None:
         for name, array in arrays.items()
     }
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        staged = Path(folder) / path.name
+    with atomic_file(path) as staged:
         try:
             # Without a fill value no number is taken for a missing one.
             write_netcdf(staged, variables, attributes, fill=False)
             seal(staged)
         except ValueError as error:
             raise HousingError(f"the arrays of a mode set do not fit each other: {error}") from error
-        os.replace(staged, path)
 
 
 def read_modes(path: str | Path) -> ModeRecord:
-    """Read a mode set, and check that it is what was proved.
+    """Read a mode set, and check it against its digest.
 
     Raises
     ------
@@ -87,7 +84,7 @@ def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
         # Copies by other programs have no seal; the digest is theirs too.
         if seal_holds(path) is False:
             raise ModeFileError(f"mode file {path} is damaged: its bytes do not have the digest at its end")
-        # A look through HDF5 alone: on a file cut short it fails without a sound, which the layers above it do not.
+        # Opened by HDF5 alone first: on a truncated file it fails silently, and the layers above it print errors.
         with h5py.File(path, "r") as file:
             kind, schema = file.attrs.get("format"), file.attrs.get("schema")
         if kind != FORMAT:
@@ -100,7 +97,7 @@ def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
         whole = digest(arrays, attributes) == claimed
     except ModeFileError:
         raise
-    except Exception as error:  # a damaged file fails wherever its reader happens to stumble
+    except Exception as error:  # readers raise exceptions of many kinds on a damaged file
         raise ModeFileError(f"mode file {path} is no NetCDF4 file, or a damaged one: {error}") from error
     if not whole:
         raise ModeFileError(f"mode file {path} is damaged or was changed: its content does not have its digest")

@@ -1,4 +1,4 @@
-"""A solved housing as one record, and the record as labelled arrays: what a mode-set file holds."""
+"""Mode record: a solved housing with its mesh, modes, seats, sensors and inputs, as labelled arrays of a mode file."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -48,9 +48,9 @@ class ModeRecord:
     sensor_motions : ndarray, shape (n_modes, n_sensors)
         Modes' motions along the sensors [1/√kg].
     inputs : mapping
-        What the modes were solved from, of the kinds that JSON knows: shape, material, supports, versions.
+        Inputs of the solution as JSON values: shape, material, supports, versions.
     notes : mapping
-        What else was found out, of the same kinds, such as the time that each step took.
+        Further findings as JSON values, such as the time of each step.
     extras : mapping of str to LabelledArray
         Further arrays that need the matrices to be made.
 
@@ -92,7 +92,7 @@ class ModeRecord:
 
 
 def with_sensors(record: ModeRecord, ports: Iterable[SensorPort]) -> ModeRecord:
-    """The record with these sensors in place of its own, put on the modes afresh."""
+    """The record with these sensors in place of its own, and the modes' motions along them."""
     placed = list(ports)
     motions = [record.modes.project(port.matrix)[:, 0] for port in placed]
     sensors = []
@@ -111,7 +111,7 @@ def record_arrays(record: ModeRecord) -> dict[str, LabelledArray]:
 
 
 def record_attributes(record: ModeRecord) -> dict[str, str]:
-    """What a record holds beside its arrays, as text."""
+    """Content of a record beside its arrays, as text."""
     return {
         "inputs": canonical_json(record.inputs),
         "key": record.key,
@@ -147,7 +147,7 @@ def record_of(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, str]
 
 
 def _mode_arrays(modes: ModeSet) -> dict[str, LabelledArray]:
-    """Every field of a mode set but ``backend``, which is an attribute of the file; hertz beside, for people."""
+    """Every field of a mode set but ``backend``, which is an attribute of the file; frequencies in hertz beside."""
     numbers = np.arange(1, len(modes.frequencies) + 1)
     shape = ("mode", "node", "component")
     arrays = {

@@ -17,6 +17,7 @@ from housing.attachments import Attachment, attach
 from housing.bolts import bolted_joint
 from housing.bushings import Bushing, Joint, Mount
 from housing.damping import damping_ratios, modal_damping
+from housing.eigensolver import DEFAULT_SOLVER, Solver
 from housing.enclosure import enclosed
 from housing.errors import HousingError
 from housing.health import HealthReport, health_report
@@ -52,11 +53,11 @@ class Housing:
     materials : mapping of str to Material
         By the name of a volume of the mesh.
     fixtures : sequence of Support, Mount, Joint or LumpedMass
-        What holds the housing, what joins its parts, and what is fastened to it.
+        Supports, mounts, joints between parts, and masses.
     seats : sequence of Seat
     sensors : sequence of Sensor
     damping_ratio : float
-        Fraction of critical damping of every mode, beside what dashpots of the fixtures add.
+        Fraction of critical damping of every mode, in addition to the dashpots of the fixtures.
 
     Raises
     ------
@@ -223,6 +224,7 @@ class Housing:
         below_hz: float | None = None,
         count: int | None = None,
         bearings: Mapping[str, tuple[str, float]] | None = None,
+        solver: Solver = DEFAULT_SOLVER,
         progress: Callable[[str], None] = lambda message: None,
     ) -> "HousingModes":
         """Natural modes, certified complete, with residual modes for the bearings.
@@ -236,8 +238,10 @@ class Housing:
         bearings : mapping of str to (str, float), optional
             Where the machine bears on the housing: by bearing, its seat and its distance along z from the centre of the
             seat [m]. By default each seat stands for one bearing at its centre.
+        solver : {"lanczos", "eigsh"}
+            Eigensolver, see :func:`housing.solve_modes`.
         progress : callable
-            Told in words what happens next.
+            Called with a line of text before each step.
 
         Raises
         ------
@@ -263,6 +267,7 @@ class Housing:
             count=count,
             ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
             port_orders=RESPONSE_ORDERS,
+            solver=solver,
             progress=progress,
         )
         health = self.health(free, whole, found)
@@ -309,7 +314,7 @@ class Housing:
         solid = mass_properties(self.mesh, self.material, self.materials)
         mass, center = solid.mass, solid.center
         if not self.materials:
-            # Of one material, what its boundary encloses says the same without any of the elements inside.
+            # With one material the boundary's volume gives the mass, independent of the elements inside.
             volume, center = enclosed(self.mesh)
             mass = self.material.density * volume
         fastened = sum(one.mass for one in self.fixtures if isinstance(one, LumpedMass))
@@ -320,14 +325,14 @@ class Housing:
             [one for one in self.fixtures if isinstance(one, Support | Mount)],
             modes,
             mass=mass + fastened,
-            # The centre of what is fastened is not the geometry's to know.
+            # The geometry does not know the centres of lumped masses.
             center=None if fastened else center,
         )
 
 
 @dataclass(frozen=True)
 class HousingModes:
-    """Natural modes of a housing, with everything that a machine takes of them.
+    """Natural modes of a housing, with their motions at seats and sensors, damping and participation.
 
     Attributes
     ----------
@@ -340,7 +345,7 @@ class HousingModes:
     sensors : mapping of str to ndarray, shape (n,)
         Motions of modes and residual modes along each sensor.
     damping_matrix : ndarray, shape (n, n), or None
-        What dashpots of the fixtures add in modal coordinates [1/s].
+        Φᵀ C Φ of the fixtures' dashpots [1/s].
     participation : ndarray, shape (n, 6)
         φᵀ M R of the rigid motions along and about x, y, z through the origin [√kg, √kg m].
     """

@@ -3,18 +3,20 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
 from housing.certificate import Certificate
+from housing.eigensolver import DEFAULT_SOLVER, Solver
 from housing.errors import HousingError
 from housing.factorization import Backend, Factorizer
 from housing.free_system import FreeSystem
 from housing.matrices import Matrices
 from housing.reduction import Attachments, residual_attachments
-from housing.search import MOST_MODES, Search, not_a_stiffness
+from housing.search import MOST_MODES, CertifiedSearch, not_a_stiffness
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -33,7 +35,7 @@ class ModeSet:
     shapes : ndarray, shape (n_modes, n_nodes, 3)
         Displacement at each node, normalised to φᵀ M φ = 1 [1/√kg].
     certificate : Certificate
-        Of the modes as they were found. Attachments turn them by some of their residual, towards exact ones.
+        Of the modes as they were found; the residual modes then reduce their residuals further.
     seconds : dict of str to float
         Time taken by ``factorisation``, ``eigensolver`` and, where ports were given, ``reduction`` [s].
     backend : str
@@ -43,7 +45,7 @@ class ModeSet:
     threads : int
         Workers of the factorisation.
     attachments : Attachments or None
-        What the modes lack of the static response to loads at the ports, where ports were given.
+        Residual modes, which complete the static response to loads at the ports, where ports were given.
     """
 
     frequencies: FloatArray
@@ -65,7 +67,7 @@ class ModeSet:
         return np.asarray((port @ self.shapes.reshape(len(self.shapes), -1).T).T)
 
     def project_all(self, port: sparse.csr_array) -> FloatArray:
-        """Motions at a port of the modes, then of the attachments, shape (n_modes + n_attachments, n_motions)."""
+        """Motions at a port of the modes, then of the residual modes, shape (n_modes + n_residual, n_motions)."""
         modes = self.project(port)
         return modes if self.attachments is None else np.vstack([modes, self.attachments.project(port)])
 
@@ -78,11 +80,12 @@ def solve_modes(
     draft: bool = False,
     ports: sparse.csr_array | None = None,
     port_orders: int = 1,
+    solver: Solver = DEFAULT_SOLVER,
     backend: Backend | None = None,
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
 ) -> ModeSet:
-    """All natural modes below a frequency, or the lowest of them by number.
+    """Solve for all natural modes below a frequency, or for a number of the lowest.
 
     Parameters
     ----------
@@ -91,26 +94,29 @@ def solve_modes(
     frequency_limit : float
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
-        The lowest so many, and the rest of a multiple mode that the last is part of.
+        Number of the lowest modes; a multiple mode at the end is completed.
     draft : bool
-        Of ``count``, whether two thirds of the time will do: the inertia behind the last mode is not asked whether one
-        is missing, and the last ones are rough (their λ to some 1e-8). The certificate is then not complete.
+        Of ``count``: skip the inertia count behind the last mode, in two thirds of the time. The last modes are less
+        accurate (their λ to some 1e-8), and the certificate is not complete.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes), optional
-        Motions whose static compliance the mode set is to hold exactly: it then has attachments.
+        Motions whose static compliance the mode set is to hold exactly, by residual modes.
     port_orders : int
         Responses for each of these motions: 1, the static one; 2, that at the limit too; see
         :func:`housing.reduction.residual_attachments`.
+    solver : {"lanczos", "eigsh"}
+        Own block Lanczos, or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
     backend, threads
         See :class:`housing.factorization.Factorizer`.
     progress : callable
-        Told in words what happens next.
+        Called with a line of text before each step.
 
     Raises
     ------
     HousingError
-        Where neither or both of limit and count are given, or they ask for nothing or for everything.
+        Where neither or both of limit and count are given, they ask for nothing or for everything, or the solver is
+        unknown.
     IncompleteModesError
-        Where the certificate cannot be made good after three searches.
+        Where the certificate is not complete after three searches.
     ReductionError
         Where the static compliance at the ports fails its proof.
     """
@@ -125,9 +131,11 @@ def solve_modes(
     if frequency_limit is not None and frequency_limit <= 0.0:
         raise HousingError(f"frequency limit {frequency_limit} rad/s must be positive")
 
+    if solver not in get_args(Solver):
+        raise HousingError(f"eigensolver {solver!r}; expected one of {', '.join(map(repr, get_args(Solver)))}")
     factorizer = Factorizer(backend=backend, threads=threads)
     factorizer.order_ahead(system.stiffness)
-    search = Search(system, factorizer, system.floor(frequency_limit or 0.0))
+    search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
     found = (
         search.below(frequency_limit, progress)
         if frequency_limit is not None

@@ -1,4 +1,4 @@
-"""Labelled arrays to NetCDF4 files and back: the files that xarray writes, without the time that loading it takes."""
+"""NetCDF4 files of labelled arrays, written and read without xarray, whose import takes long; xarray opens them."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -28,11 +28,11 @@ def write_netcdf(
     path
         Of a file that is not there yet.
     variables, coordinates
-        Numbers, truth values or text. What a dimension is named after is a coordinate in either.
+        Numbers, truth values or text. An array named after a dimension is a coordinate in either.
     attributes
         Of the whole file.
     fill
-        Say that NaN stands for a missing number, as xarray does.
+        Declare NaN as the missing number, as xarray does.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def write_netcdf(
 
 
 def read_netcdf(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
-    """Read every variable of a file as it stands, nothing converted by its attributes, and those of the whole file.
+    """Read every variable of a file without any conversion by its attributes, and the attributes of the file.
 
     Raises
     ------

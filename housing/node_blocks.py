@@ -1,4 +1,4 @@
-"""Blocks of 3 x 3 between pairs of nodes: what an attachment adds to the matrices of the solid."""
+"""Sparse symmetric matrices of 3 x 3 blocks between pairs of nodes: additions of fixtures to the solid's matrices."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -20,7 +20,7 @@ class NodeBlocks:
     rows, columns : ndarray of int, shape (n_blocks,)
         The two nodes of each block; with (a, b) there is (b, a).
     blocks : ndarray, shape (n_blocks, 3, 3)
-        What stands there, in the unit of the matrix.
+        Entries, in the unit of the matrix.
     """
 
     rows: IntArray
@@ -39,7 +39,7 @@ class NodeBlocks:
 
     @classmethod
     def congruent(cls, port: sparse.csr_array, small: FloatArray) -> "NodeBlocks":
-        """Pᵀ S P: what a small symmetric matrix on a port is to the nodes.
+        """Project a small symmetric matrix on a port to the nodes: Pᵀ S P.
 
         Parameters
         ----------
@@ -95,7 +95,7 @@ NOTHING = NodeBlocks(np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64), n
 
 @dataclass(frozen=True)
 class Additions:
-    """What an attachment adds to a housing's matrices.
+    """Additions of a fixture to a housing's matrices.
 
     Attributes
     ----------

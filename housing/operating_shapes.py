@@ -1,4 +1,4 @@
-"""Operating deflection shapes: how the housing moves at one line of its spectrum, made up of its modes."""
+"""Operating deflection shape: motion of the housing at one line of its spectrum, as a sum of its modes."""
 
 from dataclasses import dataclass
 
@@ -41,7 +41,7 @@ class OperatingShape:
 
     @property
     def kinetic_shares(self) -> FloatArray:
-        """Of the mean kinetic energy ¼ Σ |q̇|², which modes of unit modal mass share without rest, shape (n_modes,)."""
+        """Share of each mode in the mean kinetic energy ¼ Σ |q̇|², unit modal masses, shape (n_modes,)."""
         energy = np.abs(self.modal) ** 2
         return np.asarray(energy / energy.sum())
 

@@ -1,4 +1,4 @@
-"""Patches: parts of the surface that something is fastened to, and the rigid motion they stand for."""
+"""Patches of the surface, and the rigid motion of each as a port of the nodes' displacements."""
 
 from dataclasses import dataclass
 
@@ -87,7 +87,7 @@ def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *
     center : ndarray, shape (3,), optional
         The point whose translations come first [m]; the middle of the patch where not given.
     name : str
-        What the patch belongs to, for the message.
+        Owner of the patch, for the message.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *
     Raises
     ------
     HousingError
-        Where the patch does not span a rigid motion, or is far too small to tell that of a centre so far away.
+        Where the patch does not span a rigid motion, or is too small for a centre so far away.
     """
     middle = patch_center(mesh, facets)
     parts, area = _quadrature(mesh, facets)
@@ -121,15 +121,15 @@ def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *
 
 
 def point_matrix(mesh: Mesh, point: SurfacePoint) -> sparse.csr_array:
-    """The translations of a point of the surface, shape (3, 3 n_nodes); a point has no rotation that a solid knows."""
+    """The translations of a point of the surface, shape (3, 3 n_nodes); a point of a solid has no rotation."""
     columns = (3 * point.nodes[:, None] + np.arange(3)).ravel()
     return _port(np.asarray(np.kron(point.weights, np.eye(3)), dtype=np.float64), columns, mesh)
 
 
 def spread(mesh: Mesh, facets: Facets, amounts: Point) -> NodeBlocks:
-    """Amounts along x, y, z spread evenly over a patch of area A: blocks (1 / A) ∫ N_a N_b dA diag(amounts).
+    """Spread amounts along x, y, z evenly over a patch of area A: blocks (1 / A) ∫ N_a N_b dA diag(amounts).
 
-    A translation of the whole patch meets the amounts, and the energy is that of the field, not of single nodes.
+    A translation of the whole patch meets the whole amounts; the energy is that of the field, not of single nodes.
     """
     parts, area = _quadrature(mesh, facets)
     blocks = NOTHING

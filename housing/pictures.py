@@ -1,6 +1,5 @@
-"""Pictures of mode shapes and of other motions, drawn off-screen with PyVista: one each, or many on a sheet."""
+"""Pictures of mode shapes and operating deflection shapes, drawn off-screen with PyVista: single or on a sheet."""
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
 from housing.modes import ModeSet
 from housing.scene import STRIP, VIEWS, Scene, check_view, colour_strip
@@ -46,7 +46,7 @@ def render_modes(
     size : tuple of int
         Width and height of a picture [pixels].
     progress : callable
-        Told which mode is drawn.
+        Called with a line of text before each mode.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def render_modes(
     HousingError
         Where there is no mode of that number, or no view of that name.
     RendererUnavailableError
-        Where nothing here draws without a screen.
+        Where no library draws without a screen.
     """
     check_view(view)
     housing = drawn_housing(mesh)
@@ -143,6 +143,5 @@ def _save(image: npt.NDArray[np.uint8], path: Path) -> None:
     """Write a PNG that appears whole or not at all."""
     from PIL import Image
 
-    temporary = path.with_name(f".{path.name}.part")
-    Image.fromarray(image).save(temporary, format="PNG", compress_level=2)
-    os.replace(temporary, path)
+    with atomic_file(path) as staged:
+        Image.fromarray(image).save(staged, format="PNG", compress_level=2)

@@ -1,4 +1,4 @@
-"""Residual attachments for modes that are there already: read from a file, or solved for with other ports."""
+"""Residual attachment modes for an existing mode set, read from a file or solved for with other ports."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -26,19 +26,18 @@ def attach_ports(
     backend: Backend | None = None,
     threads: int = 2,
 ) -> ModeSet:
-    """The same modes with residual attachments, so that the static compliance at the ports is exact.
+    """Add residual modes to a mode set, so that the static compliance at the ports is exact.
 
-    The shapes are the same to the error of their certificate: what the attachments show of it is taken out, Eq. (3) of
-    :mod:`housing.reduction`.
+    The shapes stay the same to the error of their certificate, which Eq. (3) of :mod:`housing.reduction` reduces.
 
     Parameters
     ----------
     matrices : Matrices
-        Of which the modes are, supports included.
+        The matrices of the modes, supports included.
     modes : ModeSet
-        Complete up to its limit; attachments that it has are replaced.
+        Complete up to its limit; its own residual modes are replaced.
     ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
-        Such as those of :func:`housing.seat_matrix`; the attachments' order follows theirs.
+        Such as those of :func:`housing.seat_matrix`; the static compliance has their order.
     factor, shift : Factorization and float, optional
         A factor of K - shift M on the free degrees of freedom, where one is at hand, and its shift [rad²/s²]; both or
         neither.

@@ -1,4 +1,4 @@
-"""Ports: the few motions of the housing that the rest of the machine sees.
+"""Bearing seats and sensors: the ports at which the rest of the machine meets the housing.
 
 A bearing seat moves as the rigid motion nearest to its surface's own, in the mean over the area; a sensor moves
 as the point it is glued to (:mod:`housing.patches`). Both are linear in the nodes' displacements u,

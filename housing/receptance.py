@@ -1,12 +1,12 @@
-"""How a force at one port moves another: residues, receptance, and which modes carry it in a band.
+"""Receptance between ports: residues, frequency response, and the selection of modes that carry it in a band.
 
 With mass-normalised shapes and damping ratios ζ the motion of port b by a unit load on port a at the circular
 frequency w is (Ewins, *Modal Testing*, 2000, chapter 2)
 
     H_ba(w) = Σ_r φ_r(b) φ_r(a) / (ω_r² - w² + 2 i ζ_r ω_r w),
 
-the sum running over the kept modes and, where the mode set has them, its residual attachments: they supply what the
-modes above the limit give, which is all but static below it. Each term is symmetric in a and b, so H is reciprocal.
+the sum running over the kept modes and, where the mode set has them, its residual modes: these supply the response of
+the modes above the limit, which is nearly static below it. Each term is symmetric in a and b, so that H is reciprocal.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ _AROUND = np.array([-6.0, -3.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 3.0, 6.0])
 
 @dataclass(frozen=True)
 class Selection:
-    """Modes in the order of what they carry between two ports in a band.
+    """Modes ranked by their contribution to the receptance between two ports in a band.
 
     Attributes
     ----------
@@ -40,8 +40,8 @@ class Selection:
     strength : ndarray, shape (n_modes,)
         Of each mode in the order of the ranking: the largest gain of its term in the band [m/N].
     error_left : ndarray, shape (n_modes + 1,)
-        With only the first 0, 1, 2, ... of the ranking (and the attachments): the largest norm of what is missing in
-        the band, as a part of the largest norm of the whole receptance in it.
+        With only the first 0, 1, 2, ... of the ranking (and the residual modes): the largest norm of the error in the
+        band, as a part of the largest norm of the whole receptance in it.
     tolerance : float
     """
 
@@ -53,7 +53,7 @@ class Selection:
 
     @property
     def count(self) -> int:
-        """How many of the ranking must be kept: from here on no error exceeds the tolerance."""
+        """Number of modes of the ranking to keep: from here on no error exceeds the tolerance."""
         too_large = np.flatnonzero(self.error_left > self.tolerance)
         return int(too_large[-1]) + 1 if too_large.size else 0
 
@@ -82,7 +82,7 @@ def receptance(
     modes : ModeSet
         n modes.
     damping_ratios : ndarray, shape (n,)
-        ζ, parts of critical. Attachments take the highest of them, as in the coupled system.
+        ζ, parts of critical. Residual modes take the highest of them, as in the coupled system.
     port_a, port_b : scipy.sparse.csr_array, shapes (a, 3 n_nodes) and (b, 3 n_nodes)
     frequencies : ndarray, shape (f,)
         w [rad/s].
@@ -112,12 +112,12 @@ def select_modes(
     band: tuple[float, float],
     tolerance: float,
 ) -> Selection:
-    """Rank the modes by what they carry between two ports, and say how many a tolerance needs.
+    """Rank the modes by their contribution between two ports, and count those that a tolerance needs.
 
     A mode's strength is the largest value in the band of |φ(b)| |φ(a)| / |ω² - w² + 2 i ζ ω w|, the modal dominance
     index: for a light mode in the band |φ(b)| |φ(a)| / (2 ζ ω²), twice the Hankel singular value that balanced
-    truncation would rank it by (Gregory 1984), and for one outside its static or inertial share. The error left is no
-    estimate: it is the receptance's own, on frequencies that resolve every resonance of the band.
+    truncation would rank it by (Gregory 1984), and for one outside its static or inertial share. The error is not
+    estimated but computed from the receptance itself, on frequencies that resolve every resonance of the band.
 
     Parameters
     ----------

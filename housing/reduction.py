@@ -1,4 +1,4 @@
-"""The housing reduced to its ports: what its modes lack there, added as residual attachment modes.
+"""Residual attachment modes (MacNeal, Rubin): they complete the static compliance of the kept modes at the ports.
 
 Kept modes Φ (φᵀ M φ = 1, eigenvalues λ) answer a static port load f = Pᵀ with Σ φ φᵀ f / λ. All the discarded ones
 together answer with the *residual vectors*
@@ -35,25 +35,25 @@ With X and X_1 to X_j in the basis, Galerkin's receptance from a port to any poi
 (a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). The attachments of the lowest frequencies then
 come close to the modes just above the limit, as far as the ports drive them.
 
-Computed modes are not quite the housing's, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness
-leaves out: an error of first order, 2 |ψᵀ r| / √(λ ω²) of a port's compliance at most, the greater the softer the mode
-beside the limit. Galerkin's quotients in the space of both take it out. To first order they turn each pair by
+Computed modes have a residual, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness leaves out:
+an error of first order, 2 |ψᵀ r| / √(λ ω²) of a port's compliance at most, the greater the softer the mode beside the
+limit. Rayleigh-Ritz in the space of both removes it. To first order it rotates each pair by
 
     s = ψᵀ r / (λ - ω²),        φ <- φ + s ψ,   ψ <- ψ - s φ,                                             (3)
 
-which moves φ towards the mode that it stands for, and leaves couplings of second order. What is turned is no more than
-the error of a mode that has its certificate; modes farther off are left for the proof to refuse.
+which moves φ towards the exact mode, and leaves couplings of second order. The rotation is no more than the error of a
+certified mode; modes with larger errors are left as they are, and the proof refuses them.
 
-*Proof.* Let U be the displacements that modes and attachments claim for the loads F of all ports, and R = F - K U what
-these leave unbalanced. Whatever U is, the exact compliance is
+*Proof.* Let U be the displacements by modes and residual modes for the loads F of all ports, and R = F - K U the
+unbalanced loads. For any U the exact compliance is
 
     C = Uᵀ F + Fᵀ U - Uᵀ K U + Rᵀ K⁻¹ R,                                                                 (4)
 
 all of it computable but the last term, of second order, which is bounded by one more solve: the kept modes' part of R
-divided by λ, and for the rest rᵀ K⁻¹ r <= (1 + |min(σ, 0)| / λ_kept) rᵀ A⁻¹ r, since A differs from K by σM. What C so
-found has beside the claimed compliance, and the bound, are the error reported.
+divided by λ, and for the rest rᵀ K⁻¹ r <= (1 + |min(σ, 0)| / λ_kept) rᵀ A⁻¹ r, since A differs from K by σM. The error
+reported is the difference of this C from the compliance by U, plus the bound.
 
-The compliance spoken of is the elastic one: modes with λ <= floor are left out of it, rigid and nearly rigid ones. For
+The compliance is the elastic one: modes with λ <= floor are left out of it, rigid and nearly rigid ones. For
 a free body this is its inertia-relief compliance Sᵀ G S with S = I - M Φ_rigid Φ_rigidᵀ: the load is balanced by the
 inertia of the accelerated body. A body on mounts that are soft beside the limit is held to the same, stricter measure.
 """
@@ -77,26 +77,26 @@ STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
 _SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
-_ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which what it adds to others is rounding
+_ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which its contribution is rounding
 _ALIKE = 1e-12  # part of the largest energy of a sweep's directions below which one is rounding
 _MOST_SWEEPS = 200
 
 
 @dataclass(frozen=True)
 class StaticProof:
-    """The static compliance at the ports, and how it was proved; r port motions.
+    """The static compliance at the ports, and the bound of its error; r port motions.
 
     Attributes
     ----------
     compliance : ndarray, shape (r, r)
         Elastic compliance: motion of one port by a unit load on another [m/N, rad/N, rad/(N m)].
     missing : ndarray, shape (r, r)
-        The part of it that the kept modes alone lack.
+        Its residual part, which the kept modes alone do not hold.
     error : float
-        Bound on |C_ab - C'_ab| / sqrt(C_aa C_bb) over all pairs of motions, with C' by modes and attachments and C the
-        exact compliance of Eq. (4).
+        Bound on |C_ab - C'_ab| / sqrt(C_aa C_bb) over all pairs of motions, with C' by modes and residual modes and C
+        the exact compliance of Eq. (4).
     overlap : float
-        Largest |φᵀ M ψ| of two different vectors among modes and attachments, and |ψᵀ M ψ - 1|.
+        Largest |φᵀ M ψ| of two different vectors among modes and residual modes, and |ψᵀ M ψ - 1|.
     sweeps : int
         Solves with the factor of A for all ports at once, before the last one for the bound.
     """
@@ -109,7 +109,7 @@ class StaticProof:
 
     @property
     def missing_parts(self) -> FloatArray:
-        """Part of each port's own compliance that the kept modes lack, shape (r,): the error without attachments."""
+        """Residual part of each port's own compliance, shape (r,): the error of the kept modes alone."""
         own = self.compliance.diagonal()
         return np.asarray(self.missing.diagonal() / np.where(own > 0.0, own, 1.0))
 
@@ -121,8 +121,8 @@ class Attachments:
     Attributes
     ----------
     frequencies : ndarray, shape (k,)
-        ω with ψᵀ K ψ = ω² [rad/s], ascending. Where the stiffness of what the modes lack balances its mass: not a
-        natural frequency of the housing, and above all of the kept ones.
+        ω with ψᵀ K ψ = ω² [rad/s], ascending: the Rayleigh quotients of the residual modes, above all kept
+        frequencies; no natural frequencies of the housing.
     shapes : ndarray, shape (k, n_nodes, 3)
         ψᵀ M ψ = 1 [1/√kg], and no mass in common with the modes or each other.
     proof : StaticProof
@@ -133,7 +133,7 @@ class Attachments:
     proof: StaticProof
 
     def project(self, port: sparse.csr_array) -> FloatArray:
-        """The attachments' motions at a port, shape (k, n_motions)."""
+        """The residual modes' motions at a port, shape (k, n_motions)."""
         return np.asarray((port @ self.shapes.reshape(len(self.shapes), port.shape[1]).T).T)
 
 
@@ -151,7 +151,7 @@ def residual_attachments(
     n_nodes: int,
     orders: int = 1,
 ) -> tuple[Attachments, FloatArray]:
-    """Residual attachment modes of a set of modes, proved to make the static compliance at the ports exact.
+    """Compute residual attachment modes, and prove that they make the static compliance at the ports exact.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def residual_attachments(
     HousingError
         Where the shapes of the arrays do not fit, or the shift stands among the kept modes.
     ReductionError
-        Where the sweeps do not settle or the result fails its proof.
+        Where the sweeps do not converge or the result fails its proof.
     """
     n = stiffness.shape[0]
     if ports.shape[1] != n or vectors.shape != (n, len(values)) or len(free) != n:
@@ -219,7 +219,7 @@ def residual_attachments(
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
     found = (ports @ shapes).T
     missing = (found.T / squared) @ found
-    # Each load without what accelerates the rigid modes, and the displacements claimed for it.
+    # Each load without the part that accelerates rigid modes, and the displacements found for it.
     balanced = loads - inertia[:, ~elastic] @ motions[~elastic]
     claimed = vectors[:, elastic] @ (motions[elastic] / values[elastic][:, None]) + shapes @ (found / squared[:, None])
     slack = 1.0 + max(-shift, 0.0) / max(float(values.max(initial=0.0)), floor)
@@ -252,10 +252,10 @@ def _static_response(
 ) -> tuple[FloatArray, int]:
     """X with K X = (I - M V Vᵀ) F and Vᵀ M X = 0 for some modes V, and the sweeps it took.
 
-    Block conjugate gradients in the M-orthogonal complement of V, preconditioned by A⁻¹: each sweep takes all columns'
-    directions D, with Dᵀ K D = I, to the least of every column's energy. They go on until a sweep moves no column by
-    more than a part ``settled`` in the norm of the strain energy. ``known`` [m/N] is compliance beside the columns' own
-    to measure against, where little may be left.
+    Block conjugate gradients in the M-orthogonal complement of V, preconditioned by A⁻¹: each sweep minimises the
+    energy of every column over all columns' directions D, with Dᵀ K D = I. The iteration ends where a sweep moves no
+    column by more than a part ``settled`` in the norm of the strain energy. ``known`` [m/N] is the compliance held
+    already, added to the columns' own as the measure where little is left.
     """
     x = np.zeros_like(loads)
     left = loads - inertia @ (vectors.T @ loads)
@@ -271,7 +271,7 @@ def _static_response(
             product -= held @ before
         energy = step.T @ product
         if sweep == 1:
-            # Loads count by the response that they find, so that forces and moments count alike.
+            # Loads are scaled by their response, so that forces and moments count alike.
             scale = _ratio(np.ones(len(energy)), np.sqrt(np.maximum(energy.diagonal(), 0.0)))
         shares, mixture = np.linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
         # A direction that the others have already waits until it is no longer rounding beside them.
@@ -291,7 +291,7 @@ def _static_response(
 
 
 def _complement_solve(solve: Solve, right: FloatArray, vectors: FloatArray, inertia: FloatArray) -> FloatArray:
-    """A⁻¹ of loads in the M-orthogonal complement of the modes: what the modes left out answer at ω² = σ."""
+    """A⁻¹ of loads in the M-orthogonal complement of the modes: the response of the discarded modes at ω² = σ."""
     found = solve(right - inertia @ (vectors.T @ right))
     return np.asarray(found - vectors @ (inertia.T @ found))
 
@@ -311,7 +311,7 @@ def _independent(stiffness: Operator, residual: FloatArray, known: FloatArray) -
 
 
 def _extended(stiffness: Operator, span: FloatArray, further: FloatArray) -> FloatArray:
-    """Vectors orthonormal in K, and behind them what further ones add to their span.
+    """Extend vectors orthonormal in K by the part of further ones outside their span.
 
     A combination that adds less than a part of 1e-10 of its own strain energy is dropped.
     """

@@ -1,4 +1,4 @@
-"""The library that draws without a screen: which there is, and PyVista set up for it."""
+"""Off-screen renderer: search for EGL or OSMesa, and PyVista set up for it."""
 
 import ctypes
 import os

@@ -1,6 +1,6 @@
-"""Fewer residual attachments out of many: those that span the first responses to loads at the ports.
+"""Subset of residual modes that spans the responses of lower order to loads at the ports.
 
-A set of attachments that holds the static response of the discarded modes and their responses at the limit
+A set of residual modes that holds the static response of the discarded modes and their responses at the limit
 (:mod:`housing.reduction`, Eq. 5) holds smaller sets too. In its own coordinates, with frequencies ω and motions p of
 the ports, the response to a load is p / ω² at rest, p / (ω² - σ) at ω² = σ, and p / (ω² - σ)^j its derivatives there.
 These span the set of fewer orders; the difference between the two sets shows what the further orders contribute.
@@ -21,14 +21,14 @@ _SAME = 1e-6  # part of a response's strain energy, in its root, below which it 
 def leading_attachments(
     attachments: Attachments, ports: sparse.csr_array, shift: float, orders: int
 ) -> tuple[Attachments, FloatArray]:
-    """The attachments of fewer orders that a set of more orders holds.
+    """The residual modes of fewer orders that a set of more orders holds.
 
     Parameters
     ----------
     attachments : Attachments
         k of them.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes)
-        Motions that they are for.
+        Motions of the ports that they belong to.
     shift : float
         σ [rad²/s²] of their dynamic responses: the square of the limit of the modes that they join.
     orders : int
@@ -39,7 +39,7 @@ def leading_attachments(
     attachments : Attachments
         l <= k of them, with the proof of the whole set, whose static compliance they share.
     mixture : ndarray, shape (k, l)
-        They in terms of the given ones.
+        Their coefficients in terms of the given ones.
 
     Raises
     ------

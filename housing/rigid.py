@@ -1,4 +1,4 @@
-"""Rigid bodies: the motion of points that move as one, and the mass that such a motion meets."""
+"""Rigid body: rigid motions of points, and mass, centre of gravity and inertia from a mass matrix."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ def rigid_motions(points: FloatArray, center: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class RigidBody:
-    """What a body is to a rigid motion.
+    """Mass, centre of gravity and inertia of a body.
 
     Attributes
     ----------

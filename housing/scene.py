@@ -1,4 +1,4 @@
-"""One housing before one camera, drawn off-screen in shape after shape: what every picture and film is made of."""
+"""Scene: one housing before one camera, drawn off-screen shape by shape for pictures and films."""
 
 from collections.abc import Sequence
 from types import TracebackType
@@ -24,7 +24,7 @@ _VIEWS = {
     "top": (0.0, 1.0, 0.001),
 }
 VIEWS = tuple(_VIEWS)
-"""From where to look."""
+"""Directions of view."""
 
 STRIP = 34
 """Height of the colour bar's strip under a sheet [pixels]."""
@@ -108,16 +108,16 @@ class Scene:
         return self.shrunk(self.drawn(shape, angle))
 
     def drawn(self, shape: DrawnShape, angle: float = 0.0) -> Image:
-        """The same as large as it is drawn."""
+        """The same in the larger size in which it is rendered."""
         reach = DRAWN_SCALE * self._housing.diagonal
         points = (self._housing.rest + reach * shape.at(angle))[self._origin]
         self._solid.points = points
         self._solid.point_data.active_normals = self._skin.normals(points)
-        self._plotter.render_window.Render()  # a screenshot alone shows what was drawn before
+        self._plotter.render_window.Render()  # a screenshot alone shows the previous image
         return np.asarray(self._plotter.screenshot(None, return_img=True))
 
     def shrunk(self, drawn: Image) -> Image:
-        """What was drawn, at the picture's own size."""
+        """The rendered image, reduced to the picture's own size."""
         from PIL import Image as Pillow
 
         return np.array(Pillow.fromarray(drawn).resize(self._size, Pillow.Resampling.HAMMING))

@@ -1,6 +1,6 @@
-"""A digest of a file's bytes at its end, by which damage is found before any reader opens it.
+"""Checksum of a file: SHA-256 of its bytes, appended at its end, to detect damage before any reader opens it.
 
-HDF5 may read a damaged file for ever. It pays no heed to what stands behind the end that the file itself tells.
+HDF5 may loop for ever on a damaged file. It ignores bytes behind the end that the file itself states.
 """
 
 import hashlib
@@ -12,14 +12,14 @@ _SEAL = len(_MARK) + 64
 
 
 def seal(path: Path) -> None:
-    """Add the seal to a file that is whole."""
+    """Append the checksum to a complete file."""
     line = _MARK + _digest(path, path.stat().st_size)
     with path.open("ab") as file:
         file.write(line)
 
 
 def seal_holds(path: Path) -> bool | None:
-    """Whether a file's bytes are those that were sealed; None where it ends with no seal.
+    """Whether a file's bytes have the checksum at its end; None where it has no checksum.
 
     Raises
     ------

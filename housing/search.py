@@ -1,10 +1,11 @@
-"""Searches for modes, made again, wider, until they can be proved complete.
+"""Inertia certificate (Sylvester): search for modes, repeated more widely until the count proves it complete.
 
-Block Lanczos on the shifted inverse of K φ = λ M φ (:mod:`housing.lanczos`). The proof is Sylvester's law of inertia:
-the number of negative pivots in K - σM = L D Lᵀ is the number of eigenvalues below σ, however many of them coincide.
-A limit is itself the shift, so that one factor both counts the modes below it and finds them; for a number of modes
-the shift lies just below zero, which keeps the shifted matrix positive definite for a free body too, and a second
-factor counts up to the gap behind the last.
+The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos (:mod:`housing.lanczos`) or scipy's ``eigsh``
+(:mod:`housing.eigensolver`). The proof is Sylvester's law of inertia: the number of negative pivots in
+K - σM = L D Lᵀ is the number of eigenvalues below σ, multiple ones counted by their multiplicity. A frequency limit is
+itself the shift, so that one factor both counts the modes below it and finds them. For a number of modes the shift lies
+just below zero, which keeps the shifted matrix positive definite for a free body too, and a second factor counts up to
+the gap behind the last.
 """
 
 import time
@@ -16,26 +17,30 @@ import numpy.typing as npt
 from scipy import linalg
 
 from housing.certificate import NOT_COUNTED, OVERLAP_BOUND, Certificate
+from housing.eigensolver import DEFAULT_SOLVER, Solver, arpack_modes
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Factorization, Factorizer
 from housing.free_system import FreeSystem
 from housing.lanczos import TOLERANCE, shift_invert
-from housing.tall import Tall
+from housing.tall import BlockAlgebra
 
 FloatArray = npt.NDArray[np.float64]
 
 _ATTEMPTS = 3
 _ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away from a mode beside it
 MOST_MODES = 2000
-"""More at a time would take a basis that no memory holds."""
+"""Largest number of modes of one search: the basis of more would exceed any memory."""
 _DRAFT = 1e-4  # residual of the last modes of a draft; those of half their frequency have all digits by then
 _BELOW = 0.1  # part of the lowest elastic eigenvalue
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
 
 
 @dataclass(frozen=True)
-class Found:
-    """Certified modes, the shift of their search, and the factor of K - limit² M that counted them, or the search's."""
+class CertifiedModes:
+    """Certified modes, the shift of their search, and the factor of K - limit² M that counted them.
+
+    In a draft, which is not counted, the factor is that of the search.
+    """
 
     values: FloatArray
     vectors: FloatArray
@@ -44,17 +49,20 @@ class Found:
     shift: float
 
 
-class Search:
-    """Searches that are made again, wider, until their certificate is good; the seconds of each step add up."""
+class CertifiedSearch:
+    """Search for modes, repeated more widely until the certificate is complete; the seconds of each step add up."""
 
-    def __init__(self, system: FreeSystem, factorizer: Factorizer, floor: float) -> None:
+    def __init__(
+        self, system: FreeSystem, factorizer: Factorizer, floor: float, solver: Solver = DEFAULT_SOLVER
+    ) -> None:
         self.floor = floor
         self.seconds = {"factorisation": 0.0, "eigensolver": 0.0}
         self._system = system
         self._factorizer = factorizer
+        self._solver = solver
         self._mass = system.mass  # made here, while another thread may be finding the ordering
 
-    def below(self, limit: float, progress: Callable[[str], None]) -> Found:
+    def below(self, limit: float, progress: Callable[[str], None]) -> CertifiedModes:
         """All modes below a limit, which is itself the shift."""
         progress("counting the modes below the limit")
         shift = limit**2
@@ -78,15 +86,15 @@ class Search:
             values, vectors = self._modes(pole, place, count, above=True, attempt=attempt)
             certificate, values, vectors = self._certify(values, vectors, limit, count)
             if certificate.complete:
-                return Found(values, vectors, certificate, factor, shift)
+                return CertifiedModes(values, vectors, certificate, factor, shift)
             if pole is factor and certificate.found == count:
                 pole, place = self._beside(factor, shift)
         raise _incomplete(certificate)
 
     def _beside(self, factor: Factorization, shift: float) -> tuple[Factorization, float]:
-        """A factor at a little distance from a shift that sits all but upon a mode, with as many modes below.
+        """Factor at a small distance from a shift that nearly coincides with a mode, with as many modes below.
 
-        The inverse is so large along that mode that the others' images drown in its rounding.
+        At the shift itself the inverse is so large along that mode that rounding hides the others.
         """
         for part in _ASIDE:
             aside = shift * (1.0 + part)
@@ -95,10 +103,10 @@ class Search:
                 return other, aside
         return factor, shift
 
-    def lowest(self, count: int, progress: Callable[[str], None], *, draft: bool = False) -> Found:
-        """The lowest modes by number, with the rest of the multiple mode that the last may be part of.
+    def lowest(self, count: int, progress: Callable[[str], None], *, draft: bool = False) -> CertifiedModes:
+        """The lowest modes by number; a multiple mode at the end is completed.
 
-        A draft is not counted, and its last modes are rough.
+        A draft is not counted, and its last modes are less accurate.
         """
         shift = -self.floor
         certificate = Certificate(0.0, count, 0, 0.0, 0.0)
@@ -121,7 +129,7 @@ class Search:
             below = NOT_COUNTED if draft else factor.negative
             certificate, values, vectors = self._certify(values, vectors, limit, below)
             if certificate.complete or (draft and certificate.max_overlap < OVERLAP_BOUND):
-                return Found(values, vectors, certificate, factor, shift)
+                return CertifiedModes(values, vectors, certificate, factor, shift)
             if values.max(initial=0.0) > self.floor:
                 # Farther from rigid modes, by the scale of the elastic ones: less of their rounding stands in these.
                 shift = -max(self.floor, _BELOW * float(values[values > self.floor][0]))
@@ -136,10 +144,15 @@ class Search:
     def _modes(
         self, factor: Factorization, shift: float, count: int, *, above: bool, attempt: int, draft: bool = False
     ) -> tuple[FloatArray, FloatArray]:
-        """Modes without a proof; of an attempt that does not converge, none, but for the last one's."""
+        """Uncertified modes; none where an attempt before the last does not converge."""
         start = time.perf_counter()
         system = self._system
         try:
+            if self._solver == "eigsh":
+                tolerance = _DRAFT if draft else 0.0
+                return arpack_modes(
+                    factor.solve, self._mass, shift, count, above=above, seed=attempt, tolerance=tolerance
+                )
             return shift_invert(
                 factor.solve,
                 self._mass,
@@ -153,7 +166,7 @@ class Search:
         except IncompleteModesError:
             if attempt + 1 == _ATTEMPTS:
                 raise
-            # The next one has a wider block, as modes of high multiplicity want it.
+            # The next attempt has a wider block, which modes of high multiplicity need.
             return np.empty(0), np.empty((system.size, 0))
         finally:
             self.seconds["eigensolver"] += time.perf_counter() - start
@@ -161,7 +174,7 @@ class Search:
     def _certify(
         self, values: FloatArray, vectors: FloatArray, limit: float, below: int
     ) -> tuple[Certificate, FloatArray, FloatArray]:
-        """The certificate of the modes below a limit, of which so many are; and these, the most their space gives."""
+        """Refine the modes below ``limit`` by Rayleigh-Ritz and certify them against the inertia count ``below``."""
         start = time.perf_counter()
         values, vectors, residuals, overlap = _refined(self._system, values, vectors, limit**2 + self.floor)
         keep = values < limit**2
@@ -184,26 +197,26 @@ def _incomplete(certificate: Certificate) -> IncompleteModesError:
 
 
 def not_a_stiffness(what: str) -> FactorizationError:
-    """What to say of a stiffness with negative energies."""
+    """Error for a stiffness with negative energies."""
     return FactorizationError(f"{what}; the stiffness is not positive semidefinite")
 
 
 def _refined(
     system: FreeSystem, values: FloatArray, vectors: FloatArray, scale: float
 ) -> tuple[FloatArray, FloatArray, FloatArray, float]:
-    """Modes by the quotients of K and M in the space of those found, their residuals and their largest overlap.
+    """Rayleigh-Ritz modes of K and M in the space of those found, their residuals and their largest overlap.
 
-    The inverse's own eigenvalues would not do: about a shift hard beside rigid modes it is huge along these, and its
-    rounding there, by λ / |σ| larger beside an elastic mode's own, stands in that mode. Vectors that overlap already
-    are left as they are, to fail their certificate.
+    The eigenvalues of the inverse are not accurate enough: with a shift close to rigid modes the inverse is huge along
+    these, and its rounding contaminates each elastic mode by a factor of λ / |σ|. Vectors that overlap already are left
+    as they are, so that they fail their certificate.
     """
-    tall = Tall(system.size, system.threads)
+    algebra = BlockAlgebra(system.size, system.threads)
     inertia, force = system.mass @ vectors, system.stiffness @ vectors
-    overlaps = tall.products(vectors, inertia)
+    overlaps = algebra.products(vectors, inertia)
     if np.abs(overlaps - np.eye(len(values))).max(initial=0.0) < OVERLAP_BOUND:
-        values, mixture = linalg.eigh(tall.products(vectors, force), overlaps)
-        vectors, inertia, force = (tall.combined(columns, mixture) for columns in (vectors, inertia, force))
-        overlaps = tall.products(vectors, inertia)
+        values, mixture = linalg.eigh(algebra.products(vectors, force), overlaps)
+        vectors, inertia, force = (algebra.combined(columns, mixture) for columns in (vectors, inertia, force))
+        overlaps = algebra.products(vectors, inertia)
     error = np.linalg.norm(force - inertia * values, axis=0)
     residuals = error / ((np.abs(values) + scale) * np.linalg.norm(inertia, axis=0))
     return values, vectors, residuals, float(np.abs(overlaps - np.eye(len(values))).max(initial=0.0))

@@ -1,4 +1,4 @@
-"""What pictures and models of modes share: the outer surface as triangles, the scale, the names of files."""
+"""Outer skin of a mesh as triangles for pictures and 3D models; scale and file names of drawn modes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -75,7 +75,7 @@ def check_numbers(modes: ModeSet, numbers: Sequence[int]) -> None:
     Raises
     ------
     HousingError
-        Where there is no mode of such a number, or no number.
+        Where there is no mode of a number, or no number.
     """
     missing = [number for number in numbers if not 1 <= number <= len(modes.shapes)]
     if missing or not numbers:

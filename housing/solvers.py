@@ -1,6 +1,6 @@
-"""The sparse direct solvers behind :mod:`housing.factorization`, each told the same way.
+"""Sparse direct solvers behind :mod:`housing.factorization`: rslab and SuperLU with one interface.
 
-All of them factor a symmetric matrix that need not be definite, from its lower triangle, and know its inertia.
+Both factor a symmetric matrix that need not be definite, from its lower triangle, and report its inertia.
 """
 
 from importlib.util import find_spec
@@ -14,11 +14,6 @@ from housing.memory import check_memory
 from housing.symmetric import SymmetricMatrix
 
 FloatArray = npt.NDArray[np.float64]
-
-_PARDISO_INDEFINITE = -2  # real, symmetric, not definite
-_PARDISO_FACTOR, _PARDISO_SOLVE, _PARDISO_RELEASE = 12, 33, -1
-# What PARDISO reports, numbered from one as in its manual.
-_PERTURBED, _FILL, _POSITIVE, _NEGATIVE = 14, 18, 22, 23
 
 
 class NumericFactor(Protocol):
@@ -111,56 +106,3 @@ class _SuperluFactor:
 
     def solve(self, right: FloatArray) -> FloatArray:
         return np.asarray(self._handle.solve(right))
-
-
-class PardisoSolver:
-    """PARDISO of Intel's Math Kernel Library, through pypardiso."""
-
-    def __init__(self, threads: int) -> None:
-        self._threads = threads
-
-    def order(self, matrix: SymmetricMatrix) -> None:
-        """Nothing: pypardiso orders each matrix anew."""
-
-    def factor(self, matrix: SymmetricMatrix) -> "_PardisoFactor":
-        """Factor."""
-        return _PardisoFactor(matrix, self._threads)
-
-
-class _PardisoFactor:
-    def __init__(self, matrix: SymmetricMatrix, threads: int) -> None:
-        import pypardiso
-
-        # The lower triangle by columns is the upper one by rows, which is what PARDISO reads.
-        self._upper = matrix.lower.T.tocsr()
-        self._library = pypardiso.PyPardisoSolver(mtype=_PARDISO_INDEFINITE)
-        # pypardiso has no word for it; the library's own counts for whoever uses it in this process.
-        self._library.libmkl.MKL_Set_Num_Threads(threads)
-        for report in (_FILL, _POSITIVE, _NEGATIVE):
-            self._library.iparm[report - 1] = -1  # asks for it
-        self._call(_PARDISO_FACTOR, np.zeros(matrix.shape[0]))
-        told = {report: int(self._library.get_iparm(report)) for report in (_PERTURBED, _FILL, _POSITIVE, _NEGATIVE)}
-        if told[_PERTURBED] or told[_POSITIVE] + told[_NEGATIVE] != matrix.shape[0]:
-            self.release()
-            raise RuntimeError(f"{told[_PERTURBED]} pivots vanished and were replaced, so that the inertia is unknown")
-        self.negative, self.fill = told[_NEGATIVE], told[_FILL]
-
-    def solve(self, right: FloatArray) -> FloatArray:
-        return self._call(_PARDISO_SOLVE, right if right.ndim == 1 else np.asfortranarray(right))
-
-    def _call(self, phase: int, right: FloatArray) -> FloatArray:
-        import pypardiso
-
-        self._library.set_phase(phase)
-        try:
-            return np.asarray(self._library._call_pardiso(self._upper, right))
-        except pypardiso.PyPardisoError as error:
-            raise RuntimeError(str(error)) from error
-
-    def release(self) -> None:
-        """Give back the library's memory."""
-        self._call(_PARDISO_RELEASE, np.zeros(self._upper.shape[0]))
-
-    def __del__(self) -> None:
-        if hasattr(self, "_upper"):
-            self.release()

@@ -1,4 +1,4 @@
-"""What holds the housing: patches that are fixed, or on springs and dashpots to the ground."""
+"""Supports: patches of the surface that are fixed, or on springs and dashpots to the ground."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from meshes import Facets, Mesh, facet_nodes
 
 @dataclass(frozen=True)
 class Support:
-    """A held patch of the surface, as of :class:`housing.Patch`; fixed or on springs and dashpots.
+    """A support of a patch of the surface, as of :class:`housing.Patch`; fixed or on springs and dashpots.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class Support:
     box : tuple of two points, optional
         Its low and high corners [m]; the facets inside belong to the patch.
     fixed : tuple of bool
-        Which of x, y, z are held at zero.
+        Whether x, y and z are held at zero.
     stiffness : tuple of float
         Springs to the ground along x, y, z [N/m], in all, spread evenly over the patch.
     damping : tuple of float

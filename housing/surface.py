@@ -1,4 +1,4 @@
-"""Integration over parts of the surface, and the surface point nearest to a place."""
+"""Surface integration by quadrature, and the nearest point of the surface."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -87,8 +87,8 @@ class SurfacePoint:
 class NearestOnSurface:
     """Finds the point of some boundary facets that is nearest to a place.
 
-    Told by the true, curved or twisted, shape of the few facets that are nearest by the plane triangles between their
-    corners.
+    Candidates are the few facets that are nearest by the plane triangles between their corners; among them the true,
+    curved or twisted shape decides.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ def surface_point(mesh: Mesh, facets: Facets, place: FloatArray) -> SurfacePoint
 
 
 def _bulge(nodes: FloatArray, block: ElementBlock) -> float:
-    """How far a facet may lie from the plane triangles between its corners [m], from above; 0 where it is flat."""
+    """Upper bound on the distance of a facet from the plane triangles between its corners [m]; 0 where it is flat."""
     first = block.of.n_corners
     offset = np.linalg.norm(nodes - _corner_shares(block.of) @ nodes[:first], axis=1).max()
     twist = np.linalg.norm(nodes[0] - nodes[1] + nodes[2] - nodes[3]) if first == 4 else 0.0

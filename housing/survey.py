@@ -1,4 +1,4 @@
-"""The modal survey's grid: points over the outer faces, measured along the outward normal."""
+"""Survey grid: measuring points over the outer faces of a box, along the outward normal."""
 
 from dataclasses import dataclass
 
@@ -92,7 +92,7 @@ def survey_grid(
         normal_axes, column_axis, row_axis = _FACES[face]
         normal = np.array(normal_axes, dtype=np.float64)
         outer = pick_facets(boundary, (facing @ normal > _FACING) & ((centers - middle) @ normal > 0.0))
-        if not outer:  # as on a cone: what comes nearest to looking that way
+        if not outer:  # as on a cone: the facets that come nearest to that direction
             outer = pick_facets(boundary, facing @ normal > _FACING * (facing @ normal).max())
         nearest = NearestOnSurface(mesh, outer, along=normal)
         for column in (np.arange(columns) + 0.5) / columns:

@@ -1,4 +1,4 @@
-"""A sparse symmetric matrix by its lower triangle, as factorisations take it."""
+"""Sparse symmetric matrix by its lower triangle, the form that factorisations take."""
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ _WORTH_A_THREAD = 2**22  # multiplications of one triangle: fewer are done soone
 
 
 class Operator(Protocol):
-    """What can be multiplied with vectors: all that most algorithms ask of a matrix."""
+    """Linear operator: anything that can be multiplied with vectors."""
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""Products of tall matrices: bases and blocks of vectors on all degrees of freedom."""
+"""Block vectors: products of bases and blocks of vectors on all degrees of freedom."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -10,24 +10,24 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 _SHARES = 4  # of the rows
-_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
+_ROWS_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 
 
-class Tall:
-    """Products of matrices with many rows and few columns, by shares of their rows.
+class BlockAlgebra:
+    """Products of block vectors, matrices with many rows and few columns, by shares of their rows.
 
-    There are as many shares whatever the threads, so that sums over the rows are rounded alike.
+    The number of shares does not depend on the threads, so that sums over the rows are rounded alike.
 
     Parameters
     ----------
     rows : int
         Of all the matrices.
     threads : int
-        That multiply the shares; fewer where the rows are not worth them.
+        Number of threads that multiply the shares; one where there are few rows.
     """
 
     def __init__(self, rows: int, threads: int) -> None:
-        self._threads = min(threads, _SHARES) if rows > _WORTH_A_THREAD else 1
+        self._threads = min(threads, _SHARES) if rows > _ROWS_WORTH_A_THREAD else 1
         self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
 
     def products(self, left: FloatArray, right: FloatArray) -> FloatArray:
@@ -35,7 +35,7 @@ class Tall:
         return np.asarray(sum(self._each(lambda rows: left[rows].T @ right[rows])))
 
     def subtract(self, block: FloatArray, basis: FloatArray, parts: FloatArray) -> None:
-        """Take B p off a block of columns, in place."""
+        """Subtract B p from a block of columns, in place."""
 
         def take(rows: slice) -> None:
             block[rows] -= (parts.T @ basis[rows].T).T  # by columns, in half the time of basis[rows] @ parts

@@ -1,19 +1,17 @@
 """Finite-element meshes: from a geometry, or a file, to nodes and elements with named regions.
 
-What the room offers:
-
 - :class:`Mesh` -- nodes, blocks of solid elements (:class:`ElementBlock`) and named regions, in metres.
 - :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet`, :class:`Rib`,
   :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
   dimensions; :func:`mesh_box` meshes it with gmsh, :class:`BoxMorph` moves that mesh to other dimensions.
 - :func:`mesh_cad` -- the solids of a STEP, IGES or BREP file, as a :class:`CadMesh`.
-- :func:`expected_elements`, :func:`check_mesh_size` -- how many elements a size makes, and whether they can be solved.
+- :func:`check_mesh_size` -- refuses an element size that cannot be meshed or solved.
 - :func:`box_facets`, :func:`circle_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`,
-  :func:`with_bore` -- parts of the surface of any mesh by where they lie; bores by centre and diameter.
+  :func:`with_bore` -- regions of the surface of any mesh by place; bores by centre and diameter.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
-- :func:`mesh_quality` -- edge lengths and element shapes, as numbers that say whether to trust the mesh.
-- :func:`diagnose` -- what is wrong with a mesh, or doubtful in it, by name (:class:`Ailment`);
-  :func:`resolution_ailments` -- whether its elements are small enough for the waves in it.
+- :func:`mesh_quality` -- edge lengths and shape numbers of the elements.
+- :func:`diagnose` -- defects of a mesh by name (:class:`Ailment`); :func:`resolution_ailments` -- elements that are
+  too large for the structural waves.
 
 In names, *mesh* is always the finite-element mesh; the gears' is the *gear mesh*.
 gmsh itself is imported only when a mesh is made.

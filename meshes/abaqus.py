@@ -42,7 +42,7 @@ FACE_LABELS = {
 
 @dataclass
 class _Deck:
-    """What has been read so far, by the deck's own numbers."""
+    """Content of the deck read so far, by the deck's own numbers."""
 
     points: dict[int, list[float]] = field(default_factory=dict)
     elements: dict[str, dict[int, list[int]]] = field(default_factory=dict)
@@ -63,7 +63,7 @@ def read_abaqus(path: Path) -> MeshContent:
     Raises
     ------
     GeometryError
-        Where the deck holds pyramids or other unknown solids, several instances, or numbers nothing has.
+        Where the deck holds pyramids or other unknown solids, several instances, or references to missing numbers.
     """
     deck = _Deck()
     for card in read_cards(path):

@@ -1,4 +1,4 @@
-"""The keywords of an Abaqus or CalculiX input deck, one by one."""
+"""Keyword cards of an Abaqus or CalculiX input deck."""
 
 import re
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Input decks of Abaqus and CalculiX, written."""
+"""Writer of input decks of Abaqus and CalculiX."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The form in which something wrong with a mesh is told."""
+"""Mesh defects: name, severity, message, number and place."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -10,19 +10,19 @@ Severity = Literal["error", "warning"]
 
 @dataclass(frozen=True)
 class Ailment:
-    """One thing wrong with a mesh, or doubtful in it.
+    """A defect of a mesh, or a doubt about it.
 
     Attributes
     ----------
     name : str
-        Of a mesh: ``degenerate``, ``folded``, ``shape``, ``non-manifold``, ``overlapping``, ``disconnected``, ``slit``,
-        ``non-conforming``, ``hinged``, ``unused nodes``, ``unit``. Of what it is used for: ``size``, ``locking``.
+        Of the mesh itself: ``degenerate``, ``folded``, ``shape``, ``non-manifold``, ``overlapping``, ``disconnected``,
+        ``slit``, ``non-conforming``, ``hinged``, ``unused nodes``, ``unit``. Of its resolution: ``size``, ``locking``.
     severity : {"error", "warning"}
-        Errors make the modes wrong or impossible; with warnings they may be good enough.
+        Errors make the modes wrong or impossible; warnings leave the judgement to the user.
     message : str
-        What, where, and what to do.
+        The defect, its place, and the remedy.
     count : int
-        How many nodes, facets, elements or bodies.
+        Number of nodes, facets, elements or bodies.
     place : ndarray, shape (3,)
         Of the first or the worst of them [m].
     """
@@ -37,10 +37,10 @@ class Ailment:
 def ailment(
     name: str, severity: Severity, what: str, advice: str, count: int, place: FloatArray, *, which: str = "the first at"
 ) -> Ailment:
-    """An ailment whose message says what, where one of them is, and what to do."""
+    """Make a defect whose message names the fault, one place, and the remedy."""
     return Ailment(name, severity, f"{what}, {which} {place_text(place)}; {advice}", int(count), place)
 
 
 def place_text(place: FloatArray) -> str:
-    """A place as messages write it."""
+    """Write a place for a message."""
     return f"({place[0]:.6g}, {place[1]:.6g}, {place[2]:.6g}) m"

@@ -1,4 +1,4 @@
-"""Cylindrical bores on the surface of a mesh: which there are, and which facets make up one.
+"""Cylindrical bores on the surface of a mesh: search for all of them, and the facets of each.
 
 The corners of a bore's facets lie on its cylinder, however coarse the mesh, and the facets look towards its axis; the
 outside of a boss looks away from it. A fillet along the axis is no bore, for it goes round a quarter of the circle.
@@ -34,7 +34,7 @@ class CylindricalBore:
     diameter, length : float
         Of the circle nearest to its corner nodes, and between its ends [m].
     roundness : float
-        How much of the full circle its facets go round, 0 to 1.
+        Part of the full circle that its facets cover, 0 to 1.
     facets : tuple of ElementBlock
         Its facets.
     """
@@ -57,13 +57,12 @@ def find_bores(
     axis : sequence of float
         Of any length.
     least_round : float
-        Part of the full circle that a bore must go round; by default about a half, as of a housing split at the
-        axis.
+        Part of the full circle that a bore must cover; by default about a half, as in a housing split at the axis.
 
     Notes
     -----
-    Each facet proposes the circle through its own corners and its neighbours'; the circles that most propose are tried
-    first, and those facets that lie on one all around are a bore. The round end of a slot, or a fillet, is none: its
+    Each facet proposes the circle through its own corners and its neighbours'. The circles with the most proposals are
+    tried first. Facets that lie on one circle all around are a bore. The round end of a slot, or a fillet, is none: its
     sides run on along its tangents, where those of a split bore end at the parting plane.
     """
     direction = unit_vector(axis)
@@ -98,7 +97,7 @@ def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
         on = inside[block.corners]
         own = normals[start : start + len(block)]
         start += len(block)
-        # Neighbours share an edge with the bore; what has all its corners there belongs to it.
+        # Neighbours share an edge with the bore; a facet with all its corners there belongs to it.
         for facet in np.flatnonzero((on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(own @ axis) < SIDEWAYS)):
             edge = mesh.points[block.corners[facet][on[facet]]].mean(axis=0)
             inward = -across(edge[None] - np.asarray(bore.center), axis)[0]
@@ -109,7 +108,7 @@ def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
 def fits_circle(
     mesh: Mesh, center: Sequence[float] | FloatArray, radius: float, axis: FloatArray, slack: float
 ) -> BoolArray:
-    """Which boundary facets lie on a cylinder with all corners and look towards its axis, shape (n_facets,).
+    """Whether each boundary facet lies on a cylinder with all corners and looks towards its axis, shape (n_facets,).
 
     Parameters
     ----------
@@ -200,7 +199,7 @@ def _bore(mesh: Mesh, facets: Facets, center: FloatArray, axis: FloatArray) -> C
 
 
 def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, first: FloatArray, second: FloatArray) -> float:
-    """How much of the circle the facets cover, each from its first to its last corner."""
+    """Part of the circle that the facets cover, each from its first to its last corner."""
     arms = mesh.points - center
     angles = np.arctan2(arms @ second, arms @ first)
     covered = np.zeros(_ARC_STEPS, dtype=bool)
@@ -217,7 +216,7 @@ def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, first: FloatArray
 
 
 def _connected(facets: Facets) -> IntArray:
-    """The number of the part that each facet belongs to; facets that share a node are of one part."""
+    """Number of the connected part that each facet belongs to; facets that share a node are connected."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

@@ -1,4 +1,4 @@
-"""Circles that the surface of a mesh may be bent round: proposed by its facets and their neighbours."""
+"""Circles fitted to the surface of a mesh: candidates for bores, proposed by facets and their neighbours."""
 
 import numpy as np
 
@@ -62,7 +62,7 @@ def proposed_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, flo
 def _most_proposed(
     places: FloatArray, radii: FloatArray, first: FloatArray, second: FloatArray
 ) -> list[tuple[FloatArray, float]]:
-    """Circles that agree to their slack, as their medians, in order of how many propose them."""
+    """Circles that agree to their slack, as their medians, those with the most proposals first."""
     if len(radii) == 0:
         return []
     size = np.exp(np.round(np.log(radii) / 0.05) * 0.05)  # bins of the same width for radii of the same size
@@ -112,7 +112,7 @@ def _edge_neighbors(facets: Facets) -> IntArray:
 
 
 def across(vectors: FloatArray, axis: FloatArray) -> FloatArray:
-    """The part of each vector at right angles to a unit vector, shape (n, 3)."""
+    """Component of each vector at right angles to a unit vector, shape (n, 3)."""
     return np.asarray(vectors - (vectors @ axis)[:, None] * axis)
 
 

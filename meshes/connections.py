@@ -1,4 +1,4 @@
-"""How the elements of a mesh hang together, and where they do not as they should."""
+"""Connectivity of a mesh: its bodies, and the defects where elements are not connected as they should be."""
 
 from collections.abc import Iterator
 
@@ -12,11 +12,11 @@ from meshes.elements import IntArray
 from meshes.matching import covered_quadrilaterals, touching_nodes, unequal_edges
 from meshes.mesh import Mesh
 
-_LISTED = 5  # bodies told one by one
+_LISTED = 5  # bodies that a message lists one by one
 
 
 def bodies(mesh: Mesh) -> IntArray:
-    """The body that each element belongs to, from 0 for the largest: elements that share a node are of one body.
+    """Body of each element, 0 the largest; elements that share a node are of one body.
 
     Returns
     -------
@@ -26,7 +26,7 @@ def bodies(mesh: Mesh) -> IntArray:
 
 
 def connection_ailments(mesh: Mesh) -> Iterator[Ailment]:
-    """What is wrong or doubtful in how the elements hang together."""
+    """Find the defects of a mesh's connectivity."""
     yield from _faces(mesh)
     body = bodies(mesh)
     mismatches = [*_conformity(mesh, body)]
@@ -37,9 +37,9 @@ def connection_ailments(mesh: Mesh) -> Iterator[Ailment]:
 
 
 def _parts(mesh: Mesh, shared: sparse.csr_array) -> IntArray:
-    """Parts of the mesh whose elements hang together by what they share, numbered from the largest down.
+    """Connected parts of the mesh, numbered from the largest down.
 
-    ``shared`` says which element has which node, or which face.
+    ``shared`` is the incidence of elements and nodes, or of elements and faces, by which they are connected.
     """
     both = sparse.block_array([[None, shared], [shared.T, None]], format="csr", dtype=np.int8)
     _, labels = connected_components(both, directed=False)
@@ -72,7 +72,7 @@ def _faces(mesh: Mesh) -> Iterator[Ailment]:
 
 
 def _turn(corners: IntArray) -> npt.NDArray[np.bool_]:
-    """Which way round facets turn: whether after the least corner comes the smaller of its neighbours."""
+    """Sense in which facets turn: whether after the least corner comes the smaller of its neighbours."""
     rows = np.arange(len(corners))
     count = np.where(corners[:, 3] < 0, 3, 4)
     least = np.argmin(np.where(corners < 0, np.iinfo(np.int64).max, corners), axis=1)
@@ -81,7 +81,7 @@ def _turn(corners: IntArray) -> npt.NDArray[np.bool_]:
 
 
 def _bodies(mesh: Mesh, body: IntArray) -> Iterator[Ailment]:
-    """Several bodies."""
+    """Several disconnected bodies."""
     count = int(body.max()) + 1
     if count > 1:
         sizes = np.bincount(body, mesh.corner_volumes)
@@ -96,7 +96,7 @@ def _bodies(mesh: Mesh, body: IntArray) -> Iterator[Ailment]:
 
 
 def _hinges(mesh: Mesh, body: IntArray) -> Iterator[Ailment]:
-    """Parts that hang on by an edge or a node alone."""
+    """Parts that are connected by an edge or a node alone."""
     faces = mesh.faces
     ones = np.ones(len(faces.number), dtype=np.int8)
     shape = (mesh.n_elements, int(faces.number.max()) + 1)
@@ -110,7 +110,7 @@ def _hinges(mesh: Mesh, body: IntArray) -> Iterator[Ailment]:
 
 
 def _conformity(mesh: Mesh, body: IntArray) -> Iterator[Ailment]:
-    """Neighbours that lie on each other and do not share their nodes."""
+    """Neighbours that touch and do not share their nodes."""
     unequal = unequal_edges(mesh)
     if len(unequal):
         what = f"{len(unequal)} edges have a middle node in one element and not in its neighbour"

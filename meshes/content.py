@@ -1,4 +1,4 @@
-"""What a mesh file says, whatever its format, and the mesh that it makes."""
+"""Content of a mesh file, independent of its format: nodes, solids and named sets, and the mesh made of them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ class MeshContent:
     Attributes
     ----------
     points : ndarray, shape (n_points, 3)
-        In the file's unit of length; also such as no element uses.
+        In the file's unit of length; nodes that no element uses may be among them.
     solids : tuple of ElementBlock
         Elements may be numbered left-handed.
     volumes : mapping of str to ndarray of int
@@ -77,7 +77,7 @@ class MeshContent:
 
 
 def right_handed(points: FloatArray, block: ElementBlock) -> ElementBlock:
-    """The same elements with positive volume: some writers number them the other way round."""
+    """Renumber elements so that their volume is positive: some writers number them left-handed."""
     negative = volumes(points, block.corners, block.of.corners) < 0.0
     if not negative.any():
         return block

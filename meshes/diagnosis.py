@@ -1,4 +1,4 @@
-"""What is wrong with a mesh, or doubtful in it, by name: where it is and what to do."""
+"""Mesh diagnosis: the defects of a mesh by name, with their places and remedies."""
 
 from collections.abc import Iterator
 
@@ -17,22 +17,22 @@ from meshes.shapes import quadrature, shape_functions
 LEAST_SHAPE = 0.05
 """Shape number below which an element spoils the stresses around it."""
 
-_LIKELY = 0.5  # of several units that would do, the one that makes the housing nearest to this is proposed [m]
+_LIKELY = 0.5  # of several possible units, the one that makes the housing nearest to this is proposed [m]
 _NO_VOLUME = 1e-9  # of the cube of an element's longest edge
 
 
 def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[Ailment, ...]:
-    """Everything wrong with a mesh or doubtful in it, errors first.
+    """Find the defects of a mesh, errors first.
 
     Parameters
     ----------
     mesh : Mesh
     unit : float, optional
-        The unit of length of the file that it came from [m]; with it, sizes that no housing has are doubted.
+        The unit of length of the file that it came from [m]; with it, implausible sizes are reported too.
 
     Notes
     -----
-    An inverted or flat element is no part of a diagnosis, because :class:`Mesh` takes none.
+    Inverted and flat elements are not among them, because :class:`Mesh` refuses them.
     """
     ailments = [*_elements(mesh), *connection_ailments(mesh), *_nodes(mesh), *_unit(mesh, unit)]
     return tuple(sorted(ailments, key=lambda one: one.severity != "error"))
@@ -85,7 +85,7 @@ def _nodes(mesh: Mesh) -> Iterator[Ailment]:
 
 
 def _unit(mesh: Mesh, unit: float | None) -> Iterator[Ailment]:
-    """Sizes that no housing has, with the unit that would make it one."""
+    """Implausible sizes of a housing, with the unit that would make them plausible."""
     length = float(np.ptp(mesh.bounds, axis=0).max())
     if unit is None or plausible(length):
         return

@@ -1,9 +1,9 @@
-"""The kinds of finite elements: where their nodes are, and which facets bound them.
+"""Finite element types: reference coordinates of their nodes, their edges and faces; and blocks of elements.
 
-A kind is known by meshio's name and numbers its nodes as VTK does: corners, then the middles of edges, of faces, of
-the element. The reference places of the nodes say it all; which node is the middle of an edge or a face follows from
-them. Solids are numbered so that the map from the reference element has a positive determinant: of a wedge, the
-triangle 0 1 2 turns towards 3 4 5.
+A kind has meshio's name and numbers its nodes as VTK does: corners, then the middles of edges, of faces, of the
+element. Edges, faces and their middle nodes all follow from the reference coordinates of the nodes.
+Solids are numbered so that the map from the reference element has a positive determinant: of a wedge, the triangle
+0 1 2 turns towards 3 4 5.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,7 +21,7 @@ IntArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class ElementKind:
-    """What all elements of a kind have in common.
+    """A type of element.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class ElementKind:
     order : int
         Polynomial order, 1 or 2.
     corners : str
-        The kind that its corners alone make.
+        The kind of order 1 with the same corners.
     places : tuple of tuple of float
         Reference coordinates of the nodes; the reference element reaches from 0 to 1.
     corner_faces : tuple of tuple of int
@@ -172,7 +172,7 @@ class ElementBlock:
 
     @property
     def of(self) -> ElementKind:
-        """What its kind says."""
+        """The element type."""
         return KINDS[self.kind]
 
     @property
@@ -186,7 +186,7 @@ class ElementBlock:
 
 
 def outside_nodes(block: ElementBlock, n_points: int) -> str:
-    """Which element of a block names a node that is not there, in words; empty where none does.
+    """Describe the first element of a block that names a missing node; empty where none does.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ Facets = tuple[ElementBlock, ...]
 
 
 def facets_of(nodes: IntArray) -> Facets:
-    """Facets of one kind, told by their number of nodes: 3 or 6 for triangles, 4, 8 or 9 for quadrilaterals.
+    """Facets of the kind that their number of nodes implies: 3 or 6 for triangles, 4, 8 or 9 for quadrilaterals.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What can go wrong between a geometry and its mesh."""
+"""Errors of geometries and meshes."""
 
 
 class GeometryError(ValueError):

@@ -1,4 +1,4 @@
-"""Mesh files in and out."""
+"""Mesh files: read and write every format that meshio knows, and input decks of Abaqus and CalculiX."""
 
 import os
 import tempfile
@@ -40,7 +40,7 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     Raises
     ------
     GeometryError
-        Where the file is missing or cannot be read, or holds no solid elements, or such as are not known here.
+        Where the file is missing or cannot be read, or holds no solid elements, or elements of an unknown type.
     """
     if not unit > 0.0:
         raise GeometryError(f"unit of length {unit} m must be positive")
@@ -53,7 +53,7 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
         raise
     except SystemExit as error:  # meshio leaves through sys.exit where no reader takes the file
         raise GeometryError(f"mesh file {path} is broken, or of a format that meshio does not read") from error
-    except Exception as error:  # a broken file fails in whatever way its reader happens to stumble
+    except Exception as error:  # readers raise exceptions of many kinds on a broken file
         raise GeometryError(
             f"mesh file {path} cannot be read: {type(error).__name__}: {error}; it is broken, cut short, or of another "
             "format than its ending says"
@@ -110,7 +110,7 @@ def _through_meshio(path: Path) -> MeshContent:
     _check_tetgen(path)
     if not path.stat().st_size:
         raise GeometryError(f"mesh file {path} is empty")
-    # meshio tells of trouble on the screen; standard output belongs to the caller.
+    # meshio prints warnings to standard output, which belongs to the caller.
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()), framed_file(path) as readable:
         content = meshio.read(readable)
     return content_from_meshio(content, path)
@@ -127,7 +127,7 @@ def _check_ending(path: Path, known: Mapping[str, list[str]]) -> None:
 
 
 def _check_tetgen(path: Path) -> None:
-    """Refuse what meshio's reader of TetGen's files would wait for without end: a file with nothing to read."""
+    """Refuse an empty TetGen file, for which meshio's reader would wait without end."""
     if path.suffix not in (".node", ".ele"):
         return
     for part in (path.with_suffix(".node"), path.with_suffix(".ele")):

@@ -1,4 +1,4 @@
-"""What meshio reads: kinds of elements, and regions from the many ways in which formats name them."""
+"""Conversion from meshio: element types, and regions from the ways in which file formats name them."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,7 +27,7 @@ _FORGOTTEN = ("wedge15", "pyramid13", "hexahedron24")
 
 
 def load_meshio() -> Any:
-    """meshio, made to know the dimension of every solid that its readers know."""
+    """Import meshio and complete its table of dimensions for every solid that its readers know."""
     import meshio
     from meshio._mesh import topological_dimension
 
@@ -37,12 +37,12 @@ def load_meshio() -> Any:
 
 
 def content_from_meshio(content: Any, path: Path) -> MeshContent:
-    """What meshio has read.
+    """Convert the content that meshio has read.
 
     Raises
     ------
     GeometryError
-        Where there are no solid elements, or such as are not known here.
+        Where there are no solid elements, or elements of an unknown type.
     """
     found = sorted({block.type for block in content.cells})
     others = sorted({block.type for block in content.cells if block.dim == 3} - set(SOLIDS))
@@ -85,7 +85,7 @@ def _groups(content: Any, number: int) -> list[tuple[str, IntArray]]:
     """Named groups of one block, as (name, members).
 
     Of gmsh's format 4 meshio gives the groups twice, as sets and as tags, and the tags name one group only of an
-    element that is in several: the union of both is what the file says.
+    element that is in several: the union of both is the file's content.
     """
     groups: dict[str, IntArray] = {}
 
@@ -110,7 +110,7 @@ def _groups(content: Any, number: int) -> list[tuple[str, IntArray]]:
 
 
 def _flagged_faces(content: Any, number: int, block: ElementBlock) -> Iterator[tuple[str, IntArray]]:
-    """Surfaces told by a bit for each face of the elements, as :mod:`meshes.to_meshio` writes them."""
+    """Surfaces stored as a bit for each face of the elements, as :mod:`meshes.to_meshio` writes them."""
     for key, arrays in content.cell_data.items():
         word, _, name = key.partition(":")
         if word == "faces":
@@ -122,7 +122,7 @@ def _flagged_faces(content: Any, number: int, block: ElementBlock) -> Iterator[t
 
 
 def _tagged(content: Any, key: str, word: str, number: int, dimension: int) -> Iterator[tuple[str, IntArray]]:
-    """Groups that a cell array tells by numbers; zero is none."""
+    """Groups numbered by a cell array; zero is no group."""
     if key not in content.cell_data:
         return
     tags = np.asarray(content.cell_data[key][number]).ravel()

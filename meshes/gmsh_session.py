@@ -1,4 +1,4 @@
-"""One gmsh session: loaded late, quiet, deterministic, and closed whatever happens."""
+"""gmsh session: gmsh is imported when it is needed, silent, deterministic, and finalised after errors too."""
 
 import signal
 import threading
@@ -8,7 +8,7 @@ from typing import Any
 
 from meshes.errors import GeometryError, MesherUnavailableError
 
-# What gmsh's wheel links against but does not carry, as Debian and Ubuntu package names.
+# Libraries that gmsh's wheel links against but does not contain, as Debian and Ubuntu package names.
 SYSTEM_PACKAGES = (
     "libglu1-mesa",
     "libgl1",
@@ -72,7 +72,7 @@ def gmsh_session(name: str) -> Iterator[Any]:
 
 @contextmanager
 def _signals_kept() -> Iterator[None]:
-    """Give the process's handlers back: gmsh resets SIGTERM's on its own, and a killed run could not clear up."""
+    """Restore the process's signal handlers: gmsh resets SIGTERM's, and a killed run could not clean up."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -1,4 +1,4 @@
-"""Lengths: the units that files may be in, the sizes that a housing may have, and how messages write them."""
+"""Units of length of files, plausible sizes of a housing, and lengths in messages."""
 
 UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 """Units of length that a user may name [m]."""
@@ -8,10 +8,10 @@ SMALLEST, LARGEST = 0.01, 20.0
 
 
 def plausible(length: float) -> bool:
-    """Whether a housing may be so long [m]."""
+    """Whether a length is plausible for the longest side of a housing [m]."""
     return SMALLEST <= length <= LARGEST
 
 
 def length_text(length: float) -> str:
-    """A length [m] as messages write it: in mm, from a metre on in m."""
+    """Write a length [m] for a message: in mm, from a metre on in m."""
     return f"{1e3 * length:.3g} mm" if length < 1.0 else f"{length:.4g} m"

@@ -1,4 +1,4 @@
-"""Elements as images of the reference element: Jacobians and volumes."""
+"""Jacobians of the map from the reference element; volumes and first moments of elements."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Whether neighbouring elements fit: the same nodes along common edges, none within another's facet."""
+"""Conformity of a mesh: neighbouring elements share the nodes of their common edges, and none lies within a facet."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ _CORNER_TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
 
 @dataclass(frozen=True)
 class Touching:
-    """Where the surface touches itself without sharing nodes.
+    """Places where the surface touches itself without sharing nodes.
 
     Attributes
     ----------
@@ -24,9 +24,9 @@ class Touching:
     within : ndarray of int
         Corners of the surface at the place of another one of the same body.
     hanging : ndarray of int
-        Corners of the surface within facets that they are no part of, where no corner of these is.
+        Hanging nodes: corners of the surface within facets of other elements, at none of their corners.
     between_bodies : bool
-        Whether all that hang do so within facets of another body.
+        Whether all hanging nodes lie within facets of another body.
     """
 
     across: IntArray
@@ -75,8 +75,8 @@ def covered_quadrilaterals(mesh: Mesh) -> IntArray:
 def touching_nodes(mesh: Mesh, body: IntArray) -> Touching:
     """Find where parts of the surface lie on each other without sharing nodes.
 
-    Only corners are looked at, and facets as plane triangles between theirs: where curved facets meet as they should,
-    no corner lies within another.
+    Corners alone are compared with facets, which are taken as plane triangles between their corners: where curved
+    facets conform, no corner lies within another facet.
     """
     from scipy.spatial import KDTree
 

@@ -1,4 +1,4 @@
-"""The finite-element mesh that every other room takes."""
+"""Finite-element mesh: nodes, blocks of solid elements, named surfaces and volumes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ from meshes.errors import GeometryError
 from meshes.mapping import volumes
 from meshes.topology import FaceTable, face_table, faces_as_facets
 
-_ROUNDED = 1e-9  # what a rotation may miss of an orthogonal one
+_ROUNDED = 1e-9  # largest deviation of a rotation from an orthogonal matrix
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ class Mesh:
 
     @property
     def incidence(self) -> sparse.csr_array:
-        """Which element has which node, shape (n_elements, n_points): 1 in its columns."""
+        """Incidence of elements (rows) and nodes (columns), shape (n_elements, n_points): 1 where a node belongs."""
         nodes = np.concatenate([block.nodes.ravel() for block in self.blocks])
         lengths = np.concatenate([np.full(len(block), block.of.n_nodes) for block in self.blocks])
         pointer = np.concatenate([[0], np.cumsum(lengths)])
@@ -167,7 +167,7 @@ class Mesh:
 
     @cached_property
     def faces(self) -> FaceTable:
-        """Every face of every element, and which of them are shared."""
+        """Table of the faces of all elements, with the sharing of each."""
         return face_table(self.blocks)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Nastran decks in the form that meshio takes: with their frame, and every continuation marked."""
+"""Nastran decks completed for meshio: framed bulk data, and every continuation marked."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

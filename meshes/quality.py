@@ -1,4 +1,4 @@
-"""Numbers that say whether a mesh can be trusted."""
+"""Mesh quality: edge lengths and shape numbers of the elements."""
 
 from dataclasses import dataclass
 
@@ -69,7 +69,7 @@ def _block_shape(points: FloatArray, block: ElementBlock) -> FloatArray:
     corners = block.of.corners
     places = np.array(KINDS[corners].places).T
     if corners == "tetra":
-        places = places[:, :1]  # the map is the same all over
+        places = places[:, :1]  # the map is affine, so that one corner is enough
     _, gradients = shape_functions(corners, places)
     jacobian = jacobians(points, block.corners, gradients)
     mapped = np.einsum("ijeq,jk->ikeq", jacobian, np.linalg.inv(_IDEAL[corners]))

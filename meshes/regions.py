@@ -1,4 +1,4 @@
-"""Parts of the surface of any mesh: in a box, on a plane, of a bore; by where they lie, whatever made the mesh."""
+"""Regions of the surface of any mesh by place: facets in a box, on a plane, in a circle, of a bore."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -81,7 +81,7 @@ def plane_facets(mesh: Mesh, point: Sequence[float], normal: Sequence[float]) ->
 
 
 def circle_facets(mesh: Mesh, center: Sequence[float], normal: Sequence[float], diameter: float) -> Facets:
-    """Boundary facets of a flat face that look one way, in a circle: such as what a bolt clamps of one of two parts.
+    """Boundary facets of a flat face in a circle, such as the area of a part that a bolt clamps.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def cylinder_facets(
     bores = joined_by_span(mesh, pick_facets(mesh.boundary, on), place, direction) if on.any() else ()
     bores = tuple(bore for bore in bores if bore.roundness >= _LEAST_ROUND)
     along = [abs(float(np.dot(np.subtract(bore.center, place), direction))) for bore in bores]
-    # A centre far away on the axis is a slip, and would be a long arm to the seat that it names.
+    # A centre far away on the axis is a mistake, and would give the seat a long lever arm.
     if bores and min(along) <= diameter + bores[int(np.argmin(along))].length / 2:
         return bores[int(np.argmin(along))].facets
     raise GeometryError(_no_bore(mesh, place, diameter, direction))
@@ -193,7 +193,7 @@ def with_bore(
 
 
 def _no_bore(mesh: Mesh, center: FloatArray, diameter: float, axis: FloatArray) -> str:
-    """What was looked for, and what there is instead, nearest first."""
+    """Message that names the bore asked for and the bores found, nearest first."""
     message = f"no bore of {1e3 * diameter:.5g} mm around {_place(center)} mm"
     bores = find_bores(mesh, axis=axis)
     if not bores:

@@ -1,4 +1,4 @@
-"""Whether the elements are small enough for the waves that they are to carry."""
+"""Mesh resolution: element size against the shortest structural wave, and locking of linear tetrahedra."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ _LOCKING = 2.8
 
 @dataclass(frozen=True)
 class WaveCarrier:
-    """What decides the shortest wave: the material, and the frequency to which it counts.
+    """Material and highest frequency, which determine the shortest wavelength.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ def wall_thickness(mesh: Mesh) -> float:
 
 
 def resolution_ailments(mesh: Mesh, wave: WaveCarrier) -> tuple[Ailment, ...]:
-    """Doubts about elements that are too large or too simple, with the size that would do."""
+    """Find elements that are too large or of too low an order, with the size that suffices."""
     thickness = wall_thickness(mesh)
     length = wave.shortest_wave(thickness)
     longest = np.concatenate([edge_lengths(mesh.points, block).max(axis=1) for block in mesh.blocks])
@@ -87,7 +87,7 @@ def resolution_ailments(mesh: Mesh, wave: WaveCarrier) -> tuple[Ailment, ...]:
 
 
 def _locking(mesh: Mesh, thickness: float) -> list[Ailment]:
-    """Four-node tetrahedra, whose strain is constant, bend too stiffly."""
+    """Locking of four-node tetrahedra, whose strain is constant, in bending."""
     first, simple, edges = 0, [], []
     for block in mesh.blocks:
         if block.kind == "tetra":
@@ -109,7 +109,7 @@ def _locking(mesh: Mesh, thickness: float) -> list[Ailment]:
 
 
 def locking_excess(edge: float, thickness: float) -> float:
-    """By what part four-node tetrahedra of an edge length bend too stiffly in a wall of a thickness, about."""
+    """Relative excess stiffness in bending of four-node tetrahedra of an edge length in a wall, approximately."""
     return _LOCKING * (edge / thickness) ** 2
 
 

@@ -1,7 +1,7 @@
 """Shape functions and quadrature of every kind of element, from scikit-fem, with the nodes in VTK's order.
 
-scikit-fem numbers nodes in its own way; the two orders are matched by the places of the nodes in the reference
-element. What it does not have is made here: the fifteen-node wedge, and a quadrature for wedges, the product of those
+scikit-fem numbers nodes in its own way; the two orders are matched by the reference coordinates of the nodes. Two
+things that scikit-fem lacks are made here: the fifteen-node wedge, and a quadrature for wedges, the product of those
 of a triangle and a line.
 """
 
@@ -91,7 +91,7 @@ def reference_element(kind: str) -> Any:
 
 
 def node_order(kind: str) -> list[int]:
-    """For each node in VTK's order, its number in scikit-fem's element."""
+    """Number in scikit-fem's element of each node in VTK's order."""
     return _element(kind)[1]
 
 

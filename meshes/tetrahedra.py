@@ -1,4 +1,4 @@
-"""From a gmsh model of solids to a mesh of tetrahedra: element size, order, middle nodes, numbering."""
+"""Tetrahedral meshing of a gmsh model of solids: element size, order, middle nodes, node numbering."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -23,13 +23,13 @@ _HALVINGS = 3
 _REGULAR = 6.0 * np.sqrt(2.0)  # regular tetrahedra of unit edge in a unit of volume
 
 MOST_ELEMENTS = 3e6
-"""Some twelve million degrees of freedom: beyond any solver that follows."""
+"""Largest number of elements: about twelve million degrees of freedom, beyond the solvers."""
 
 _STRAIGHT = 1e-6  # an edge bent by less, as a part of its length, is straight
 
 
 def check_mesh_request(mesh_size: float, order: int) -> None:
-    """Hold the numbers that every mesher takes to their ranges.
+    """Check element size and order.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def check_mesh_request(mesh_size: float, order: int) -> None:
 
 
 def expected_elements(volume: float, mesh_size: float) -> float:
-    """About how many tetrahedra fill a volume: regular ones have edge³ / (6 √2) each.
+    """Approximate number of tetrahedra that fill a volume: regular ones have edge³ / (6 √2) each.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def expected_elements(volume: float, mesh_size: float) -> float:
 
 
 def check_mesh_size(volume: float, extent: float, mesh_size: float) -> None:
-    """Refuse an element size that makes no sense before it takes hours and all memory.
+    """Refuse an element size that cannot be meshed or solved, before meshing starts.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def mesh_solids(gmsh: Any, mesh_size: float, order: int, *, smallest: float | No
 
 
 def _unfold(gmsh: Any) -> None:
-    """Straighten the edges of elements that their curved sides fold, as little as it takes.
+    """Straighten the edges of elements that are folded by their curved sides, no more than needed.
 
     A bore or a fillet that is small beside its elements bends their edges so far that an element may turn inside
     out. The middle nodes of such an element are drawn back towards the middles of their edges, by halves and in the
@@ -136,7 +136,7 @@ def _unfold(gmsh: Any) -> None:
 
 @dataclass(frozen=True)
 class Tetrahedra:
-    """What gmsh made, as plain arrays in the mesh's own order of nodes; see :class:`~meshes.Mesh` for their shapes."""
+    """Mesh from gmsh as plain arrays in the mesh's own order of nodes; see :class:`~meshes.Mesh` for their shapes."""
 
     points: FloatArray
     cells: IntArray
@@ -155,10 +155,10 @@ class Tetrahedra:
 
 
 def _nearby(cells: IntArray, n_nodes: int) -> IntArray:
-    """An order of the nodes in which those of an element are near each other (Cuthill and McKee 1969, reversed).
+    """Reverse Cuthill-McKee order of the nodes (1969), in which the nodes of an element are near each other.
 
-    gmsh numbers faces before solids and corners before middle nodes; what runs over elements or over the rows of a
-    matrix then jumps through the whole memory.
+    gmsh numbers faces before solids and corners before middle nodes; loops over elements or over the rows of a matrix
+    then jump through the whole memory.
     """
     first = np.repeat(np.arange(len(cells)), cells.shape[1])
     incidence = sparse.csr_array((np.ones(cells.size), (first, cells.ravel())), shape=(len(cells), n_nodes))
@@ -181,7 +181,7 @@ def collect(
     order : {1, 2}
         Of the elements.
     surfaces, volumes : mapping of str to sequence of int
-        Which faces and solids of the model make up each named region.
+        Faces and solids of the model that make up each named region.
     unit : float
         The model's unit of length [m].
     """

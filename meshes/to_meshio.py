@@ -1,4 +1,4 @@
-"""Our mesh in meshio's form, with its regions as the files of an ending can carry them."""
+"""Conversion to meshio, with regions in the form that the file format can hold."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -17,12 +17,12 @@ _LOST = {".med": ("hexahedron27",)}
 
 
 def meshio_from_mesh(mesh: Mesh, ending: str) -> Any:
-    """meshio's form of a mesh for files of an ending, with the regions as they can carry them.
+    """Convert a mesh for files of an ending, with regions in the form that the format can hold.
 
     Raises
     ------
     GeometryError
-        Where volumes overlap and the format knows one for each element only, or a name is too long for it.
+        Where volumes overlap and the format knows only one for each element, or a name is too long for it.
     """
     meshio = load_meshio()
     lost = sorted(set(mesh.kinds) & set(_LOST.get(ending, ())))
@@ -73,7 +73,7 @@ def _check_xdmf(mesh: Mesh) -> None:
 
 
 def _face_flags(mesh: Mesh, name: str) -> IntArray:
-    """A bit for each face of an element that is in a surface: meshio reads no facets beside solids of order 2."""
+    """Bits of the faces of each element that are in a surface: meshio reads no facets beside solids of order 2."""
     flags = np.zeros(mesh.n_elements, dtype=np.int64)
     for block in mesh.surfaces[name]:
         found = find_faces(mesh, corner_rows(block))
@@ -84,7 +84,7 @@ def _face_flags(mesh: Mesh, name: str) -> IntArray:
 
 
 def _positions(mesh: Mesh, solids: tuple[ElementBlock, ...]) -> IntArray:
-    """For each element of the blocks to write, its number in the mesh: merging puts those of one kind together."""
+    """Number in the mesh of each element to write: merging puts the elements of one kind together."""
     if solids is mesh.blocks:
         return np.arange(mesh.n_elements)
     first = np.cumsum([0, *(len(block) for block in mesh.blocks)])

@@ -1,4 +1,4 @@
-"""Which faces the elements share."""
+"""Mesh topology: the table of element faces, and their sharing between elements."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import numpy as np
 from meshes.elements import KINDS, ElementBlock, Facets, IntArray
 
 NO_NODE = -1
-"""In the place of a fourth corner that a triangle does not have."""
+"""Stands for the missing fourth corner of a triangle."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class FaceTable:
     number : ndarray of int, shape (n_faces,)
         Equal for faces of the same corners.
     sharing : ndarray of int, shape (n_faces,)
-        How many elements have a face of these corners.
+        Number of elements that have a face of these corners.
     source : ndarray of int, shape (n_faces, 3)
         Block, element within the block, and which of its faces.
     """

@@ -1,4 +1,4 @@
-"""The best one-to-one assignment of rows to columns by their scores, and by how much it is the best."""
+"""Linear assignment of rows to columns by their scores, and its margin over the next best assignment."""
 
 import numpy as np
 import numpy.typing as npt
@@ -9,7 +9,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 def best_assignment(scores: FloatArray) -> list[tuple[int, int]]:
-    """Rows and columns, each at most once, with the largest sum of scores; what scores nothing stays alone.
+    """Rows and columns, each at most once, with the largest sum of scores; pairs without a score are left out.
 
     Parameters
     ----------
@@ -26,12 +26,12 @@ def best_assignment(scores: FloatArray) -> list[tuple[int, int]]:
 
 
 def margin(scores: FloatArray, row: int, columns: BoolArray) -> float:
-    """How much is lost where a row may go to none of some columns, as a part of what it scores there.
+    """Relative loss of the best assignment where a row may not take any of some columns.
 
-    The best sum with the row in one of these columns, less the best sum with it in none of them, over the score it has
-    there in the former. 1: the rest gains nothing by the row's freedom. 0: another assignment is as good; less is 0.
+    The best sum with the row in one of these columns, less the best sum with it in none of them, over the row's score
+    in the former; clipped to 0. 1: the other rows gain nothing. 0: another assignment is as good.
 
-    It measures how clear the choice is, not how probable: a row that fits nothing well but one thing least badly has 1.
+    It measures the clearness of the choice, not its probability: a row with one poor partner and no other has 1.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How alike two mode shapes are: the modal assurance criterion, its auto form, and the form weighted by poles.
+"""Modal assurance criterion (MAC) of mode shapes, auto-MAC, pole-weighted MAC, and modal scale factor.
 
 The criterion is the squared cosine of the angle between two vectors (Allemang and Brown 1982),
 
@@ -16,7 +16,7 @@ from housing.correlation.shape_sets import ComplexArray, FloatArray, ShapeArray,
 from housing.errors import HousingError
 
 
-def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
+def modal_assurance_criterion(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
     """Modal assurance criterion between every shape of one set and every shape of another.
 
     Parameters
@@ -27,8 +27,8 @@ def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
     Returns
     -------
     ndarray, shape (a, b)
-        From 0 to 1; NaN where two shapes share no degree of freedom. A shape that is zero wherever the other was
-        measured is like nothing: 0.
+        From 0 to 1; NaN where two shapes share no degree of freedom; 0 for a shape that is zero wherever the other was
+        measured.
 
     Raises
     ------
@@ -45,8 +45,8 @@ def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
 
 
 def auto_mac(shapes: npt.ArrayLike) -> FloatArray:
-    """MAC of a set with itself, shape (n, n): what is large off its diagonal the survey's points cannot tell apart."""
-    return mac(shapes, shapes)
+    """MAC of a set with itself, shape (n, n): the survey cannot distinguish modes with large off-diagonal values."""
+    return modal_assurance_criterion(shapes, shapes)
 
 
 def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> ComplexArray:
@@ -80,7 +80,7 @@ def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> Compl
 def pole_weighted_mac(
     first: npt.ArrayLike, first_poles: npt.ArrayLike, second: npt.ArrayLike, second_poles: npt.ArrayLike
 ) -> FloatArray:
-    """MAC scaled by frequency and damping: how alike the free motions of two modes can be (Vacher et al. 2010).
+    """Pole-weighted MAC: likeness of the free motions of two modes, by shape, frequency and damping (Vacher 2010).
 
     A mode's free motion is y(t) = Re(c v exp(λ t)). The largest of ∫ y₁·y₂ dt over the phases of both, squared and
     over the largest of ∫ |y₁|² dt and of ∫ |y₂|² dt, is
@@ -132,6 +132,6 @@ def _largest_energy(shapes: ShapeArray, poles: ComplexArray) -> FloatArray:
 
 
 def largest_off_diagonal(matrix: FloatArray) -> float:
-    """Of a square matrix; what is unknown is left aside, and 0 where nothing is left."""
+    """Largest off-diagonal entry of a square matrix without NaN; 0 where there is none."""
     others = matrix[~np.eye(len(matrix), dtype=bool)]
     return float(np.max(others[~np.isnan(others)], initial=0.0))

@@ -1,4 +1,4 @@
-"""Measured frequencies without shapes, paired with the model's dominant modes by a rule fixed beforehand.
+"""Pairing by dominance: measured frequencies without shapes, compared with the model's dominant modes.
 
 When 25 model modes fill 3 kHz, any measured frequency has one within a few per cent, so the nearest one proves
 nothing. Where the measurement gives frequencies alone, the n dominant modes of the model, in order of frequency,
@@ -14,12 +14,12 @@ from housing.errors import HousingError
 
 FloatArray = npt.NDArray[np.float64]
 
-# The band in which dominant modes are looked for reaches so far beyond the first and the last measured frequency.
+# Ends of the band of dominant modes, as parts of the first and the last measured frequency.
 _BAND = (0.75, 1.05)
 
 
 def dominance_band(measured: FloatArray) -> tuple[float, float]:
-    """Where dominant modes are looked for: 0.75 of the first to 1.05 of the last measured frequency, in their unit."""
+    """Band of the dominant modes: 0.75 of the first to 1.05 of the last measured frequency, in their unit."""
     return _BAND[0] * float(measured[0]), _BAND[1] * float(measured[-1])
 
 

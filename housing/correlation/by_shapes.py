@@ -1,11 +1,11 @@
-"""Measured shapes paired with the model's, and all that the shapes say."""
+"""Comparison by shapes: pairing of measured and model shapes, with all correlation criteria."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from housing.correlation.assurance import auto_mac, mac
+from housing.correlation.assurance import auto_mac, modal_assurance_criterion
 from housing.correlation.comparison import Comparison, ModePair
 from housing.correlation.complexity import phase_collinearity
 from housing.correlation.coordinates import comac, enhanced_comac
@@ -97,7 +97,7 @@ def _evidence(
     return ShapeCorrelation(
         model_frequencies=model,
         measured_frequencies=measured,
-        mac=mac(phi, psi),
+        mac=modal_assurance_criterion(phi, psi),
         model_auto_mac=auto_model,
         measured_auto_mac=auto_measured,
         unpaired_measured=tuple(j + 1 for j in range(len(psi)) if j not in paired_measured),
@@ -128,7 +128,7 @@ def _look_alikes(
 
 
 def _close(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tuple[CloseModes, ...]:
-    """Each group of close modes, of the model or of the test, with its partners: how far apart the two spaces are."""
+    """Each group of close modes, of the model or of the test, with its partners, and the angle between both spaces."""
     found: dict[tuple[tuple[int, ...], tuple[int, ...]], CloseModes] = {}
     for pair in pairs:
         mates = [mate for mate in pairs if _together(pair, mate)]

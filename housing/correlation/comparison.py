@@ -1,4 +1,4 @@
-"""Model modes against measured ones: the pairs, how far apart they are, and what the pairing is worth."""
+"""Comparison of model and measured modes: pairs, frequency errors, and confidence of the pairing."""
 
 from dataclasses import dataclass
 
@@ -22,11 +22,11 @@ class ModePair:
     mac : float or None
         Modal assurance criterion, with the close modes together where there are any; None without shapes.
     confidence : float or None
-        By how much this pair beats the next best assignment, from 0 to 1, not a probability; None without shapes.
+        Margin of this pair over the next best assignment, from 0 to 1, not a probability; None without shapes.
     close_modes : tuple of int
         Numbers of the model modes close to each other that the pair's is one of; empty where it stands apart.
     mixed : bool
-        Whether shapes cannot tell which of the close modes is which.
+        Whether shapes cannot identify the single modes of the close group.
     """
 
     measured: float
@@ -47,7 +47,7 @@ class ModePair:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Pairs of measured and model modes, and what the pairing is worth.
+    """Pairs of measured and model modes, and the confidence of the pairing.
 
     Attributes
     ----------
@@ -56,14 +56,14 @@ class Comparison:
     pairing : str
         The rule by which they were paired.
     band : tuple of float
-        Where partners were looked for [rad/s].
+        Band of possible partners [rad/s].
     gap : float or None
         Of a pairing by dominance: ln(strength of the last chosen mode / strength of the first left out); below 0.1 the
         choice is a coin toss.
     measures_agree : bool or None
         Of a pairing by dominance: whether acceleration, velocity and mean absolute strength all choose these modes.
     shapes : ShapeCorrelation or None
-        What the shapes say, where there are any.
+        Correlation of the shapes, where there are any.
     """
 
     pairs: tuple[ModePair, ...]

@@ -1,4 +1,4 @@
-"""Complex mode shapes: how far from real they are, and the real shapes nearest to them.
+"""Complexity of mode shapes: modal phase collinearity, mean phase, and the nearest real shapes.
 
 All points of a lightly damped structure's mode move in phase or against it, so that φ = c ψ with ψ real. In the complex
 plane its entries then lie on a line through zero; measured ones scatter about one. With s = Σ φ² (not |φ|²)
@@ -51,7 +51,7 @@ def phase_deviation(shapes: npt.ArrayLike) -> FloatArray:
 def real_shapes(shapes: npt.ArrayLike) -> FloatArray:
     """Complex shapes turned on to the real axis by their mean phase, and their real parts; NaN stays.
 
-    Of all real shapes these are nearest to the given ones turned in any way: what is dropped is the minor axis of their
+    Of all real shapes these are nearest to the given ones at any phase: the part dropped is the minor axis of their
     scatter, a part (1 - √MPC) / 2 of their square.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Where two sets of paired shapes differ: criteria for each degree of freedom, over the pairs.
+"""Coordinate assurance criteria (COMAC, enhanced COMAC): differences of paired shapes at each degree of freedom.
 
 Shapes to unknown scales cannot be compared at one place before they are scaled alike. Here both shapes of a pair are
 scaled to unit norm (``comac``) or unit largest entry (``enhanced_comac``) over the degrees of freedom that both have.

@@ -1,4 +1,4 @@
-"""What measured shapes say beside their pairs: every MAC, what is missing or double, and how good the survey is."""
+"""Shape correlation beyond the pairs: all MACs, unpaired and double modes, close modes, quality of the survey."""
 
 from dataclasses import dataclass
 
@@ -50,7 +50,7 @@ class CloseModes:
 
 @dataclass(frozen=True)
 class ShapeCorrelation:
-    """Model and measured shapes, all with all.
+    """Correlation of all model shapes with all measured ones.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class ShapeCorrelation:
         [rad/s].
     mac : ndarray, shape (a, b)
     model_auto_mac, measured_auto_mac : ndarray, shapes (a, a) and (b, b)
-        Large values off the diagonal: what the survey's points cannot tell apart.
+        The survey cannot distinguish modes with large values off the diagonal.
     unpaired_measured : tuple of int
         Numbers of measured modes that no model mode is like: the model lacks them, or they are no modes.
     unpaired_model : tuple of int
@@ -77,7 +77,7 @@ class ShapeCorrelation:
     outside : ndarray, shape (b,), or None
         Part of each measured shape that these modes do not span.
     no_orthogonality : str
-        Why there is none, where there is none.
+        Reason where there is no cross-orthogonality; else empty.
     """
 
     model_frequencies: FloatArray

@@ -7,8 +7,8 @@ survey's degrees of freedom, T = Φ_full Φ⁺ expands them, and
     M_s = Tᵀ M T = (Φ⁺)ᵀ Φ⁺,    Φᵀ M_s Φ = I.
 
 So the cross-orthogonality of a measured shape is Φᵀ M_s ψ = Φ⁺ ψ: its coordinates in the model's modes by least
-squares, the same whether the matrix is formed or not. Here it is not. Those modes alone are known to it: what of a
-measured shape lies outside their span has no mass, so :func:`outside_span` stands beside.
+squares, the same whether the matrix is formed or not. Here it is not. The reduced mass knows these modes alone: the
+part of a measured shape outside their span has no mass; :func:`outside_span` gives its size.
 """
 
 import numpy as np
@@ -32,14 +32,14 @@ def serep_mass(model: npt.ArrayLike) -> FloatArray:
     Raises
     ------
     HousingError
-        Where the survey has fewer degrees of freedom than there are modes, or cannot tell them apart.
+        Where the survey has fewer degrees of freedom than there are modes, or cannot separate them.
     """
     inverse = _inverse(shape_set(model, "the model's"), "the survey has")
     return np.asarray((inverse.T @ inverse).real)
 
 
 def modal_coordinates(model: npt.ArrayLike, measured: npt.ArrayLike) -> ComplexArray:
-    """Coordinates of measured shapes in the model's modes: Φ⁺ ψ, the cross-orthogonality as it stands.
+    """Coordinates of measured shapes in the model's modes: Φ⁺ ψ, the cross-orthogonality before normalisation.
 
     Parameters
     ----------
@@ -56,8 +56,8 @@ def modal_coordinates(model: npt.ArrayLike, measured: npt.ArrayLike) -> ComplexA
     Raises
     ------
     HousingError
-        Where a shape was measured at fewer degrees of freedom than there are modes, or at such that cannot tell them
-        apart.
+        Where a shape was measured at fewer degrees of freedom than there are modes, or at ones that cannot separate
+        them.
     """
     phi, psi = two_sets(model, measured, ("the model's", "the measured"))
     found = np.empty((len(phi), len(psi)), dtype=np.complex128)
@@ -83,7 +83,7 @@ def cross_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatA
 def self_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     """Normalised orthogonality of the measured shapes among themselves, shape (n_measured, n_measured).
 
-    |ψ_iᴴ M_s ψ_j| / √(ψ_iᴴ M_s ψ_i · ψ_jᴴ M_s ψ_j): 1 on the diagonal, and off it what one measured mode holds of
+    |ψ_iᴴ M_s ψ_j| / √(ψ_iᴴ M_s ψ_i · ψ_jᴴ M_s ψ_j): 1 on the diagonal, and off it the share of one measured mode in
     another. Parameters and raises as :func:`modal_coordinates`.
     """
     coordinates = modal_coordinates(model, measured)
@@ -95,7 +95,7 @@ def self_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatAr
 def outside_span(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     """The part of each measured shape's square that no combination of the model's modes gives, shape (n_measured,).
 
-    What is large here is noise, an error of geometry, or a mode that the model lacks. Raises as
+    A large part points to noise, an error of geometry, or a mode that the model lacks. Raises as
     :func:`modal_coordinates`.
     """
     phi, psi = two_sets(model, measured, ("the model's", "the measured"))

@@ -1,4 +1,4 @@
-"""Which measured mode is which of the model's, by shape and frequency together.
+"""Mode pairing: the best assignment of measured modes to model modes by shape and frequency.
 
 A measured mode j and a model mode i score
 
@@ -6,13 +6,13 @@ A measured mode j and a model mode i score
 
 nothing where ω_i / ω_j is beyond exp(±2σ) or the MAC below its least. The pairs are those with the largest sum of
 scores, each mode in one pair at most: choosing the largest MAC row by row would give one model mode to two measured
-ones. The frequency has a light weight (σ = 0.2: 5 % off costs 3 % of the score), for shapes decide and frequencies
-are what is in question.
+ones. The frequency has a light weight (σ = 0.2: 5 % off costs 3 % of the score), because shapes are to decide and
+frequencies to be judged.
 
 Close modes, of the model or of the test, mix. Each is then scored by the part of a shape that lies in the span of the
 other's group (:func:`housing.correlation.subspaces.span_mac`), which is the same however a group is mixed. Within a
-group the members' own MACs decide where each is most of that; where not, there is no saying which is which, and the
-order of frequency is kept.
+group the members' own MACs decide where each is most of that score; where not, the members cannot be distinguished and
+the order of frequency is kept.
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from housing.correlation.assignment import best_assignment, margin
-from housing.correlation.assurance import mac
+from housing.correlation.assurance import modal_assurance_criterion
 from housing.correlation.shape_sets import ShapeArray, two_sets
 from housing.correlation.subspaces import close_modes, span_mac
 from housing.errors import HousingError
@@ -30,14 +30,14 @@ from housing.errors import HousingError
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_CLEAR = 0.75  # the part of what a shape has in the span of close modes that one of them must hold to be told apart
+_CLEAR = 0.75  # least share of one close mode in a shape's MAC with their span, by which it is identified
 _LEAST_FREEDOMS = 2
 _WINDOW = 2.0  # spreads of frequency within which pairs are made
 
 
 @dataclass(frozen=True)
 class PairingRule:
-    """What makes a pair; fixed before the pairs are looked at.
+    """Criteria of a pair, fixed before the pairs are known.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class PairingRule:
     closeness : float
         Neighbours within this part of their frequency are close modes.
     duplicate_mac : float
-        Two measured modes as alike as this are one mode found twice, or two that the survey cannot tell apart.
+        Two measured modes as alike as this are one mode found twice, or two that the survey cannot separate.
     """
 
     least_mac: float = 0.5
@@ -86,12 +86,12 @@ class ShapePair:
         Of the two shapes; among close modes, of one with the span of the other's, which is the same however these are
         mixed.
     confidence : float
-        By how much the best assignment with this pair beats the best without it, as a part of the pair's score, from 0
+        Margin of the best assignment with this pair over the best without it, as a part of the pair's score, from 0
         (another is as good) to 1; see :func:`housing.correlation.assignment.margin`. Not a probability.
     close_model, close_measured : tuple of int
         The modes close to each other that the pair's are among; empty where one stands apart.
     mixed : bool
-        Whether shapes could not tell which of the close modes is which, so that the order of frequency was kept.
+        Whether shapes could not identify the single modes of the close group, so that the order of frequency was kept.
     """
 
     model: int
@@ -128,8 +128,8 @@ def pair_modes(
     Raises
     ------
     HousingError
-        Where sets and frequencies do not fit together, or a shape has too few degrees of freedom to be told from any
-        other.
+        Where sets and frequencies do not fit together, or a shape has too few degrees of freedom to be distinguished
+        from any other.
     """
     rule = rule or PairingRule()
     phi, psi = two_sets(model_shapes, measured_shapes, ("the model's", "the measured"))
@@ -140,7 +140,7 @@ def pair_modes(
         )
     groups = _groups(model_frequencies, rule, len(phi), "model")
     test_groups = _groups(measured_frequencies, rule, len(psi), "measured")
-    own = mac(phi, psi)
+    own = modal_assurance_criterion(phi, psi)
     elastic = tuple(group for group in groups if model_frequencies[group[0]] > 0.0)
     shared = _shared(phi, psi, own, elastic, test_groups)
     scores = (shared * _weight(model_frequencies, measured_frequencies, rule)).T
@@ -209,7 +209,7 @@ def _weight(model: FloatArray, measured: FloatArray, rule: PairingRule) -> Float
 def _blocks(
     chosen: list[tuple[int, int]], groups: tuple[IntArray, ...], test_groups: tuple[IntArray, ...]
 ) -> list[tuple[IntArray, IntArray]]:
-    """Measured modes that share a group of close modes, each such set with all model modes that are in question."""
+    """Sets of measured modes that share a group of close modes, each with all its possible model modes."""
     model = {int(i): number for number, group in enumerate(groups) for i in group}
     test = {int(j): number for number, group in enumerate(test_groups) for j in group}
     blocks: list[tuple[set[int], set[int]]] = []

@@ -1,4 +1,4 @@
-"""Measured frequency responses against the model's: at each point over frequency, at each frequency over points.
+"""Frequency response assurance criteria: FRAC at each point over frequency, RVAC and FDAC at each frequency.
 
 Responses need no modes to be identified, and no pairing; but a resonance a few per cent off costs all that these
 criteria can show, so they follow once frequencies are right. Those that are squared cosines see shape and not size:
@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.correlation.assurance import mac
+from housing.correlation.assurance import modal_assurance_criterion
 from housing.correlation.shape_sets import ComplexArray, FloatArray
 from housing.errors import HousingError
 from housing.modes import ModeSet
@@ -30,7 +30,7 @@ def synthesised_responses(
     frequencies: FloatArray,
     quantity: Quantity = "acceleration",
 ) -> ComplexArray:
-    """The model's responses at the measured degrees of freedom to unit forces, residual attachments included.
+    """The model's responses at the measured degrees of freedom to unit forces, residual modes included.
 
     (iw)^n times the receptance (:func:`housing.receptance.receptance`), n = 0, 1, 2.
 
@@ -47,7 +47,7 @@ def synthesised_responses(
     frequencies : ndarray, shape (f,)
         w [rad/s].
     quantity : str
-        What was measured per unit force.
+        Measured quantity of the motion per unit force.
 
     Returns
     -------
@@ -144,7 +144,7 @@ def fdac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     HousingError
         Where the degrees of freedom differ.
     """
-    return mac(np.asarray(model).T, np.asarray(measured).T)
+    return modal_assurance_criterion(np.asarray(model).T, np.asarray(measured).T)
 
 
 def _alike(model: npt.ArrayLike, measured: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:

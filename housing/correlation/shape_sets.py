@@ -1,4 +1,4 @@
-"""Sets of mode shapes as the criteria take them: one row a mode, one column a degree of freedom."""
+"""Sets of mode shapes as matrices: one row a mode, one column a degree of freedom."""
 
 from typing import Any, TypeAlias
 
@@ -61,7 +61,7 @@ def two_sets(
 
 
 def filled(shapes: ShapeArray) -> tuple[ShapeArray, BoolArray]:
-    """Each shape over its largest entry, lest squares over- or underflow, zero where not measured; and where it was."""
+    """Each shape over its largest entry, against overflow of squares, zero where not measured; and where it was."""
     seen = ~np.isnan(shapes)
     known = np.where(seen, shapes, 0.0)
     largest = np.abs(known).max(axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""Close modes as subspaces.
+"""Subspaces of close modes: MAC with a span, nearest combination, principal angles.
 
 Two modes of one frequency have no shapes of their own: any two combinations of them are as good, and a test and a
 model find different ones. Of modes that are merely close a small error of the model mixes them. What is compared then
@@ -47,7 +47,7 @@ def close_modes(frequencies: npt.ArrayLike, closeness: float) -> tuple[IntArray,
 
 
 def span_mac(basis: npt.ArrayLike, shapes: npt.ArrayLike) -> FloatArray:
-    """MAC of shapes with the combination of a basis that is most like each: ‖P ψ‖² / ‖ψ‖², P the projector on the span.
+    """MAC of shapes with the nearest combination of a basis: ‖P ψ‖² / ‖ψ‖², P the projector on the span.
 
     It is the largest MAC that any member of the span has with the shape, so no less than that of any shape of the
     basis, and does not change when these are mixed. A random shape reaches k/n for a basis of k over n degrees of

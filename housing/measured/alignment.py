@@ -1,4 +1,4 @@
-"""The survey's frame and the model's: how the one lies in the other."""
+"""Alignment of a survey's frame with the model's: by landmarks, or by the nearest points of the surface (ICP)."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -17,19 +17,21 @@ from meshes import UNITS, Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
-_FIRST_STEPS, _STEPS = 6, 40  # from every start; from those that lead somewhere
+_FIRST_STEPS, _STEPS = 6, 40  # from every start; from the promising ones
 _PROMISING = 4.0  # times the least distance, and the spacing of the samples, after the first steps
 _SPREAD_STARTS = 60  # rotations spread over all there are, beside those of axes onto axes
 _SETTLED = 1e-6  # a step that moves points by less, as a part of the housing's diagonal, is the last
-_EQUAL = 0.005  # root mean square distances that differ by less, as a part of the diagonal, do not tell positions apart
+_EQUAL = (
+    0.005  # root mean square distances that differ by less, as a part of the diagonal, do not distinguish positions
+)
 _DISTINCT_DEGREES, _DISTINCT_SHIFT = 5.0, 0.05  # positions that differ by less, the latter of the diagonal, are one
-_LOOSE = 0.02  # firmness below which a motion is not told by the points; evenly spread over a box it is 0.3 and more
-_SCALE_OFF = 0.03  # beyond which the survey is not as large as the model's
+_LOOSE = 0.02  # firmness below which the points do not determine a motion; for points all over a box it is 0.3 and more
+_SCALE_OFF = 0.03  # deviation of the scale from 1 beyond which the survey is of another size than the model
 
 
 @dataclass(frozen=True)
 class Alignment:
-    """How the survey's frame lies in the model's.
+    """Position of the survey's frame in the model's.
 
     Attributes
     ----------
@@ -41,7 +43,7 @@ class Alignment:
     others : tuple of RigidMotion
         Positions of the survey that fit as well; the one nearest to how it was given is `motion`.
     remarks : tuple of str
-        What the user should know of it, a sentence each.
+        Remarks for the user, a sentence each.
     """
 
     motion: RigidMotion
@@ -64,7 +66,7 @@ def align_landmarks(geometry: MeasuredGeometry, landmarks: Mapping[str, tuple[fl
     Raises
     ------
     MeasuredDataError
-        Where a label is not among the points, or too few landmarks tell no position.
+        Where a label is not among the points, or too few landmarks determine no position.
     """
     if unknown := [label for label in landmarks if label not in geometry.labels]:
         raise MeasuredDataError(f"landmark {unknown[0]!r} is not among the survey's {len(geometry.labels)} points")
@@ -80,13 +82,13 @@ def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
     """Align a survey so that its points lie as near to the housing's outer surface as they can.
 
     From many rotations, the survey's middle on the housing's, points and the nearest planes of the surface are brought
-    together by turns (:func:`small_motion`). A housing with symmetries, or one measured on too few faces, fits in
-    several positions: the one that turns the survey least is taken, and the others are said.
+    together alternately (:func:`small_motion`). A housing with symmetries, or one measured on too few faces, fits in
+    several positions: the one that turns the survey least is taken, and the others are reported.
 
     Raises
     ------
     MeasuredDataError
-        Where the survey has fewer than six points, too few to tell a position by their distances from a surface.
+        Where the survey has fewer than six points, too few to determine a position by distances from a surface.
     """
     points = geometry.positions
     if len(points) < 6:
@@ -116,7 +118,7 @@ def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
 
 
 def size_hint(geometry: MeasuredGeometry, mesh: Mesh, part: float = 2.5) -> str | None:
-    """What a survey of quite another size than the model's suggests; None where it is about as large.
+    """Hint at the cause where the survey is of a very different size than the model; None where it is about as large.
 
     The survey may be `part` times smaller than the model: one of a part of the housing.
     """
@@ -173,7 +175,7 @@ def _started(points: FloatArray, centers: FloatArray, rotation: FloatArray) -> R
 def _settle(
     points: FloatArray, surface: _Surface, motion: RigidMotion, diagonal: float, steps: int
 ) -> tuple[float, RigidMotion]:
-    """Follow small motions until they end; the root mean square distance and the motion at its least."""
+    """Iterate small motions until they vanish; least root mean square distance, and the motion there."""
     best = (np.inf, motion)
     for _ in range(steps):
         placed = motion.place(points)
@@ -191,7 +193,7 @@ def _settle(
 def _parted(
     found: list[tuple[float, RigidMotion]], limit: float, points: FloatArray, diagonal: float
 ) -> list[RigidMotion]:
-    """The motions that leave less than a limit, of those that are nearly one the best alone, the best first."""
+    """Distinct motions whose distance is below a limit, the best first; of nearly equal ones the best alone."""
     parted: list[RigidMotion] = []
     for rms, motion in sorted(found, key=lambda one: one[0]):
         if rms <= limit and all(_distinct(motion, other, points, diagonal) for other in parted):

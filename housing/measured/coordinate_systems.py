@@ -1,4 +1,4 @@
-"""Coordinate systems of a survey: Cartesian, cylindrical or spherical, each in the survey's own frame."""
+"""Coordinate systems of a universal file: Cartesian, cylindrical or spherical, resolved into the survey's frame."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ _DEEPEST = 100  # systems within each other beyond which they run in a circle
 
 @dataclass(frozen=True)
 class CoordinateSystem:
-    """Where a system lies, and of which kind it is.
+    """A coordinate system: kind, origin and axes.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Where a modal survey measured: points, and the directions in which each was measured."""
+"""Measuring points of a modal survey, and the directions measured at each."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from housing.errors import HousingError
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_UNIT = 1e-6  # how far the length of a unit vector may be from one: files carry six digits
+_UNIT = 1e-6  # largest deviation of a unit vector's length from one: files carry six digits
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class MeasuredGeometry:
     positions : ndarray, shape (n_points, 3)
         In the survey's own frame [m].
     points : ndarray of int, shape (n_dofs,)
-        At which point each degree of freedom was measured.
+        Point of each degree of freedom.
     directions : ndarray, shape (n_dofs, 3)
-        Along which unit vector, in the survey's own frame; local directions are resolved when a file is read.
+        Unit vector of each, in the survey's own frame; local directions are resolved when a file is read.
     lines : tuple of tuple of int
         Points joined by a line where the survey is drawn.
 

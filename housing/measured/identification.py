@@ -1,8 +1,8 @@
-"""Modes from measured responses: poles by LSCF over rising orders, the stable ones chosen by a rule, shapes by LSFD.
+"""Modal identification from measured responses: poles by LSCF, a stability rule, shapes by LSFD.
 
 The two estimators are those of sdypy-EMA (extra ``ema``): the least-squares complex frequency-domain method with a
 common denominator (P. Verboven, dissertation, Vrije Universiteit Brussel, 2002), and the least-squares frequency-domain
-residues. Which poles are modes is decided here, by a rule that needs nobody to look at a chart.
+residues. A rule decides here on the physical poles, in place of a person who reads a stabilisation chart.
 """
 
 from dataclasses import dataclass
@@ -20,13 +20,13 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TURNS = 200  # of the two least-squares problems
-_NOTHING = 1e-12  # of a weight, below which nothing was measured that would tell
+_NOTHING = 1e-12  # of a weight, below which nothing was measured
 _FORMS = {"displacement": "receptance", "velocity": "mobility", "acceleration": "accelerance"}
 
 
 @dataclass(frozen=True)
 class IdentifiedModes:
-    """Modes found in responses, and how well they give them back.
+    """Modes identified from responses, and the quality of the fit.
 
     Attributes
     ----------
@@ -39,8 +39,8 @@ class IdentifiedModes:
     misfit : float
         Root mean square difference of measured and synthesised responses in the band, as a part of the measured.
     rank : ndarray, shape (n_modes,)
-        Part of each mode's residues that one shape and one participation explain; below 1 there is another mode close
-        by, or noise. With one reference always 1.
+        Part of each mode's residues that one shape and one participation explain; below 1 there is a close mode, or
+        noise. With one reference always 1.
     """
 
     modes: MeasuredModes
@@ -56,15 +56,15 @@ _RULE = StabilityRule()
 def identify_modes(
     responses: MeasuredResponses, *, band: tuple[float, float] | None = None, rule: StabilityRule = _RULE
 ) -> IdentifiedModes:
-    """Find the modes in measured responses.
+    """Identify the modes in measured responses.
 
     Parameters
     ----------
     responses : MeasuredResponses
         At evenly spaced frequencies; pairs that were not measured are left out.
     band : tuple of float, optional
-        Frequencies between which modes are looked for [rad/s]; by default all measured. Poles are estimated on all
-        lines; shapes on those of the band, whatever lies outside of it standing as a mass and a stiffness.
+        Band of the modes [rad/s]; by default all measured frequencies. Poles are estimated on all lines; shapes on
+        those of the band, with a residual mass and a residual stiffness for the modes outside.
     rule : StabilityRule
 
     Raises
@@ -123,7 +123,7 @@ def identify_modes(
 
 
 def _spacing(hertz: FloatArray) -> tuple[float, int]:
-    """The even spacing of frequencies [Hz], and how many spacings the first of them is from 0.
+    """The even spacing of frequencies [Hz], and the number of spacings from 0 to the first.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[Co
 def _completed(
     table: ComplexArray, measured: npt.NDArray[np.bool_], shape: ComplexArray, participation: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """The pair φ, ψ of the least Σ |R - φ ψᵀ|² over what was measured, by least squares for each in turn."""
+    """The pair φ, ψ of the least Σ |R - φ ψᵀ|² over the measured entries, by alternating least squares."""
     for _ in range(_TURNS):
         before = shape
         weight = measured.T @ np.abs(shape) ** 2

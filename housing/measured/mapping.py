@@ -1,4 +1,4 @@
-"""A survey on the model: where its points lie on the surface, and how the model moves there."""
+"""Mapping of a survey to the model: nearest surface points, and the model's motion at each degree of freedom."""
 
 from dataclasses import dataclass, replace
 
@@ -32,13 +32,13 @@ class MappedSurvey:
     positions, normals : ndarray, shape (n_points, 3)
         The nearest points of the outer surface [m] and their outward normals.
     distances : ndarray, shape (n_points,)
-        From where a point was measured to the surface [m].
+        From each measuring point to the surface [m].
     matrix : scipy.sparse.csr_array, shape (n_dofs, 3 n_nodes)
         Motion at each degree of freedom, along its direction, from the nodes' displacements.
     tolerance : float
         Distance up to which a point counts as one of the surface [m].
     alignment : Alignment or None
-        None where the survey was taken to stand in the model's frame.
+        None where the survey is assumed to be in the model's frame.
     """
 
     geometry: MeasuredGeometry

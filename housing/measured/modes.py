@@ -1,4 +1,4 @@
-"""Measured modes: frequencies, damping where it was found, shapes where a survey was made."""
+"""Measured modes of a modal test: frequencies, and damping and shapes where they were measured."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The part of a housing's surface that can be reached from outside, where sensors and hammers go."""
+"""Outer surface of a housing: the facets that are visible from outside, for sensors and hammer."""
 
 from dataclasses import dataclass
 
@@ -11,9 +11,9 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _CELLS = 80  # of a view along the housing's diagonal
-_DIRECTIONS = 60  # from which the housing is looked at
-_FACING = 0.5  # least cosine at which a facet is looked at, not along
-_SEEN = 0.25  # of the directions that a facet faces, it is seen from at least so many; through a bore, from few
+_DIRECTIONS = 60  # of view
+_FACING = 0.5  # least cosine between a facet's normal and the direction of a view that counts
+_SEEN = 0.25  # least part of the views of a facet in which it is visible; through a bore it is in few
 _DEPTH = 3.0  # cells that a facet may lie behind the foremost in its own: slanting neighbours share cells
 _TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
 
@@ -58,9 +58,9 @@ def sample_surface(mesh: Mesh, facets: Facets) -> SurfaceSamples:
 def outer_facets(mesh: Mesh) -> Facets:
     """The boundary facets that are seen from outside, from a good part of the directions that they face.
 
-    The housing is looked at from evenly spread directions, and points of its surface are sorted into the cells of each
-    view: a facet whose middle lies well behind the foremost point of its cell is hidden. Walls inside a closed housing
-    are hidden but for what is seen through bores; those of an open one count as outer.
+    Points of the surface are sorted into the cells of views from evenly spread directions: a facet whose middle lies
+    well behind the foremost point of its cell is hidden. Walls inside a closed housing are hidden but for parts visible
+    through bores; those of an open one count as outer.
     """
     boundary = mesh.boundary
     samples = sample_surface(mesh, boundary)

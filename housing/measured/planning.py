@@ -1,9 +1,9 @@
-"""Where to put sensors and the hammer, so that a survey tells a model's modes apart.
+"""Sensor placement by effective independence, and driving points for the hammer.
 
-Effective independence (D. C. Kammer, *J. Guidance, Control, and Dynamics* 14, 1991): of the candidates, the one that
-adds least to the independence of the modes is left out, again and again. Its share is the diagonal of the projector on
-the shapes' space, E = diag Φ (Φᵀ Φ)⁻¹ Φᵀ, between 0 and 1: leaving candidate i out takes the determinant of the
-information Φᵀ Φ to (1 - E_i) of itself, so a candidate of share 1 cannot be spared.
+Effective independence (D. C. Kammer, *J. Guidance, Control, and Dynamics* 14, 1991): the candidate that contributes
+least to the linear independence of the modes is removed, repeatedly. Its share is the diagonal of the projector on the
+shapes' space, E = diag Φ (Φᵀ Φ)⁻¹ Φᵀ, between 0 and 1: removing candidate i multiplies the determinant of the
+information Φᵀ Φ by (1 - E_i), so that a candidate of share 1 is indispensable.
 """
 
 from dataclasses import dataclass
@@ -32,15 +32,15 @@ class SurveyPlan:
     Attributes
     ----------
     sensors : ndarray of int, shape (n_sensors,)
-        Candidates kept, the one that could be spared least first.
+        Candidates kept, the most indispensable first.
     independence : ndarray, shape (n_sensors,)
         Share of each in the independence of the modes; they sum to the number of modes.
     condition : float
         Largest over smallest singular value of the shapes at the sensors, each shape of length 1.
     auto_mac : ndarray, shape (n_modes, n_modes)
-        |φᵢᵀ φⱼ|² / (φᵢᵀφᵢ φⱼᵀφⱼ) at the sensors: beside the diagonal, how much alike modes look.
+        |φᵢᵀ φⱼ|² / (φᵢᵀφᵢ φⱼᵀφⱼ) at the sensors.
     driving_points : ndarray of int, shape (n_places,)
-        Candidates for the hammer: the best single one, the one that goes best with it, and so on.
+        Candidates for the hammer: the best single one, the best one to add to it, and so on.
     residues : ndarray, shape (n_places,)
         With the places up to each: the least over the modes of the best driving-point residue, as a part of the largest
         that the mode has anywhere. Near 0 a mode is hardly excited from any of them.
@@ -77,7 +77,7 @@ def plan_survey(shapes: FloatArray, count: int) -> SurveyPlan:
     Raises
     ------
     HousingError
-        Where fewer sensors than modes or more than candidates are wanted, or no candidates tell the modes apart.
+        Where fewer sensors than modes or more than candidates are wanted, or the candidates cannot distinguish modes.
     """
     modes, candidates = shapes.shape
     if not modes <= count <= candidates:
@@ -140,12 +140,12 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     mesh : Mesh
     count : int
     without : tuple of ElementBlock
-        Facets where no sensor can stand, such as bearing seats and what the housing stands on.
+        Facets where no sensor can stand, such as bearing seats and feet.
 
     Raises
     ------
     HousingError
-        Where the surface has no room for so many.
+        Where the surface has no room for that number.
     """
     facets = outer_facets(mesh)
     samples = sample_surface(mesh, facets)

@@ -1,4 +1,4 @@
-"""Measured frequency responses: from forces at references to motions at the survey's degrees of freedom."""
+"""Measured frequency response functions: motions at the survey's degrees of freedom by forces at references."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -25,15 +25,15 @@ class MeasuredResponses:
     geometry : MeasuredGeometry
         The points of the survey and the degrees of freedom whose motion was measured.
     reference_points : ndarray of int, shape (n_references,)
-        At which point of the geometry each force acted.
+        Point of the geometry at which each force acted.
     reference_directions : ndarray, shape (n_references, 3)
-        Along which unit vector.
+        Unit vector of each force.
     frequencies : ndarray, shape (n_lines,)
         Ascending, not negative [rad/s].
     values : ndarray of complex, shape (n_dofs, n_references, n_lines)
         In m/N, m/(s N) or m/(s² N) by `motion`; NaN where a pair was not measured.
     motion : {"displacement", "velocity", "acceleration"}
-        What of the motion was measured.
+        Measured quantity of the motion.
 
     Raises
     ------

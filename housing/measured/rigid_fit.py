@@ -1,4 +1,4 @@
-"""The rigid motion that brings points nearest to others, by least squares."""
+"""Rigid registration by least squares: points to points (Kabsch), and points to planes."""
 
 from dataclasses import dataclass
 
@@ -27,16 +27,16 @@ class RigidMotion:
     translation: FloatArray
 
     def place(self, points: FloatArray) -> FloatArray:
-        """Where points of shape (n, 3) come to [m]."""
+        """Move points of shape (n, 3) [m]."""
         return np.asarray(points @ self.rotation.T + self.translation)
 
     def turn(self, directions: FloatArray) -> FloatArray:
-        """Where directions of shape (n, 3) come to point."""
+        """Rotate directions of shape (n, 3)."""
         return np.asarray(directions @ self.rotation.T)
 
     @property
     def angle_degrees(self) -> float:
-        """How far it turns."""
+        """Angle of the rotation [degrees]."""
         return float(np.rad2deg(np.arccos(np.clip((np.trace(self.rotation) - 1.0) / 2.0, -1.0, 1.0))))
 
 
@@ -44,11 +44,11 @@ AT_REST = RigidMotion(np.eye(3), np.zeros(3))
 
 
 def fit_points(points: FloatArray, targets: FloatArray) -> tuple[RigidMotion, float]:
-    """The rigid motion that brings points to their targets, and the scale that would do better still.
+    """The rigid motion that brings points nearest to their targets, and the scale of a similarity transformation.
 
     Minimises Σ |R x + t - y|²: with U S Vᵀ the singular value decomposition of Σ (y - ȳ)(x - x̄)ᵀ, R = U D Vᵀ where
     D = diag(1, 1, det U Vᵀ) keeps it a rotation. The scale that would minimise Σ |s R x + t - y|² is
-    tr(S D) / Σ |x - x̄|²; it is not applied, but tells millimetres taken for metres. W. Kabsch, *Acta Cryst.* A32, 1976;
+    tr(S D) / Σ |x - x̄|²; it is not applied, but detects wrong units. W. Kabsch, *Acta Cryst.* A32, 1976;
     S. Umeyama, *IEEE Trans. PAMI* 13, 1991.
 
     Parameters
@@ -58,7 +58,7 @@ def fit_points(points: FloatArray, targets: FloatArray) -> tuple[RigidMotion, fl
     Raises
     ------
     MeasuredDataError
-        Where there are fewer than three points, or they lie on one line and so do not tell the turn about it.
+        Where there are fewer than three points, or they lie on one line, so that the rotation about it is undetermined.
     """
     middle, goal = points.mean(axis=0), targets.mean(axis=0)
     for name, spread in (("points", points - middle), ("places", targets - goal)):
@@ -75,7 +75,7 @@ def fit_points(points: FloatArray, targets: FloatArray) -> tuple[RigidMotion, fl
 
 
 def small_motion(points: FloatArray, targets: FloatArray, normals: FloatArray) -> tuple[RigidMotion, FloatArray]:
-    """The small rigid motion that brings points nearest to planes, and how firmly it is told.
+    """The small rigid motion that brings points nearest to planes, and how firmly the planes determine it.
 
     Minimises Σ (n · (x + r × (x - x̄) + d - y))², linear in d and r (Y. Chen, G. Medioni, *Image and Vision Computing*
     10, 1992); the rotation by r is then made exact.

@@ -1,4 +1,4 @@
-"""Which poles of a stabilisation chart are modes: a rule in place of a person who looks at it."""
+"""Stabilisation chart: the rule by which stable poles over rising orders are taken as modes."""
 
 from dataclasses import dataclass, field
 
@@ -12,7 +12,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class StabilityRule:
-    """When a pole is that of a mode.
+    """Criteria of the pole of a mode.
 
     A pole of one order continues one of the order before where the frequency and the damping ratio differ by no more
     than the two tolerances; each pole continues one at most, the nearest first. A mode is a line of poles that goes on
@@ -31,7 +31,7 @@ class StabilityRule:
     share : float
         Of the upper half of the orders that a mode's line covers at least.
     contribution : float
-        Part of the responses' energy near its resonance that a mode makes at least; what makes less is noise.
+        Least part of the responses' energy near its resonance that a mode contributes; a pole that makes less is noise.
     """
 
     orders: int = 40
@@ -59,7 +59,7 @@ class PoleLine:
     stability : float
         Part of the upper half of the orders that the line covers.
     chosen : int
-        Which of the poles is taken.
+        Index of the pole taken.
     """
 
     poles: list[complex] = field(default_factory=list)
@@ -87,7 +87,7 @@ def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high
         The poles of each order, the lowest first [rad/s].
     rule : StabilityRule
     low, high : float
-        Between which sizes poles count [rad/s].
+        Least and largest |λ| of poles that count [rad/s].
     """
     growing: list[PoleLine] = []
     ended: list[PoleLine] = []

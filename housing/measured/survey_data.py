@@ -1,4 +1,4 @@
-"""All that one file of a modal survey holds."""
+"""Survey data: content of one file of a modal survey."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from housing.measured.responses import MeasuredResponses
 
 @dataclass(frozen=True)
 class SurveyData:
-    """What was read from a file of measured data, in SI and in the survey's own frame.
+    """Content of a file of measured data, in SI and in the survey's own frame.
 
     Attributes
     ----------
@@ -19,7 +19,7 @@ class SurveyData:
     modes : MeasuredModes or None
     responses : MeasuredResponses or None
     remarks : tuple of str
-        What was assumed and what was passed over, a sentence each.
+        Assumptions made and data ignored, a sentence each.
     """
 
     geometry: MeasuredGeometry | None = None

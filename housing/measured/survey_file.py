@@ -1,4 +1,4 @@
-"""Files of measured data, by their ending."""
+"""Survey files: universal files and CSV tables, chosen by their ending."""
 
 from pathlib import Path
 

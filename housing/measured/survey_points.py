@@ -1,4 +1,4 @@
-"""The points of a universal file, and the directions in which each of them moves."""
+"""Points of a universal file, with the three directions of motion of each."""
 
 from dataclasses import dataclass
 

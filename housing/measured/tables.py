@@ -1,25 +1,25 @@
-"""Measured modes as plain tables (CSV), which any spreadsheet writes.
+"""CSV tables of measured modes.
 
-Two forms, told apart by the first cell of the header:
+Two forms, distinguished by the first cell of the header:
 
 - ``frequency_hz[,damping_ratio]``: a mode a row.
 - ``point,x,y,z,direction,NAME,…``: a degree of freedom a row, a mode a column. `direction` is an axis (``x``, ``-y``)
   or three numbers parted by blanks. A column named like the one before it with `` imag`` after it holds its imaginary
   part. Two rows without a place stand above the others: ``frequency_hz`` and, if known, ``damping_ratio``. An empty
-  cell was not measured. Lengths are in metres, or in a unit told with the column, ``x [mm]``, or to the reader.
+  cell was not measured. Lengths are in metres, or in the unit of the column, ``x [mm]``, or in that given to the
+  reader.
 
-Commas, semicolons or tabs part the cells; a line that begins with # is a remark.
+Commas, semicolons or tabs separate the cells; a line that begins with # is a remark.
 """
 
 import csv
-import os
 import re
-import tempfile
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.errors import MeasuredDataError
 from housing.measured.geometry import MeasuredGeometry
 from housing.measured.modes import MeasuredModes
@@ -50,7 +50,7 @@ def read_table(path: str | Path, *, unit: str | None = None) -> SurveyData:
     Raises
     ------
     MeasuredDataError
-        Naming the line, what stands there and what was expected.
+        Where a cell is wrong; the message names the line, its content and the expected form.
     """
     path = Path(path)
     rows = _rows(path)
@@ -82,11 +82,8 @@ def write_table(path: str | Path, survey: SurveyData) -> None:
             lines.append(cells if ratios is None else [*cells, _digits(ratios[number])])
     else:
         lines = _shape_lines(geometry, modes)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        staged = Path(folder, path.name)
-        with staged.open("w", encoding="utf-8", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerows(lines)
-        os.replace(staged, path)
+    with atomic_file(path) as staged, staged.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(lines)
 
 
 def _shape_lines(geometry: MeasuredGeometry, modes: MeasuredModes | None) -> list[list[str]]:

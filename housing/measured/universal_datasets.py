@@ -1,8 +1,8 @@
-"""The datasets of a universal file as they stand in it, each checked to be whole.
+"""Datasets of a universal file, read by pyuff and each checked to be whole.
 
-pyuff reads what the format allows and much that it does not: a block cut short comes back as arrays of unlike lengths,
-a binary block of the other byte order as numbers of no meaning, a last block without its end not at all. So
-everything is held against what the file itself says of it.
+pyuff also reads files that break the format: a truncated block comes back as arrays of unlike lengths, a binary block
+of the other byte order as meaningless numbers, a last block without its end not at all. So everything is checked
+against the numbers that the file itself states.
 """
 
 import re
@@ -19,21 +19,21 @@ Dataset = dict[str, Any]
 
 USED = {15: "points", 2411: "points", 18: "coordinate systems", 2420: "coordinate systems", 82: "trace lines"}
 USED |= {55: "shapes", 58: "functions", 164: "units"}
-"""Dataset numbers that are read, and what they hold."""
+"""Dataset numbers that are read, and their content."""
 
-HEADER = 151  # says who wrote the file and when; nothing is taken from it
+HEADER = 151  # program and date of the file; not used
 
 _MARKER = re.compile(rb"    -1(?=[\r\n]| {74}|\Z)")
 _SANE = {8: 1e60, 4: 1e30}  # no measured number is larger than this nor, unless it is 0, smaller than its inverse
 
 
 def read_datasets(path: Path) -> tuple[list[Dataset], tuple[str, ...]]:
-    """Read the datasets in use here, in their order, and say which others there were.
+    """Read the datasets in use here, in their order, and list the others.
 
     Raises
     ------
     MeasuredDataError
-        Where the file cannot be read, is no universal file, is cut short, or a dataset is not what its number says.
+        Where the file cannot be read, is no universal file, is truncated, or a dataset contradicts its number.
     """
     import pyuff
 

@@ -1,4 +1,4 @@
-"""Measured frequency responses as a universal file holds them: dataset 58, ASCII or binary."""
+"""Frequency response functions of a universal file: dataset 58, ASCII or binary."""
 
 import numpy as np
 import numpy.typing as npt
@@ -13,9 +13,9 @@ FloatArray = npt.NDArray[np.float64]
 RESPONSE_FUNCTION = 4  # function type of a frequency response
 FORCE = 13  # specific data type of an excitation force
 MOTIONS: dict[int, Motion] = {8: "displacement", 11: "velocity", 12: "acceleration"}
-"""What was measured, by specific data type."""
+"""Measured quantity, by specific data type."""
 
-_SPACING = 1e-6  # frequencies of two functions may differ so much, as a part of the highest: six digits are written
+_SPACING = 1e-6  # largest difference of two functions' frequencies, as a part of the highest: six digits are written
 _GRAVITY = 9.80665
 _LABELS = {
     "m": 1.0,

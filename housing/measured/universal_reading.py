@@ -1,4 +1,4 @@
-"""From a universal file to what a survey measured: points, shapes and responses, in SI and one frame."""
+"""Reader of universal files: points, shapes and responses of a survey, in SI and one frame."""
 
 from pathlib import Path
 from typing import Literal
@@ -28,9 +28,9 @@ def read_universal(path: str | Path, *, unit: str | None = None, shape_frame: Fr
     ----------
     path : path
     unit : {"m", "mm", "cm", "in"}, optional
-        Of the file's lengths, in place of what its dataset 164 says. Without either a metre is assumed, and said.
+        Of the file's lengths, in place of its dataset 164. Without either a metre is assumed, with a remark.
     shape_frame : {"local", "global"}
-        In which frame shapes stand where points have a displacement system of their own. The format calls the vectors
+        Frame of the shapes where points have a displacement system of their own. The format calls the vectors
         of dataset 55 global; programs for modal tests write them in the points' own directions, as they measured.
         Functions (58) are always in the points' own.
 

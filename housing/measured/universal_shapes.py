@@ -1,4 +1,4 @@
-"""Measured shapes as a universal file holds them: dataset 55, real or complex."""
+"""Mode shapes of a universal file: dataset 55, real or complex."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,18 +1,17 @@
-"""Universal files of a survey: written whole or not at all, and read back as they were within the format's digits.
+"""Writer of universal files: points, shapes and responses of a survey, written whole or not at all.
 
 Points go out in double precision (2411) or, where a program asks for it, in single (15); directions that are not
 along the axes as coordinate systems (18); shapes as dataset 55 in the points' own directions; responses as dataset 58
 in binary, whose header and length of binary part are written here, because pyuff 2.5 counts complex values as half.
 """
 
-import os
-import tempfile
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from housing.atomic_file import atomic_file
 from housing.errors import MeasuredDataError
 from housing.measured.geometry import MeasuredGeometry
 from housing.measured.modes import MeasuredModes
@@ -44,7 +43,7 @@ def write_universal(path: str | Path, survey: SurveyData, *, points: Literal[15,
     ------
     MeasuredDataError
         Where there are no points, labels are not whole numbers above 0, a point's directions are not perpendicular to
-        each other, or shapes lack values at single degrees of freedom, none of which the format can say.
+        each other, or shapes lack values at single degrees of freedom, none of which the format can express.
     """
     import pyuff
 
@@ -65,14 +64,12 @@ def write_universal(path: str | Path, survey: SurveyData, *, points: Literal[15,
     datasets += _lines(geometry, nodes)
     if survey.modes is not None and survey.modes.shapes is not None:
         datasets += _shapes(survey.modes, nodes, frames)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        staged = Path(folder, path.name)
+    with atomic_file(path) as staged:
         pyuff.UFF(str(staged)).write_sets(datasets, "overwrite")
         if survey.responses is not None:
             with staged.open("ab") as file:
                 for block in _functions(survey.responses, nodes, frames):
                     file.write(block)
-        os.replace(staged, path)
 
 
 _HEADER: dict[str, Any] = {
@@ -214,7 +211,7 @@ def _shapes(modes: MeasuredModes, nodes: list[int], frames: FloatArray) -> list[
 
 
 def _component(frame: FloatArray, direction: FloatArray) -> tuple[int, int]:
-    """Which of a point's three directions this one is, and its sign."""
+    """Index of this direction among a point's three, and its sign."""
     shares = frame @ direction
     component = int(np.argmax(np.abs(shares)))
     return component, 1 if shares[component] > 0.0 else -1

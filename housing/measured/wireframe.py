@@ -1,4 +1,4 @@
-"""A survey as a wireframe that moves: lines between its points, and their motion from what was measured there."""
+"""Wireframe of a survey: lines between its points, and their motion from the measured degrees of freedom."""
 
 from itertools import pairwise
 
@@ -51,8 +51,8 @@ def _between(places: FloatArray, near: IntArray, point: int, other: int, length:
 def point_motions(geometry: MeasuredGeometry, values: FloatArray) -> FloatArray:
     """Displacement of each point from its measured degrees of freedom, shape (n_points, 3).
 
-    The least motion that has the measured parts, D⁺ψ with the point's directions D as rows: what was not measured is
-    taken as at rest, as is a degree of freedom that is NaN.
+    The least motion that has the measured components, D⁺ψ with the point's directions D as rows: components that were
+    not measured, or are NaN, are at rest.
     """
     motions = np.zeros((len(geometry.labels), 3))
     known = np.isfinite(values)
@@ -66,7 +66,7 @@ def point_motions(geometry: MeasuredGeometry, values: FloatArray) -> FloatArray:
 def laid_over(measured: ComplexArray, model: FloatArray) -> FloatArray:
     """A measured shape at the model's phase and size, real, shape (n_dofs,); NaN where it was not measured.
 
-    It is turned by the angle of ψᴴφ, as near to φ as a turn can bring it, and has φ's norm over what was measured.
+    It is turned by the angle of ψᴴφ, which brings it nearest to φ, and has φ's norm over the measured entries.
     """
     known = np.isfinite(measured)
     psi, phi = measured[known], model[known]

@@ -1,15 +1,15 @@
-"""What a coarse mesh adds to a housing's frequencies, learned at one design and taken off at others.
+"""Mesh bias: discretisation error of a coarse mesh's frequencies, learned at one design and corrected at others.
 
-A coarse mesh is too stiff, for some modes more than for others, and by much the same wherever the design. At a design
-solved on both meshes b_k = ln(ω_fine / ω_coarse) of each mode is known. Another design's modes are combinations of that
-one's, as far as seats and skin show it, φ ≈ T φ_known; with b̄ the mean of all b their shifts are the matrix
+A coarse mesh is too stiff, for some modes more than for others, and nearly alike at all designs. At a design solved on
+both meshes b_k = ln(ω_fine / ω_coarse) of each mode is known. Another design's modes are combinations of that one's, as
+far as the motions of seats and skin show it, φ ≈ T φ_known; with b̄ the mean of all b their shifts are the matrix
 
     B = b̄ I + T diag(b - b̄) Tᵀ,
 
-and ln Λ + 2 B has the eigenvalues 2 ln ω and the eigenvectors that the fine mesh would give. Being a matrix it mixes as
-the modes do, so that nothing jumps where two of them cross, and what is like none of the known modes has their mean. So
-the search on the coarse mesh ends where one on the fine mesh would (space mapping: Bandler et al. 2004, IEEE
-Transactions on Microwave Theory and Techniques 52(1), 337-361).
+and ln Λ + 2 B has the eigenvalues 2 ln ω and the eigenvectors of the fine mesh. As a matrix it mixes as the modes do,
+so that nothing jumps where two of them cross; a mode unlike all the known ones has their mean. So the search on the
+coarse mesh ends where one on the fine mesh would (space mapping: Bandler et al. 2004, IEEE Transactions on Microwave
+Theory and Techniques 52(1), 337-361).
 """
 
 from dataclasses import dataclass
@@ -21,24 +21,24 @@ import numpy.typing as npt
 from scipy import linalg
 from scipy.optimize import linear_sum_assignment
 
-from housing.correlation import mac
+from housing.correlation import modal_assurance_criterion
 from housing.updating.search import AnyDesign, Solve
 from housing.updating.surrogate import ModalState, Surrogate, elastic
 
 FloatArray = npt.NDArray[np.float64]
 
 _LEAST_MAC = 0.5  # below it two modes of the two meshes are no pair
-_SEEN = 0.1  # part of the strongest combination of the known modes below which seats and skin do not show one
+_SEEN = 0.1  # part of the strongest combination of the known modes below which one is not observable at seats and skin
 
 
 @dataclass(frozen=True)
 class MeshBias:
-    """By how much a mesh's frequencies are off, for modes of some motion.
+    """Error of a mesh's frequencies, as a function of the modes' motions.
 
     Attributes
     ----------
     reading : ndarray, shape (n_motions, n_known)
-        From motions of seats and skin to the known modes that they are made of.
+        From motions of seats and skin to coefficients of the known modes.
     shifts : ndarray, shape (n_known,)
         ln(ω_fine / ω_coarse).
     """
@@ -50,7 +50,7 @@ class MeshBias:
     def between(cls, coarse: ModalState, fine: ModalState) -> "MeshBias":
         """The bias seen at a design that was solved on both meshes; modes without a partner have the others' mean."""
         own, other = _motions(coarse), _motions(fine)
-        table = mac(own, other)
+        table = modal_assurance_criterion(own, other)
         rows, columns = linear_sum_assignment(-table)
         sound = (table[rows, columns] >= _LEAST_MAC) & (coarse.frequencies[rows] > 0.0)
         rows, columns = rows[sound], columns[sound]
@@ -66,7 +66,7 @@ class MeshBias:
         return np.asarray(mean * np.eye(len(parts)) + (parts * (self.shifts - mean)) @ parts.T)
 
     def turned(self, state: ModalState) -> tuple[FloatArray, FloatArray]:
-        """Frequencies [rad/s] of elastic modes on the fine mesh, and what those are made of: (n,) and (n, n)."""
+        """Frequencies [rad/s] of elastic modes on the fine mesh, and their coefficients: (n,) and (n, n)."""
         whole = 2.0 * self.matrix(state)
         diagonal = np.arange(len(whole))
         whole[diagonal, diagonal] += 2.0 * np.log(state.frequencies)
@@ -76,7 +76,7 @@ class MeshBias:
 
 @dataclass(frozen=True)
 class Debiased(Generic[AnyDesign]):
-    """A design of a coarse mesh as the fine mesh would have it.
+    """A design of a coarse mesh, corrected to the fine mesh.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class Debiased(Generic[AnyDesign]):
             return given
         own, kept = elastic(given)
         whole = _mixed(own, *self._turned)
-        # Rigid modes stay what and where they are.
+        # Rigid modes are kept unchanged.
         frequencies, seats, skin = given.frequencies.copy(), given.seats.copy(), given.skin.copy()
         frequencies[kept], seats[kept], skin[kept] = whole.frequencies, whole.seats, whole.skin
         measured = None
@@ -134,12 +134,12 @@ class Debiased(Generic[AnyDesign]):
         )
 
     def surrogate(self) -> Surrogate:
-        """Its neighbourhood."""
+        """The surrogate about it."""
         return self._surrogate
 
 
 def debiased(solve: Solve[AnyDesign], bias: MeshBias | None) -> Solve[Debiased[AnyDesign]]:
-    """What solves designs on a coarse mesh, its bias taken off."""
+    """Solver of designs on a coarse mesh that corrects its bias."""
 
     def without(coordinates: FloatArray, near: Debiased[AnyDesign] | None) -> Debiased[AnyDesign]:
         return Debiased(solve(coordinates, None if near is None else near.design), bias)
@@ -158,7 +158,7 @@ def _mixed(state: ModalState, frequencies: FloatArray, mixture: FloatArray) -> M
 
 
 def _motions(state: ModalState) -> FloatArray:
-    """Motion of seats and skin, and where shapes were measured, shape (n_modes, n_motions)."""
+    """Motions of seats and skin, and of measured degrees of freedom, shape (n_modes, n_motions)."""
     n = len(state.frequencies)
     parts = [state.seats.reshape(n, -1), state.skin]
     if state.measured is not None:

@@ -1,18 +1,18 @@
-"""Which of a design's modes stand for the measured ones while a fit is still on its way.
+"""Mode choice during a fit: the model modes paired with measured frequencies, at the least total cost.
 
-The modes that are compared in the end are the dominant ones, as many as were measured, in order of frequency. A search
-that holds to this at every design meets cliffs: where the 8th and the 9th exchange their places, one residual jumps by
-many per cent, and where a strong mode passes the end of the band, several do. So the search may take any modes, and
-pays for those that do not dominate as it pays for errors of frequency. With L the logarithm of a strength, S the modes
-taken, r the distance wanted between taken and left, and t a threshold that is chosen freely,
+The modes that are compared in the end are the dominant ones, as many as were measured, in order of frequency. Under
+this rule the misfit of a search is discontinuous: where the 8th and the 9th mode exchange their places, one residual
+jumps by many per cent, and where a strong mode passes the end of the band, several do. So the search may choose any
+modes, and modes that do not dominate cost a penalty beside the errors of frequency. With L the logarithm of a strength,
+S the modes chosen, r the gap wanted between chosen and other modes, and t a free threshold,
 
     Σ_{i in S} ⟨t + r/2 - L_i⟩² / s² + Σ_{j not in S} ⟨L_j - t + r/2⟩² / s²,      ⟨x⟩ = max(x, 0),
 
-is summed over the three measures of dominance, each with a threshold of its own. It is zero where every mode taken is
-stronger than every one left by r, and the least of it over all S, together with the frequencies' errors, is a
-continuous function of the design: what is chosen changes only where both choices cost alike. A mode beyond the end of
-the band costs no more than what it lacks to be clearly beyond. The least is found by turns: thresholds for a choice,
-and for thresholds the best choice in order of frequency (dynamic programming), from several thresholds to begin with.
+is summed over the three measures of dominance, each with a threshold of its own. It is zero where every mode chosen is
+stronger than every other one by r. Its minimum over all S, together with the frequencies' errors, is a continuous
+function of the design: the choice changes only where both choices cost alike. A mode near the end of the band costs no
+more than its distance from being clearly beyond. The minimum is found alternately: thresholds for a choice, and for
+thresholds the best choice in order of frequency (dynamic programming), from several initial thresholds.
 """
 
 from dataclasses import dataclass
@@ -27,9 +27,9 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 GAP_SCALE = 0.02
-"""How soft a least gap is: so much below it costs as much as an error of one σ."""
+"""Shortfall of a gap that costs as much as an error of one σ."""
 
-_CLEAR = 0.01  # ln ω by which a strong mode has to be beyond the end of the band, and how soft that is
+_CLEAR = 0.01  # ln ω by which a strong mode has to be beyond the end of the band, and the shortfall that costs one σ
 _CLEAR_SCALE = 0.005
 _TURNS = 8
 _SETTLED = 1e-9
@@ -39,15 +39,15 @@ _FAINT = 1e-300  # strength of modes that have none
 
 @dataclass(frozen=True)
 class Lacking:
-    """What a choice of modes lacks to be a clear one, in units of what is soft.
+    """Shortfalls of a choice of modes from a clear one, in units of the penalties' scales.
 
     Attributes
     ----------
     measure : ndarray of int, shape (n,)
-        Which measure of dominance: acceleration, velocity, absolute; -1 for the end of the band.
+        Index of the measure of dominance: acceleration, velocity, absolute; -1 for the end of the band.
     modes : ndarray of int, shape (n,)
     sign : ndarray, shape (n,)
-        By which ln strength (or ln ω) enters: -1 where more is wanted, 1 where less.
+        Sign of ln strength (or ln ω) in the shortfall: -1 where more is wanted, 1 where less.
     values : ndarray, shape (n,)
         Positive.
     scale : ndarray, shape (n,)
@@ -68,33 +68,33 @@ class Lacking:
 
 @dataclass(frozen=True)
 class _Strengths:
-    """Logarithms of the strengths by the measures that matter, and what is asked of them."""
+    """Logarithms of the strengths by the measures in use, and the gaps asked of them."""
 
     rows: IntArray
     logarithms: FloatArray  # (n_measures, n_modes)
     asked: FloatArray  # (n_measures,)
-    scale: float  # of ln strength; either side of a threshold lacks half of a gap
+    scale: float  # of ln strength; either side of a threshold has half of a gap
     end_scale: float  # of ln ω
     beyond: FloatArray  # ln ω beyond the end of the band, negative inside; (n_modes,)
     upward: FloatArray  # 1 where that is the upper end, else -1; (n_modes,)
 
     @property
     def edge(self) -> FloatArray:
-        """What each mode lacks to be clearly beyond the band, in units of what is soft."""
+        """Shortfall of each mode from being clearly beyond the band, in units of the penalty's scale."""
         return np.maximum(_CLEAR - self.beyond, 0.0) / self.end_scale
 
     def below(self, thresholds: FloatArray) -> FloatArray:
-        """What each mode lacks to be clearly above thresholds (..., n_measures), shape (..., n_measures, n_modes)."""
+        """Shortfall of each mode below thresholds (..., n_measures) and gap, shape (..., n_measures, n_modes)."""
         lacks = thresholds[..., None] + 0.5 * self.asked[:, None] - self.logarithms
         return np.asarray(np.maximum(lacks, 0.0) / self.scale)
 
     def above(self, thresholds: FloatArray) -> FloatArray:
-        """What each mode lacks to be clearly below, of the same shape."""
+        """Excess of each mode above thresholds less gap, of the same shape."""
         lacks = self.logarithms - thresholds[..., None] + 0.5 * self.asked[:, None]
         return np.asarray(np.maximum(lacks, 0.0) / self.scale)
 
     def split(self, taken: BoolArray, thresholds: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """What the modes taken lack, those left for being weak, and those left for being beyond the band.
+        """Shortfalls of the modes chosen, of those left as weak, and of those left as beyond the band.
 
         Parameters
         ----------
@@ -140,20 +140,20 @@ def lacking(
     margin: float = -np.inf,
     firmness: float = 1.0,
 ) -> Lacking:
-    """What a choice of modes lacks, with the thresholds that make it least.
+    """Shortfalls of a choice of modes, with the thresholds of least cost.
 
     Parameters
     ----------
     chosen : ndarray of int
     strengths : Dominance
     band : tuple of float
-        Where dominant modes are looked for [rad/s].
+        Band of the dominant modes [rad/s].
     gap : float
-        ln of the least ratio of taken and left by acceleration.
+        ln of the least ratio of strengths between chosen and other modes, by acceleration.
     margin : float
         The same by the other two measures; negative infinity where it is not asked for.
     firmness : float
-        By how much all this is less soft.
+        Factor on the penalties, before they are squared.
     """
     known = _strengths(strengths, band, gap, margin, firmness)
     taken = np.zeros(known.logarithms.shape[1], dtype=bool)
@@ -179,7 +179,7 @@ def choose(
     margin: float = -np.inf,
     firmness: float = 1.0,
 ) -> IntArray:
-    """The modes of least cost for measured frequencies, ascending.
+    """Choose the modes of least cost for measured frequencies, ascending.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def choose(
     known = _strengths(strengths, band, gap, margin, firmness)
     inside = np.flatnonzero(known.beyond <= 0.0)
     n = len(logarithms)
-    # To begin with: thresholds between the n strongest and the rest, and some places up and down.
+    # Initial thresholds: between the n strongest and the rest, and some places up and down.
     ranked = np.sort(known.logarithms[:, inside], axis=1)[:, ::-1]
     places = np.arange(max(n - _PLACES, 1), min(n + _PLACES + 1, len(inside)))
     if not len(places) or not len(known.rows):
@@ -227,7 +227,7 @@ def _settled(known: _Strengths, taken: BoolArray) -> FloatArray:
     inside = known.beyond <= 0.0
     weakest = np.where(taken[..., None, :], known.logarithms, np.inf).min(axis=-1)
     strongest = np.where((~taken & inside)[..., None, :], known.logarithms, -np.inf).max(axis=-1)
-    # Midway to begin with; where none is left, low enough for all.
+    # Initially midway; where no other mode is left, low enough for all.
     thresholds = np.where(np.isfinite(strongest), 0.5 * (weakest + strongest), weakest - 0.5 * known.asked)
     for _ in range(_TURNS):
         below, above, _ = known.split(taken, thresholds)
@@ -240,14 +240,14 @@ def _settled(known: _Strengths, taken: BoolArray) -> FloatArray:
 
 
 def _best_choices(known: _Strengths, inside: IntArray, errors: FloatArray, thresholds: FloatArray) -> BoolArray:
-    """For each row of thresholds the modes that are taken at the least cost, in order of frequency.
+    """The modes of least cost for each row of thresholds, in order of frequency (dynamic programming).
 
     Parameters
     ----------
     inside : ndarray of int, shape (n_inside,)
-        The modes in the band, of which some are taken.
+        The modes in the band.
     errors : ndarray, shape (n, n_inside)
-        What each costs as the partner of each measured mode.
+        Cost of each as the partner of each measured mode.
     thresholds : ndarray, shape (n_rows, n_measures)
 
     Returns
@@ -257,7 +257,7 @@ def _best_choices(known: _Strengths, inside: IntArray, errors: FloatArray, thres
     taking = (known.below(thresholds)[..., inside] ** 2).sum(axis=1).T
     leaving = np.minimum((known.above(thresholds)[..., inside] ** 2).sum(axis=1), known.edge[inside] ** 2).T
     n, rows = len(errors), len(thresholds)
-    # cost[r, k]: least cost of having taken k modes of those passed by so far.
+    # cost[r, k]: least cost with k of the modes considered so far chosen.
     cost = np.full((rows, n + 1), np.inf)
     cost[:, 0] = 0.0
     took = np.zeros((len(inside), rows, n + 1), dtype=bool)

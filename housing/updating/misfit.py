@@ -1,16 +1,16 @@
-"""How far a design's modes are from those measured, as one number that a search can lessen.
+"""Misfit: objective function of updating, the deviation of a design's modes from the measured ones and the prior.
 
     J = Σ_i (ln ω_i - ln ω_i,measured)² / σ_i² + Σ_i n (1 - MAC_i) / s² + |z|² + penalties,
 
 twice the negative logarithm of the posterior density where frequencies carry independent relative errors σ_i, the n
 motions of a measured shape errors of s times their root-mean-square, and the prior of the coordinates z is the unit
 normal one (Mottershead and Friswell 1993; Beck and Katafygiotis 1998).
-Penalties keep out what a good sum would hide: a choice of dominant modes that is a coin toss, measures that choose
-differently, and a number of modes that is not the one known.
+Penalties exclude faults that a good sum would hide: an unclear choice of dominant modes, measures of dominance that
+disagree, and a number of modes other than the known one.
 
-Where shapes were measured, modes are paired by the assignment of greatest MAC, else in order of frequency: with the
-modes of least cost while a search is on its way (:mod:`housing.updating.choice`), which where it ends well are the
-dominant ones; with these, whatever they miss, where a model is judged.
+Where shapes were measured, modes are paired by the assignment of greatest MAC, else in order of frequency: during a
+search with the modes of least cost (:mod:`housing.updating.choice`), which at a good end are the dominant ones; with
+the dominant ones themselves where a model is judged.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from housing.correlation import mac
+from housing.correlation import modal_assurance_criterion
 from housing.errors import HousingError
 from housing.updating.choice import Lacking, choose, lacking
 from housing.updating.surrogate import ModalState, Neighbour
@@ -31,10 +31,10 @@ UNPAIRED = -1
 """Stands for the partner of a measured mode that has none."""
 
 _LEAST_MAC = 0.5  # below it two shapes are no pair
-_COUNT_SCALE = 0.01  # how soft the number of modes is: in ln ω of the mode that has to lie beyond the limit or below
-_COUNT_CLEAR = 0.005  # how clearly it has to, lest the next mesh decides
+_COUNT_SCALE = 0.01  # ln ω on the wrong side of the limit of a known number of modes that costs one σ
+_COUNT_CLEAR = 0.005  # ln ω by which a mode has to be clear of that limit, so that the mesh does not decide
 _HOPELESS = 1e6  # J of a design with too few modes to pair
-_WITHIN = 2.0  # σ that a frequency may be off where it is met
+_WITHIN = 2.0  # largest error in σ of a frequency that is met
 _LOOSE = 25.0  # J of each measured mode that finds no partner, beside its shape's: as much as an error of five σ
 
 
@@ -49,29 +49,29 @@ class ModeCount:
 
 @dataclass(frozen=True)
 class Target:
-    """What was measured, and how well.
+    """Measured modes and their uncertainties.
 
     Attributes
     ----------
     frequencies : ndarray, shape (n,)
         Circular frequencies, ascending [rad/s].
     noise : ndarray, shape (n,)
-        Relative standard deviation of each; infinite for a mode that is held back.
+        Relative standard deviation of each; infinite for a mode that is left out.
     band : tuple of float
-        Where dominant modes are looked for [rad/s].
+        Band of the dominant modes [rad/s].
     shapes : ndarray, shape (n, n_dofs), optional
         Measured shapes, of any scale.
     shape_noise : float
         Standard deviation of each of their motions, as a part of the shape's root-mean-square; infinite where shapes
-        are to decide the pairs and nothing else.
+        decide the pairs only.
     gap : float
         Least gap ln(strength of the weakest chosen / strongest left out); not asked for where shapes were measured.
     margin : float
         The same of the other two measures; not asked for by default.
     count : ModeCount, optional
     firmness : float
-        How many times less soft than at first the penalties are. Soft ones lead a search past what is in its way, firm
-        ones leave nothing to be paid for at its end.
+        Factor on the penalties, before they are squared. Soft penalties let a search pass obstacles; firm ones leave no
+        violation at its end.
 
     Raises
     ------
@@ -106,7 +106,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Misfit:
-    """A design seen from the target.
+    """Deviation of a design from the target.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ class Misfit:
     mac : ndarray, shape (n,), or None
         Of each pair, where shapes were measured.
     lacking : Lacking, or None
-        What the choice of modes lacks to be a clear one, where shapes do not decide.
+        Shortfalls of the choice of modes from a clear one, where shapes do not decide.
     """
 
     value: float
@@ -145,7 +145,7 @@ class Misfit:
 
     @property
     def in_words(self) -> str:
-        """Errors, how clear the choice of modes is, and how many there are, as far as these mean something."""
+        """Describe the errors, the clearness of the mode choice and the number of modes, as far as they apply."""
         parts = [f"max {self.max_percent:.2f} %"]
         if self.mac is None:
             clear = np.isfinite([self.gap, self.margin]).all()
@@ -169,7 +169,7 @@ class Misfit:
 
 
 def measure(target: Target, state: ModalState, coordinates: FloatArray, *, strict: bool = False) -> Misfit:
-    """Pair the modes of a design with the measured ones and sum up what they miss.
+    """Pair the modes of a design with the measured ones and sum up the deviations.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
         pairs, mac = pair_by_shape(target, state)
         told = np.isfinite(target.noise)
         penalty += _LOOSE * np.count_nonzero(pairs == UNPAIRED)
-        # Without partner a shape costs what it would on the verge of one: less, and a search would rather lose it.
+        # A shape without partner costs as much as at the limit of pairing: with less, a search would drop the pair.
         unlike = 1.0 - np.where(pairs == UNPAIRED, _LEAST_MAC, mac)
         penalty += target.shapes.shape[1] / target.shape_noise**2 * float(unlike[told].sum())
     count = 0
@@ -212,10 +212,10 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
 
 
 def is_met(target: Target, misfit: Misfit) -> bool:
-    """Whether a design meets all that is asked for.
+    """Whether a design meets the target.
 
-    Every frequency within two standard deviations, the modes paired chosen as clearly as wanted and by all measures
-    alike, and the number of modes the one known. Where shapes were measured nothing is: the least misfit is sought.
+    Every frequency is within two standard deviations, the mode choice is as clear as wanted and the same by all
+    measures, and the number of modes is the known one. Never where shapes were measured: the least misfit is sought.
     """
     if target.shapes is not None:
         return False
@@ -228,13 +228,13 @@ def is_met(target: Target, misfit: Misfit) -> bool:
 
 
 def strays(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
-    """The modes that make the number wrong or nearly so: those that should lie clearly on one side of the limit.
+    """The modes that violate a known number of modes below a limit, or nearly do.
 
     Returns
     -------
     modes : ndarray of int, shape (n,)
     beyond : ndarray, shape (n,)
-        What each lacks to be clearly on its side, in units of what is soft: positive above it, negative below.
+        Distance of each from its own side of the limit in units of the penalty's scale: positive above, negative below.
     """
     beyond = np.log(state.frequencies / known.limit)
     lacks = np.zeros(len(beyond))
@@ -250,14 +250,14 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
     Raises
     ------
     HousingError
-        Where the model's motion was not taken where the shapes were.
+        Where the model's motion is missing at the degrees of freedom of the shapes.
     """
     assert target.shapes is not None
     if state.measured is None or state.measured.shape[1] != target.shapes.shape[1]:
         raise HousingError(
             f"shapes measured at {target.shapes.shape[1]} degrees of freedom, of which the model has none"
         )
-    table = mac(target.shapes, state.measured)
+    table = modal_assurance_criterion(target.shapes, state.measured)
     rows, columns = linear_sum_assignment(-table)
     pairs, values = np.full(len(table), UNPAIRED), np.zeros(len(table))
     values[rows] = table[rows, columns]
@@ -268,15 +268,15 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
 def residuals(
     target: Target, misfit: Misfit, near: Neighbour, *, penalties: bool = False
 ) -> tuple[FloatArray, FloatArray]:
-    """What a neighbour misses in units of the noise, and how that changes with the coordinates.
+    """Residuals of a neighbour in units of the noise, and their derivatives by the coordinates.
 
-    With ``penalties`` also how far modes lie on the wrong side of the limit of the number known, and what the choice of
-    modes lacks to be clear: a search takes these along, but they are no measurement.
+    With ``penalties`` also the violations of the known number of modes and the shortfalls of the mode choice: a search
+    needs these, but they are no measurements.
 
     Returns
     -------
     residuals : ndarray, shape (n_residuals,)
-        (ln ω - ln ω_measured) / σ of the paired modes, then what of each unit shape √n ψ / s lies across the model's.
+        (ln ω - ln ω_measured) / σ of the paired modes, then the part of each unit shape √n ψ / s across the model's.
     slopes : ndarray, shape (n_residuals, n_parameters)
     """
     told = (misfit.pairs != UNPAIRED) & np.isfinite(target.noise)
@@ -307,14 +307,14 @@ def residuals(
 
 
 def _lacking_slopes(lacks: Lacking, near: Neighbour) -> FloatArray:
-    """Slopes of what a choice of modes lacks, its thresholds following, shape (n, n_parameters)."""
+    """Slopes of the shortfalls of a choice of modes, its thresholds following, shape (n, n_parameters)."""
     weight = lacks.sign / lacks.scale
     modes, place = np.unique(lacks.modes, return_inverse=True)
     strengths = near.strength_slopes(modes)  # (3, n_parameters, n)
     edge = lacks.measure < 0
     slopes = np.where(edge, near.slopes[:, lacks.modes], strengths[lacks.measure, :, place].T).T * weight[:, None]
     for measure in range(len(strengths)):
-        # The threshold is free: what all strengths of one measure do together costs nothing.
+        # The threshold is free: a common change of all strengths of one measure costs nothing.
         mine = lacks.measure == measure
         if mine.any():
             free = lacks.sign[mine] / np.linalg.norm(lacks.sign[mine])

@@ -1,8 +1,8 @@
-"""Parameters of a model that are fitted, each with a range and a prior.
+"""Parameters of model updating, each with a range and a prior.
 
 A fit works in coordinates z in which the prior is a unit normal distribution: z = ln(p / nominal) / ln(1 + spread /
-nominal) for what is positive by its range, as thicknesses, stiffnesses and densities are, and z = (p - nominal) /
-spread for anything else. So one step means as much for a spring as for a wall, and a thickness cannot become negative.
+nominal) for positive parameters such as thicknesses, stiffnesses and densities, and z = (p - nominal) / spread for all
+others. So steps of springs and walls are commensurate, and a thickness cannot become negative.
 """
 
 from collections.abc import Sequence
@@ -18,17 +18,17 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number of the model that is fitted.
+    """A parameter of the model that is fitted.
 
     Attributes
     ----------
     name : str
     low, high : float
-        The range that it may not leave.
+        Bounds.
     nominal : float
-        Where it is expected before anything is measured.
+        Expected value of the prior.
     spread : float
-        By how much it may well be off: one standard deviation of the prior.
+        Standard deviation of the prior.
 
     Raises
     ------
@@ -55,7 +55,7 @@ class Parameter:
 
     @property
     def is_positive(self) -> bool:
-        """Whether its range says that it is positive, so that it is fitted by ratio."""
+        """Whether its range is positive, so that it is fitted by ratio."""
         return self.low > 0.0
 
     def coordinate(self, value: float) -> float:
@@ -75,7 +75,7 @@ class Parameter:
         return min(max(value, self.low), self.high)  # the bounds' own rounding aside
 
     def deviation(self, coordinate: float, step: float) -> float:
-        """How much the value changes for a small step in z, to first order."""
+        """Change of the value for a small step in z, to first order."""
         return step * (self.value(coordinate) * self._log_spread if self.is_positive else self.spread)
 
     @property

@@ -1,13 +1,13 @@
-"""What the data say of the parameters beside the prior: uncertainty, and what they cannot tell apart.
+"""Posterior of the parameters: uncertainty after the data, and parameters that the data cannot separate.
 
-About the design of least misfit, with S the slopes by the coordinates z of what it misses in units of the noise,
+About the design of least misfit, with S the slopes of the residuals by the coordinates z in units of the noise,
 
     A = Sᵀ S,      C = (I + A)⁻¹,
 
 A is the data's information, the unit matrix that of the prior and C the posterior covariance of z (Gauss's
-approximation; Beck and Katafygiotis 1998). An eigenvector of A is a combination of parameters of which the data know as
-much as its eigenvalue says, in units of what was known before: below one, the prior knows more. The ends of the ranges
-are left out of account, so that what lies against one is less uncertain than stated.
+approximation; Beck and Katafygiotis 1998). An eigenvector of A is a combination of parameters; its eigenvalue is the
+data's information on it in units of the prior's: below one, the prior knows more. The bounds are left out of account,
+so that a parameter at its bound is less uncertain than stated.
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ from housing.updating.surrogate import Neighbour
 
 FloatArray = npt.NDArray[np.float64]
 
-_CONFOUNDED = 0.7  # correlation from which two parameters are told by their combination only
+_CONFOUNDED = 0.7  # correlation from which the data determine a combination of two parameters only
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Posterior:
 
     @property
     def deviations(self) -> FloatArray:
-        """Standard deviation of each coordinate, shape (n,); 1 is what the prior had."""
+        """Standard deviation of each coordinate, shape (n,); that of the prior is 1."""
         return np.asarray(np.sqrt(np.diag(self.covariance)))
 
     @property
@@ -67,7 +67,7 @@ class Posterior:
 
     @property
     def confounded(self) -> list[tuple[int, int, float]]:
-        """Pairs of parameters that the data tell by their combination only, with their correlation, strongest first."""
+        """Pairs of parameters of which the data determine a combination only; with correlations, strongest first."""
         table = self.correlations
         rows, columns = np.triu_indices(len(table), 1)
         strong = [
@@ -78,7 +78,7 @@ class Posterior:
         return sorted(strong, key=lambda entry: -abs(entry[2]))
 
     def frequency_deviations(self) -> FloatArray:
-        """Relative standard deviation of each model frequency that the parameters leave, shape (n_modes,)."""
+        """Relative standard deviation of each model frequency due to the parameters, shape (n_modes,)."""
         return np.asarray(np.sqrt(np.einsum("mi,ij,mj->m", self.slopes, self.covariance, self.slopes)))
 
     def distance(self, coordinates: FloatArray) -> float:

@@ -1,11 +1,11 @@
-"""A search from many starts on a coarse mesh, the better half of them going on, that ends on a fine one.
+"""Multistart search by successive halving: many starts on a coarse mesh, the better half continued on a fine one.
 
-What is asked of a choice of dominant modes parts the designs into basins, and a search from one start ends in the
-nearest. So many are begun, heat by heat, and the better half of each heat goes on (Jamieson and Talwalkar 2016 on
-successive halving). In the first heat every runner is searched for with a few solves on the coarse mesh, the mesh's
-bias taken off (:mod:`housing.updating.bias`). A bias that was learned at one design is off by per cents some standard
-deviations away where walls are thin, so the other heats are run on the fine mesh itself. Penalties grow from heat to
-heat. The race ends where a design meets all that is asked for on the fine mesh, or with its last heat.
+The choice of dominant modes gives the misfit many local minima, and a search from one start ends in the nearest. So the
+search begins from many starts, round by round, and the better half of each round continues (successive halving:
+Jamieson and Talwalkar 2016). In the first round every start has a few solutions on the coarse mesh, with the mesh's
+bias corrected (:mod:`housing.updating.bias`). A bias learned at one design is wrong by per cents some standard
+deviations away where walls are thin, so that the other rounds use the fine mesh itself. Penalties grow from round to
+round. The search ends where a design meets the target on the fine mesh, or with its last round.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -27,39 +27,39 @@ FloatArray = npt.NDArray[np.float64]
 _DRAWN = 8  # from the prior for each start that is solved
 _DESCENT = 25  # steps of each on the surrogate
 _APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
-_NEVER_PARTED = (4, 2)  # runners that go on into each heat on the fine mesh, however few the better half is
-FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the heats, the first of which is on the coarse mesh
+_NEVER_PARTED = (4, 2)  # least number of searches that continue into each round on the fine mesh
+FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the rounds, the first of which is on the coarse mesh
 TRUST = (0.25, 0.15, 0.1)  # likewise
 _FINE_SOLVES = (3, 5)  # of each runner there
 _STARTS = 16  # on the surrogate
-_POLISHED = 6  # solves after the race where it has not met all
+_POLISHED = 6  # final solves where the target is not met
 _REFINED = 0.05  # trust region of these
 
 
 class Each(Protocol):
-    """Does work on each of some tasks, side by side or not, and gives the results in the tasks' order, as they come."""
+    """A map of work over tasks, parallel or not, that yields the results in the tasks' order as they come."""
 
     def __call__(self, work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterable[Any]:
         """The results."""
 
 
 def one_by_one(work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterator[Any]:
-    """The plainest :class:`Each`."""
+    """Serial :class:`Each`."""
     return map(work, tasks)
 
 
 @dataclass(frozen=True)
 class Meshes(Generic[AnyDesign]):
-    """Both meshes of a race.
+    """Solvers on both meshes of a multistart search.
 
     Attributes
     ----------
     coarse : callable
         See :data:`housing.updating.Solve`.
     fine : callable
-        The same on the mesh that judges, made anew at each design; None where there is one mesh only.
+        The same on the fine mesh, made anew at each design; None where there is one mesh only.
     light : callable
-        A design of that mesh as it is handed on from one heat to the next, lest it be solved again.
+        Reduces a design of that mesh for the next round, so that it is not solved again.
     """
 
     coarse: Solve[AnyDesign]
@@ -67,22 +67,22 @@ class Meshes(Generic[AnyDesign]):
     light: Callable[[AnyDesign], AnyDesign] = lambda design: design
 
     def judge(self, coordinates: FloatArray, near: AnyDesign | None = None) -> AnyDesign:
-        """A design on the mesh that judges, whatever is near."""
+        """A design on the fine mesh, or on the only one."""
         return (self.coarse if self.fine is None else self.fine)(coordinates, None)
 
 
 @dataclass(frozen=True)
 class Runner(Generic[AnyDesign]):
-    """Where one of the searches is.
+    """State of one of the searches.
 
     Attributes
     ----------
     number : int
     coordinates : ndarray, shape (n_parameters,)
     judged : ModalState, or None
-        What the fine mesh has here; None where it has not been asked yet.
+        Modes of the fine mesh here; None where it was not solved yet.
     design : Design, or None
-        The fine mesh's own here, light, where the last heat was run on it.
+        The fine mesh's design here, reduced, where the last round was run on it.
     """
 
     number: int
@@ -93,20 +93,20 @@ class Runner(Generic[AnyDesign]):
 
 @dataclass(frozen=True)
 class Raced(Generic[AnyDesign]):
-    """How a race has ended.
+    """Result of a multistart search.
 
     Attributes
     ----------
     coordinates : ndarray, shape (n_parameters,)
-        Of the best design that the fine mesh has seen.
+        Of the best design on the fine mesh.
     misfit : Misfit
-        Its own there.
+        Its misfit there.
     is_met : bool
-        Whether it meets all that is asked for.
+        Whether it meets the target.
     steps : tuple of Step
         Every solve of all searches.
     seen : tuple of ndarray
-        Coordinates of every design that the fine mesh has judged.
+        Coordinates of every design solved on the fine mesh.
     design : Design, or None
         The best on the fine mesh, where it was found there.
     """
@@ -124,7 +124,7 @@ Ran = tuple[Runner[AnyDesign], float, tuple[Step, ...]]
 
 @dataclass(frozen=True)
 class _Run(Generic[AnyDesign]):
-    """One runner's search in one heat: what a worker is told."""
+    """Task of a worker: one search in one round."""
 
     meshes: Meshes[AnyDesign]
     target: Target
@@ -134,7 +134,7 @@ class _Run(Generic[AnyDesign]):
     on_fine: bool
 
     def __call__(self, runner: Runner[AnyDesign]) -> Ran[AnyDesign]:
-        """The runner where it has come to, its misfit there, and its steps; infinite where nothing is sound there."""
+        """The search's new state, its misfit there, and its steps; the misfit is infinite where no model is sound."""
         solve = self.meshes.judge if self.on_fine else self.meshes.coarse
         try:
             begin = solve(runner.coordinates, None) if runner.design is None else runner.design
@@ -159,7 +159,7 @@ def race(
     each: Each = one_by_one,
     progress: Callable[[str], None] = lambda message: None,
 ) -> Raced[AnyDesign]:
-    """Race a start and the best of some draws of the prior.
+    """Search from a start and from the best of some draws of the prior.
 
     Parameters
     ----------
@@ -171,11 +171,11 @@ def race(
     judged : ModalState, or None
         The fine mesh's modes of the same; None where there is one mesh only.
     effort : Effort
-        Its solves are those of all runners in the heat on the coarse mesh.
+        Its solves are those of all searches in the round on the coarse mesh.
     count : int
-        Runners, the start among them.
+        Number of starts, the given one among them.
     each : callable
-        See :class:`Each`: the result does not depend on how many are run side by side.
+        See :class:`Each`: the result does not depend on the number of workers.
     progress : callable
     """
     bias = None if judged is None else MeshBias.between(start.state, judged)
@@ -219,15 +219,14 @@ def polish(
     effort: Effort,
     progress: Callable[[str], None] = lambda message: None,
 ) -> Found[AnyDesign]:
-    """Go on from a race's best design with firm penalties until all is met.
+    """Continue from the best design of a multistart search with firm penalties until the target is met.
 
-    What was bent to get there is to be straight in the end. Where the race has met all, its design is the end.
+    Where the search has met the target already, its design is the result.
 
     Parameters
     ----------
     solve : callable
-        Of the mesh that judges. Each design is meshed anew: what a moved mesh has and a new one has not is no property
-        of the housing.
+        On the fine mesh. Each design is meshed anew, so that no property of a morphed mesh enters the result.
     raced, target, parameters, effort, progress
         See :func:`race`.
     """
@@ -244,7 +243,7 @@ def polish(
 def _best(
     best: Raced[AnyDesign], target: Target, runners: Sequence[Runner[AnyDesign]], progress: Callable[[str], None]
 ) -> Raced[AnyDesign]:
-    """The best so far, or of runners that have been judged."""
+    """The best of the previous best and of searches solved on the fine mesh."""
     for runner in runners:
         best = _better(best, target, runner, progress)
     return best
@@ -253,10 +252,7 @@ def _best(
 def _better(
     best: Raced[AnyDesign] | None, target: Target, runner: Runner[AnyDesign], progress: Callable[[str], None]
 ) -> Raced[AnyDesign]:
-    """The better of the best so far and of a runner that has been judged.
-
-    Weighed as firmly as the last heat does: what led it here is not to be taken back in the end.
-    """
+    """The better of the previous best and of a search solved on the fine mesh, by the penalties of the last round."""
     assert runner.judged is not None
     misfit = measure(replace(target, firmness=FIRMNESS[-1]), runner.judged, runner.coordinates, strict=True)
     met = is_met(target, misfit)
@@ -272,7 +268,7 @@ def _better(
 
 
 def _going(count: int) -> list[int]:
-    """How many there are in each heat."""
+    """Number of searches in each round."""
     going = [count]
     for few in _NEVER_PARTED:
         going.append(min(going[-1], max(few, (going[-1] + 1) // 2)))
@@ -281,7 +277,7 @@ def _going(count: int) -> list[int]:
 
 @dataclass(frozen=True)
 class _Descent:
-    """From a draw of the prior down on a surrogate: where that leads to, and its misfit."""
+    """Descent from a draw of the prior on a surrogate: end point and misfit."""
 
     surrogate: Surrogate
     target: Target
@@ -294,7 +290,7 @@ class _Descent:
 def _drawn(
     surrogate: Surrogate, target: Target, parameters: Sequence[Parameter], count: int, seed: int, each: Each
 ) -> list[FloatArray]:
-    """Coordinates of the best designs, apart from each other, that a surrogate leads to from draws of the prior."""
+    """Coordinates of the best distinct designs that descents on a surrogate reach from draws of the prior."""
     if not count:
         return []
     bounds, generator = coordinate_bounds(parameters), np.random.default_rng(seed)

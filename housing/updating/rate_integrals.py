@@ -1,8 +1,8 @@
-"""The elements' integrals behind :func:`housing.updating.modal_rates`, some elements at a time.
+"""Element integrals of the sensitivities of :func:`housing.updating.modal_rates`, in chunks of elements.
 
-Most of the work is in products of all modes with all modes, once for each parameter. So elements are sorted by which
-parameters concern them, σ : T is summed over the six components of the symmetric σ, and where div V does not change
-within straight elements their modal masses are made once, of which every parameter takes so much of each.
+Most of the work is in products of all modes with all modes, once for each parameter. So elements are grouped by the
+parameters that concern them, σ : T is summed over the six components of the symmetric σ, and where div V is constant
+within straight elements their modal masses are computed once and scaled for every parameter.
 """
 
 from collections.abc import Iterator, Sequence
@@ -29,12 +29,12 @@ _PAIRS = ((0, 1), (1, 2), (2, 0))  # components of the shears, after the three s
 
 @dataclass(frozen=True)
 class Changes:
-    """What parameters do to elements, in the order of these.
+    """Changes of the elements by one parameter, in the elements' order.
 
     Attributes
     ----------
     velocity : ndarray, shape (n_nodes, 3), or None
-        How fast the nodes move [m] for each unit of the parameter.
+        Velocity of the nodes [m] per unit of the parameter.
     constants : ndarray, shape (3, n_elements), or None
         Rates of λ, μ [Pa] and ρ [kg/m³].
     """
@@ -43,7 +43,7 @@ class Changes:
     constants: FloatArray | None
 
     def concerned(self, nodes: IntArray, elements: IntArray) -> BoolArray:
-        """Which elements are strained or become of other stuff, shape (n_elements,)."""
+        """Whether the parameter strains each element or changes its material, shape (n_elements,)."""
         either = np.zeros(len(nodes), dtype=bool)
         if self.velocity is not None:
             moved = self.velocity[nodes]
@@ -180,7 +180,7 @@ def _add_stiffness(
     moving: dict[int, FloatArray],
     stiffness: FloatArray,
 ) -> None:
-    """By one product of all points' stresses with what the parameter does to the gradients."""
+    """By one product of all points' stresses with the parameter's changes of the gradients."""
     n_modes = stiffness.shape[1]
     gradients = places.gradients(fields).reshape(*places.volumes.shape, 3, 3, n_modes)  # ..., j, i of ∂_j φ_i, mode
     strains = np.empty((*places.volumes.shape, 6, n_modes))
@@ -239,7 +239,7 @@ def _add_even_mass(
     divergences: dict[int, FloatArray],
     mass: FloatArray,
 ) -> None:
-    """Of straight elements in which no density and no div V changes: each gives so much of its own modal mass."""
+    """Of straight elements with constant density rate and div V: each element's modal mass is scaled."""
     points, weights = quadrature(part.kind.name, 2 * part.kind.order)
     values = shape_functions(part.kind.name, points)[0]
     n, n_modes = len(part.elements), mass.shape[1]

@@ -1,14 +1,14 @@
-"""Rates of a housing's stiffness and mass with a parameter, seen by its modes, with no matrix assembled.
+"""Sensitivities of modes to parameters: derivatives of stiffness and mass in modal coordinates, without assembly.
 
-A parameter moves nodes, changes what elements are made of, or changes what is fastened to them. With nodes that move at
+A parameter moves nodes, changes the elements' material, or changes fixtures. With nodes that move at
 the velocity V = dX/dp the gradient of a field that they carry changes by d(∂_j u_i) = -∂_l u_i ∂_j V_l and the volume
 by div V, so that for two modes φ_a, φ_b of the stress σ = λ tr ε I + 2 μ ε
 
     dK_ab = ∫ σ(φ_a) : T_b + σ(φ_b) : T_a dV,      T_b = ½ div V ∇φ_b - ∇φ_b ∇V,
     dM_ab = ∫ ρ φ_a · φ_b div V dV,
 
-(the velocity form of shape sensitivities: Haug, Choi and Komkov 1986, chapter 3). Taken with the elements' own
-quadrature these are the exact derivatives of the assembled matrices, not approximations of them.
+(the velocity form of shape sensitivities: Haug, Choi and Komkov 1986, chapter 3). With the elements' own quadrature
+these are the exact derivatives of the assembled matrices.
 """
 
 from collections.abc import Sequence
@@ -27,16 +27,16 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ModelRate:
-    """What a parameter changes in a model, for each unit of it; None where it does not.
+    """Derivatives of a model by a parameter; None where it has no influence.
 
     Attributes
     ----------
     velocity : ndarray, shape (n_nodes, 3), optional
-        How fast the nodes move [m].
+        Velocity of the nodes [m].
     constants : ndarray, shape (3, n_elements), optional
         Rates of λ, μ [Pa] and ρ [kg/m³] of each element.
     stiffness, mass : scipy.sparse array, shape (3 n_nodes, 3 n_nodes), optional
-        Rates of what is attached.
+        Rates of the fixtures' matrices.
     """
 
     velocity: FloatArray | None = None
@@ -47,7 +47,7 @@ class ModelRate:
 
 @dataclass(frozen=True)
 class ModalRates:
-    """Rates of modal stiffness and mass with each of some parameters.
+    """Derivatives of modal stiffness and mass by each of some parameters.
 
     Attributes
     ----------
@@ -64,11 +64,10 @@ class ModalRates:
         return np.asarray(self.stiffness[:, diagonal, diagonal] - frequencies**2 * self.mass[:, diagonal, diagonal])
 
     def mixtures(self, frequencies: FloatArray) -> FloatArray:
-        """How fast each mode takes on the others, dφ_b = Σ_a φ_a c_ab, shape (n_parameters, n_modes, n_modes).
+        """Derivatives of the shapes, c_ab of dφ_b = Σ_a φ_a c_ab, shape (n_parameters, n_modes, n_modes).
 
-        c_ab = φ_aᵀ (dK - λ_b dM) φ_b / (λ_b - λ_a) and c_bb = -½ φ_bᵀ dM φ_b (Fox and Kapoor 1968): complete where the
-        modes are; what modes above those at hand would add is missing. For modes that move apart from a common
-        frequency it has no meaning.
+        c_ab = φ_aᵀ (dK - λ_b dM) φ_b / (λ_b - λ_a) and c_bb = -½ φ_bᵀ dM φ_b (Fox and Kapoor 1968). Contributions of
+        modes above those at hand are missing. For multiple modes that separate it has no meaning.
         """
         eigenvalues = frequencies**2
         apart = eigenvalues[None, :] - eigenvalues[:, None]
@@ -81,7 +80,7 @@ class ModalRates:
 
 
 def modal_rates(mesh: Mesh, constants: FloatArray, shapes: FloatArray, rates: Sequence[ModelRate]) -> ModalRates:
-    """What the modes see of each parameter.
+    """Compute the derivatives of modal stiffness and mass by each parameter.
 
     Parameters
     ----------
@@ -120,6 +119,6 @@ def modal_rates(mesh: Mesh, constants: FloatArray, shapes: FloatArray, rates: Se
 
 
 def _seen(rate: sparse.csr_array, flat: FloatArray) -> FloatArray:
-    """Φᵀ dA Φ of what is attached, which is to few nodes."""
+    """Φᵀ dA Φ of a fixture's matrix, which has few nodes."""
     rows = np.flatnonzero(np.diff(rate.indptr))
     return np.asarray(flat[rows].T @ (rate[rows] @ flat)) if len(rows) else np.zeros((flat.shape[1],) * 2)

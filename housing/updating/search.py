@@ -1,7 +1,7 @@
-"""The search: a surrogate within a region of trust, a true solve, and only true decreases are accepted.
+"""Trust-region search: steps on a surrogate, full solutions, and acceptance of true decreases of the misfit only.
 
-Within the region the surrogate is searched from many starts by Gauss-Newton steps on whatever modes are paired there;
-the best of them is solved for in truth. Where that lessens the misfit it is the next design, else the region shrinks.
+Within the region the surrogate is searched from many starts by Gauss-Newton steps on the modes that are paired there;
+the best end point is solved in full. Where that lessens the misfit it is the next design, else the region shrinks.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ from housing.updating.surrogate import ModalState, Surrogate
 FloatArray = npt.NDArray[np.float64]
 
 _STEPS = 8  # of Gauss and Newton from each start
-_WORTH = 0.02  # part of the misfit that a promise must save to be worth a solve
+_WORTH = 0.02  # least predicted decrease for a full solution, as a part of the misfit
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
 
 
@@ -36,7 +36,7 @@ class Design(Protocol):
         """Its modes."""
 
     def surrogate(self) -> Surrogate:
-        """Its neighbourhood."""
+        """The surrogate about it."""
 
 
 AnyDesign = TypeVar("AnyDesign", bound=Design)
@@ -49,20 +49,20 @@ Raises :class:`housing.HousingError` where there is no sound model."""
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard a search tries.
+    """Limits and settings of a search.
 
     Attributes
     ----------
     solves : int
-        True solves at most.
+        Largest number of full solutions.
     starts : int
         On the surrogate, in each region.
     trust : float
         Half-width of the first region, as a part of each range.
     least_trust : float
-        Where the search gives up.
+        Half-width below which the search ends.
     enough : float
-        J below which nothing more is sought.
+        J below which the search ends.
     seed : int
     """
 
@@ -76,7 +76,7 @@ class Effort:
 
 @dataclass(frozen=True)
 class Step:
-    """One true solve of a search: what the surrogate promised and what was found, and the region it was in."""
+    """One full solution of a search: predicted and true misfit, and the trust region."""
 
     promised: float
     found: float
@@ -87,7 +87,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Found(Generic[AnyDesign]):
-    """Where a search has ended."""
+    """Result of a search."""
 
     design: AnyDesign
     misfit: Misfit
@@ -114,14 +114,14 @@ def search(
     start : Design
     effort : Effort
     progress : callable
-        Told in words what was found.
+        Called with a line of text for each solution.
     until : callable
-        Of a design, whether nothing more is sought.
+        Of a design, whether the search may end there.
 
     Returns
     -------
     Found
-        The best of all designs solved, the start among them; or the first that nothing more is sought beyond.
+        The best of all designs solved, the start among them; or the first at which the search may end.
     """
     bounds = coordinate_bounds(parameters)
     generator = np.random.default_rng(effort.seed)
@@ -134,7 +134,7 @@ def search(
             surrogate = design.surrogate()
         point, promised = search_surrogate(surrogate, target, region, effort.starts, generator)
         if promised > misfit.value - _WORTH * abs(misfit.value):
-            # Nothing here is better: perhaps so close by that other starts find it, in a smaller region.
+            # No better point found: perhaps it is so near that other starts find it in a smaller region.
             trust *= 0.5
             continue
         try:
@@ -166,13 +166,13 @@ def search(
 def search_surrogate(
     surrogate: Surrogate, target: Target, region: FloatArray, starts: int, generator: np.random.Generator
 ) -> tuple[FloatArray, float]:
-    """The least misfit that the surrogate finds within a region, shape (2, n), and where."""
+    """Least misfit of the surrogate within a region, shape (2, n), and its coordinates."""
     low, high = region
     center = np.clip(surrogate.center, low, high)
     points = [center, *(low + (high - low) * generator.random((starts, len(low))))]
     valued = [(measure(target, surrogate.at(point).state, point).value, place) for place, point in enumerate(points)]
     best_point, best = center, valued[0][0]
-    # The surrogate's own centre, and the better half of the others, since most of those lead to the same places.
+    # The surrogate's own centre, and the better half of the others, since most of those reach the same minima.
     for _, place in [valued[0], *sorted(valued[1:])[: max(1, starts // 2)]]:
         point, value = descend(surrogate, target, points[place], region)
         if value < best:

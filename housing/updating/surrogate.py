@@ -1,13 +1,13 @@
-"""A housing's modes about a design, carried to its neighbours in a millisecond.
+"""Surrogate of a housing's modes about a design: modes of neighbouring designs in a millisecond.
 
-Frozen modes stall where two of them cross or exchange their dominance. The surrogate lets all modes at hand mix: with
+Fixed modes fail where two of them cross or exchange their dominance. The surrogate lets all modes at hand mix: with
 Λ = diag(λ) of the design's mass-normalised modes Φ and d the step in the parameters,
 
     H(d) = diag(ln λ) + Σ_j d_j Λ^-½ [Φᵀ dK_j Φ - ½ (Λ Φᵀ dM_j Φ + Φᵀ dM_j Φ Λ)] Λ^-½,
 
 whose eigenvalues are ln λ at the neighbour and whose eigenvectors C make its shapes Φ (I - ½ Σ_j d_j Φᵀ dM_j Φ) C. It
-is exact to first order, shapes but for what the modes above those at hand would add, and of the logarithm: a frequency
-that goes with a power of a parameter goes exactly so where that parameter's coordinate is its logarithm.
+is exact to first order (shapes except for contributions of modes above those at hand), and in logarithms: a frequency
+that is a power of a parameter is reproduced exactly where that parameter's coordinate is its logarithm.
 """
 
 from dataclasses import dataclass
@@ -24,13 +24,13 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 _TOGETHER = 1e-9  # difference of ln λ below which two modes are one
-_STILL = 1e-300  # motion of seats and skin that stand still
+_STILL = 1e-300  # motion of seats and skin at rest
 _RIGID = 1e-6  # part of the highest eigenvalue at hand below which a mode is rigid and left out
 
 
 @dataclass(frozen=True)
 class ModalState:
-    """What a fit looks at of a design's modes, ascending in frequency.
+    """A design's modes in the quantities that a fit compares, ascending in frequency.
 
     Attributes
     ----------
@@ -73,9 +73,9 @@ class Neighbour:
     slopes : ndarray, shape (n_parameters, n_modes)
         d ln ω of each mode by each coordinate.
     surrogate : Surrogate
-        Whose neighbour it is.
+        The surrogate that it belongs to.
     step : ndarray, shape (n_parameters,)
-        From there to here.
+        Step from the surrogate's centre.
     mixture : ndarray, shape (n_modes, n_modes)
         C, the eigenvectors of H.
     """
@@ -124,7 +124,7 @@ class Neighbour:
 
 @dataclass(frozen=True)
 class Surrogate:
-    """The modes of a design and what each coordinate does to them.
+    """The modes of a design and their derivatives by each coordinate.
 
     Attributes
     ----------

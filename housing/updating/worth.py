@@ -1,8 +1,8 @@
-"""What a fit is worth: modes held back from it, and the same search made on frequencies that no one measured.
+"""Cross-validation of a fit: leave-one-out prediction of measured modes, and fits to random frequencies.
 
 Many parameters fit few frequencies, so that a small error proves little. A mode that took no part in the fit tests it;
-and where random frequencies are fitted as well as the measured ones, the fit alone says nothing of the housing. Each of
-these is the whole procedure once more, from the same start with as many solves; only the mesh is a coarser one.
+and where random frequencies are fitted as well as the measured ones, the fit alone proves nothing about the housing.
+Each of these repeats the whole procedure, from the same start with as many solves; only the mesh is a coarser one.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ from housing.updating.search import AnyDesign, Effort, Solve
 
 FloatArray = npt.NDArray[np.float64]
 
-_APART = 0.01  # least relative distance of two random frequencies: what a survey would tell apart
+_APART = 0.01  # least relative distance of two random frequencies, which a survey could still separate
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,15 @@ class HeldBack:
     Attributes
     ----------
     mode : int
-        Its place among the measured ones, from 0.
+        Its index among the measured ones, from 0.
     measured, predicted : float
         Circular frequencies [rad/s].
     deviation : float
         Relative standard deviation of the prediction, by the posterior of the others and the mode's own noise.
     prior_deviation : float
-        The same before any fit, at the design where it began.
+        The same before the fit, at the start design.
     start : float
-        What that design had [rad/s].
+        Frequency of the start design [rad/s].
     rms_percent : float
         Of the modes that were fitted.
     """
@@ -58,13 +58,13 @@ class HeldBack:
 
     @property
     def start_error_percent(self) -> float:
-        """The same of the design where the fit began."""
+        """The same of the start design."""
         return 100.0 * (self.start / self.measured - 1.0)
 
 
 @dataclass(frozen=True)
 class NullFit:
-    """A set of frequencies and how well the model fits it.
+    """A set of frequencies and the quality of the model's fit to it.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ class NullFit:
 
 @dataclass(frozen=True)
 class Procedure(Generic[AnyDesign]):
-    """The whole search on one mesh: a race from a start, and what follows where that has not met all.
+    """The whole search on one mesh: multistart search, and the final steps where it has not met the target.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class Procedure(Generic[AnyDesign]):
         Solved.
     effort : Effort
     count : int
-        Runners, the start among them.
+        Number of starts, the given one among them.
     """
 
     solve: Solve[AnyDesign]
@@ -112,7 +112,7 @@ class Procedure(Generic[AnyDesign]):
     count: int
 
     def __call__(self, target: Target) -> tuple[Misfit, Posterior]:
-        """The misfit where it ends, by dominant modes, and what it leaves of the parameters."""
+        """Misfit of the result, by dominant modes, and posterior of the parameters."""
         meshes = Meshes(self.solve, None)
         raced = race(meshes, target, self.parameters, self.start, None, self.effort, self.count)
         found = polish(self.solve, raced, target, self.parameters, self.effort)
@@ -128,16 +128,16 @@ def hold_back(
     each: Each = one_by_one,
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[HeldBack]:
-    """Fit to all measured modes but one, from the start, and predict that one; for each of them.
+    """Leave-one-out: fit to all measured modes but one, from the start, and predict that one; for each of them.
 
-    How many dominant modes there are stays known, so that the pairing is the same as when all are fitted.
+    The number of dominant modes stays known, so that the pairing is the same as when all are fitted.
 
     Parameters
     ----------
     procedure : Procedure
     target : Target
     each : callable
-        See :class:`Each`: the result does not depend on how many are run side by side.
+        See :class:`Each`: the result does not depend on the number of workers.
     progress : callable
     """
     start = procedure.start
@@ -176,14 +176,14 @@ def null_fits(
     each: Each = one_by_one,
     progress: Callable[[str], None] = lambda message: None,
 ) -> tuple[NullFit, list[NullFit]]:
-    """The measured set of frequencies, and random ones of as many between its first and its last, fitted alike.
+    """Fit the measured frequencies, and random sets of as many between the first and the last measured one.
 
     Parameters
     ----------
     procedure : Procedure
     target : Target
     count : int
-        How many random sets.
+        Number of random sets.
     seed : int
         Of their frequencies.
     each, progress
@@ -216,7 +216,7 @@ def null_fits(
 
 
 def random_frequencies(measured: FloatArray, generator: np.random.Generator) -> FloatArray:
-    """As many frequencies, uniform between the first and the last measured one, none too close for a survey."""
+    """Random frequencies, as many as measured, uniform between the first and the last, none too close for a survey."""
     low, high = float(measured[0]), float(measured[-1])
     while True:
         drawn = np.sort(generator.uniform(low, high, len(measured)))

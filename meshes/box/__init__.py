@@ -1,27 +1,18 @@
 """Gearbox housings by their dimensions: a box with walls, bores, bosses, feet, ribs, a cover and rounded edges."""
 
-from meshes.box.geometry import BoxGeometry, BoxMisfitError
-from meshes.box.meshing import mesh_box
-from meshes.box.misfit import Misfit
-from meshes.box.morph import BoxMorph
-from meshes.box.parts import Bolt, Bore, Boss, Cover, CoverBolts, Feet, Fillets, Flange, Rib, WallThickness
-from meshes.box.placed_faces import MorphError
-
-__all__ = [
-    "Bolt",
-    "Bore",
-    "Boss",
-    "BoxGeometry",
-    "BoxMisfitError",
-    "BoxMorph",
-    "Cover",
-    "CoverBolts",
-    "Feet",
-    "Fillets",
-    "Flange",
-    "Misfit",
-    "MorphError",
-    "Rib",
-    "WallThickness",
-    "mesh_box",
-]
+from meshes.box.geometry import BoxGeometry as BoxGeometry
+from meshes.box.geometry import BoxMisfitError as BoxMisfitError
+from meshes.box.meshing import mesh_box as mesh_box
+from meshes.box.misfit import Misfit as Misfit
+from meshes.box.morph import BoxMorph as BoxMorph
+from meshes.box.parts import Bolt as Bolt
+from meshes.box.parts import Bore as Bore
+from meshes.box.parts import Boss as Boss
+from meshes.box.parts import Cover as Cover
+from meshes.box.parts import CoverBolts as CoverBolts
+from meshes.box.parts import Feet as Feet
+from meshes.box.parts import Fillets as Fillets
+from meshes.box.parts import Flange as Flange
+from meshes.box.parts import Rib as Rib
+from meshes.box.parts import WallThickness as WallThickness
+from meshes.box.placed_faces import MorphError as MorphError

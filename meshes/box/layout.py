@@ -78,7 +78,7 @@ def body_block(box: Box) -> Block:
 
 
 def plate_block(box: Box, cover: Cover) -> Block:
-    """The cover's plate, with what it covers of an outside flange."""
+    """The cover's plate, extended over an outside flange."""
     plate = _beside(box, outer_block(box), cover, plate=True)
     if cover.flange is not None and cover.flange.side == "outside":
         return plate.widened(plane_axes(cover.face), cover.flange.width)

@@ -1,4 +1,4 @@
-"""Misfit of a box: the dimension that does not fit, and what is expected of it."""
+"""A misfit of a box: the dimension that does not fit, and what is expected of it."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Housings from CAD files: STEP, IGES and BREP to a mesh of tetrahedra."""
+"""CAD meshing: solids of STEP, IGES and BREP files to a mesh of tetrahedra, in a worker process with time limits."""
 
 import json
 import os
@@ -27,12 +27,12 @@ _MESHING, _MESHING_PER_ELEMENT = 6.0, 2e-3
 _LOOK = 0.2  # seconds between looks at the worker
 
 KINDS = {".step": "step", ".stp": "step", ".iges": "iges", ".igs": "iges", ".brep": "brep"}
-"""What a file is, by its ending."""
+"""Kind of file by its ending."""
 
 
 @dataclass(frozen=True)
 class CadMesh:
-    """The mesh of a CAD file, and what was found in it.
+    """The mesh of a CAD file, and the names and unit of the file.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class CadMesh:
     unit : float
         Unit of the file's numbers [m].
     remarks : tuple of str
-        What the user should know, such as a unit that contradicts the file's own.
+        Remarks for the user, such as a unit that contradicts the file's own.
     """
 
     mesh: Mesh
@@ -163,7 +163,7 @@ def _work(folder: Path, path: Path, reading_limit: float, time_limit: float) -> 
 
 
 def _errors_of(worker: subprocess.Popen[bytes], folder: Path, reading_limit: float, time_limit: float) -> bytes:
-    """What a worker that ends in time wrote as errors; each stage is timed from where it begins."""
+    """Standard error of a worker that ends within the time limits; each stage is timed from its beginning."""
     begin = time.monotonic()
     since = {"": begin}
     while True:

@@ -1,4 +1,4 @@
-"""A CAD file as solids in gmsh's OpenCASCADE kernel: read, sewn where it holds surfaces only, made conforming."""
+"""Solids of a CAD file in gmsh's OpenCASCADE kernel: read, sewn from surfaces where needed, made conforming."""
 
 import re
 from collections import Counter
@@ -110,7 +110,7 @@ def _sewn(gmsh: Any, path: str, kind: str, n_faces: int) -> list[int]:
 
 
 def _shells(gmsh: Any, n_faces: int) -> list[list[int]]:
-    """The faces of the model in sets that hang together by their edges."""
+    """The faces of the model in sets that are connected by their edges."""
     edges = {
         face: [edge for _, edge in gmsh.model.getBoundary([(2, face)], oriented=False)]
         for _, face in gmsh.model.getEntities(2)
@@ -208,7 +208,7 @@ def _overlapping(first: str, second: str, volume: float) -> GeometryError:
 
 
 def _label(gmsh: Any, dimension: int, tag: int) -> str:
-    """The entity's own name in the file: the last part of gmsh's path of labels; nothing where it is a stand-in."""
+    """The entity's own name in the file: the last part of gmsh's path of labels; empty where it is a placeholder."""
     label = str(gmsh.model.getEntityName(dimension, tag)).rpartition("/")[2].strip()
     return "" if _UNNAMED.fullmatch(label) else label
 

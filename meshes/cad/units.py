@@ -1,4 +1,4 @@
-"""The unit of length of a CAD file: what the file says, what the user says, and what the part's size says."""
+"""Unit of length of a CAD file: stated by the file, given by the user, and checked against the part's size."""
 
 import re
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ _IGES_FLAGS = {1: 0.0254, 2: 1e-3, 4: 0.3048, 5: 1609.344, 6: 1.0, 7: 1e3, 8: 2.
 
 @dataclass(frozen=True)
 class ChosenUnit:
-    """The unit in which a file's numbers are read [m], and what a user should know of the choice."""
+    """The unit in which a file's numbers are read [m], and a remark on the choice for the user."""
 
     length: float
     remarks: tuple[str, ...] = ()
@@ -33,7 +33,7 @@ def stated_unit(path: Path, kind: str) -> float | None:
 def _step_unit(text: str) -> float | None:
     """The length unit that the file's geometry is measured in, if there is but one.
 
-    An inch is itself defined by way of a millimetre, so converted units, where there are any, are what counts.
+    An inch is itself defined by way of a millimetre, so that converted units, where there are any, decide.
     """
     plain: set[float] = set()
     converted: set[float] = set()
@@ -89,12 +89,12 @@ def choose_unit(extent: float, stated: float | None, given: float | None) -> Cho
     Raises
     ------
     GeometryError
-        Where no unit among them makes the part as large as a housing is; the message asks for the one that would.
+        Where neither unit gives a plausible size of a housing; the message asks for the unit that would.
 
     Notes
     -----
-    What the file states holds, against the user too, unless the part would then be too small or too large and the
-    user's unit makes sense of it: a kernel that works in metres writes files that state millimetres.
+    The file's own unit takes precedence over the user's, unless it makes the part too small or too large and the
+    user's unit makes its size plausible: a kernel that works in metres writes files that state millimetres.
     """
     unit = stated if stated is not None else (given if given is not None else UNITS["mm"])
     differs = stated is not None and given is not None and abs(given / stated - 1.0) > 1e-9

@@ -1,8 +1,8 @@
-"""The process that reads a CAD file, apart from the caller's.
+"""Worker process that reads and meshes a CAD file.
 
-OpenCASCADE writes to standard output and, given a damaged file, may end its process with a segmentation fault: so
-it gets a process of its own. What it found goes through a folder: ``request.json`` in; ``stage`` (what it is at),
-``answer.json`` and the mesh's arrays out. It ends with the caller, whatever ends that one, and takes the folder along.
+OpenCASCADE writes to standard output and may end its process with a segmentation fault on a damaged file; so it has a
+process of its own. Data go through a folder: ``request.json`` in; ``stage`` (the work in progress), ``answer.json``
+and the mesh's arrays out. The worker ends when the caller does, for whatever reason, and removes the folder.
 """
 
 import json
@@ -33,7 +33,7 @@ _BLEND = 3.0  # elements grow to their full size over this many of the small one
 
 @dataclass(frozen=True)
 class Request:
-    """What to read and how to mesh it.
+    """File to read, and how to mesh it.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
     with gmsh_session("it") as gmsh:
         at(READING)
         solids = read_solids(gmsh, request.path, request.kind)
-        # The kernel turns what STEP and IGES state into millimetres; BREP it takes as it is.
+        # The kernel converts STEP and IGES to millimetres by their stated unit; BREP is read unchanged.
         stated = request.stated if request.stated is not None else (None if request.kind == "brep" else 1e-3)
         numbers = extent(gmsh) / (1.0 if stated is None else stated / 1e-3)
         chosen = choose_unit(numbers, stated, request.given)
@@ -119,7 +119,7 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
 
 
 def _foreseen(request: Request, volume: float) -> float:
-    """How many elements a volume [m³] may take, those of the finer ones around places generously counted."""
+    """Upper estimate of the number of elements in a volume [m³], refined places included."""
     finest = request.place_size if request.places and request.place_size is not None else request.mesh_size
     return _FILLING * volume / request.mesh_size**3 * (request.mesh_size / finest) ** 3
 
@@ -144,7 +144,7 @@ def _refine(gmsh: Any, request: Request, unit: float) -> None:
 
 
 def _mesh(gmsh: Any, shape: Shape, request: Request, unit: float) -> None:
-    """Mesh, and say which solid cannot be."""
+    """Mesh; the error names the solid that cannot be meshed."""
     smallest = min(request.mesh_size, request.place_size or request.mesh_size) / unit
     trouble = ""
     try:

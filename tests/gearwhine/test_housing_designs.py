@@ -11,7 +11,7 @@ from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.regions import materials_of
 from gearwhine.stages.update_keys import fitted_case
 from housing import HousingError, assemble
-from housing.updating import coordinate_bounds
+from housing.updating.parameters import coordinate_bounds
 
 NUMBERS: list[tuple[list[str], list[Any], Any]] = [
     (["housing.box.wall.top"], ["6 mm", "20 mm"], "3 mm"),

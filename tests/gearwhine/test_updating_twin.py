@@ -27,11 +27,11 @@ from housing.updating import (
     Posterior,
     Surrogate,
     Target,
-    coordinate_bounds,
     measure,
     posterior,
     search,
 )
+from housing.updating.parameters import coordinate_bounds
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from housing import HousingError
 from housing.updating import (
     UNPAIRED,
-    Design,
     Effort,
     ModalState,
     ModeCount,
@@ -20,16 +19,17 @@ from housing.updating import (
     Procedure,
     Surrogate,
     Target,
-    coordinate_bounds,
     hold_back,
-    is_met,
     measure,
     null_fits,
     posterior,
-    random_frequencies,
     search,
     values_at,
 )
+from housing.updating.misfit import is_met
+from housing.updating.parameters import coordinate_bounds
+from housing.updating.search import Design
+from housing.updating.worth import random_frequencies
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -10,22 +10,21 @@ import pytest
 
 from housing import HousingError
 from housing.updating import (
-    Debiased,
-    Design,
     Effort,
     MeshBias,
     Meshes,
-    ModalRates,
     ModalState,
     Parameter,
     Raced,
     Surrogate,
     Target,
-    debiased,
     one_by_one,
     race,
     search,
 )
+from housing.updating.bias import Debiased, debiased
+from housing.updating.rates import ModalRates
+from housing.updating.search import Design
 
 FloatArray = npt.NDArray[np.float64]
 

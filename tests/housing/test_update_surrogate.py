@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import linalg
 
-from housing.updating import ModalRates, ModalState, Surrogate
+from housing.updating import ModalState, Surrogate
+from housing.updating.rates import ModalRates
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -13,14 +13,14 @@ from housing.correlation import (
     cross_orthogonality,
     enhanced_comac,
     frac,
-    mac,
-    mean_phase,
+    modal_assurance_criterion,
     pair_modes,
     pole_weighted_mac,
     principal_angles,
     real_shapes,
     span_mac,
 )
+from housing.correlation.complexity import mean_phase
 
 SEEDS = st.integers(0, 2**32 - 1)
 SIZES = st.tuples(st.integers(1, 4), st.integers(1, 4), st.integers(6, 12))
@@ -38,16 +38,16 @@ def test_mac(seed: int, size: tuple[int, int, int]) -> None:
     a, b = _shapes(random, n, dofs), _shapes(random, m, dofs)
     b[random.random(b.shape) < 0.2] = np.nan
     b[:, 0] = 1.0 + random.random(m)
-    value = mac(a, b)
+    value = modal_assurance_criterion(a, b)
     assert ((value >= 0.0) & (value <= 1.0)).all()
-    assert mac(b, a) == pytest.approx(value.T)
+    assert modal_assurance_criterion(b, a) == pytest.approx(value.T)
     scale = _shapes(random, n, 1)
-    assert mac(scale * a, b) == pytest.approx(value)
-    assert mac(a.conj(), b.conj()) == pytest.approx(value)
+    assert modal_assurance_criterion(scale * a, b) == pytest.approx(value)
+    assert modal_assurance_criterion(a.conj(), b.conj()) == pytest.approx(value)
     places = random.permutation(dofs)
-    assert mac(a[:, places], b[:, places]) == pytest.approx(value)
+    assert modal_assurance_criterion(a[:, places], b[:, places]) == pytest.approx(value)
     order = random.permutation(n)
-    assert mac(a[order], b) == pytest.approx(value[order])
+    assert modal_assurance_criterion(a[order], b) == pytest.approx(value[order])
     assert auto_mac(a).diagonal() == pytest.approx(np.ones(n))
 
 
@@ -59,7 +59,7 @@ def test_orthogonal_frames_keep_it(seed: int, size: tuple[int, int, int]) -> Non
     n, m, dofs = size
     a, b = _shapes(random, n, dofs), _shapes(random, m, dofs)
     turn = np.linalg.qr(random.normal(size=(dofs, dofs)))[0]
-    assert mac(a @ turn, b @ turn) == pytest.approx(mac(a, b))
+    assert modal_assurance_criterion(a @ turn, b @ turn) == pytest.approx(modal_assurance_criterion(a, b))
     assert principal_angles(a @ turn, b @ turn) == pytest.approx(principal_angles(a, b), abs=1e-7)
 
 
@@ -72,7 +72,7 @@ def test_spans_do_not_change_when_mixed(seed: int, size: tuple[int, int, int]) -
     mixing = np.linalg.qr(_shapes(random, n, n))[0] + 0.1 * np.eye(n)
     part = span_mac(basis, shapes)
     assert span_mac(mixing @ basis, shapes) == pytest.approx(part)
-    assert (part >= mac(basis, shapes).max(axis=0) - 1e-12).all()
+    assert (part >= modal_assurance_criterion(basis, shapes).max(axis=0) - 1e-12).all()
     assert (part <= 1.0).all()
 
 
@@ -147,4 +147,6 @@ def test_every_pair_keeps_the_rule(seed: int, closeness: float, least_mac: float
     assert len({pair.model for pair in pairs}) == len({pair.measured for pair in pairs}) == len(pairs)
     assert all(pair.mac >= least_mac - 1e-12 for pair in pairs)
     assert all(0.0 <= pair.confidence <= 1.0 for pair in pairs)
-    assert all(pair.mac >= mac(model[pair.model], test[pair.measured])[0, 0] - 1e-12 for pair in pairs)
+    assert all(
+        pair.mac >= modal_assurance_criterion(model[pair.model], test[pair.measured])[0, 0] - 1e-12 for pair in pairs
+    )

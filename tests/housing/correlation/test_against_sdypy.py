@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from housing.correlation import complexity_factor, mac, modal_scale_factor
+from housing.correlation import complexity_factor, modal_assurance_criterion, modal_scale_factor
 
 tools = pytest.importorskip("sdypy.EMA.tools", reason="sdypy-EMA is not installed")
 RANDOM = np.random.default_rng(5)
@@ -12,7 +12,7 @@ A, B = RANDOM.normal(size=(2, 4, 13)) + 1j * RANDOM.normal(size=(2, 4, 13))
 
 @pytest.mark.filterwarnings("ignore:Casting complex values")  # theirs keeps the real part of what is real
 def test_mac() -> None:
-    assert mac(A, B) == pytest.approx(np.asarray(tools.MAC(A.T, B.T)).real, rel=1e-12)
+    assert modal_assurance_criterion(A, B) == pytest.approx(np.asarray(tools.MAC(A.T, B.T)).real, rel=1e-12)
 
 
 def test_complexity_factor() -> None:

@@ -5,7 +5,13 @@ import pytest
 from scipy.spatial.distance import cosine
 
 from housing import HousingError
-from housing.correlation import auto_mac, largest_off_diagonal, mac, modal_scale_factor, pole_weighted_mac
+from housing.correlation import (
+    auto_mac,
+    largest_off_diagonal,
+    modal_assurance_criterion,
+    modal_scale_factor,
+    pole_weighted_mac,
+)
 
 RANDOM = np.random.default_rng(7)
 
@@ -22,7 +28,7 @@ def test_sampled_sines_are_orthogonal_up_to_the_number_of_points() -> None:
 
 def test_modes_beyond_it_are_aliases() -> None:
     """sin(π m x) at x = k/8 is -sin(π (16 - m) x): a survey of seven points cannot tell mode 3 from 13."""
-    table = mac(_beam([3, 4], 7), _beam([12, 13], 7))
+    table = modal_assurance_criterion(_beam([3, 4], 7), _beam([12, 13], 7))
     assert table == pytest.approx(np.array([[0.0, 1.0], [1.0, 0.0]]), abs=1e-13)
     assert largest_off_diagonal(auto_mac(_beam([1, 3, 13], 7))) == pytest.approx(1.0)
     assert largest_off_diagonal(np.ones((1, 1))) == 0.0
@@ -31,7 +37,7 @@ def test_modes_beyond_it_are_aliases() -> None:
 @pytest.mark.parametrize("angle", [0.0, 0.3, np.pi / 4, 1.2, np.pi / 2])
 def test_it_is_the_squared_cosine(angle: float) -> None:
     turned = np.array([np.cos(angle), np.sin(angle)])
-    assert mac([1.0, 0.0], 1e-9 * turned) == pytest.approx(np.cos(angle) ** 2, abs=1e-15)
+    assert modal_assurance_criterion([1.0, 0.0], 1e-9 * turned) == pytest.approx(np.cos(angle) ** 2, abs=1e-15)
 
 
 def test_a_turned_pair_of_a_square_plate() -> None:
@@ -41,18 +47,20 @@ def test_a_turned_pair_of_a_square_plate() -> None:
         2, -1
     )
     c, s = np.cos(0.4), np.sin(0.4)
-    assert mac(pair, np.array([[c, s], [-s, c]]) @ pair) == pytest.approx(np.array([[c**2, s**2], [s**2, c**2]]))
+    assert modal_assurance_criterion(pair, np.array([[c, s], [-s, c]]) @ pair) == pytest.approx(
+        np.array([[c**2, s**2], [s**2, c**2]])
+    )
 
 
 def test_real_shapes_against_scipy_and_complex_ones_against_least_squares() -> None:
     a, b = RANDOM.normal(size=(2, 3, 11))
     independent = [[(1.0 - cosine(one, other)) ** 2 for other in b] for one in a]
-    assert mac(a, b) == pytest.approx(np.array(independent), rel=1e-12)
+    assert modal_assurance_criterion(a, b) == pytest.approx(np.array(independent), rel=1e-12)
     z, w = a + 1j * RANDOM.normal(size=a.shape), b + 1j * RANDOM.normal(size=b.shape)
     for i, one in enumerate(z):
         for j, other in enumerate(w):
             left = np.linalg.lstsq(other[:, None], one, rcond=None)[1][0]
-            assert mac(z, w)[i, j] == pytest.approx(1.0 - left / np.vdot(one, one).real)
+            assert modal_assurance_criterion(z, w)[i, j] == pytest.approx(1.0 - left / np.vdot(one, one).real)
 
 
 def test_shapes_are_compared_where_both_were_measured() -> None:
@@ -60,24 +68,24 @@ def test_shapes_are_compared_where_both_were_measured() -> None:
     gaps = b + 0j
     gaps[0, :3] = np.nan
     gaps[2, 5] = np.nan
-    expected = mac(a, b)
-    expected[:, 0] = mac(a[:, 3:], b[0, 3:])[:, 0]
-    expected[:, 2] = mac(np.delete(a, 5, axis=1), np.delete(b[2], 5))[:, 0]
-    assert mac(a, gaps) == pytest.approx(expected, rel=1e-12)
-    assert mac(gaps, a) == pytest.approx(expected.T, rel=1e-12)
+    expected = modal_assurance_criterion(a, b)
+    expected[:, 0] = modal_assurance_criterion(a[:, 3:], b[0, 3:])[:, 0]
+    expected[:, 2] = modal_assurance_criterion(np.delete(a, 5, axis=1), np.delete(b[2], 5))[:, 0]
+    assert modal_assurance_criterion(a, gaps) == pytest.approx(expected, rel=1e-12)
+    assert modal_assurance_criterion(gaps, a) == pytest.approx(expected.T, rel=1e-12)
 
 
 def test_sizes_far_apart_neither_overflow_nor_vanish() -> None:
     a = RANDOM.normal(size=(2, 5))
-    assert mac(1e200 * a, 1e-200 * a) == pytest.approx(auto_mac(a))
+    assert modal_assurance_criterion(1e200 * a, 1e-200 * a) == pytest.approx(auto_mac(a))
 
 
 def test_a_shape_of_nothing_is_like_nothing() -> None:
-    assert mac(np.zeros(3), np.ones(3)) == 0.0
+    assert modal_assurance_criterion(np.zeros(3), np.ones(3)) == 0.0
 
 
 def test_shapes_that_share_no_point_are_of_unknown_likeness() -> None:
-    table = mac([1.0, np.nan], [[1.0, 1.0], [np.nan, 1.0]])
+    table = modal_assurance_criterion([1.0, np.nan], [[1.0, 1.0], [np.nan, 1.0]])
     assert table[0, 0] == 1.0
     assert np.isnan(table[0, 1])
     assert largest_off_diagonal(np.array([[1.0, np.nan], [np.nan, 1.0]])) == 0.0
@@ -101,7 +109,7 @@ def test_scale_factors_bring_shapes_together() -> None:
 )
 def test_sets_that_do_not_fit_are_refused(first, second, message: str) -> None:
     with pytest.raises(HousingError, match=message):
-        mac(first, second)
+        modal_assurance_criterion(first, second)
 
 
 def _greatest(one: np.ndarray, p: complex, other: np.ndarray, q: complex) -> float:

@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from housing.correlation import complexity_factor, mac, mean_phase, phase_collinearity, phase_deviation, real_shapes
+from housing.correlation import (
+    complexity_factor,
+    modal_assurance_criterion,
+    phase_collinearity,
+    phase_deviation,
+    real_shapes,
+)
+from housing.correlation.complexity import mean_phase
 
 X, Y = np.array([1.0, 2.0, -2.0, 0.0]), np.array([2.0, -1.0, 0.0, 2.0])  # orthogonal, of one norm
 
@@ -14,10 +21,10 @@ def test_a_known_ellipse(angle: float) -> None:
     shape = (np.cos(angle) * X + 1j * np.sin(angle) * Y) * 3.0 * np.exp(0.9j)
     assert phase_collinearity(shape) == pytest.approx(np.cos(2 * angle) ** 2)
     assert complexity_factor(shape) == pytest.approx(np.sin(2 * angle) ** 2, abs=1e-15)
-    assert phase_collinearity(shape) == pytest.approx(mac(shape, shape.conj())[0, 0])
+    assert phase_collinearity(shape) == pytest.approx(modal_assurance_criterion(shape, shape.conj())[0, 0])
     assert mean_phase(shape) == pytest.approx(0.9)
     assert real_shapes(shape)[0] == pytest.approx(3.0 * np.cos(angle) * X)
-    dropped = 1.0 - mac(real_shapes(shape), shape)[0, 0]
+    dropped = 1.0 - modal_assurance_criterion(real_shapes(shape), shape)[0, 0]
     assert dropped == pytest.approx((1.0 - np.sqrt(phase_collinearity(shape)[0])) / 2.0, abs=1e-14)
 
 

@@ -5,14 +5,8 @@ import pytest
 from scipy import linalg
 
 from housing import HousingError
-from housing.correlation import (
-    cross_orthogonality,
-    mac,
-    modal_coordinates,
-    outside_span,
-    self_orthogonality,
-    serep_mass,
-)
+from housing.correlation import cross_orthogonality, modal_assurance_criterion, outside_span, self_orthogonality
+from housing.correlation.orthogonality import modal_coordinates, serep_mass
 
 COUNT = 12
 RANDOM = np.random.default_rng(11)
@@ -39,7 +33,7 @@ def test_the_mass_tells_apart_what_the_mac_does_not() -> None:
     mixed = 7j * (0.6 * KEPT[1] - 0.8 * KEPT[2])
     parts = cross_orthogonality(KEPT, mixed)[:, 0]
     assert parts == pytest.approx(np.array([0.0, 0.6, 0.8, 0.0, 0.0]), abs=1e-12)
-    assert np.abs(np.sqrt(mac(KEPT, mixed)[:, 0]) - parts).max() > 0.05
+    assert np.abs(np.sqrt(modal_assurance_criterion(KEPT, mixed)[:, 0]) - parts).max() > 0.05
     assert modal_coordinates(KEPT, mixed)[:, 0] == pytest.approx(np.array([0.0, 4.2j, -5.6j, 0.0, 0.0]), abs=1e-12)
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from housing import HousingError
-from housing.correlation import close_modes, mac, nearest_in_span, principal_angles, span_mac
+from housing.correlation import modal_assurance_criterion, principal_angles, span_mac
+from housing.correlation.subspaces import close_modes, nearest_in_span
 
 RANDOM = np.random.default_rng(3)
 
@@ -29,7 +30,7 @@ def test_planes_at_a_known_angle(angle: float) -> None:
 def test_a_double_mode_mixed_in_any_way_is_the_same() -> None:
     pair = RANDOM.normal(size=(2, 10))
     mixed = np.array([[1.0, 1.0j], [0.8, -1.0 - 0.5j]]) @ pair
-    assert 0.05 < mac(pair, mixed).max() < 0.95
+    assert 0.05 < modal_assurance_criterion(pair, mixed).max() < 0.95
     assert span_mac(pair, mixed) == pytest.approx([1.0, 1.0])
     assert nearest_in_span(pair, mixed) == pytest.approx(mixed)
     assert principal_angles(pair, mixed) == pytest.approx([0.0, 0.0], abs=1e-7)
@@ -39,9 +40,9 @@ def test_the_span_has_the_largest_mac_of_all_its_members() -> None:
     basis, shape = RANDOM.normal(size=(2, 9)), RANDOM.normal(size=9)
     angles = np.linspace(0.0, np.pi, 20001)
     unit = np.linalg.qr(basis.T)[0].T
-    tried = mac(np.column_stack([np.cos(angles), np.sin(angles)]) @ unit, shape)
+    tried = modal_assurance_criterion(np.column_stack([np.cos(angles), np.sin(angles)]) @ unit, shape)
     assert span_mac(basis, shape)[0] == pytest.approx(tried.max(), rel=1e-7)
-    assert mac(nearest_in_span(basis, shape), shape)[0, 0] == pytest.approx(tried.max(), rel=1e-7)
+    assert modal_assurance_criterion(nearest_in_span(basis, shape), shape)[0, 0] == pytest.approx(tried.max(), rel=1e-7)
 
 
 def test_gaps_leave_out_their_degrees_of_freedom() -> None:

@@ -1,0 +1,117 @@
+"""Choice of the eigensolver: scipy's eigsh and block Lanczos give the same certified modes, double ones included."""
+
+from collections.abc import Callable
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+
+import housing.search
+from housing import Housing, HousingError, IncompleteModesError, Material, Matrices, assemble, solve_modes
+from housing.eigensolver import Solver, arpack_modes
+from meshes import ElementBlock, Mesh
+
+SOLVERS = pytest.mark.parametrize("solver", get_args(Solver))
+SIDE, WALL, LENGTH, CELLS, SLICES = 0.1, 0.01, 0.3, 6, 6
+
+
+@pytest.fixture(scope="module")
+def square_tube(steel: Material) -> Matrices:
+    """A free square tube of 8-node bricks, laid by hand so that the mesh has the four-fold symmetry too."""
+    steps = np.linspace(-0.5 * SIDE, 0.5 * SIDE, CELLS + 1)
+    steps[[1, -2]] = [-0.5 * SIDE + WALL, 0.5 * SIDE - WALL]
+    cells = [(i, j) for i in range(CELLS) for j in range(CELLS) if {i, j} & {0, CELLS - 1}]
+    numbers: dict[tuple[int, int, int], int] = {}
+    nodes = []
+    for k in range(SLICES):
+        for i, j in cells:
+            ring = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+            nodes.append([numbers.setdefault((*place, z), len(numbers)) for z in (k, k + 1) for place in ring])
+    places = np.array(list(numbers))
+    points = np.column_stack([steps[places[:, 0]], steps[places[:, 1]], LENGTH / SLICES * places[:, 2]])
+    return assemble(Mesh(points, (ElementBlock("hexahedron", np.array(nodes)),)), steel)
+
+
+@SOLVERS
+@pytest.mark.parametrize("asked", [{"count": 24}, {"frequency_limit": 2 * np.pi * 12000.0}])
+def test_double_modes_of_a_square_tube_are_complete(
+    square_tube: Matrices, solver: Solver, asked: dict[str, Any]
+) -> None:
+    modes = solve_modes(square_tube, solver=solver, **asked)
+    assert modes.certificate.complete
+    assert modes.certificate.expected == len(modes.frequencies)
+    elastic = modes.frequencies[6:]
+    double = np.flatnonzero(np.diff(elastic) < 1e-9 * elastic[1:])
+    assert len(double) >= 3  # bending in x and in y is one frequency, by the symmetry of the square
+
+
+@pytest.mark.parametrize("asked", [{"count": 24}, {"frequency_limit": 2 * np.pi * 12000.0}])
+def test_both_solvers_give_the_same_modes(square_tube: Matrices, asked: dict[str, Any]) -> None:
+    one, other = (solve_modes(square_tube, solver=solver, **asked) for solver in get_args(Solver))
+    np.testing.assert_allclose(one.frequencies, other.frequencies, rtol=1e-9)
+    # Within a double mode any rotation will do, so spaces are compared: every mode lies in the span of the others'.
+    first, second = (modes.shapes.reshape(len(modes.shapes), -1) for modes in (one, other))
+    shared = first @ square_tube.mass @ second.T
+    np.testing.assert_allclose(np.linalg.norm(shared, axis=1), 1.0, atol=1e-8)
+
+
+def test_modes_of_eigsh_repeat_to_the_last_bit(square_tube: Matrices) -> None:
+    one, other = (solve_modes(square_tube, count=12, solver="eigsh") for _ in range(2))
+    np.testing.assert_array_equal(one.frequencies, other.frequencies)
+    np.testing.assert_array_equal(one.shapes, other.shapes)
+
+
+def test_certificate_catches_eigsh_that_misses_one_of_a_double_mode(
+    square_tube: Matrices, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    honest = solve_modes(square_tube, count=24, solver="eigsh")
+    pair = int(np.argmin(np.diff(honest.frequencies[6:]) / honest.frequencies[7:])) + 6
+
+    def missing(*arguments: Any, **options: Any) -> tuple[Any, Any]:
+        values, vectors = arpack_modes(*arguments, **options)
+        return np.delete(values, pair), np.delete(vectors, pair, axis=1)
+
+    monkeypatch.setattr(housing.search, "arpack_modes", missing)
+    with pytest.raises(IncompleteModesError, match=r"modes found below .* Hz where the inertia demands"):
+        solve_modes(square_tube, frequency_limit=honest.certificate.limit, solver="eigsh")
+
+
+def test_eigsh_that_does_not_converge_is_tried_again_and_then_refused(
+    square_tube: Matrices, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from scipy.sparse.linalg import ArpackNoConvergence
+
+    tried = []
+
+    def stuck(*_: Any, ncv: int, **__: Any) -> tuple[Any, Any]:
+        tried.append(ncv)
+        raise ArpackNoConvergence("No convergence", np.empty(0), np.empty((0, 0)))
+
+    monkeypatch.setattr("housing.eigensolver.eigsh", stuck)
+    with pytest.raises(IncompleteModesError, match="eigsh did not converge to 44 modes"):
+        solve_modes(square_tube, count=12, solver="eigsh")
+    assert tried == sorted(set(tried))
+    assert len(tried) == 3
+
+
+def test_an_unknown_eigensolver_is_refused(square_tube: Matrices) -> None:
+    with pytest.raises(HousingError, match="eigensolver 'arnoldi'; expected one of 'lanczos', 'eigsh'"):
+        solve_modes(square_tube, count=3, solver="arnoldi")  # type: ignore[arg-type]
+
+
+def test_a_housing_hands_the_choice_on(
+    block: Callable[..., Mesh], steel: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls = []
+
+    def counted(*arguments: Any, **options: Any) -> tuple[Any, Any]:
+        calls.append(options)
+        return arpack_modes(*arguments, **options)
+
+    monkeypatch.setattr(housing.search, "arpack_modes", counted)
+    solid = Housing(block((0.10, 0.07, 0.05), (2, 1, 1)), steel)
+    own = solid.modes(count=9)
+    assert not calls
+    other = solid.modes(count=9, solver="eigsh")
+    assert calls
+    np.testing.assert_allclose(own.frequencies_hz, other.frequencies_hz, rtol=1e-9)
