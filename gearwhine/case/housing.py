@@ -193,6 +193,12 @@ class Seat(Table):
             raise wrong(f"a boss wider than its bore of {self.diameter:g} m", "boss", "diameter")
         return self
 
+    def build(self) -> housing.Seat:
+        """The seat, by its surface in the mesh."""
+        from housing import Seat as BuiltSeat
+
+        return BuiltSeat(self.name, self.center)
+
 
 class Springs(Table):
     """Stiffness to ground along x, y, z [N/m], in all, spread over the patch."""

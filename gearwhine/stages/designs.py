@@ -98,7 +98,7 @@ class HousingDesigns:
         solved = room.solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
         given = case.housing
         assert given is not None
-        ports = [room.seat_matrix(mesh, room.Seat(seat.name, seat.center)) for seat in given.seat]
+        ports = [room.seat_matrix(mesh, seat.build()) for seat in given.seat]
         seats = (
             np.stack([solved.project(port)[:, :2] for port in ports], axis=1)
             if ports

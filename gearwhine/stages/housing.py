@@ -152,14 +152,14 @@ def solve_housing(
     with told_on_failure(warnings):
         # Places and ports before modes: what is wrong with them is found out before the long work.
         check_places(case, mesh)
-        seats = _seats(case)
-        seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
+        described = describe_housing(case, mesh)
+        seat_ports = described.seat_ports()
         loaded = {name: room.bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
-        sensors = {entry.name: room.sensor_port(mesh, entry.build()) for entry in given.sensor}
+        sensors = described.sensor_ports()
         bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
         survey = room.survey_grid(mesh, bounds)
         if kept is None:
-            modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
+            modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
             warnings += warnings_document(doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ))
         else:
@@ -168,7 +168,7 @@ def solve_housing(
             seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
     seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_ports.items()}
     strengths = None
-    if seats:
+    if seat_ports:
         radial = np.stack([motion[:, :2] for motion in seats_in_modes.values()], axis=1)
         strengths = room.dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
     seconds["total"] = time.perf_counter() - begin
@@ -176,8 +176,8 @@ def solve_housing(
         mesh,
         modes,
         mass,
-        seats=seats,
-        seat_motions=np.stack(list(seats_in_modes.values()), axis=1) if seats else np.empty((0, 0, 6)),
+        seats=tuple(described.seats),
+        seat_motions=np.stack(list(seats_in_modes.values()), axis=1) if seat_ports else np.empty((0, 0, 6)),
         inputs=inputs,
         notes={"seconds": seconds, "checks": checks, "warnings": warnings},
         extras={} if damping_matrix is None else {_DAMPING: _damping_array(damping_matrix)},
@@ -210,14 +210,13 @@ def _damping_array(matrix: FloatArray) -> room.LabelledArray:
 
 
 def _solve_modes(
-    case: Case, mesh: Mesh, loaded: dict[str, sparse.csr_array], progress: Progress
+    case: Case, described: room.Housing, loaded: dict[str, sparse.csr_array], progress: Progress
 ) -> tuple[room.ModeSet, float, FloatArray | None, dict[str, Any], dict[str, float]]:
     """The modes, the housing's mass [kg], what damps it in its modes, its checks, and the seconds of each step."""
     given = case.housing
     assert given is not None
-    begin = time.perf_counter()
+    begin, mesh = time.perf_counter(), described.mesh
     progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
-    described = describe_housing(case, mesh)
     free = described.free_matrices()
     matrices = attach_all(case, mesh, free)
     assembled = time.perf_counter() - begin
@@ -255,12 +254,10 @@ def describe_housing(case: Case, mesh: Mesh) -> room.Housing:
     """
     parted, material, materials = materials_of(case, mesh)
     fixtures = [fixture for _, _, fixture in build_attachments(case)]
-    return room.Housing(parted, material, materials, fixtures, _seats(case))
-
-
-def _seats(case: Case) -> tuple[room.Seat, ...]:
-    assert case.housing is not None
-    return tuple(room.Seat(seat.name, seat.center) for seat in case.housing.seat)
+    given = case.housing
+    assert given is not None
+    seats, sensors = tuple(seat.build() for seat in given.seat), tuple(sensor.build() for sensor in given.sensor)
+    return room.Housing(parted, material, materials, fixtures, seats, sensors)
 
 
 def keep_modes(place: Path, solved: SolvedHousing) -> None:
