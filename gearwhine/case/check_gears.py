@@ -13,7 +13,7 @@ from gearwhine.case.check_shafts import millimetres
 from gearwhine.case.draft import Draft
 from gearwhine.case.gears import Gear, GearPair
 from gearwhine.case.problems import NOTHING, UNSAID, Finding
-from gearwhine.case.train import known_pairs, shaft_of, train_of_pairs
+from gearwhine.case.train import shaft_of
 
 if TYPE_CHECKING:
     from coupling.gears import Gear as BuiltGear
@@ -46,13 +46,12 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
         yield from unequal
         if not unequal and driver.name in built and driven.name in built:
             yield from _check_pair(draft, index, pair, (driver, driven), (built[driver.name], built[driven.name]))
-    known = known_pairs([gear for _, gear in draft.gears], draft.gear_pairs)
-    for wrong in train_of_pairs(known).contradictions if known else ():
+    for wrong in draft.train.contradictions if draft.train is not None else ():
         expected = (
             f'pairs in a loop that can turn; "{wrong.shaft}" would turn at {float(wrong.ratio):.6g} of the first '
             f"driver's speed by the other pairs, and at {float(wrong.other):.6g} by this one"
         )
-        yield Finding(("gear_pair", known[wrong.pair][0]), expected, UNSAID)
+        yield Finding(("gear_pair", draft.known_pairs[wrong.pair][0]), expected, UNSAID)
 
 
 def _check_pair(

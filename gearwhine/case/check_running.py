@@ -12,7 +12,7 @@ from gearwhine.case.model import Case
 from gearwhine.case.motion import pair_torques
 from gearwhine.case.problems import NOTHING, UNSAID, Finding
 from gearwhine.case.running import Operation
-from gearwhine.case.train import known_pairs, shaft_of, train_of_pairs
+from gearwhine.case.train import shaft_of
 
 LARGEST_RATIO = 1e12
 """Speed over the first driver's beyond which a train is a mistake, long before numbers overflow."""
@@ -87,8 +87,7 @@ def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:
 def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield shafts that nothing turns, and outputs that do not balance the input."""
     shafts = draft.names("rotor") or draft.names("gear")
-    known = known_pairs([gear for _, gear in draft.gears], draft.gear_pairs)
-    train = train_of_pairs(known) if known else None
+    train = draft.train
     if any(shaft_of(gear) not in shafts for _, gear in draft.gears) or any(
         draft.gear(name) is None for _, pair in draft.gear_pairs for name in (pair.driver, pair.driven)
     ):
