@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-_OFTEN = 30.0  # seconds after which long work is told of again
-_WORTH_SAYING = 5.0  # seconds
+_OFTEN = 30.0  # seconds between reports of long work
+_WORTH_SAYING = 5.0  # seconds left, from which on they are shown
 
 
 class Progress(Protocol):
-    """Told in words what happens now, and how much of it is done (0 to 1) where that is known.
+    """Receives the present work in words, and its completed fraction (0 to 1) where that is known.
 
     Words after a colon are news of the same work: its clock goes on.
     """

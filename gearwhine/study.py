@@ -99,9 +99,9 @@ class Study:
     case : Case
         Checked, in SI.
     warnings : tuple of str
-        What is allowed in the case but likely not meant.
+        Allowed but unlikely choices in the case.
     progress : callable
-        Told in words what long work does; silent by default.
+        Receives the progress of long work in words; silent by default.
     """
 
     def __init__(

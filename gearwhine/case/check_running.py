@@ -40,7 +40,7 @@ def check_running(draft: Draft) -> Iterator[Finding]:
     yield from _check_run(draft, operation)
     yield from _check_method(draft, operation)
     if draft.broken & {"rotor", "gear", "gear_pair"} or not turning:
-        return  # what turns what cannot be told from half a train
+        return  # half a train does not say which shafts it turns
     yield from _check_stations(draft, operation)
     yield from _check_train(draft, operation)
 

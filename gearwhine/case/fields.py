@@ -23,11 +23,11 @@ def wrong(expected: str, *at: str | int, note: str = "") -> PydanticCustomError:
     Parameters
     ----------
     expected
-        What was expected.
+        Expected value.
     at
         Steps that lead on to the key at fault.
     note
-        What the value is, where that is not plain to see.
+        Dimension of the value, where it is not obvious.
     """
     return PydanticCustomError("case", "{expected}", {"expected": expected, "at": at, "note": note})
 
@@ -39,7 +39,7 @@ class Quantity:
     Attributes
     ----------
     dimension
-        What it measures.
+        Physical dimension.
     above, below
         Limits that the value must not touch, in SI.
     at_least, at_most

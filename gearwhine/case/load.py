@@ -48,7 +48,7 @@ class LoadedCase:
     path
         The file it was read from.
     warnings
-        What is allowed but likely not meant, a sentence each.
+        Allowed but unlikely choices, a sentence each.
     """
 
     case: Case

@@ -30,7 +30,7 @@ def require(case: Case, *tables: str, command: str) -> None:
     tables
         Keys of the top level, such as ``"housing"``.
     command
-        What needs them, for the message.
+        Command that needs them, for the message.
 
     Raises
     ------

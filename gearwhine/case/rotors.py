@@ -249,7 +249,7 @@ class Rotor(Table):
 
     `damping_ratio` is that of the shaft's own modes. `shear_coefficient` (a formula or a number) and `axial_force`
     [N, tension positive] hold for segments that have none of their own. Of its modes the coupled system keeps the
-    lowest so many (`modes`) or those below a frequency (`frequency_limit`, Hz). Where a `file` of ROSS holds the shaft,
+    lowest `modes` of each kind, or those below a frequency (`frequency_limit`, Hz). Where a `file` of ROSS holds the shaft,
     with its discs and grounded bearings, there are no `segments` here.
     """
 

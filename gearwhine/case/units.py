@@ -220,7 +220,7 @@ def parse_quantity(value: object, dimension: Dimension) -> float:
     value
         ``"6.35 mm"`` or ``0.00635``.
     dimension
-        What it has to measure.
+        Required dimension.
 
     Returns
     -------
@@ -321,7 +321,7 @@ def format_quantity(number: float, dimension: Dimension) -> str | float:
     number
         In ``dimension.unit``.
     dimension
-        What it measures.
+        Dimension.
 
     Returns
     -------

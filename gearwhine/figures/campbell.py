@@ -14,7 +14,7 @@ from gearwhine.figures.whirl_senses import Sense, legend_lines, sense_of, with_r
 FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _DAMPING_HEIGHT, _BETWEEN = 78.0, 32.0, 4.0  # of both panels and the room between them [mm of paper]
-_BRANCHES = 6  # at least so many of the lowest are shown
+_BRANCHES = 6  # lowest branches that are shown at least
 _ABOVE = 1.6  # the highest order's frequency at top speed takes this part of the axis
 _ALMOST_ALL = 0.9  # of the decrements are on their axis
 _UNDAMPED = 1e-9  # a damping ratio this small is rounding

@@ -71,7 +71,7 @@ def draw_critical_map(
     critical_speeds
         (k, c): rad/s, each branch down a column; zero (a rigid motion) and NaN are not drawn.
     bearings
-        Whose k_xx and k_yy, over speed where they have tables, are laid over the map.
+        Bearings whose k_xx and k_yy, over speed where they have tables, are drawn over the map.
     operating_speed
         rad/s, drawn as a line.
     whirl

@@ -43,9 +43,9 @@ class LabelRow:
     upright
         Whether they stand rather than lie.
     height
-        What the row needs with its leaders, mm.
+        Height of the row with its leaders, mm.
     left_out
-        How many labels had no room.
+        Number of labels without room.
     """
 
     labels: tuple[Label, ...]

@@ -60,9 +60,9 @@ def draw_mac_matrix(
     outlined
         Cells of pairs: row and column from 0.
     axes_named
-        What the rows are, and the columns.
+        Titles of rows and columns.
     named
-        What the values are.
+        Name of the values.
 
     Raises
     ------

@@ -31,7 +31,7 @@ def draw_lateral_modes(assembly: RotorAssembly, modes: LateralModes, *, most: in
     modes
         Its modes in one plane.
     most
-        How many to draw at most; all where not given.
+        Largest number of modes drawn; all where not given.
     """
     z, held, loaded = _places(assembly)
     shown = modes.frequencies[:most]

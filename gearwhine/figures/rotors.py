@@ -41,7 +41,7 @@ def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = 
     solved : sequence of SolvedRotor
         Of the case.
     progress : callable
-        Told which rotor is drawn.
+        Receives the name of the rotor being drawn.
 
     Yields
     ------

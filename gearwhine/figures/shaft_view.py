@@ -31,7 +31,7 @@ class ShaftView:
     per_paper
         Millimetres of the shaft on one of the paper; both directions have it.
     stretch
-        By how much more its diameters are drawn, 1 where the picture is true.
+        Exaggeration of the diameters, 1 where the picture is true to scale.
     half_height
         From the centre line to the largest radius, mm of paper.
     """

@@ -23,7 +23,7 @@ RPM = 9.549296585513721  # revolutions per minute of 1 rad/s
 HERTZ = 2.0 * pi  # rad/s of 1 Hz
 MILLI, MICRO, MEGA = 1e3, 1e6, 1e-6  # factors from m to mm, from m to µm, from Pa to MPa and from N/m to N/µm
 
-_IN_HEAD = 4  # so many lines are explained beside the title
+_IN_HEAD = 4  # entries of a legend beside the title at most
 _NOTE_LETTERS = 124  # of a note in one line
 _NAME_OF_AXIS = 11.2  # left of a panel [mm]
 _SCREEN_DPI, _PRINT_DPI = 130, 200

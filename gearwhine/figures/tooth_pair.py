@@ -31,7 +31,7 @@ from gearwhine.figures.style import (
 FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT = 104.0  # of the panel [mm of paper]
-_PITCHES = 5.6  # so many teeth side by side
+_PITCHES = 5.6  # teeth side by side
 _POINTS = 60  # on each curve of a tooth
 _LETTERS = "ABCDE"  # of the path of contact, as everywhere in the field
 _UP = 0.5 * math.pi  # the driven gear stands above the driver

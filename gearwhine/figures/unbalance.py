@@ -70,7 +70,7 @@ def draw_unbalance_response(
     speeds
         (s,): two or more, ascending, rad/s.
     probes
-        What they read, each (s,).
+        Readings, each (s,).
     critical_speeds
         (c,): rad/s, marked where they are in the range.
     operating_range

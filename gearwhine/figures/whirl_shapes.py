@@ -38,7 +38,7 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     whirl
         Its modes; those that are for the most part along the axis are left out.
     most
-        How many to draw at most; all where not given.
+        Largest number of modes drawn; all where not given.
     """
     outline = lay_out(assembly, labelled=False)
     view = outline.view

@@ -34,7 +34,7 @@ class HousingDesigns:
     ----------
     case : FittedCase
     modes : int
-        How many are taken along.
+        Number of modes.
     measured : callable, optional
         From a mesh to the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes).
     threads : int
@@ -118,7 +118,7 @@ class HousingDesign:
     Attributes
     ----------
     designs : HousingDesigns
-        Whose it is.
+        The parametric housing.
     coordinates : ndarray, shape (n_parameters,)
     case : Case
     mesh : Mesh

@@ -25,7 +25,7 @@ def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int 
     ----------
     case : Case
     warn : callable
-        Told what the user should know, a sentence each.
+        Receives warnings, a sentence each.
     order : {1, 2}
         Of the elements, where they are made here and not read.
 

@@ -32,7 +32,7 @@ _DAMPING = "modal_damping"  # its name in a mode-set file
 
 @dataclass(frozen=True)
 class SolvedHousing:
-    """The housing with everything that later stages take from it.
+    """Solved housing: mesh, modes, damping, seats, sensors, dominance and checks.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class SolvedHousing:
     damping_ratios : ndarray, shape (n_modes,)
         As the case gives them; see :attr:`total_damping_ratios`.
     damping_matrix : ndarray, shape (n_modes, n_modes), or None
-        What dashpots, mounts and joints add in modal coordinates [1/s]; None where nothing damps.
+        Modal damping matrix of dashpots, mounts and joints [1/s]; None where nothing damps.
     seats : dict of str to ndarray, shape (n_modes, 6)
         Modes' motions at each bearing seat.
     seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
@@ -62,13 +62,13 @@ class SolvedHousing:
     seconds : dict of str to float
         Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
     record : housing.ModeRecord
-        What a mode-set file holds of it.
+        Content of its mode-set file.
     source : Path or None
         The file that the modes were read from; None where they were solved.
     source_holds : bool
         Whether that file also holds these sensors, so that it need not be written again.
     warnings : list of dict
-        What the user should know, as the documents have it.
+        Warnings, as in the documents.
     """
 
     mesh: Mesh
@@ -92,7 +92,7 @@ class SolvedHousing:
 
     @property
     def trusted_limit_hz(self) -> float:
-        """Up to where the modes are complete [Hz]."""
+        """Frequency below which the modes are complete [Hz]."""
         return self.modes.certificate.limit / _HERTZ
 
     @property
@@ -117,7 +117,7 @@ def solve_housing(
     ----------
     case : Case
     progress : callable
-        Told in words what happens next.
+        Receives the next step in words.
     command : str
         On whose behalf, for messages.
     folder : path, optional

@@ -49,7 +49,7 @@ class HousingInMachine:
     frequencies_hz : ndarray, shape (n_modes,)
         Natural frequencies of its modes [Hz].
     trusted_limit_hz : float
-        Up to where they are complete [Hz].
+        Frequency below which they are complete [Hz].
     warnings : tuple of dict
         Warnings about the housing, as in the documents.
     sensors : mapping of str to SensorPlace

@@ -31,7 +31,7 @@ class RunLine:
     ----------
     shape : housing.operating_shapes.OperatingShape
     name : str
-        What it is, such as ``2x mesh``, where a sensor's line there has a name; else empty.
+        Name, such as ``2x mesh``, where a sensor's line there has a name; else empty.
     """
 
     shape: OperatingShape

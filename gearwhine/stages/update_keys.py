@@ -25,7 +25,7 @@ class FittedNumber:
         In SI.
     places : tuple of locations
     own : tuple of float
-        What stands there before the fit, in SI.
+        Value before the fit, in SI.
     """
 
     given: UpdateParameter

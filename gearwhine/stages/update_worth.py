@@ -34,7 +34,7 @@ def whole_search(start: HousingDesign, effort: Effort, count: int) -> Procedure[
     effort : Effort
         Of the update.
     count : int
-        How many starts race, this one among them.
+        Number of starts of the multistart search, this one included.
     """
     designs = replace(start.designs, threads=1, draft=True)
     return Procedure(designs.solve, designs.parameters, start.light(), effort, count)

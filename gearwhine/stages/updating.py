@@ -84,7 +84,7 @@ def update_housing(
     case : Case
     progress : callable
     null : int
-        How many random sets of frequencies to fit likewise.
+        Number of random frequency sets to fit.
     held_back : bool
         Whether to fit again without each measured mode in turn, and to predict it.
     threads : int
@@ -115,7 +115,7 @@ def update_housing(
     begin = time.perf_counter()
     progress("going on with the housing's own mesh")
     found = polish(replace(fine, draft=True).solve, raced, target, fine.parameters, effort, progress)
-    # On the way modes were not counted; those that are told of have their proof.
+    # On the way modes were not counted; those that are reported are certified.
     after = replace(fine.solve(found.design.coordinates), known=found.design.surrogate())
     seconds["own_mesh"] = time.perf_counter() - begin
     rows: list[HeldBack] = []

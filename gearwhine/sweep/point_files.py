@@ -43,7 +43,7 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
     place
         A staging folder on the same file system.
     point, result
-        What to write.
+        Result to write.
     """
     attributes = {
         "source": f"gearwhine {__version__}",

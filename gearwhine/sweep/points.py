@@ -44,7 +44,7 @@ class Point:
     file : str
         Name of its file.
     duration : float
-        How long its machine turns [s].
+        Duration of its transient [s].
     """
 
     place: tuple[int, ...]

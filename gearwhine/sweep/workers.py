@@ -51,7 +51,7 @@ def connected(
     Parameters
     ----------
     workers
-        How many processes to start.
+        Number of processes to start.
     scheduler
         Address of a cluster that runs already, whose workers are used in place of our own.
     place
