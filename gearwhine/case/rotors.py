@@ -248,9 +248,9 @@ class Rotor(Table):
     """`[[rotor]]`: a shaft along z at `axis` (x, y), its left end at z = `start`, all in m.
 
     `damping_ratio` is that of the shaft's own modes. `shear_coefficient` (a formula or a number) and `axial_force`
-    [N, tension positive] hold for segments that have none of their own. Of its modes the coupled system keeps the
-    lowest `modes` of each kind, or those below a frequency (`frequency_limit`, Hz). Where a `file` of ROSS holds the shaft,
-    with its discs and grounded bearings, there are no `segments` here.
+    [N, tension positive] hold for segments that have none of their own. The coupled system keeps the lowest `modes` of
+    each kind, or those below a `frequency_limit` [Hz]. Where a `file` of ROSS holds the shaft, with its discs and
+    grounded bearings, there are no `segments` here.
     """
 
     name: Name
