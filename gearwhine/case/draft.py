@@ -124,7 +124,7 @@ def draft_of_case(case: Case, document: Mapping[str, Any]) -> Draft:
         return found
 
     tables = {name: at(keys) for name, (_, keys) in _TABLES.items()}
-    lists = {name: tuple(enumerate(at(keys) or ())) for name, (_, keys) in _LISTS.items()}
+    lists: dict[str, Any] = {name: tuple(enumerate(at(keys) or ())) for name, (_, keys) in _LISTS.items()}
     return Draft(document=document, broken=frozenset(), **tables, **lists)
 
 
