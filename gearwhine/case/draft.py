@@ -92,14 +92,14 @@ class Draft:
         return tuple(e["name"] for _, e in self.raw_entries(*keys) if isinstance(e.get("name"), str))
 
 
-_TABLES: dict[str, tuple[type[Table], tuple[str, ...]]] = {
+_DRAFT_TABLES: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "box": (Box, ("housing", "box")),
     "operation": (Operation, ("operation",)),
     "transient": (Transient, ("transient",)),
     "sweep": (Sweep, ("sweep",)),
     "analysis": (RotorAnalysis, ("rotor_analysis",)),
 }
-_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
+_DRAFT_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "seats": (Seat, ("housing", "seat")),
     "supports": (Support, ("housing", "support")),
     "mounts": (Mount, ("housing", "mount")),
@@ -123,8 +123,8 @@ def draft_of_case(case: Case, document: Mapping[str, Any]) -> Draft:
             found = getattr(found, key, None)
         return found
 
-    tables = {name: at(keys) for name, (_, keys) in _TABLES.items()}
-    lists: dict[str, Any] = {name: tuple(enumerate(at(keys) or ())) for name, (_, keys) in _LISTS.items()}
+    tables = {name: at(keys) for name, (_, keys) in _DRAFT_TABLES.items()}
+    lists: dict[str, Any] = {name: tuple(enumerate(at(keys) or ())) for name, (_, keys) in _DRAFT_LISTS.items()}
     return Draft(document=document, broken=frozenset(), **tables, **lists)
 
 
@@ -137,9 +137,9 @@ def draft_of_document(document: Mapping[str, Any], broken: frozenset[str], conte
         return tuple((index, entry) for index, entry in read if entry is not None)
 
     tables: dict[str, Any] = {
-        name: _read(kind, look_up(document, keys), context) for name, (kind, keys) in _TABLES.items()
+        name: _read(kind, look_up(document, keys), context) for name, (kind, keys) in _DRAFT_TABLES.items()
     }
-    lists: dict[str, Any] = {name: entries(kind, keys) for name, (kind, keys) in _LISTS.items()}
+    lists: dict[str, Any] = {name: entries(kind, keys) for name, (kind, keys) in _DRAFT_LISTS.items()}
     return Draft(document=document, broken=broken, **tables, **lists)
 
 

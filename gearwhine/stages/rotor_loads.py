@@ -12,7 +12,7 @@ from gearwhine.case import Rotor as GivenRotor
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_PLACES = 201  # along a rotor, of its static deflection
+_DEFLECTION_PLACES = 201  # along a rotor, of its static deflection
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def solve_weight(
         deflection = room.static_deflection(rotor, bearings, gravity=analysis.gravity, speed=speed)
     except room.RotorError as error:
         return str(error)
-    places = np.union1d(np.linspace(0.0, rotor.length, _PLACES), rotor.stations)
+    places = np.union1d(np.linspace(0.0, rotor.length, _DEFLECTION_PLACES), rotor.stations)
     return SolvedWeight(deflection, speed, places, deflection.evaluate(places)[:2])
 
 
