@@ -27,7 +27,7 @@ def add_warnings(document: Document, found: Iterable[Mapping[str, Any]] = ()) ->
 
 
 def joined(*documents: Mapping[str, Any]) -> Document:
-    """One document of several: the keys of later ones win, but the warnings of all are kept."""
+    """Merge documents: the keys of later ones win, the warnings of all are kept."""
     whole: Document = {}
     for document in documents:
         found = document.get("warnings", ())

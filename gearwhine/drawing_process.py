@@ -1,4 +1,4 @@
-"""Drawing in a process of its own: where VTK crashes, the command goes on to say so.
+"""Drawing process: VTK in a process of its own, so that its crash is reported and the command goes on.
 
 The process is handed plain data, a file of arrays (``.npz``, without pickled objects) and a file of JSON, and answers
 in lines of JSON: what it draws now, and at last the names of the files, or what went wrong.
@@ -82,7 +82,7 @@ def draw_apart(
 
 
 def _follow(lines: IO[str], progress: Progress) -> dict[str, Any]:
-    """Pass on what is told, up to the answer; empty where there is none."""
+    """Forward progress up to the answer; empty where there is none."""
     for line in lines:
         try:
             told = json.loads(line)

@@ -1,4 +1,4 @@
-"""Which shapes to draw, and drawing them: pictures, films, or models that move."""
+"""Mode pictures: the selection of shapes, and their drawing as pictures, films or animated models."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -122,7 +122,7 @@ def draw_lines(
     place: Path,
     progress: Progress,
 ) -> list[dict[str, Any]]:
-    """Draw how the housing moves at lines of the run in ``folder``, into ``place``, and tell of them.
+    """Draw operating shapes at lines of the run in ``folder`` into ``place``; return their documents.
 
     Raises
     ------

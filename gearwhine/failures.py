@@ -1,4 +1,4 @@
-"""Which failures are the user's to mend, which are ours to report, and in what words."""
+"""Failures of a command: exit codes and messages of wrong input, failed proofs and missing libraries."""
 
 
 class PartlyFailedError(RuntimeError):

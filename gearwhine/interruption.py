@@ -1,4 +1,4 @@
-"""Ctrl-C and a polite kill: both unwind the work as a KeyboardInterrupt, wherever that is safe."""
+"""Interruption by Ctrl-C or SIGTERM: both raise KeyboardInterrupt where that is safe."""
 
 import signal
 import sys
@@ -96,7 +96,7 @@ def each_aside(items: Iterable[T]) -> Iterator[T]:
 
 
 def aside(work: Callable[[], T]) -> T:
-    """What a call returns, made on a thread of its own; see :func:`each_aside`."""
+    """Result of a call on a thread of its own; see :func:`each_aside`."""
     (found,) = each_aside(work() for _ in range(1))
     return found
 
@@ -123,9 +123,9 @@ def _importing(frame: FrameType | None) -> bool:
 
 
 def _unraisable(trouble: "sys.UnraisableHookArgs") -> None:
-    """Interrupt again where Python drops an interruption, as in the callback of a weak reference; tell all else.
+    """Interrupt again where Python drops an interruption, as in the callback of a weak reference; report all else.
 
-    After an interruption nothing is told: its own sentence is enough.
+    After an interruption nothing is reported: its own sentence is enough.
     """
     if issubclass(trouble.exc_type, KeyboardInterrupt):
         _interrupt_again()

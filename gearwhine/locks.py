@@ -1,4 +1,4 @@
-"""Locks on folders, by which runs that share a results folder know of each other."""
+"""Locks on folders, for runs that share a results folder."""
 
 import fcntl
 import os
@@ -41,7 +41,7 @@ def held(folder: Path) -> Iterator[None]:
 
 
 def in_use(folder: Path) -> bool:
-    """Whether a living process holds a folder's lock, or nobody can tell."""
+    """Whether a living process holds a folder's lock, or the lock cannot be read."""
     try:
         handle = os.open(folder, os.O_RDONLY)
     except OSError:

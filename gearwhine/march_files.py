@@ -1,4 +1,4 @@
-"""A march on file: each block of its record with the state after it, so that a killed run can go on.
+"""Checkpoint files of a time integration: each block of the record with the state after it, for a later restart.
 
 A run keeps its blocks in a hidden folder of the output folder, which bears the key of everything the march depends on
 and goes when the results are written. A block and its checkpoint are one file that appears whole: it is written beside,
@@ -51,7 +51,7 @@ class BlockFiles:
 
     @property
     def is_empty(self) -> bool:
-        """Whether no block is on file; one that an interruption kept from being counted is there."""
+        """Whether no block is on file, an uncounted one of an interruption included."""
         return not self._file(0).exists()
 
     def append(self, arrays: Arrays) -> None:
@@ -88,7 +88,7 @@ class BlockFiles:
 
 @contextmanager
 def kept_march(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
-    """The blocks kept in an output folder under a key, gone when the work inside ends well.
+    """Checkpoint blocks in an output folder under a key, removed when the work inside ends well.
 
     Where a living run is at the same march in the same folder, this one keeps blocks of its own.
 

@@ -1,4 +1,4 @@
-"""Progress of long work: a live line on a terminal, plain lines where there is none, nothing when quiet."""
+"""Progress of long work: a live line on a terminal, plain lines elsewhere, nothing when quiet."""
 
 import sys
 import time
@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-_OFTEN = 30.0  # seconds after which long work is told of again
-_WORTH_SAYING = 5.0  # seconds
+_OFTEN = 30.0  # seconds between reports of long work
+_WORTH_SAYING = 5.0  # seconds left, from which on they are shown
 
 
 class Progress(Protocol):
-    """Told in words what happens now, and how much of it is done (0 to 1) where that is known.
+    """Receives the present work in words, and its completed fraction (0 to 1) where that is known.
 
     Words after a colon are news of the same work: its clock goes on.
     """
@@ -92,7 +92,7 @@ def _lines() -> Progress:
 
 
 def _time_left(begun: tuple[float, float], now: float, fraction: float) -> str:
-    """How much longer it takes at the pace so far, where that is long enough to be worth saying."""
+    """Estimated time left; empty where it is short."""
     passed, done = now - begun[0], fraction - begun[1]
     if done <= 0.0 or (left := passed * (1.0 - fraction) / done) < _WORTH_SAYING:
         return ""
@@ -101,5 +101,5 @@ def _time_left(begun: tuple[float, float], now: float, fraction: float) -> str:
 
 
 def _work(message: str) -> str:
-    """What a message is about, without its news."""
+    """Subject of a message, without its news."""
     return message.partition(":")[0]

@@ -1,4 +1,4 @@
-"""A case and all that can be asked of it, each analysis a call that returns a labelled result."""
+"""Study: a case and its analyses, each a call that returns a labelled result."""
 
 from __future__ import annotations
 
@@ -99,9 +99,9 @@ class Study:
     case : Case
         Checked, in SI.
     warnings : tuple of str
-        What is allowed in the case but likely not meant.
+        Allowed but unlikely choices in the case.
     progress : callable
-        Told in words what long work does; silent by default.
+        Receives the progress of long work in words; silent by default.
     """
 
     def __init__(
@@ -139,7 +139,7 @@ class Study:
         return describe_machine(self.case, part)
 
     def check(self) -> dict[str, Any]:
-        """What the case means: ratios, mesh frequencies, contact ratios, sizes. Nothing is solved."""
+        """Derived quantities of the case: ratios, mesh frequencies, contact ratios, sizes. Nothing is solved."""
         from gearwhine.stages.summary import check_document
 
         return check_document(self.case, self.progress)

@@ -1,4 +1,4 @@
-"""Units at the door: everything inside the library is in SI and radians per second."""
+"""Units of the library: SI, with radians per second for speeds."""
 
 import math
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -275,21 +276,45 @@ def tip_reach(gear: Gear) -> float:
     return math.sqrt(gear.tip_radius**2 - gear.base_radius**2)
 
 
+def mismatched_sizes(
+    driver: tuple[float, float, float], driven: tuple[float, float, float]
+) -> tuple[Literal["module", "pressure_angle", "helix_angle"], ...]:
+    """Sizes in which the teeth of a driver and a driven gear do not fit each other.
+
+    Parameters
+    ----------
+    driver, driven : tuple of float
+        Normal module [m], normal pressure angle [rad] and helix angle [rad].
+
+    Returns
+    -------
+    tuple of str
+        Modules and pressure angles that differ by more than the rounding of printed sizes, helix angles that are not
+        equal and of opposite hands.
+    """
+    pairs = zip(driver, (driven[0], driven[1], -driven[2]), strict=True)
+    names: tuple[Literal["module", "pressure_angle", "helix_angle"], ...] = ("module", "pressure_angle", "helix_angle")
+    return tuple(
+        name
+        for name, (first, second) in zip(names, pairs, strict=True)
+        if not math.isclose(first, second, rel_tol=PRINTED_ROUNDING)
+    )
+
+
 def _check_match(pair: GearPairGeometry) -> None:
     """Raise `MismatchedGearsError` unless the teeth of one gear fit the spaces of the other."""
     degrees = 180.0 / math.pi
-    for quantity, unit, scale in (("module", "mm", 1e3), ("pressure_angle", "degrees", degrees)):
-        first, second = getattr(pair.driver, quantity), getattr(pair.driven, quantity)
-        if not math.isclose(first, second, rel_tol=PRINTED_ROUNDING):
+    sizes = [(gear.module, gear.pressure_angle, gear.helix_angle) for gear in (pair.driver, pair.driven)]
+    for quantity in mismatched_sizes(*sizes):
+        scale, unit = (1e3, "mm") if quantity == "module" else (degrees, "degrees")
+        first, second = (scale * getattr(gear, quantity) for gear in (pair.driver, pair.driven))
+        if quantity == "helix_angle":
             raise MismatchedGearsError(
-                f"{pair.label}: both gears need the same {quantity}, "
-                f"got {first * scale:.8g} and {second * scale:.8g} {unit}"
+                f"{pair.label}: external gears on parallel shafts need equal helix_angle of opposite hands, "
+                f"got {first:+.8g} and {second:+.8g} degrees"
             )
-    first, second = pair.driver.helix_angle, pair.driven.helix_angle
-    if not math.isclose(first, -second, rel_tol=PRINTED_ROUNDING):
         raise MismatchedGearsError(
-            f"{pair.label}: external gears on parallel shafts need equal helix_angle of opposite hands, "
-            f"got {first * degrees:+.8g} and {second * degrees:+.8g} degrees"
+            f"{pair.label}: both gears need the same {quantity}, got {first:.8g} and {second:.8g} {unit}"
         )
 
 

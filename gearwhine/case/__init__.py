@@ -1,4 +1,4 @@
-"""The case file: from TOML with units to one checked, frozen object in SI.
+"""Case file: TOML with units, read into one checked, frozen object in SI.
 
 What the room offers:
 

@@ -1,4 +1,4 @@
-"""At which speeds each rotor of a case is looked at, where the case says so and where it does not.
+"""Speeds of rotor analyses: whirl, Campbell diagram and response, as given in the case or by default.
 
 All are speeds of the rotor itself [rad/s], positive counter-clockwise from +z.
 """

@@ -1,4 +1,4 @@
-"""The `[rotor_analysis]` table: what `gearwhine rotors` looks at. Attributes are named as the keys and are in SI."""
+"""Rotor analyses of a case, `[rotor_analysis]`. Attributes are named as the keys and are in SI."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class HarmonicTorque(Table):
 
 
 class TorsionSpring(Table):
-    """What holds a rotor's turning at a station [m] against the ground: stiffness [N m/rad], damping [N m s/rad]."""
+    """Torsional support of a rotor at a station [m] against the ground: stiffness [N m/rad], damping [N m s/rad]."""
 
     rotor: Name
     at: LengthFromZero

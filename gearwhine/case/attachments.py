@@ -1,12 +1,12 @@
-"""What is fastened to the housing besides its supports: `[[housing.mount]]`, `[[housing.joint]]`, `[[housing.mass]]`.
+"""Fixtures of the housing besides its supports: `[[housing.mount]]`, `[[housing.joint]]`, `[[housing.mass]]`.
 
-Attributes are named as the keys of the case file and are in SI.
+Each table builds its object of `housing`. Attributes are named as the keys of the case file and are in SI.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Discriminator, Tag, model_validator
 
@@ -24,6 +24,9 @@ from gearwhine.case.fields import (
     wrong,
 )
 from gearwhine.case.patches import Patch
+
+if TYPE_CHECKING:
+    import housing
 
 TiltStiffness = Annotated[float, Quantity(units.TILT_STIFFNESS, at_least=0.0)]
 TiltDamping = Annotated[float, Quantity(units.TILT_DAMPING, at_least=0.0)]
@@ -142,6 +145,25 @@ class Bushing(Table):
         x, y = map(unit_vector, self.axes)
         return unit_vector(_cross(x, y)), x
 
+    def build_bushing(self) -> housing.Bushing:
+        """The springs and dashpots along their axes."""
+        from housing import GLOBAL_AXES, Axial, axes_along
+        from housing import Bushing as BuiltBushing
+
+        tables = self.stiffness, self.damping
+        if self.axis is not None:
+            along = [Axial() if table is None else Axial(*amounts(table)) for table in tables]
+            return BuiltBushing.along(unit_vector(self.axis), *along)
+        stiffness, damping = (_six(table) for table in tables)
+        own = self.own_axes
+        return BuiltBushing(stiffness, damping, GLOBAL_AXES if own is None else axes_along(*own))
+
+
+def _six(table: SixSprings | SixDashpots | AxialSprings | AxialDashpots | None) -> Six:
+    """Amounts along x, y, z and about them."""
+    x, y, z, rx, ry, rz = (0.0,) * 6 if table is None else amounts(table)
+    return x, y, z, rx, ry, rz
+
 
 def _cross(a: UnitVector, b: UnitVector) -> UnitVector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
@@ -156,6 +178,12 @@ class Mount(Patch, Bushing):
     def holds(self) -> bool:
         """Whether it keeps the housing in its place; a dashpot alone lets it creep away."""
         return self.stiffness is not None and any(amounts(self.stiffness))
+
+    def build(self) -> housing.Mount:
+        """The mount."""
+        from housing import Mount as BuiltMount
+
+        return BuiltMount(self.name, self.build_patch(), self.build_bushing(), self.center)
 
 
 class Joint(Bushing):
@@ -178,6 +206,22 @@ class Joint(Bushing):
         if self.diameter is not None and (self.center is None or self.axis is None):
             raise wrong("'center' and 'axis' with it: where the two faces meet, and across them", "diameter")
         return self
+
+    def build(self) -> housing.Joint:
+        """The joint of two surfaces, or of circles on the faces that look along its axis and against it."""
+        from housing import Joint as BuiltJoint
+        from housing import Patch as BuiltPatch
+
+        if self.surfaces is not None:
+            first, second = (BuiltPatch(surface) for surface in self.surfaces)
+        else:
+            assert self.center is not None
+            assert self.axis is not None
+            assert self.diameter is not None
+            x, y, z = unit_vector(self.axis)
+            first = BuiltPatch(circle=(self.center, (x, y, z), self.diameter))
+            second = BuiltPatch(circle=(self.center, (-x, -y, -z), self.diameter))
+        return BuiltJoint(self.name, first, second, self.build_bushing(), self.center)
 
 
 class InertiaTensor(Table):
@@ -236,3 +280,17 @@ class LumpedMass(Patch):
             if self.position is not None and getattr(self, key) is not None:
                 raise wrong("a 'surface', 'box' or 'plane' with it: a single point does not turn a body", key)
         return self
+
+    def build(self) -> housing.LumpedMass:
+        """The mass."""
+        from housing import NO_INERTIA
+        from housing import LumpedMass as BuiltMass
+
+        return BuiltMass(
+            name=self.name,
+            mass=self.mass,
+            patch=None if self.position is not None else self.build_patch(),
+            position=self.position,
+            inertia=self.inertia.rows if self.inertia else NO_INERTIA,
+            offset=self.offset or (0.0, 0.0, 0.0),
+        )

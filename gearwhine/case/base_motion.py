@@ -1,15 +1,19 @@
-"""The `[operation.base]` table: how the ground moves under the machine. All in SI, frequencies in Hz."""
+"""Base motion of a case, `[operation.base]`: accelerations of the ground. All in SI, frequencies in Hz."""
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import MOST_ENTRIES, Angle, Point, PositiveFrequency, Quantity, Table, wrong
 from gearwhine.case.torques import Time
+
+if TYPE_CHECKING:
+    import coupling
 
 COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
 
@@ -77,3 +81,19 @@ class Base(Table):
         rows = [one.amplitudes for one in self.harmonic]
         turning = any(row[3] or row[4] for row in rows)
         return turning or (self.over_time is not None and any(map(any, self.over_time.rows[3:5])))
+
+    def build(self) -> coupling.BaseMotion:
+        """The motion of the ground."""
+        import numpy as np
+
+        from coupling import BaseHarmonic as BuiltHarmonic
+        from coupling import BaseHistory as BuiltHistory
+        from coupling import BaseMotion
+
+        parts: list[BuiltHarmonic | BuiltHistory] = [
+            BuiltHarmonic(2.0 * math.pi * one.frequency, np.array(one.amplitudes) * np.exp(1j * one.phase))
+            for one in self.harmonic
+        ]
+        if self.over_time is not None:
+            parts.append(BuiltHistory(np.array(self.over_time.time), np.array(self.over_time.rows).T))
+        return BaseMotion(tuple(parts), self.point)

@@ -1,4 +1,4 @@
-"""The `[housing.box]` of a case: a closed box with walls, feet, ribs, a cover and rounded edges, in m.
+"""Box housing of a case, `[housing.box]`: walls, feet, ribs, a cover and rounded edges, in m.
 
 Faces: left/right are x min/max, bottom/top y, back/front z. The origin is the middle of the box in x and z, the
 underside of its base in y; feet reach below.

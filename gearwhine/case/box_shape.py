@@ -1,4 +1,4 @@
-"""The box of a case as the mesher's geometry, and what of it does not fit."""
+"""Box geometry: the box of a case as an object of `meshes`, and its misfits as findings."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def box_geometry(box: Box, seats: Sequence[Seat]) -> BoxGeometry:
 
 
 def box_misfits(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Finding]:
-    """Yield what does not fit among the parts of a box whose walls and bores are sound.
+    """Yield what does not fit among the parts of a box.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The cases that ship with the package."""
+"""Bundled cases: their names, titles and files."""
 
 from __future__ import annotations
 

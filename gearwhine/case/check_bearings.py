@@ -1,4 +1,4 @@
-"""Checks of bearings by themselves: tables that fit their speeds and reach far enough, pedestals on the ground."""
+"""Checks of bearings: tables over speed that fit and reach far enough, pedestals on the ground."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from gearwhine.case.draft import Draft
 from gearwhine.case.problems import NOTHING, Finding
 from gearwhine.case.running import listed
 from gearwhine.case.shafts import Bearing, RadialDamping, RadialStiffness
-from gearwhine.case.train import known_pairs, train_of_pairs
 
 _ROUNDING = 1e-9  # what a printed speed may miss of the one it stands for
 _RPM = 30.0 / pi
@@ -79,10 +78,9 @@ def _named_speeds(draft: Draft) -> list[float]:
 
 
 def _ratios(draft: Draft) -> dict[str, Fraction]:
-    """Return each rotor's speed over the first driver's; nothing where that cannot be told."""
+    """Return each rotor's speed over the first driver's; empty where the train is not readable."""
     if draft.broken & {"rotor", "gear", "gear_pair"}:
         return {}
     if not draft.gear_pairs:
         return {name: Fraction(1) for name in draft.names("rotor")}
-    known = known_pairs([gear for _, gear in draft.gears], draft.gear_pairs)
-    return dict(train_of_pairs(known).ratios) if known else {}
+    return dict(draft.train.ratios) if draft.train is not None else {}

@@ -1,4 +1,4 @@
-"""Checks of the housing: one geometry, and everything in its place on a box."""
+"""Checks of the housing: one geometry; seats, supports, sensors and masses in their places on a box."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from gearwhine.case.box import Box
 from gearwhine.case.box_shape import box_misfits
 from gearwhine.case.check_shafts import millimetres
 from gearwhine.case.draft import Draft
-from gearwhine.case.housing import Seat
 from gearwhine.case.patches import Patch
 from gearwhine.case.problems import NOTHING, Finding, Location, did_you_mean
 
@@ -41,14 +40,7 @@ def check_box(draft: Draft) -> Iterator[Finding]:
     box = draft.box
     if box is None:
         return
-    plain = list(_check_walls(box))
-    for index, seat in draft.seats:
-        plain += _check_seat(box, index, seat)
-    plain += _check_seats_apart(draft, box)
-    yield from plain
-    if not plain:
-        # Only where walls and bores are sound does it mean something where ribs, cover and fillets meet them.
-        yield from box_misfits(box, draft.seats)
+    yield from box_misfits(box, draft.seats)
     yield from _check_surfaces(draft, box)
     boss = max((seat.boss.length for _, seat in draft.seats if seat.boss is not None), default=0.0)
     for location, patch in _patches(draft):
@@ -66,68 +58,6 @@ def _patches(draft: Draft) -> Iterator[tuple[Location, Patch]]:
     for kind, entries in (("support", draft.supports), ("mount", draft.mounts), ("mass", draft.masses)):
         for index, entry in entries:
             yield ("housing", kind, index), entry
-
-
-def _check_walls(box: Box) -> Iterator[Finding]:
-    """Yield walls that meet, and feet that overlap."""
-    walls = box.walls
-    pairs = (("left", "right"), ("bottom", "top"), ("back", "front"))
-    for axis, size, (low, high) in zip("xyz", box.size, pairs, strict=True):
-        if getattr(walls, low) + getattr(walls, high) >= size:
-            expected = f"{low} and {high} walls that leave room inside the {millimetres(size)} of the box along {axis}"
-            yield Finding(("housing", "box", "wall"), expected)
-    if box.feet is not None:
-        for place, axis in ((0, "x"), (2, "z")):
-            if 2.0 * box.feet.size[place] > box.size[place] + _SLACK:
-                expected = f"feet of at most half the base along {axis}, {millimetres(box.size[place] / 2)}"
-                yield Finding(("housing", "box", "feet", "size", place), expected)
-
-
-def _wall_of(box: Box, seat: Seat) -> str | None:
-    """Return which end wall a seat is in; None for neither."""
-    z, half = seat.center[2], box.size[2] / 2.0
-    if -half - _SLACK <= z <= -half + box.walls.back + _SLACK:
-        return "back"
-    return "front" if half - box.walls.front - _SLACK <= z <= half + _SLACK else None
-
-
-def _check_seat(box: Box, index: int, seat: Seat) -> Iterator[Finding]:
-    """Yield a seat that is in no end wall, or whose bore or boss leaves it."""
-    location, half = ("housing", "seat", index), box.size[2] / 2.0
-    if _wall_of(box, seat) is None:
-        expected = (
-            f"z in the back wall, {millimetres(-half)} to {millimetres(-half + box.walls.back)}, "
-            f"or in the front wall, {millimetres(half - box.walls.front)} to {millimetres(half)}"
-        )
-        yield Finding((*location, "center", 2), expected)
-    for kind, diameter in (("bore", seat.diameter), ("boss", seat.boss.diameter if seat.boss else 0.0)):
-        x, y, radius = seat.center[0], seat.center[1], diameter / 2.0
-        over = max(abs(x) + radius - box.upper[0], radius - y, y + radius - box.upper[1])
-        if over > _SLACK:
-            key = (*location, "diameter") if kind == "bore" else (*location, "boss", "diameter")
-            expected = (
-                f"a {kind} within its wall of {millimetres(box.size[0])} by {millimetres(box.size[1])}; around "
-                f"x = {millimetres(x)}, y = {millimetres(y)} it reaches {millimetres(over)} beyond the edge"
-            )
-            yield Finding(key, expected)
-            return
-
-
-def _check_seats_apart(draft: Draft, box: Box) -> Iterator[Finding]:
-    """Yield bores that touch another bore or its boss."""
-    for place, (index, seat) in enumerate(draft.seats):
-        for _, other in draft.seats[:place]:
-            if _wall_of(box, seat) is None or _wall_of(box, seat) != _wall_of(box, other):
-                continue
-            apart = math.hypot(seat.center[0] - other.center[0], seat.center[1] - other.center[1])
-            bosses = [s.boss.diameter if s.boss else s.diameter for s in (seat, other)]
-            needed = max(seat.diameter + bosses[1], bosses[0] + other.diameter) / 2.0
-            if apart <= needed:
-                expected = (
-                    f'a bore clear of seat "{other.name}" and its boss (they overlap by '
-                    f"{millimetres(needed - apart)}: centres {millimetres(apart)} apart, {millimetres(needed)} needed)"
-                )
-                yield Finding(("housing", "seat", index, "diameter"), expected)
 
 
 def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
@@ -186,16 +116,14 @@ def _check_in_bore(
     """Yield a point in the air of a bore, further from its rim than the wall is thick."""
     half = 0.5 * box.size[2]
     for _, seat in draft.seats:
-        wall = _wall_of(box, seat)
-        if wall is None:
-            continue
-        low, high = (-half, -half + box.walls.back) if wall == "back" else (half - box.walls.front, half)
         apart = math.hypot(position[0] - seat.center[0], position[1] - seat.center[1])
         deep = 0.5 * seat.diameter - apart
-        if deep > high - low and low - _SLACK <= position[2] <= high + _SLACK:
-            expected = f'a point on the surface of the box; this one is in the bore of seat "{seat.name}", '
-            yield Finding(location, expected + f"{millimetres(deep)} from its rim")
-            return
+        for low, high in ((-half, -half + box.walls.back), (half - box.walls.front, half)):
+            through = all(low - _SLACK <= z <= high + _SLACK for z in (seat.center[2], position[2]))
+            if through and deep > high - low:
+                expected = f'a point on the surface of the box; this one is in the bore of seat "{seat.name}", '
+                yield Finding(location, expected + f"{millimetres(deep)} from its rim")
+                return
 
 
 def _check_on_surface(

@@ -1,4 +1,4 @@
-"""Checks that every name belongs to one entry, and that every entry referred to exists.
+"""Checks of names: each belongs to one entry, and each reference finds its entry.
 
 Names are read from the document itself, so an entry in which something else is wrong still counts.
 """

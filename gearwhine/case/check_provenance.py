@@ -1,4 +1,4 @@
-"""Checks of the `[provenance]` table: which numbers are published, nominal or found."""
+"""Checks of provenance, `[provenance]`: the origin of numbers as published, nominal or found."""
 
 from __future__ import annotations
 

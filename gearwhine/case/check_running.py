@@ -1,4 +1,4 @@
-"""Checks of how a case runs: that everything turns, that torques balance, that there is something to run."""
+"""Checks of operation: a train in which every shaft turns, balanced torques, a transient that can be run."""
 
 from __future__ import annotations
 
@@ -12,10 +12,7 @@ from gearwhine.case.model import Case
 from gearwhine.case.motion import pair_torques
 from gearwhine.case.problems import NOTHING, UNSAID, Finding
 from gearwhine.case.running import Operation
-from gearwhine.case.train import known_pairs, shaft_of, train_of_pairs
-
-LARGEST_IMBALANCE = 0.01
-"""How far given outputs may be from the input, as a part of it."""
+from gearwhine.case.train import shaft_of
 
 LARGEST_RATIO = 1e12
 """Speed over the first driver's beyond which a train is a mistake, long before numbers overflow."""
@@ -43,7 +40,7 @@ def check_running(draft: Draft) -> Iterator[Finding]:
     yield from _check_run(draft, operation)
     yield from _check_method(draft, operation)
     if draft.broken & {"rotor", "gear", "gear_pair"} or not turning:
-        return  # what turns what cannot be told from half a train
+        return  # half a train does not say which shafts it turns
     yield from _check_stations(draft, operation)
     yield from _check_train(draft, operation)
 
@@ -90,8 +87,7 @@ def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:
 def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield shafts that nothing turns, and outputs that do not balance the input."""
     shafts = draft.names("rotor") or draft.names("gear")
-    known = known_pairs([gear for _, gear in draft.gears], draft.gear_pairs)
-    train = train_of_pairs(known) if known else None
+    train = draft.train
     if any(shaft_of(gear) not in shafts for _, gear in draft.gears) or any(
         draft.gear(name) is None for _, pair in draft.gear_pairs for name in (pair.driver, pair.driven)
     ):
@@ -135,12 +131,19 @@ def _check_balance(operation: Operation, ratios: Mapping[str, Fraction]) -> Iter
     if not operation.output:
         return
     taken = sum(output.torque * abs(float(ratios[output.rotor])) for output in operation.output)
-    if abs(taken - operation.torque) > LARGEST_IMBALANCE * max(abs(operation.torque), abs(taken)):
+    if not _balance(operation.torque, taken):
         expected = (
             f"outputs that balance the input torque of {operation.torque:g} N*m; through the tooth ratios they "
             f"amount to {taken:g} N*m"
         )
         yield Finding(("operation", "output"), expected, [f"{output.torque:g} N*m" for output in operation.output])
+
+
+def _balance(entering: float, leaving: float) -> bool:
+    """Whether two torques are the same within the tolerance of the library."""
+    from coupling.gear_train import LARGEST_IMBALANCE
+
+    return abs(leaving - entering) <= LARGEST_IMBALANCE * max(abs(entering), abs(leaving))
 
 
 def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
@@ -152,7 +155,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
     for shaft, place in first.items():
         entering = operation.torque if place == 0 else 0.0
         taken = sum(output.torque for output in operation.output if output.rotor == shaft)
-        if abs(taken - entering) > LARGEST_IMBALANCE * max(abs(entering), abs(taken)):
+        if not _balance(entering, taken):
             expected = (
                 f'torques that balance on {kind} "{shaft}", as no gear pair leads to or from it; it takes in '
                 f"{entering:g} N*m and gives out {taken:g} N*m"

@@ -1,4 +1,4 @@
-"""Checks of rotors, and of bearings and probes on them: stations on the shaft, and shafts through their seats."""
+"""Checks of stations on rotors, and of rotor axes against bearing seats."""
 
 from __future__ import annotations
 
@@ -11,9 +11,6 @@ from gearwhine.case.housing import Seat
 from gearwhine.case.problems import UNSAID, Finding, Location
 from gearwhine.case.rotors import Rotor
 from gearwhine.case.shafts import Bearing
-
-LARGEST_OFFSET = 1e-6
-"""How far a rotor's axis may pass its seat's centre [m]."""
 
 NEAREST_POINTS = 1e-6
 """Distance between two points of a bow below which they are one, as a part of the rotor's length."""
@@ -92,6 +89,8 @@ def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
 
 def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:
     """Yield findings where a rotor's axis or a bearing's place along it misses the seat."""
+    from coupling.gear_train import LARGEST_OFFSET
+
     offset = math.hypot(rotor.axis[0] - seat.center[0], rotor.axis[1] - seat.center[1])
     if offset > LARGEST_OFFSET:
         expected = (

@@ -1,4 +1,4 @@
-"""Checks across the tables of a case, put together."""
+"""Checks across the tables of a case, and warnings about a sound one."""
 
 from __future__ import annotations
 

@@ -1,10 +1,11 @@
-"""What can be read of a case, sound or not, so that the checks can look at all of it at once."""
+"""Readable tables of a case, sound or not, so that the checks see all of them at once."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import ValidationError
 
@@ -19,6 +20,10 @@ from gearwhine.case.problems import look_up
 from gearwhine.case.rotors import Rotor
 from gearwhine.case.running import Operation, Sweep, Transient
 from gearwhine.case.shafts import Bearing
+from gearwhine.case.train import known_pairs, train_of_pairs
+
+if TYPE_CHECKING:
+    from coupling.gear_train import GearTrain
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 Entries = tuple[tuple[int, AnyTable], ...]
@@ -57,6 +62,16 @@ class Draft:
     sweep: Sweep | None
     analysis: RotorAnalysis | None
 
+    @cached_property
+    def known_pairs(self) -> list[tuple[int, Gear, Gear]]:
+        """Driver and driven gear of each pair on two shafts, with its place in the list."""
+        return known_pairs([gear for _, gear in self.gears], self.gear_pairs)
+
+    @cached_property
+    def train(self) -> GearTrain | None:
+        """The gear train of these pairs; None where there are none."""
+        return train_of_pairs(self.known_pairs) if self.known_pairs else None
+
     def rotor(self, name: str | None) -> Rotor | None:
         """Return the rotor of this name, if it could be read."""
         return next((rotor for _, rotor in self.rotors if rotor.name == name), None)
@@ -77,60 +92,55 @@ class Draft:
         return tuple(e["name"] for _, e in self.raw_entries(*keys) if isinstance(e.get("name"), str))
 
 
+_DRAFT_TABLES: dict[str, tuple[type[Table], tuple[str, ...]]] = {
+    "box": (Box, ("housing", "box")),
+    "operation": (Operation, ("operation",)),
+    "transient": (Transient, ("transient",)),
+    "sweep": (Sweep, ("sweep",)),
+    "analysis": (RotorAnalysis, ("rotor_analysis",)),
+}
+_DRAFT_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
+    "seats": (Seat, ("housing", "seat")),
+    "supports": (Support, ("housing", "support")),
+    "mounts": (Mount, ("housing", "mount")),
+    "joints": (Joint, ("housing", "joint")),
+    "masses": (LumpedMass, ("housing", "mass")),
+    "sensors": (Sensor, ("housing", "sensor")),
+    "rotors": (Rotor, ("rotor",)),
+    "bearings": (Bearing, ("bearing",)),
+    "gears": (Gear, ("gear",)),
+    "gear_pairs": (GearPair, ("gear_pair",)),
+}
+"""Where the tables and lists of a draft stand in a case, and the class of each."""
+
+
 def draft_of_case(case: Case, document: Mapping[str, Any]) -> Draft:
     """Return a sound case as a draft; `document` is what it was read from."""
-    housing = case.housing
-    return Draft(
-        document=document,
-        broken=frozenset(),
-        box=housing.box if housing else None,
-        seats=tuple(enumerate(housing.seat if housing else ())),
-        supports=tuple(enumerate(housing.support if housing else ())),
-        mounts=tuple(enumerate(housing.mount if housing else ())),
-        joints=tuple(enumerate(housing.joint if housing else ())),
-        masses=tuple(enumerate(housing.mass if housing else ())),
-        sensors=tuple(enumerate(housing.sensor if housing else ())),
-        rotors=tuple(enumerate(case.rotor)),
-        bearings=tuple(enumerate(case.bearing)),
-        gears=tuple(enumerate(case.gear)),
-        gear_pairs=tuple(enumerate(case.gear_pair)),
-        operation=case.operation,
-        transient=case.transient,
-        sweep=case.sweep,
-        analysis=case.rotor_analysis,
-    )
+
+    def at(keys: tuple[str, ...]) -> Any:
+        found: Any = case
+        for key in keys:
+            found = getattr(found, key, None)
+        return found
+
+    tables = {name: at(keys) for name, (_, keys) in _DRAFT_TABLES.items()}
+    lists: dict[str, Any] = {name: tuple(enumerate(at(keys) or ())) for name, (_, keys) in _DRAFT_LISTS.items()}
+    return Draft(document=document, broken=frozenset(), **tables, **lists)
 
 
 def draft_of_document(document: Mapping[str, Any], broken: frozenset[str], context: Mapping[str, Any]) -> Draft:
     """Read what can be read of a document in which something is wrong, entry by entry."""
 
-    def table(kind: type[AnyTable], *keys: str) -> AnyTable | None:
-        return _read(kind, look_up(document, keys), context)
-
-    def entries(kind: type[AnyTable], *keys: str) -> Entries[AnyTable]:
+    def entries(kind: type[AnyTable], keys: tuple[str, ...]) -> Entries[AnyTable]:
         raw = look_up(document, keys)
         read = ((i, _read(kind, e, context)) for i, e in enumerate(raw if isinstance(raw, list) else ()))
         return tuple((index, entry) for index, entry in read if entry is not None)
 
-    return Draft(
-        document=document,
-        broken=broken,
-        box=table(Box, "housing", "box"),
-        seats=entries(Seat, "housing", "seat"),
-        supports=entries(Support, "housing", "support"),
-        mounts=entries(Mount, "housing", "mount"),
-        joints=entries(Joint, "housing", "joint"),
-        masses=entries(LumpedMass, "housing", "mass"),
-        sensors=entries(Sensor, "housing", "sensor"),
-        rotors=entries(Rotor, "rotor"),
-        bearings=entries(Bearing, "bearing"),
-        gears=entries(Gear, "gear"),
-        gear_pairs=entries(GearPair, "gear_pair"),
-        operation=table(Operation, "operation"),
-        transient=table(Transient, "transient"),
-        sweep=table(Sweep, "sweep"),
-        analysis=table(RotorAnalysis, "rotor_analysis"),
-    )
+    tables: dict[str, Any] = {
+        name: _read(kind, look_up(document, keys), context) for name, (kind, keys) in _DRAFT_TABLES.items()
+    }
+    lists: dict[str, Any] = {name: entries(kind, keys) for name, (kind, keys) in _DRAFT_LISTS.items()}
+    return Draft(document=document, broken=broken, **tables, **lists)
 
 
 def _read(kind: type[AnyTable], raw: object, context: Mapping[str, Any]) -> AnyTable | None:

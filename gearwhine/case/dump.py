@@ -1,4 +1,4 @@
-"""Writes a case back as TOML, resolved: defaults written out, every quantity with its unit."""
+"""Resolved case as TOML: defaults written out, every quantity with its unit."""
 
 from __future__ import annotations
 

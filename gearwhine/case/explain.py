@@ -1,4 +1,4 @@
-"""Turns pydantic's errors into findings in the words of the case file."""
+"""Validation errors of pydantic as findings in the case file's terms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The kinds of values a case holds, with their units and ranges, and the base of all its tables."""
+"""Field types of a case: quantities with unit and range, names, files, and the base class of all tables."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def wrong(expected: str, *at: str | int, note: str = "") -> PydanticCustomError:
     Parameters
     ----------
     expected
-        What was expected.
+        Expected value.
     at
         Steps that lead on to the key at fault.
     note
-        What the value is, where that is not plain to see.
+        Dimension of the value, where it is not obvious.
     """
     return PydanticCustomError("case", "{expected}", {"expected": expected, "at": at, "note": note})
 
@@ -39,7 +39,7 @@ class Quantity:
     Attributes
     ----------
     dimension
-        What it measures.
+        Physical dimension.
     above, below
         Limits that the value must not touch, in SI.
     at_least, at_most
@@ -53,7 +53,7 @@ class Quantity:
     at_most: float | None = None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Tell pydantic how to validate and write this field."""
+        """Schema for pydantic: validation and serialisation of this field."""
         writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
         return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
 
@@ -94,12 +94,12 @@ class Quantity:
 
     @property
     def expected(self) -> str:
-        """What a user should write here, in words."""
+        """Expected value, in words."""
         example = f"such as {self.dimension.example!r}" if self._has_fair_example() else ""
         return " ".join(word for word in (self.dimension.name, self._range(), example) if word)
 
     def _has_fair_example(self) -> bool:
-        """Tell whether the dimension's example is itself within the limits."""
+        """Whether the dimension's example is within the limits."""
         dimension = self.dimension
         example = parse_quantity(dimension.example if dimension.unit else float(dimension.example), dimension)
         low = max(limit for limit in (self.above, self.at_least, float("-inf")) if limit is not None)
@@ -141,12 +141,12 @@ class Whole:
     at_most: int
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Tell pydantic how to validate this field."""
+        """Schema for pydantic: validation of this field."""
         return core_schema.no_info_plain_validator_function(self.validate)
 
     @property
     def expected(self) -> str:
-        """What a user should write here, in words."""
+        """Expected value, in words."""
         return f"a whole number from {self.at_least} to {self.at_most}"
 
     def validate(self, value: object) -> int:

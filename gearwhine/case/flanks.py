@@ -1,15 +1,18 @@
-"""What makes the flanks of a `[[gear]]` other than perfect involutes: modifications, errors and faults."""
+"""Flank modifications, manufacturing errors and faults of a `[[gear]]`; each builds its object of `coupling.gears`."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import Angle, LengthFromZero, PositiveLength, Quantity, Table, Whole, wrong
+
+if TYPE_CHECKING:
+    import coupling.gears
 
 Deviation = Annotated[float, Quantity(units.LENGTH, at_least=-1e-3, at_most=1e-3)]
 RollAngle = Annotated[float, Quantity(units.ANGLE, at_least=0.0, at_most=2.0 * math.pi)]
@@ -33,6 +36,18 @@ class Relief(Table):
             raise wrong("exactly one of 'start_roll_angle' and 'length'")
         return self
 
+    def build_tip_relief(self) -> coupling.gears.TipRelief:
+        """The relief as one of a tip."""
+        from coupling.gears import TipRelief
+
+        return TipRelief(**self.model_dump())
+
+    def build_root_relief(self) -> coupling.gears.RootRelief:
+        """The relief as one of a root."""
+        from coupling.gears import RootRelief
+
+        return RootRelief(**self.model_dump())
+
 
 class ProfileErrors(Table):
     """Deviations along the profile [m], positive where there is too much material, as an inspection reports them.
@@ -55,6 +70,12 @@ class ProfileErrors(Table):
             raise wrong("two rows or more of a roll angle and a deviation, the roll angles increasing")
         return rows
 
+    def build(self) -> coupling.gears.ProfileDeviation:
+        """The deviation of the profile."""
+        from coupling.gears import ProfileDeviation
+
+        return ProfileDeviation(**self.model_dump())
+
 
 class HelixErrors(Table):
     """Deviations across the face [m], positive where there is too much material.
@@ -73,6 +94,12 @@ class HelixErrors(Table):
         if self.end_relief > 0.0 and self.end_relief_length == 0.0:
             raise wrong("the length of the end relief", "end_relief_length")
         return self
+
+    def build(self) -> coupling.gears.HelixDeviation:
+        """The deviation across the face."""
+        from coupling.gears import HelixDeviation
+
+        return HelixDeviation(**self.model_dump())
 
 
 class GearErrors(Table):
@@ -119,6 +146,15 @@ class GearErrors(Table):
         return tuple(place - mean for place in places)
 
 
+_KEYS_OF_FAULTS = {
+    "wear": (("depth",), ("tooth", "shape")),
+    "spall": (("tooth", "depth", "start_roll_angle", "end_roll_angle"), ("width",)),
+    "crack": (("tooth", "depth"), ("angle",)),
+    "missing-tooth": (("tooth",), ()),
+}
+"""Keys that a kind of fault needs, and further ones that it takes."""
+
+
 class Fault(Table):
     """A damaged tooth, numbered from 0 as the teeth come into mesh.
 
@@ -138,23 +174,12 @@ class Fault(Table):
 
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Fault:
-        needs = {
-            "wear": ("depth",),
-            "spall": ("tooth", "depth", "start_roll_angle", "end_roll_angle"),
-            "crack": ("tooth", "depth"),
-            "missing-tooth": ("tooth",),
-        }
-        takes = {
-            "wear": ("depth", "tooth", "shape"),
-            "spall": (*needs["spall"], "width"),
-            "crack": (*needs["crack"], "angle"),
-            "missing-tooth": needs["missing-tooth"],
-        }
-        for key in needs[self.kind]:
+        needed, optional = _KEYS_OF_FAULTS[self.kind]
+        for key in needed:
             if getattr(self, key) is None:
                 raise wrong(f"'{key}' of a fault of kind {self.kind!r}", key)
         for key, field in type(self).model_fields.items():
-            if key not in ("kind", *takes[self.kind]) and getattr(self, key) != field.default:
+            if key not in ("kind", *needed, *optional) and getattr(self, key) != field.default:
                 raise wrong(f"no '{key}' of a fault of kind {self.kind!r}", key)
         if self.kind == "spall":
             assert self.start_roll_angle is not None
@@ -162,3 +187,12 @@ class Fault(Table):
             if self.end_roll_angle <= self.start_roll_angle:
                 raise wrong("a roll angle beyond start_roll_angle", "end_roll_angle")
         return self
+
+    def build(self) -> coupling.gears.Fault:
+        """The fault of this kind."""
+        from coupling.gears import MissingTooth, Spall, ToothCrack, Wear
+
+        kinds = {"wear": Wear, "spall": Spall, "crack": ToothCrack, "missing-tooth": MissingTooth}
+        needed, optional = _KEYS_OF_FAULTS[self.kind]
+        made: coupling.gears.Fault = kinds[self.kind](**{key: getattr(self, key) for key in (*needed, *optional)})
+        return made

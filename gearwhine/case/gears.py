@@ -1,9 +1,10 @@
-"""The `[[gear]]` and `[[gear_pair]]` entries of a case. Attributes are named as the keys and are in SI."""
+"""Gears and gear pairs of a case: `[[gear]]` and `[[gear_pair]]`. Attributes are named as the keys and are in SI."""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, StrictBool, field_validator, model_validator
 
@@ -25,6 +26,10 @@ from gearwhine.case.fields import (
 )
 from gearwhine.case.flanks import Fault, GearErrors, Relief
 
+if TYPE_CHECKING:
+    import coupling.gears
+    from gearwhine.case.housing import Material
+
 PressureAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(10.0), at_most=math.radians(35.0))]
 HelixAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(-60.0), at_most=math.radians(60.0))]
 Module = Annotated[float, Quantity(units.LENGTH, at_least=1e-5, at_most=0.2)]
@@ -32,6 +37,9 @@ DiametralPitch = Annotated[float, Quantity(units.DIAMETRAL_PITCH, at_least=5.0, 
 Misalignment = Annotated[float, Quantity(units.ANGLE, at_least=-0.1, at_most=0.1)]
 FrictionCoefficient = Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=0.5)]
 HarmonicWeight = Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=1e6)]
+NOMINAL_WIDTH = 10.0
+"""Face width of a gear that has none, in modules."""
+
 ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
 
 
@@ -104,46 +112,84 @@ class Gear(Table):
         return self
 
     @property
-    def transverse_pressure_angle(self) -> float:
-        """Pressure angle in the transverse plane [rad]."""
-        return math.atan2(math.tan(self.pressure_angle), math.cos(self.helix_angle))
+    def tooth_module(self) -> float:
+        """Normal module [m], also where the gear is given by its diametral pitch or its base radius."""
+        if self.module is not None:
+            return self.module
+        from coupling.gears import module_from_base_radius, module_from_diametral_pitch
+
+        if self.diametral_pitch is not None:
+            return module_from_diametral_pitch(self.diametral_pitch)
+        assert self.base_radius is not None
+        return module_from_base_radius(self.base_radius, self.teeth, self.pressure_angle, self.helix_angle)
 
     @property
     def base_circle_radius(self) -> float:
         """Radius of the base circle [m]."""
         if self.base_radius is not None:
             return self.base_radius
-        return self.pitch_radius * math.cos(self.transverse_pressure_angle)
+        from coupling.gears import module_from_base_radius
 
-    @property
-    def tooth_module(self) -> float:
-        """Normal module [m], also where the gear is given by its diametral pitch or its base radius."""
-        if self.module is not None:
-            return self.module
-        if self.diametral_pitch is not None:
-            return 1.0 / self.diametral_pitch
-        return 2.0 * self.pitch_radius * math.cos(self.helix_angle) / self.teeth
+        # The module is proportional to the base radius.
+        return self.tooth_module / module_from_base_radius(1.0, self.teeth, self.pressure_angle, self.helix_angle)
 
-    @property
-    def pitch_radius(self) -> float:
-        """Radius of the reference circle [m]."""
-        if self.base_radius is not None:
-            return self.base_radius / math.cos(self.transverse_pressure_angle)
-        return self.tooth_module * self.teeth / (2.0 * math.cos(self.helix_angle))
+    def build(self, material: Material | None = None) -> coupling.gears.Gear:
+        """The gear, of a material or by default of steel.
 
-    @property
-    def tip_radius(self) -> float:
-        """Radius of the tip circle [m]."""
-        return self.pitch_radius + (self.addendum + self.profile_shift) * self.tooth_module
+        A gear known by its base radius alone has the module that gives it, and a nominal width where none is given.
 
-    @property
-    def root_circle_radius(self) -> float:
-        """Radius of the root circle [m], of teeth that are not thinned."""
-        return self.pitch_radius - (self.dedendum - self.profile_shift) * self.tooth_module
+        Raises
+        ------
+        coupling.gears.GearError
+            Where there is no such gear.
+        """
+        from coupling.gears import Gear as BuiltGear
+
+        module, errors = self.tooth_module, self.errors
+        gear = BuiltGear(
+            name=self.name,
+            teeth=self.teeth,
+            module=module,
+            pressure_angle=self.pressure_angle,
+            face_width=self.face_width if self.face_width is not None else NOMINAL_WIDTH * module,
+            profile_shift=self.profile_shift,
+            addendum=self.addendum,
+            dedendum=self.dedendum,
+            root_radius=self.root_radius,
+            bore=self.bore,
+            tip_relief=None if self.tip_relief is None else self.tip_relief.build_tip_relief(),
+            root_relief=None if self.root_relief is None else self.root_relief.build_root_relief(),
+            eccentricity=errors.offset,
+            eccentricity_phase=errors.phase,
+            pitch_deviations=errors.cumulative_pitch,
+            profile_deviation=None if errors.profile is None else errors.profile.build(),
+            helix_deviation=None if errors.helix is None else errors.helix.build(),
+            faults=tuple(fault.build() for fault in self.fault),
+            helix_angle=self.helix_angle,
+            rim_thickness=self.rim,
+            web_thickness=self.web,
+            tooth_thinning=self.tooth_thinning,
+            allow_undercut=self.allow_undercut,
+        )
+        if material is None:
+            return gear
+        return replace(
+            gear,
+            youngs_modulus=material.youngs_modulus,
+            poisson_ratio=material.poisson_ratio,
+            density=material.density,
+        )
+
+    def inertia(self, material: Material | None = None) -> tuple[float, float, float]:
+        """Mass [kg], polar and diametral moment of inertia [kg m²]: as given, else by the geometry."""
+        if self.mass is not None and self.polar_inertia is not None and self.diametral_inertia is not None:
+            return self.mass, self.polar_inertia, self.diametral_inertia
+        built = self.build(material)
+        return built.mass, built.polar_inertia, built.diametral_inertia
 
 
 class ToothStiffness(Table):
-    """How stiff a pair's teeth are: a model by name, and the value [N/m] or file that it needs."""
+    """Tooth stiffness of a pair: a model by name, and the value [N/m] or file that it needs."""
 
     model: Literal[
         "potential-energy", "elastic-ring", "cornell", "weber-banaschek", "iso6336", "constant", "square", "table"
@@ -162,7 +208,7 @@ class ToothStiffness(Table):
 
 
 class ReliefAim(Table):
-    """What the best tip relief is to make least, in place of the peak-to-peak transmission error.
+    """Objective of the tip-relief search, in place of the peak-to-peak transmission error.
 
     `harmonics`: weights of the transmission error's amplitudes by the multiple of the mesh frequency. With `sensor` the
     level there, by the transmissibility, of those multiples, or of all below the model's limit.

@@ -1,4 +1,4 @@
-"""The `[housing]` of a case: its geometry, seats, supports, sensors and what is fastened to it; and the materials.
+"""Housing of a case, `[housing]`: geometry, seats, supports, sensors and fixtures; and the materials.
 
 Attributes are named as the keys of the case file and are in SI; frequencies are in Hz.
 """
@@ -6,7 +6,7 @@ Attributes are named as the keys of the case file and are in SI; frequencies are
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, field_validator, model_validator
 
@@ -36,9 +36,12 @@ from gearwhine.case.patches import Patch
 from gearwhine.case.region import Region
 from gearwhine.case.units import QuantityError, parse_quantity
 
+if TYPE_CHECKING:
+    import housing
+
 
 def _shape(value: Any) -> str:
-    """Tell which form a value with several forms has been given in."""
+    """Form in which a value with several forms is given."""
     if isinstance(value, (dict, Table)):
         return "~table"
     return "~list" if isinstance(value, (list, tuple)) else "~scalar"
@@ -190,6 +193,12 @@ class Seat(Table):
             raise wrong(f"a boss wider than its bore of {self.diameter:g} m", "boss", "diameter")
         return self
 
+    def build(self) -> housing.Seat:
+        """The seat, by its surface in the mesh."""
+        from housing import Seat as BuiltSeat
+
+        return BuiltSeat(self.name, self.center)
+
 
 class Springs(Table):
     """Stiffness to ground along x, y, z [N/m], in all, spread over the patch."""
@@ -232,6 +241,21 @@ class Support(Patch):
         """Whether it keeps the housing in its place; a dashpot alone lets it creep away."""
         return self.fixed is not None or self.stiffness is not None
 
+    def build(self) -> housing.Support:
+        """The support."""
+        from housing import Support as BuiltSupport
+
+        springs, dashpots, fixed = self.stiffness or Springs(), self.damping or Dashpots(), self.fixed or ()
+        return BuiltSupport(
+            name=self.name,
+            surface=self.surface,
+            box=self.corners,
+            plane=self.point_and_normal,
+            fixed=("x" in fixed, "y" in fixed, "z" in fixed),
+            stiffness=(springs.x, springs.y, springs.z),
+            damping=(dashpots.x, dashpots.y, dashpots.z),
+        )
+
 
 class Sensor(Table):
     """`[[housing.sensor]]`: a point on the surface [m] and a direction; None: the outward normal there."""
@@ -244,6 +268,12 @@ class Sensor(Table):
     def unit_vector(self) -> UnitVector | None:
         """The direction as a unit vector; None where it is the surface normal."""
         return None if self.direction is None else unit_vector(self.direction)
+
+    def build(self) -> housing.Sensor:
+        """The sensor."""
+        from housing import Sensor as BuiltSensor
+
+        return BuiltSensor(self.name, self.position, self.unit_vector)
 
 
 def _check_frequency_key(key: object) -> str:

@@ -1,4 +1,4 @@
-"""Reads a case: from a file or a bundled name to a checked `Case`, with everything wrong in one error."""
+"""Reading a case, from a file or a bundled name, to a checked `Case`; all problems in one error."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class LoadedCase:
     path
         The file it was read from.
     warnings
-        What is allowed but likely not meant, a sentence each.
+        Allowed but unlikely choices, a sentence each.
     """
 
     case: Case

@@ -1,4 +1,4 @@
-"""What was measured on the housing: frequencies, or a file of a modal survey and how it lies on the model."""
+"""Measured modes of a case, `[measured]`: frequencies, or a modal survey and its alignment with the model."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Content:
-    """What a file was when it was read: two cases are equal where its bytes are."""
+    """Content of a file when it was read: two cases are equal where its bytes are."""
 
     digest: str
     survey: SurveyData = field(compare=False)
@@ -42,7 +42,7 @@ class Landmark(Table):
 
 
 class Align(Table):
-    """`[measured.align]`: the survey's frame in the model's, told by three or more points."""
+    """`[measured.align]`: the survey's frame in the model's, by three or more points."""
 
     landmarks: tuple[Landmark, ...] = Field(min_length=3, max_length=MOST_ENTRIES)
 
@@ -142,5 +142,5 @@ class Measured(Table):
 
     @property
     def survey(self) -> SurveyData | None:
-        """What the file holds, in SI; None where the modes are listed in the case."""
+        """Content of the file, in SI; None where the modes are listed in the case."""
         return None if self._content is None else self._content.survey

@@ -1,4 +1,4 @@
-"""The whole case: every table of the file, in SI."""
+"""Case: all tables of the file, in SI."""
 
 from __future__ import annotations
 

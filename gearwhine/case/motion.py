@@ -1,4 +1,4 @@
-"""What follows from a case without solving anything: speeds, torques and mesh frequencies."""
+"""Shaft speeds, torques and mesh frequencies of a case, by arithmetic alone."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def applied_torques(case: Case, torque: float | None = None) -> tuple[AppliedTor
     case
         With an `[operation]`.
     torque
-        What comes in [N m], the outputs taking it in their proportions; None: the torque of `[operation]`.
+        Input torque [N m], which the outputs take in their proportions; None: the torque of `[operation]`.
 
     The input drives the first driver's shaft in its direction of turning; outputs work against the turning of theirs.
     Without outputs, the shafts that drive no other take equal power. Outputs are scaled, within the 1 % that a case

@@ -1,4 +1,4 @@
-"""Values that may change with the speed of rotation: one quantity, or a list with one for each speed of a table."""
+"""Coefficients over speed: one quantity, or a list with one for each speed of a table."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ class OverSpeed:
     each: Quantity
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Tell pydantic how to validate and write this field."""
+        """Schema for pydantic: validation and serialisation of this field."""
         writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
         return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
 
     @property
     def expected(self) -> str:
-        """What a user should write here, in words."""
+        """Expected value, in words."""
         return self.each.expected
 
     def write(self, given: Coefficient) -> str | float | list[str | float]:

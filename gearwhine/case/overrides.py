@@ -1,4 +1,4 @@
-"""Changes to a case from the command line: ``--set key.path=value``."""
+"""Overrides of a case from the command line: ``--set key.path=value``."""
 
 from __future__ import annotations
 

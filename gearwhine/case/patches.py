@@ -1,12 +1,15 @@
-"""Patches of the housing's surface in a case: a named surface, or all of the surface in a box or on a plane."""
+"""Patches of the housing surface: a named surface, or the surface in a box or on a plane."""
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import model_validator
 
 from gearwhine.case.fields import Length, Name, Point, Table, wrong
+
+if TYPE_CHECKING:
+    import housing
 
 
 class Plane(Table):
@@ -17,7 +20,7 @@ class Plane(Table):
 
 
 class Patch(Table):
-    """Where something is fastened to the housing: exactly one of the keys in `places`."""
+    """Patch of the housing surface for a fixture: exactly one of the keys in `places`."""
 
     places: ClassVar[tuple[str, ...]] = ("box", "surface", "plane")
     """The keys that can say where; exactly one of them must."""
@@ -48,3 +51,9 @@ class Patch(Table):
             return None
         x, y, z = (float(axis == self.plane.axis) for axis in "xyz")
         return (x * self.plane.at, y * self.plane.at, z * self.plane.at), (x, y, z)
+
+    def build_patch(self) -> housing.Patch:
+        """The patch of the mesh's surface."""
+        from housing import Patch as BuiltPatch
+
+        return BuiltPatch(self.surface, self.corners, self.point_and_normal)

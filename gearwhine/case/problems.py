@@ -1,4 +1,4 @@
-"""What is wrong in a case: problems, and the one error that carries them all."""
+"""Case errors: problems by key path, value and expectation, and the one exception that carries them all."""
 
 from __future__ import annotations
 
@@ -72,15 +72,15 @@ class Problem:
     key
         Key path, such as ``rotor[0].segments[1].length``.
     value
-        What stands there: ``NOTHING`` where the key is missing, ``UNSAID`` where no one value is at fault.
+        Value there: ``NOTHING`` where the key is missing, ``UNSAID`` where no one value is at fault.
     expected
-        What was expected instead, to be read after "expected".
+        Expected value, to be read after "expected".
     label
         The entry the key belongs to by its own name, such as ``rotor "input"``; empty where it has none.
     source
         The file, or the ``--set`` that brought the value in.
     note
-        What the value is, where that is not plain to see, such as ``mass``.
+        Dimension of the value, where it is not obvious, such as ``mass``.
     """
 
     key: str
@@ -92,7 +92,7 @@ class Problem:
 
     @property
     def message(self) -> str:
-        """What was expected and what was found, without the place."""
+        """Expectation and value, without the key path."""
         if self.value is UNSAID:
             return f"expected {self.expected}"
         note = f" ({self.note})" if self.note else ""
@@ -138,9 +138,9 @@ class Finding:
     location
         Where; what stands there is looked up in the case unless `value` says otherwise.
     expected
-        What was expected instead.
+        Expected value.
     note
-        What the value is, where that is not plain to see.
+        Dimension of the value, where it is not obvious.
     """
 
     location: Location

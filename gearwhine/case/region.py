@@ -1,4 +1,4 @@
-"""`[[housing.region]]`: a part of the housing made of another material."""
+"""Material regions of the housing, `[[housing.region]]`."""
 
 from __future__ import annotations
 

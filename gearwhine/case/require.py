@@ -1,4 +1,4 @@
-"""What a command needs and a case lacks."""
+"""Required tables: the error for a table that a command needs and a case lacks."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def require(case: Case, *tables: str, command: str) -> None:
     tables
         Keys of the top level, such as ``"housing"``.
     command
-        What needs them, for the message.
+        Command that needs them, for the message.
 
     Raises
     ------

@@ -1,13 +1,17 @@
-"""A rolling bearing in a case: by its geometry, or by the main dimensions that a catalogue prints."""
+"""Rolling bearings of a case, by their geometry or by the main dimensions of a catalogue; stops; bearing loads."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Discriminator, Tag, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import Force, Length, LengthFromZero, PositiveLength, Quantity, Table, Whole, wrong
+
+if TYPE_CHECKING:
+    import coupling
+    from rotors.rolling import BallRow, RollerRow, RollingBearing
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
 
@@ -16,7 +20,7 @@ _Groove = Annotated[float, Quantity(units.RATIO, above=0.5, at_most=1.0)]
 
 
 class BearingLoad(Table):
-    """What a bearing carries on average: the force of the shaft on it [N]."""
+    """Mean load of a bearing: the force of the shaft on it [N]."""
 
     x: Force = 0.0
     y: Force = 0.0
@@ -31,9 +35,15 @@ class Stop(Table):
     exponent: Annotated[float, Quantity(units.RATIO, at_least=1.0, at_most=10.0)] = 1.0
     gap: LengthFromZero = 0.0
 
+    def build(self) -> coupling.GapLaw:
+        """The law of the stop."""
+        from coupling import GapLaw
+
+        return GapLaw(self.force, self.depth, self.exponent, self.gap)
+
 
 class _Mounted(Table):
-    """How a bearing is mounted: its play, its preload, and the rows it has [m, N].
+    """Mounting of a bearing: clearance, preload and arrangement of rows [m, N].
 
     `clearance` is diametral and in running; a negative one is an interference. `preload` is axial: of a single row a
     spring's force on the shaft along `carries`, of two rows the force with which they press each other. `carries` is
@@ -70,6 +80,32 @@ class _Mounted(Table):
         """Whether its elements are cylindrical rollers, which carry no axial load."""
         raise NotImplementedError
 
+    def build_row(self) -> BallRow | RollerRow:
+        """One row of rolling elements."""
+        raise NotImplementedError
+
+    def build(self, name: str) -> RollingBearing:
+        """The bearing of one or two rows.
+
+        Raises
+        ------
+        rotors.RotorError
+            Where there is no such bearing.
+        """
+        from rotors.rolling import BallRow, RollerRow, RollingBearing, paired
+
+        row, sense, label = self.build_row(), 1 if self.carries == "+z" else -1, f"bearing {name!r}"
+        if isinstance(row, RollerRow):
+            return RollingBearing([row], name=label)
+        if self.arrangement == "single":
+            return RollingBearing([row.facing(sense)], sense * self.preload, label)
+        assert self.spacing is not None
+        if self.arrangement == "tandem":
+            pair = paired(row, "tandem", self.spacing)
+            rows = [one.facing(sense) for one in pair.rows if isinstance(one, BallRow)]
+            return RollingBearing(rows, sense * self.preload, label)
+        return paired(row, self.arrangement, self.spacing, preload=self.preload, name=label)
+
 
 class RollingGeometry(_Mounted):
     """By its geometry [m, rad]; a groove is its radius over the ball's diameter."""
@@ -101,9 +137,33 @@ class RollingGeometry(_Mounted):
         """Whether its elements are cylindrical rollers."""
         return self.element == "roller"
 
+    def build_row(self) -> BallRow | RollerRow:
+        """One row of balls or rollers."""
+        from rotors.rolling import BallRow, RollerRow
+
+        if self.element == "roller":
+            assert self.element_length is not None
+            return RollerRow(
+                self.count,
+                self.element_diameter,
+                self.element_length,
+                self.pitch_diameter,
+                clearance=self.clearance,
+                profile=self.profile,
+            )
+        return BallRow(
+            self.count,
+            self.element_diameter,
+            self.pitch_diameter,
+            self.contact_angle,
+            self.inner_groove,
+            self.outer_groove,
+            self.clearance,
+        )
+
 
 class Catalogue(Table):
-    """What a catalogue prints [m, rad]; the inside follows by estimate."""
+    """Main dimensions of a catalogue [m, rad]; the inside is estimated."""
 
     type: Literal["deep-groove", "angular-contact", "cylindrical-roller"]
     bore: PositiveLength
@@ -129,6 +189,13 @@ class RollingCatalogue(_Mounted):
     def rolls_on_cylinders(self) -> bool:
         """Whether its elements are cylindrical rollers."""
         return self.catalogue.type == "cylindrical-roller"
+
+    def build_row(self) -> BallRow | RollerRow:
+        """One row, its inside estimated from the main dimensions."""
+        from rotors.rolling import catalogue_row
+
+        sizes = self.catalogue.model_dump(exclude={"type"})
+        return catalogue_row(self.catalogue.type, **sizes, clearance=self.clearance)
 
 
 def _form(value: Any) -> str:

@@ -1,7 +1,11 @@
-"""The `[[rotor]]` entries of a case. Attributes are named as the keys and are in SI."""
+"""Rotors of a case, `[[rotor]]`: shaft segments, couplings, discs, unbalance, bow; each builds its object of `rotors`.
+
+Attributes are named as the keys and are in SI.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -42,6 +46,8 @@ from gearwhine.case.fields import (
 )
 
 if TYPE_CHECKING:
+    import rotors
+    from gearwhine.case.housing import Material
     from rotors import RossModel
 
 
@@ -104,6 +110,23 @@ class Segment(Table):
             raise wrong(f"a bore smaller than the diameter of {diameter:g} m at the right end", "right_bore")
         return self
 
+    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> rotors.Segment:
+        """The segment, with its rotor's properties where it has none of its own."""
+        from rotors import Segment as BuiltSegment
+        from rotors import ShaftMaterial
+
+        steel = materials[_named(self.material, rotor)]
+        return BuiltSegment(
+            length=self.length,
+            outer_diameter=self.diameter,
+            inner_diameter=self.bore,
+            material=ShaftMaterial(steel.youngs_modulus, steel.shear_modulus, steel.density),
+            shear_coefficient=self.shear_coefficient or rotor.shear_coefficient,
+            right_outer_diameter=self.right_diameter,
+            right_inner_diameter=self.right_bore,
+            axial_force=rotor.axial_force if self.axial_force is None else self.axial_force,
+        )
+
 
 class Coupling(Table):
     """A flexible coupling: stiffness across the axis and along it [N/m], against an angle between the axes and about
@@ -129,6 +152,12 @@ class CouplingSegment(Table):
     length: PositiveLength
     coupling: Coupling
 
+    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> rotors.Coupling:
+        """The coupling; it takes nothing of its rotor."""
+        from rotors import Coupling as BuiltCoupling
+
+        return BuiltCoupling(self.length, **self.coupling.model_dump())
+
 
 class Disc(Table):
     """A rigid disc at a station [m from the left end]: mass [kg] and inertias [kg m²]; without these a point mass."""
@@ -137,6 +166,12 @@ class Disc(Table):
     mass: Mass
     polar_inertia: Inertia = 0.0
     diametral_inertia: Inertia = 0.0
+
+    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> rotors.Disc:
+        """The disc; it takes nothing of its rotor."""
+        from rotors import Disc as BuiltDisc
+
+        return BuiltDisc(**self.model_dump())
 
 
 class RoundDisc(Table):
@@ -156,6 +191,20 @@ class RoundDisc(Table):
         if self.material is not None and self.density is not None:
             raise wrong("either 'material' or 'density', not both", "density")
         return self
+
+    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> rotors.Disc:
+        """The disc by its dimensions and density."""
+        from rotors import Disc as BuiltDisc
+
+        density = self.density or materials[_named(self.material, rotor)].density
+        return BuiltDisc.from_dimensions(self.at, self.width, self.diameter, self.bore, density)
+
+
+def _named(own: str | None, rotor: Rotor) -> str:
+    """Name of a part's material: its own, else its rotor's."""
+    name = own or rotor.material
+    assert name is not None
+    return name
 
 
 def _segment_form(value: Any) -> str:
@@ -199,9 +248,9 @@ class Rotor(Table):
     """`[[rotor]]`: a shaft along z at `axis` (x, y), its left end at z = `start`, all in m.
 
     `damping_ratio` is that of the shaft's own modes. `shear_coefficient` (a formula or a number) and `axial_force`
-    [N, tension positive] hold for segments that have none of their own. Of its modes the coupled system keeps the
-    lowest so many (`modes`) or those below a frequency (`frequency_limit`, Hz). Where a `file` of ROSS holds the shaft,
-    with its discs and grounded bearings, there are no `segments` here.
+    [N, tension positive] hold for segments that have none of their own. The coupled system keeps the lowest `modes` of
+    each kind, or those below a `frequency_limit` [Hz]. Where a `file` of ROSS holds the shaft, with its discs and
+    grounded bearings, there are no `segments` here.
     """
 
     name: Name
@@ -256,7 +305,7 @@ class Rotor(Table):
 
     @property
     def saved(self) -> RossModel | None:
-        """What the file holds; None where the shaft is described here."""
+        """Content of the ROSS file; None where the shaft is described here."""
         return self._saved
 
     @property
@@ -265,3 +314,30 @@ class Rotor(Table):
         if self._saved is not None:
             return self._saved.rotor.length
         return sum(segment.length for segment in self.segments)
+
+    def build(self, materials: Mapping[str, Material]) -> rotors.Rotor:
+        """The shaft with its discs, without the gears on it; its own file's discs stand first."""
+        from rotors import Rotor as BuiltRotor
+
+        discs = [disc.build(self, materials) for disc in self.discs]
+        if self._saved is not None:
+            of_file = self._saved.rotor
+            return BuiltRotor(self.name, of_file.segments, [*of_file.discs, *discs], self.mass)
+        segments = [segment.build(self, materials) for segment in self.segments]
+        return BuiltRotor(self.name, segments, discs, self.mass)
+
+    def build_unbalance(self) -> list[rotors.Unbalance]:
+        """The unbalances."""
+        from rotors import Unbalance as BuiltUnbalance
+
+        return [BuiltUnbalance(one.at, one.moment, one.phase) for one in self.unbalance]
+
+    def build_bow(self) -> rotors.Bow | None:
+        """The residual bow; None for a straight shaft."""
+        if not self.bow:
+            return None
+        from numpy import array
+
+        from rotors import Bow as BuiltBow
+
+        return BuiltBow(*array([(point.at, point.amplitude, point.phase) for point in self.bow]).T)

@@ -1,4 +1,4 @@
-"""How a case runs: operation, transient and sweep.
+"""Operation, transient and sweep of a case.
 
 Attributes are named as the keys and are in SI; speeds in rad/s.
 """

@@ -1,9 +1,9 @@
-"""The `[[bearing]]` entries of a case. Attributes are named as the keys and are in SI."""
+"""Bearings of a case, `[[bearing]]`: stiffness, damping, pedestal. Attributes are named as the keys and are in SI."""
 
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
@@ -26,8 +26,25 @@ from gearwhine.case.over_speed import Coefficient, OverSpeed
 from gearwhine.case.rolling import BearingLoad, Rolling, Stop
 from gearwhine.case.units import Dimension
 
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
-class RadialStiffness(Table):
+    import rotors
+
+
+class _Radial(Table):
+    """A 2×2 matrix over x and y by its entries, each a number or a list over speeds."""
+
+    def build(self) -> npt.NDArray[np.float64]:
+        """The matrix, (2, 2), or with lists in it one for each speed, (s, 2, 2)."""
+        import numpy as np
+
+        entries = np.broadcast_arrays(*(getattr(self, key) for key in ("xx", "xy", "yx", "yy")))
+        return np.stack(entries, axis=-1).reshape(*entries[0].shape, 2, 2)
+
+
+class RadialStiffness(_Radial):
     """A 2×2 radial stiffness [N/m]: force against the shaft's motion relative to its seat."""
 
     xx: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS, above=0.0))]
@@ -36,7 +53,7 @@ class RadialStiffness(Table):
     yx: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS))] = 0.0
 
 
-class RadialDamping(Table):
+class RadialDamping(_Radial):
     """A 2×2 radial damping [N s/m]."""
 
     xx: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING, at_least=0.0))] = 0.0
@@ -45,7 +62,7 @@ class RadialDamping(Table):
     yx: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING))] = 0.0
 
 
-class PedestalStiffness(Table):
+class PedestalStiffness(_Radial):
     """A 2×2 stiffness to the ground [N/m]."""
 
     xx: PositiveStiffness
@@ -60,7 +77,7 @@ class PedestalStiffness(Table):
         return self
 
 
-class PedestalDamping(Table):
+class PedestalDamping(_Radial):
     """A 2×2 damping to the ground [N s/m]."""
 
     xx: DampingFromZero = 0.0
@@ -70,11 +87,17 @@ class PedestalDamping(Table):
 
 
 class Pedestal(Table):
-    """What a bearing on the ground stands on: a mass [kg] on springs and dashpots, free to move in x and y."""
+    """Pedestal of a bearing on the ground: a mass [kg] on springs and dashpots, free to move in x and y."""
 
     mass: Mass = 0.0
     stiffness: PedestalStiffness
     damping: PedestalDamping = PedestalDamping()
+
+    def build(self) -> rotors.Pedestal:
+        """The pedestal."""
+        from rotors import Pedestal as BuiltPedestal
+
+        return BuiltPedestal(self.stiffness.build(), self.damping.build(), self.mass)
 
 
 MatrixRows = tuple[tuple[float, ...], ...]
@@ -97,10 +120,20 @@ def _read_matrix(value: Any, kinds: tuple[Dimension, Dimension, Dimension]) -> M
     )
 
 
-class MatrixStiffness(Table):
-    """A 5×5 stiffness over (x, y, z, tilt about x, tilt about y): N/m, N/rad and N m/rad."""
+class _Matrix(Table):
+    """A 5×5 matrix over (x, y, z, tilt about x, tilt about y)."""
 
     matrix: MatrixRows
+
+    def build(self) -> npt.NDArray[np.float64]:
+        """The matrix, (5, 5)."""
+        import numpy as np
+
+        return np.array(self.matrix)
+
+
+class MatrixStiffness(_Matrix):
+    """A 5×5 stiffness over (x, y, z, tilt about x, tilt about y): N/m, N/rad and N m/rad."""
 
     @field_validator("matrix", mode="before")
     @classmethod
@@ -108,10 +141,8 @@ class MatrixStiffness(Table):
         return _read_matrix(value, _STIFFNESSES)
 
 
-class MatrixDamping(Table):
+class MatrixDamping(_Matrix):
     """A 5×5 damping over (x, y, z, tilt about x, tilt about y): N s/m, N s/rad and N m s/rad."""
-
-    matrix: MatrixRows
 
     @field_validator("matrix", mode="before")
     @classmethod

@@ -1,4 +1,4 @@
-"""The keys that a sweep goes through: the speeds of ``[sweep]``, and ``--over key.path=from:to:n`` or ``=a,b,c``.
+"""Swept keys: the speeds of ``[sweep]``, and ``--over key.path=from:to:n`` or ``=a,b,c``.
 
 Keys with commas between move together, and ``*`` stands for every entry: ``--over bearing.*.stiffness.xx,
 bearing.*.stiffness.yy=1e7:1e9:5``.

@@ -1,14 +1,18 @@
-"""How torque varies, with time and with speed, and how speed varies with time. All in SI, speeds in rad/s."""
+"""Torques over time and speed, torque ripple, and the speed profile of a run. All in SI, speeds in rad/s."""
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import ConfigDict, Field, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import MOST_ENTRIES, Angle, PositiveFrequency, Quantity, SpeedFromZero, Table, wrong
+
+if TYPE_CHECKING:
+    import coupling
 
 Time = Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e6)]
 PositiveTime = Annotated[float, Quantity(units.TIME, above=0.0, at_most=1e6)]
@@ -29,7 +33,7 @@ class TorqueLine(Table):
 
 
 class TorqueHistory(Table):
-    """What is added to a torque over time [N m over s]: linear between the times, constant beyond."""
+    """Torque added over time [N m over s]: linear between the times, constant beyond."""
 
     time: tuple[Time, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
     torque: tuple[SignedTorque, ...] = Field(max_length=MOST_ENTRIES)
@@ -39,9 +43,17 @@ class TorqueHistory(Table):
         _check_table("time", self.time, "torque", self.torque)
         return self
 
+    def build(self, rotor: str, at: float, factor: float) -> coupling.TorqueHistory:
+        """The history, times a factor, on a rotor at a station [m]."""
+        from numpy import array
+
+        from coupling import TorqueHistory as BuiltHistory
+
+        return BuiltHistory(rotor, at, array(self.time), factor * array(self.torque))
+
 
 class TorqueRipple(Table):
-    """What swings about a torque: amplitude [N m], phase [rad], and an order of its shaft or a frequency [Hz]."""
+    """Harmonic ripple of a torque: amplitude [N m], phase [rad], and an order of its shaft or a frequency [Hz]."""
 
     amplitude: SignedTorque
     phase: Angle = 0.0
@@ -53,6 +65,14 @@ class TorqueRipple(Table):
         if (self.order is None) == (self.frequency is None):
             raise wrong("either an 'order' of the shaft's rotation or a 'frequency'", "order")
         return self
+
+    def build(self, rotor: str, at: float, sense: float) -> coupling.TorqueRipple:
+        """The ripple on a rotor at a station [m], in the sense of the torque that it is about."""
+        from coupling import TorqueRipple as BuiltRipple
+
+        frequency = None if self.frequency is None else 2.0 * math.pi * self.frequency
+        amplitude = math.copysign(self.amplitude, sense * self.amplitude)
+        return BuiltRipple(rotor, at, amplitude, self.phase, self.order, frequency)
 
 
 class Run(Table):

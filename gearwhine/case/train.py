@@ -1,4 +1,4 @@
-"""The gear train of a case: which shaft turns how fast against the first driver's, and which way."""
+"""Gear train of a case: pairs of shafts with their tooth numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Units at the door: ``"6.35 mm"`` in, ``0.00635`` out.
+"""Units of a case: quantities as text with a unit, such as ``"6.35 mm"``, to SI and back.
 
 A quantity is a number and a unit of plain symbols multiplied, divided and raised to whole powers. Text is
 held to that grammar before the unit registry sees any of it, so nothing in a case file is ever evaluated.
@@ -39,7 +39,7 @@ class QuantityError(ValueError):
 
 @dataclass(frozen=True)
 class Dimension:
-    """A kind of quantity, the SI unit it is kept in, and how people write it.
+    """Physical dimension: its SI unit, its limits, and an example.
 
     Attributes
     ----------
@@ -193,7 +193,7 @@ def _parse_unit(text: str) -> _Unit | None:
 
 
 def _matches(unit: _Unit, dimension: Dimension) -> bool:
-    """Tell whether a unit measures this dimension (radians matter only where angles are the point)."""
+    """Whether a unit measures this dimension; radians count only for angles, speeds and frequencies."""
     if dimension is RATIO:
         return unit.powers == ()
     wanted = _parse_unit(dimension.unit)
@@ -220,7 +220,7 @@ def parse_quantity(value: object, dimension: Dimension) -> float:
     value
         ``"6.35 mm"`` or ``0.00635``.
     dimension
-        What it has to measure.
+        Required dimension.
 
     Returns
     -------
@@ -279,7 +279,7 @@ def split_quantity(text: str) -> tuple[Decimal, str] | None:
 
 
 def unit_ratio(unit: str, other: str) -> Decimal | None:
-    """How many of another unit one of this is; None where they measure different things."""
+    """Conversion factor from a unit to another; None where they measure different things."""
     if unit == other:
         return Decimal(1)
     one, two = (_parse_unit(text) if text else None for text in (unit, other))
@@ -307,7 +307,7 @@ def amount(value: str | float) -> float:
 
 
 def kind_of(value: object) -> tuple[tuple[str, int], ...] | None:
-    """What a quantity measures, as powers of base units; None for a plain number, whose kind its key knows."""
+    """Dimension of a quantity as powers of base units; None for a plain number, whose dimension its key knows."""
     parts = split_quantity(value) if isinstance(value, str) else None
     unit = _parse_unit(parts[1]) if parts is not None and parts[1] else None
     return None if unit is None else unit.without_angle()
@@ -321,7 +321,7 @@ def format_quantity(number: float, dimension: Dimension) -> str | float:
     number
         In ``dimension.unit``.
     dimension
-        What it measures.
+        Dimension.
 
     Returns
     -------

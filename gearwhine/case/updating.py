@@ -1,4 +1,4 @@
-"""The `[update]` table: which numbers of the case `gearwhine update` fits to the measured modes, and how."""
+"""Model updating of a case, `[update]`: the fitted parameters, and the modes they are fitted to."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class UpdateParameter(Table):
 
 
 class ModelModes(Table):
-    """How many modes the model is known to have below a frequency [Hz]: from `least` to `most`."""
+    """Number of model modes below a frequency [Hz]: from `least` to `most`."""
 
     below: PositiveFrequency
     least: Annotated[int, Whole(0, MOST_ENTRIES)]

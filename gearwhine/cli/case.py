@@ -1,4 +1,4 @@
-"""Commands on a case as a whole, on the bundled ones and on a results folder."""
+"""Commands on a case as a whole: run, check, examples, report."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -18,13 +18,13 @@ def run(
     *,
     fresh: FreshRun = False,
     pictures: Annotated[
-        bool, Parameter(name=["--pictures"], help="Whether to draw; --no-pictures saves time, and needs no renderer.")
+        bool, Parameter(name=["--pictures"], help="Draw pictures; --no-pictures saves time and needs no renderer.")
     ] = True,
     common: Common = NONE_GIVEN,
 ) -> None:
-    """Everything the case asks for, start to end; results go to OUT (default: ./<case>-results).
+    """Run all analyses of the case; results go to OUT (default: ./<case>-results).
 
-    A run that was interrupted or killed goes on from its last checkpoint when the same case is run into OUT again.
+    An interrupted run continues from its last checkpoint when the same case is run into OUT again.
     """
     from gearwhine.analyses.run import run_into
     from gearwhine.screen import show_run
@@ -37,7 +37,7 @@ def run(
 
 
 def check(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
-    """Read the case and say what it means; solves nothing."""
+    """Check the case and show speeds, mesh frequencies, torques and sizes; solve nothing."""
     from gearwhine.screen import show_check
     from gearwhine.stages.summary import check_document
 
@@ -45,8 +45,8 @@ def check(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
 
 
 def examples(
-    action: Annotated[Literal["list", "copy"], Parameter(help="What to do.")] = "list",
-    name: Annotated[str | None, Parameter(help="Which bundled case to copy.")] = None,
+    action: Annotated[Literal["list", "copy"], Parameter(help="List the cases, or copy one.")] = "list",
+    name: Annotated[str | None, Parameter(help="Name of the bundled case to copy.")] = None,
     *,
     common: Common = NONE_GIVEN,
 ) -> None:
@@ -61,7 +61,7 @@ def examples(
 
 
 def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
-    """All results in the folder OUT (default: ./<case>-results) as one HTML page, report.html in it."""
+    """Write the results in OUT (default: ./<case>-results) as one HTML page, report.html."""
     from gearwhine.analyses.case import report_case
     from gearwhine.screen import show_files
 

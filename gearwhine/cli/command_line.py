@@ -1,4 +1,4 @@
-"""The application: every command by its name, and how it ends."""
+"""Command-line application: commands by name, exit codes, error messages."""
 
 import io
 import sys
@@ -41,7 +41,7 @@ for _command in (
 def run_command(arguments: list[str]) -> int:
     """Run the command line; 0 when done, 2 where the user's input is wrong, 1 for anything else.
 
-    Only what nobody foresaw leaves a traceback.
+    Only an unexpected exception leaves a traceback.
     """
     with interruptible():
         return _run_command(arguments)

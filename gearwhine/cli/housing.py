@@ -1,4 +1,4 @@
-"""Commands on the housing: its mesh, its modes, and what was measured of it."""
+"""Commands on the housing: mesh, modes, compare, survey, update, render."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -40,13 +40,13 @@ def modes(
         Parameter(
             name=["--detail"],
             negative=(),
-            help="Also effective masses, what each support holds, and which modes carry the bearings' forces.",
+            help="Also show effective masses, support reactions, and the modes dominant between bearings and sensors.",
         ),
     ] = False,
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
 ) -> None:
-    """Housing modes, proved complete, with a report on the model's health."""
+    """Natural modes of the housing, certified complete, with checks of the model."""
     from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_modes, show_modes_in_detail
 
@@ -58,7 +58,7 @@ def modes(
 
 
 def compare(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN) -> None:
-    """Model modes of the housing against measured ones."""
+    """Compare the housing's modes with measured ones: frequencies, MAC, frequency responses."""
     from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_comparison
 
@@ -72,16 +72,14 @@ def compare(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN
 def survey(
     case: CaseName,
     *,
-    sensors: Annotated[
-        int, Parameter(help="How many sensors, each along the surface's normal.", validator=Number(gte=1))
-    ],
+    sensors: Annotated[int, Parameter(help="Number of sensors, each normal to the surface.", validator=Number(gte=1))],
     modes: Annotated[
-        int | None, Parameter(help="For how many of the lowest modes (default: all known).", validator=Number(gte=1))
+        int | None, Parameter(help="Number of lowest modes to survey (default: all known).", validator=Number(gte=1))
     ] = None,
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
 ) -> None:
-    """Where to put sensors and the hammer for a modal survey, as files in OUT (default: ./<case>-results)."""
+    """Plan a modal survey: sensor and hammer positions, as files in OUT (default: ./<case>-results)."""
     from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_survey
 
@@ -99,19 +97,21 @@ def update(
     null: Annotated[
         int,
         Parameter(
-            help="Also fit so many random sets of frequencies: how often the fit would be as good of nothing.",
+            help="Number of random frequency sets to fit as well; their fits are the null hypothesis.",
             validator=Number(gte=0),
         ),
     ] = 0,
     held_back: Annotated[
         bool,
         Parameter(
-            name=["--held-back"], negative=(), help="Also fit without each measured mode in turn, and predict that one."
+            name=["--held-back"],
+            negative=(),
+            help="Also leave out each measured mode in turn and predict it.",
         ),
     ] = False,
     common: Common = NONE_GIVEN,
 ) -> None:
-    """Fit the numbers of [update] to the measured modes; writes updated.toml to OUT (default: ./<case>-results)."""
+    """Fit the parameters of [update] to the measured modes; write updated.toml to OUT (default: ./<case>-results)."""
     from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_update
 
@@ -127,9 +127,7 @@ def render(
     *,
     modes: Annotated[
         str | None,
-        Parameter(
-            help="Which modes: 'dominant' (unless a line or --measured is asked for), 'all', or '1,4,9' or '1-6'."
-        ),
+        Parameter(help="Modes to draw: 'dominant' (default without --line and --measured), 'all', '1,4,9' or '1-6'."),
     ] = None,
     line: Annotated[
         list[float],
@@ -137,23 +135,23 @@ def render(
             name=["--line"],
             negative=(),
             consume_multiple=False,
-            help="How the housing moves at the line nearest to a frequency [Hz] of the run in OUT. May be repeated.",
+            help="Draw the operating shape at the line of the run in OUT nearest to a frequency [Hz]. May be repeated.",
         ),
     ] = [],  # noqa: B006 - read only
     measured: Annotated[
-        bool, Parameter(name=["--measured"], negative=(), help="Measured shapes beside the model's, at their points.")
+        bool, Parameter(name=["--measured"], negative=(), help="Draw measured shapes beside the model's.")
     ] = False,
     view: Annotated[
-        Literal["iso", "front", "back", "left", "right", "top"], Parameter(help="From where to look.")
+        Literal["iso", "front", "back", "left", "right", "top"], Parameter(help="Direction of view.")
     ] = "iso",
     format: Annotated[  # noqa: A002 - the name of the option
         Literal["png", "glb", "gif", "mp4"],
-        Parameter(help="Pictures; glTF models that move in any 3D viewer; or films, MP4 where ffmpeg is installed."),
+        Parameter(help="Picture, animated glTF model, or film (MP4 needs ffmpeg)."),
     ] = "png",
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
 ) -> None:
-    """Shapes of modes, of a run's lines, or measured: pictures, films, models in OUT (default: ./<case>-results)."""
+    """Draw mode shapes, operating shapes or measured shapes into OUT (default: ./<case>-results)."""
     from gearwhine.analyses import housing as analyses
     from gearwhine.screen import show_files
 

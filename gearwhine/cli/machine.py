@@ -1,4 +1,4 @@
-"""Commands on rotors and gears, and on the machine that they make with the housing."""
+"""Commands on rotors, gear pairs and the coupled machine: rotors, gears, system, steady, sweep."""
 
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,12 +21,12 @@ def rotors(
         Parameter(
             name=["--write-ross"],
             negative=(),
-            help="Also each rotor with its bearings as a file that ROSS loads, in OUT (default: ./<case>-results).",
+            help="Also write each rotor with its bearings as a ROSS file to OUT (default: ./<case>-results).",
         ),
     ] = False,
     common: Common = NONE_GIVEN,
 ) -> None:
-    """Each rotor's lateral and torsional modes, whirl and critical speeds; of a case, or of a rotor saved by ROSS."""
+    """Lateral and torsional modes, whirl and critical speeds of each rotor; CASE may be a rotor saved by ROSS."""
     from gearwhine.analyses import machine as analyses
     from gearwhine.screen import show_rotors
 
@@ -38,7 +38,7 @@ def rotors(
 
 
 def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
-    """Each gear pair: geometry, stiffness, transmission error, load sharing, pressure, Harris map, best tip relief."""
+    """Gear pairs: geometry, mesh stiffness, transmission error, load sharing, contact pressure, optimal tip relief."""
     from gearwhine.analyses import machine as analyses
     from gearwhine.screen import show_gears
 
@@ -56,24 +56,26 @@ def system(
         Parameter(
             name=["--campbell"],
             negative=(),
-            help="Also the modes over speed: over the case's [sweep], else up to half again the speed of operation.",
+            help="Also compute the Campbell diagram: over [sweep], else up to 1.5 times the operating speed.",
         ),
     ] = False,
     sidebands: Annotated[
         int,
         Parameter(
-            help="Of this many on either side of each mesh order, by the shafts' turning, the diagram has lines too.",
+            help="Number of shaft-order sidebands drawn on each side of every mesh order.",
             validator=Number(gte=0, lte=20),
         ),
     ] = 0,
     mesh_phase: Annotated[
         float | None,
-        Parameter(help="About the contact with the first pair's teeth at this part of their period, not its mean."),
+        Parameter(
+            help="Linearise about the mesh at this fraction of the first pair's mesh period (default: the mean)."
+        ),
     ] = None,
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
 ) -> None:
-    """Complex natural modes of the whole coupled system, who moves and damps; what reaches bearings and sensors."""
+    """Complex natural modes of the coupled machine, their damping and participation, and its transmissibility."""
     from gearwhine.analyses import machine as analyses
     from gearwhine.screen import show_system
 
@@ -100,29 +102,29 @@ def steady(
         Parameter(
             name=["--curve"],
             negative=(),
-            help="Also follow the motion over speed, through folds: over the range of the case's [sweep], else from "
-            "half the speed of operation to half again.",
+            help="Also continue the motion over speed, through folds: over the range of [sweep], else from 0.5 to 1.5 "
+            "times the operating speed.",
         ),
     ] = False,
     down: Annotated[
-        bool, Parameter(name=["--down"], negative=(), help="Follow it from the highest speed downwards.")
+        bool, Parameter(name=["--down"], negative=(), help="Continue from the highest speed downwards.")
     ] = False,
     points: Annotated[
-        int, Parameter(help="Points of the curve where it runs straight.", validator=Number(gte=2, lte=2000))
+        int, Parameter(help="Number of points on a straight part of the curve.", validator=Number(gte=2, lte=2000))
     ] = 100,
     exact: Annotated[
         bool,
         Parameter(
             name=["--exact"],
             negative=(),
-            help="Solve the common period of all excitations however long it is; by default excitations without a "
-            "short one, as the meshes of several stages, have a motion each, and these are superposed.",
+            help="Solve over the common period of all excitations, however long; by default excitations without a "
+            "short common period, such as the meshes of several stages, are solved one by one and superposed.",
         ),
     ] = False,
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
 ) -> None:
-    """The motion that repeats with the excitation, without marching to it; whether it is stable, and over speed."""
+    """Periodic steady state by shooting, its stability by Floquet multipliers, and its continuation over speed."""
     from gearwhine.analyses import machine as analyses
     from gearwhine.screen import show_steady
 
@@ -151,22 +153,22 @@ def sweep(
             name=["--over"],
             negative=(),
             consume_multiple=False,
-            help="Go through values of a key: key.path=from:to:n or =a,b,c, such as "
-            "operation.torque='10 N*m:100 N*m:10'. Several make a grid, with the speeds of [sweep] too.",
+            help="Vary a key: key.path=from:to:n or key.path=a,b,c, such as operation.torque='10 N*m:100 N*m:10'. "
+            "Repeated, the keys and the speeds of [sweep] form a grid.",
         ),
     ] = [],  # noqa: B006 - read only
     workers: Annotated[
-        int | None, Parameter(help="How many processes (default: as many as cores).", validator=Number(gte=1))
+        int | None, Parameter(help="Number of processes (default: number of cores).", validator=Number(gte=1))
     ] = None,
     scheduler: Annotated[
-        str | None, Parameter(help="Address of a running Dask scheduler, whose workers are used instead.")
+        str | None, Parameter(help="Address of a running Dask scheduler; its workers replace the local ones.")
     ] = None,
     fresh: Annotated[
-        bool, Parameter(name="--fresh", negative=(), help="Do also the points and modes that OUT holds.")
+        bool, Parameter(name="--fresh", negative=(), help="Solve again the points and modes that OUT holds.")
     ] = False,
     common: Common = NONE_GIVEN,
 ) -> None:
-    """The transient over the speeds of [sweep] or any keys, in parallel; resumes in OUT (default: ./<case>-results)."""
+    """Parallel transients over the speeds of [sweep] or over any keys; OUT (default: ./<case>-results) is resumed."""
     from gearwhine.analyses import machine as analyses
     from gearwhine.failures import PartlyFailedError
     from gearwhine.screen import show_sweep

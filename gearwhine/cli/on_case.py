@@ -1,4 +1,4 @@
-"""How a command goes about a case: read it, work under a progress display, hand the document over."""
+"""Running a command on a case: read the case, work under a progress display, show or print the document."""
 
 import os
 import sys

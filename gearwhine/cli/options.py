@@ -1,4 +1,4 @@
-"""What commands on a case take alike: the case's name, the common options, and starting afresh."""
+"""Common command-line options: the case's name, output folder, JSON, settings, quiet, fresh."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from cyclopts import Parameter, Token
 
 
 def _folder(type_: object, tokens: Sequence[Token]) -> Path:
-    """The folder that is named; nothing is no name, though as a path it stands for the present folder."""
+    """The named folder; an empty name is refused, though as a path it is the current folder."""
     (token,) = tokens
     if not token.value.strip():
         raise ValueError("--output is empty; expected the name of a folder, such as results")
@@ -19,7 +19,7 @@ def _folder(type_: object, tokens: Sequence[Token]) -> Path:
 @Parameter(name="*")
 @dataclass(frozen=True)
 class Common:
-    """What every command on a case takes."""
+    """Options of every command on a case."""
 
     output: Annotated[
         Path | None, Parameter(name=["--output", "-o"], converter=_folder, help="Folder for the results.")
@@ -41,14 +41,15 @@ class Common:
 
 NONE_GIVEN = Common()
 Fresh = Annotated[
-    bool, Parameter(name="--fresh", negative=(), help="Solve the housing's modes also where OUT keeps them unchanged.")
+    bool,
+    Parameter(name="--fresh", negative=(), help="Solve the housing's modes again, even if OUT holds them."),
 ]
 FreshRun = Annotated[
     bool,
     Parameter(
         name="--fresh",
         negative=(),
-        help="Begin anew also where OUT keeps the housing's modes, or a transient that was interrupted.",
+        help="Start again, even if OUT holds the housing's modes or an interrupted transient.",
     ),
 ]
 CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a bundled case.")]

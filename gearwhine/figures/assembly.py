@@ -1,4 +1,4 @@
-"""A rotor with all that stands on it and under it, as it is drawn: gears, probes, unbalances, seats."""
+"""Rotor assembly as it is drawn: shaft, gears, probes, unbalances, bearings with their seats."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
@@ -47,22 +47,22 @@ class DrawnProbe:
 
 @dataclass(frozen=True)
 class RotorAssembly:
-    """What the pictures of a rotor show of it.
+    """Rotor with the parts that its figures show.
 
     Parameters
     ----------
     rotor
         Segments and shaft couplings to scale; its discs as the rings that have their inertias.
     bearings
-        What holds it.
+        Bearings.
     gears, unbalances, probes
-        What else sits on it.
+        Gears, unbalances and probes on it.
     rolling
         Names of the bearings drawn with the sign of a rolling bearing; the others are springs.
     seats
-        What a bearing stands in, by the bearing's name; the others stand on the ground or on their pedestal.
+        Seat of each bearing, by the bearing's name; the others stand on the ground or on their pedestal.
     materials
-        What the segments' materials are called; without a name they are told by modulus and density.
+        Names of the segments' materials; a material without a name is shown by modulus and density.
     """
 
     rotor: Rotor

@@ -1,4 +1,4 @@
-"""The Campbell diagram: whirl frequencies and their damping over the speed of rotation."""
+"""Campbell diagram of a rotor: whirl frequencies and damping over the speed of rotation."""
 
 from collections.abc import Iterator, Sequence
 
@@ -8,14 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearwhine.figures.labels import Label, arrange, draw_row
-from gearwhine.figures.style import FOOT, GREY, HEAD, INK, NOTE, PANEL_WIDTH, RPM, legend, panel, sheet
+from gearwhine.figures.style import FOOT, GREY, HEAD, HERTZ, INK, NOTE, PANEL_WIDTH, RPM, legend, panel, sheet
 from gearwhine.figures.whirl_senses import Sense, legend_lines, sense_of, with_rotation
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
 _HEIGHT, _DAMPING_HEIGHT, _BETWEEN = 78.0, 32.0, 4.0  # of both panels and the room between them [mm of paper]
-_BRANCHES = 6  # at least so many of the lowest are shown
+_BRANCHES = 6  # lowest branches that are shown at least
 _ABOVE = 1.6  # the highest order's frequency at top speed takes this part of the axis
 _ALMOST_ALL = 0.9  # of the decrements are on their axis
 _UNDAMPED = 1e-9  # a damping ratio this small is rounding
@@ -93,13 +92,13 @@ def draw_campbell(
     criticals = _criticals(critical_speeds, critical_directions, multiples, low, high, top)
     onset = stability_onset(turning, ratios)
     labels = [
-        Label(f"{RPM * speed:.4g}", RPM * speed, multiple * speed / _HERTZ, sense.color)
+        Label(f"{RPM * speed:.4g}", RPM * speed, multiple * speed / HERTZ, sense.color)
         for speed, sense, multiple in criticals
     ]
     if onset is not None:
         speed, branch = onset
-        height = float(np.interp(speed, turning, values[:, branch])) / _HERTZ
-        labels.append(Label(f"unstable above {RPM * speed:.4g}", RPM * speed, min(height, top / _HERTZ)))
+        height = float(np.interp(speed, turning, values[:, branch])) / HERTZ
+        labels.append(Label(f"unstable above {RPM * speed:.4g}", RPM * speed, min(height, top / HERTZ)))
     row = arrange(labels, [(label.x / RPM - low) / (high - low) * PANEL_WIDTH for label in labels], PANEL_WIDTH)
     is_damped = bool((np.abs(np.nan_to_num(ratios)) > _UNDAMPED).any())
     lower = _DAMPING_HEIGHT + _BETWEEN if is_damped else 0.0
@@ -108,13 +107,13 @@ def draw_campbell(
     note += f"; {row.left_out} not named" * bool(row.left_out)
     figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + lower + FOOT, title, note)
     axes = panel(figure, FOOT + lower, _HEIGHT)
-    axes.set(xlim=(RPM * low, RPM * high), ylim=(0.0, top / _HERTZ), ylabel="whirl frequency [Hz]")
-    met = _draw_branches(axes, turning, values / _HERTZ, senses, axial)
+    axes.set(xlim=(RPM * low, RPM * high), ylim=(0.0, top / HERTZ), ylabel="whirl frequency [Hz]")
+    met = _draw_branches(axes, turning, values / HERTZ, senses, axial)
     for multiple in orders:
         _draw_order(axes, multiple, low, high, top)
     for speed, sense, multiple in criticals:
         face = sense.color if sense.name == "forward" else "white"
-        height = multiple * speed / _HERTZ
+        height = multiple * speed / HERTZ
         axes.plot(RPM * speed, height, marker="o", ms=4.5, color=sense.color, mfc=face, zorder=4, label="critical")
     draw_row(axes, row, _HEIGHT + 1.0)
     lowest = axes
@@ -206,9 +205,9 @@ def _draw_branches(
 def _draw_order(axes: Axes, multiple: float, low: float, high: float, top: float) -> None:
     """The line of a multiple of the speed, named where it leaves the panel."""
     ends = np.array([low, high])
-    axes.plot(RPM * ends, multiple * ends / _HERTZ, color=GREY, lw=0.8, zorder=2, label=f"{multiple:g}×")
+    axes.plot(RPM * ends, multiple * ends / HERTZ, color=GREY, lw=0.8, zorder=2, label=f"{multiple:g}×")
     leaves_above = multiple * high > top
-    place = (RPM * (top / multiple if leaves_above else high), min(multiple * high, top) / _HERTZ)
+    place = (RPM * (top / multiple if leaves_above else high), min(multiple * high, top) / HERTZ)
     axes.annotate(
         f"{multiple:g}×",
         place,

@@ -1,4 +1,4 @@
-"""Model against measured frequencies with the band of ±5 %, and the errors below; with shapes, every MAC as a circle.
+"""Model frequencies over measured ones with a band of ±5 %, and their errors; with shapes, the MAC of each pair.
 
 Circles whose area is the MAC, at the frequencies of both modes, are the FMAC of Fotsch and Ewins (2000): one picture of
 shapes, frequencies and what the survey confuses.
@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from gearwhine.figures.labels import Label, LabelRow, arrange, draw_row
-from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, NOTE, PALE, PANEL_WIDTH, RED, panel, sheet
+from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, HERTZ, NOTE, PALE, PANEL_WIDTH, RED, panel, sheet
 from housing import Comparison
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,7 +23,6 @@ _PLANE, _BETWEEN, _ERRORS = 92.0, 8.0, 34.0  # heights of the panels and the roo
 _LARGEST = 60.0  # area of the circle of MAC 1 [points²]
 _FAINT = 0.05  # MACs below it are not drawn
 _TICK = 0.018  # length of an unpaired mode's mark, as a part of the panel
-_HERTZ = 2.0 * np.pi
 
 
 def draw_comparison(title: str, comparison: Comparison, model_frequencies: FloatArray) -> Figure:
@@ -39,8 +38,8 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
         (n,): of all the model's modes, rad/s; those without a partner are marked on their axis.
     """
     measured = _measured(comparison)
-    model = np.asarray(model_frequencies) / _HERTZ
-    highest = 1.06 * max(float(measured.max()), max((pair.model / _HERTZ for pair in comparison.pairs), default=0.0))
+    model = np.asarray(model_frequencies) / HERTZ
+    highest = 1.06 * max(float(measured.max()), max((pair.model / HERTZ for pair in comparison.pairs), default=0.0))
     row = _error_labels(comparison, highest)
     above = _ERRORS + row.height + 2.0 + _BETWEEN
     figure = sheet(HEAD + _PLANE + above + FOOT, title, _note(comparison))
@@ -54,7 +53,7 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
         _draw_macs(plane, comparison, highest)
         handles.append(_dot("other MACs, by area", GREY, filled=False))
     sizes = [_LARGEST * (1.0 if pair.mac is None else pair.mac) for pair in comparison.pairs]
-    at = np.array([[pair.measured, pair.model] for pair in comparison.pairs]).reshape(-1, 2).T / _HERTZ
+    at = np.array([[pair.measured, pair.model] for pair in comparison.pairs]).reshape(-1, 2).T / HERTZ
     plane.scatter(at[0], at[1], s=sizes, color=BLUE, edgecolors="white", linewidths=0.5, zorder=5, label="pairs")
     handles.append(_dot("pairs", BLUE))
     _mark_unpaired(plane, comparison, measured, model[model <= highest])
@@ -74,8 +73,8 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
 def _measured(comparison: Comparison) -> FloatArray:
     """Every measured frequency, paired or not [Hz]."""
     if comparison.shapes is not None:
-        return comparison.shapes.measured_frequencies / _HERTZ
-    return np.array([pair.measured for pair in comparison.pairs]) / _HERTZ
+        return comparison.shapes.measured_frequencies / HERTZ
+    return np.array([pair.measured for pair in comparison.pairs]) / HERTZ
 
 
 def _note(comparison: Comparison) -> str:
@@ -91,10 +90,10 @@ def _draw_macs(axes: Axes, comparison: Comparison, highest: float) -> None:
     values = shapes.mac.copy()
     for pair in comparison.pairs:
         values[pair.mode - 1, pair.measured_mode - 1] = 0.0
-    i, j = np.nonzero((values >= _FAINT) & (shapes.model_frequencies[:, None] <= _HERTZ * highest))
+    i, j = np.nonzero((values >= _FAINT) & (shapes.model_frequencies[:, None] <= HERTZ * highest))
     axes.scatter(
-        shapes.measured_frequencies[j] / _HERTZ,
-        shapes.model_frequencies[i] / _HERTZ,
+        shapes.measured_frequencies[j] / HERTZ,
+        shapes.model_frequencies[i] / HERTZ,
         s=_LARGEST * values[i, j],
         facecolors="none",
         edgecolors=GREY,
@@ -122,7 +121,7 @@ def _draw_errors(axes: Axes, comparison: Comparison, highest: float) -> None:
     reach = max(1.15 * float(np.abs(errors).max(initial=0.0)), 130.0 * _BAND)
     axes.axhspan(-100.0 * _BAND, 100.0 * _BAND, color=PALE, lw=0.0, zorder=1)
     axes.axhline(0.0, color=GREY, lw=0.7, zorder=2)
-    places = np.array([pair.measured for pair in comparison.pairs]) / _HERTZ
+    places = np.array([pair.measured for pair in comparison.pairs]) / HERTZ
     axes.vlines(places, 0.0, errors, color=BLUE, lw=1.6, zorder=3)
     axes.plot(places, errors, color=BLUE, marker="o", ms=3.5, ls="", zorder=4, label="error")
     axes.set(xlim=(0.0, highest), ylim=(-reach, reach), xlabel="measured [Hz]", ylabel="error [%]")
@@ -131,8 +130,7 @@ def _draw_errors(axes: Axes, comparison: Comparison, highest: float) -> None:
 def _error_labels(comparison: Comparison, highest: float) -> LabelRow:
     pairs = comparison.pairs
     labels = [
-        Label(f"{round(pair.error_percent, 1) + 0.0:+.1f}", pair.measured / _HERTZ, pair.error_percent)
-        for pair in pairs
+        Label(f"{round(pair.error_percent, 1) + 0.0:+.1f}", pair.measured / HERTZ, pair.error_percent) for pair in pairs
     ]
     return arrange(labels, [PANEL_WIDTH * label.x / highest for label in labels], PANEL_WIDTH)
 

@@ -1,4 +1,4 @@
-"""Along the path of contact: the load that a pair of teeth carries, how hard its flanks press, and how they slide."""
+"""Load sharing, contact pressure and sliding velocity along the path of contact."""
 
 import numpy as np
 import numpy.typing as npt
@@ -6,13 +6,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coupling.gears import GearPairGeometry, StaticMesh, ToothContact, path_of_contact, specific_sliding
-from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, LABEL, SERIES, legend, panel, sheet
+from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, LABEL, MEGA, SERIES, legend, panel, sheet
 
 FloatArray = npt.NDArray[np.float64]
 
 _SHARE, _PRESSURE, _SLIDING, _BETWEEN, _LETTERS = 40.0, 40.0, 36.0, 4.0, 5.0  # [mm of paper]
 _NAMES = "ABCDE"
-_MEGA = 1e-6
 _STEEPEST = 4.0  # specific sliding beyond this is cut off: it has no bound towards a base circle
 
 
@@ -48,9 +47,9 @@ def draw_contact_path(
     panels = [share]
     if pressure is not None:
         axes = panel(figure, below, _PRESSURE)
-        axes.plot(rolls, _MEGA * pressure[present][order], color=BLUE, lw=1.4, label="_pressure")
+        axes.plot(rolls, MEGA * pressure[present][order], color=BLUE, lw=1.4, label="_pressure")
         axes.set(ylabel="contact pressure [MPa]")
-        axes.set_ylim(0.0, 1.1 * _MEGA * float(np.nanmax(pressure[np.isfinite(pressure)], initial=0.0)) or 1.0)
+        axes.set_ylim(0.0, 1.1 * MEGA * float(np.nanmax(pressure[np.isfinite(pressure)], initial=0.0)) or 1.0)
         panels.append(axes)
     axes = panel(figure, FOOT, _SLIDING)
     on_path = np.linspace(0.0, pair.contact_ratio, 201)

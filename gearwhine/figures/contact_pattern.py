@@ -1,4 +1,4 @@
-"""The contact pattern: what every place of the flank carries while a pair of teeth passes through its mesh."""
+"""Contact pattern: load and pressure over the flank while a pair of teeth passes through its mesh."""
 
 import numpy as np
 import numpy.typing as npt
@@ -8,14 +8,14 @@ from matplotlib.figure import Figure
 
 from coupling.gears import GearPairGeometry, StaticMesh, ToothContact, mesh_pressure, path_of_contact
 from gearwhine.figures.contact_path import mark_points
-from gearwhine.figures.style import FOOT, HEAD, INK, LABEL, MM_PER_INCH, PANEL_WIDTH, TICK, panel, sheet
+from gearwhine.figures.style import FOOT, HEAD, INK, LABEL, MEGA, MILLI, MM_PER_INCH, PANEL_WIDTH, TICK, panel, sheet
 
 FloatArray = npt.NDArray[np.float64]
 
-_MAP, _BETWEEN, _LETTERS = 52.0, 6.0, 5.0  # height of a map, and rooms between them and above [mm of paper]
+_MAP, _MAP_GAP, _MAP_LETTERS = 52.0, 6.0, 5.0  # height of a map, and rooms between them and above [mm of paper]
 _SCALE, _BESIDE, _NUMBERS = 3.0, 3.0, 13.0  # the colours' bar, the room before it and for its numbers [mm of paper]
 _PLACES = 240  # along the path of contact
-_MM, _MEGA, _N_PER_MM = 1e3, 1e-6, 1e-3
+_N_PER_MM = 1e-3
 
 
 def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh) -> Figure:
@@ -45,16 +45,16 @@ def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothConta
     most = np.unravel_index(int(loads.argmax()), loads.shape)
     even = mesh.force / (faces.face_width * pair.contact_ratio)
     note = (
-        f"largest load per width {_N_PER_MM * loads[most]:.4g} N/mm, at z = {_MM * faces.z[most[0]]:.3g} mm, "
+        f"largest load per width {_N_PER_MM * loads[most]:.4g} N/mm, at z = {MILLI * faces.z[most[0]]:.3g} mm, "
         f"{loads[most] / even:.3g} times the even load of the mean number of pairs; pale lines: contact at one time"
     )
-    figure = sheet(HEAD + _LETTERS + 2.0 * _MAP + _BETWEEN + FOOT, title, note)
+    figure = sheet(HEAD + _MAP_LETTERS + 2.0 * _MAP + _MAP_GAP + FOOT, title, note)
     rolls = np.degrees(pair.driver_roll_angle(places))
-    edges = _MM * np.concatenate([faces.z - 0.5 * faces.width, [faces.z[-1] + 0.5 * faces.width]])
+    edges = MILLI * np.concatenate([faces.z - 0.5 * faces.width, [faces.z[-1] + 0.5 * faces.width]])
     drawn = []
     for bottom, values, what in (
-        (FOOT + _MAP + _BETWEEN, _N_PER_MM * loads, "load per width [N/mm]"),
-        (FOOT, _MEGA * pressures, "contact pressure [MPa]"),
+        (FOOT + _MAP + _MAP_GAP, _N_PER_MM * loads, "load per width [N/mm]"),
+        (FOOT, MEGA * pressures, "contact pressure [MPa]"),
     ):
         axes = panel(figure, bottom, _MAP, width=PANEL_WIDTH - _BESIDE - _SCALE - _NUMBERS)
         _draw_map(axes, rolls, edges, values, what)
@@ -82,7 +82,7 @@ def over_flank(
 
 
 def _reach(contact: ToothContact) -> tuple[float, float]:
-    """Where on the path slices can touch."""
+    """Range of the path on which slices can touch."""
     assert contact.faces is not None
     reach = float(np.abs(contact.faces.shift).max())
     return contact.touching_range[0] + reach, contact.touching_range[1] - reach
@@ -106,9 +106,9 @@ def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArr
 
 
 def _draw_lines(axes: Axes, pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh) -> None:
-    """Where pairs touch at one time, the middle of the mesh period."""
+    """Contact lines at one time, the middle of the mesh period."""
     assert contact.faces is not None
     row = int(np.abs(mesh.phases - 0.5).argmin())
     for position in mesh.positions[row][contact.pairs(mesh.phases[row : row + 1]).present[0]]:
         roll = np.degrees(pair.driver_roll_angle(position + contact.faces.shift))
-        axes.plot(roll, _MM * contact.faces.z, color="white", alpha=0.7, lw=0.9, zorder=3, label="_contact line")
+        axes.plot(roll, MILLI * contact.faces.z, color="white", alpha=0.7, lw=0.9, zorder=3, label="_contact line")

@@ -1,4 +1,4 @@
-"""What housing modes and bearings put into the leading lines of the sensors, as bars."""
+"""Transfer-path contributions of housing modes and bearings to the leading lines of the sensors, as bars."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from gearwhine.stages.signature import Contribution, TracedLine
 
 _LINES = 3  # of each sensor
 _PARTS = 6  # of each kind
-_BAR, _NAMES, _BETWEEN = 3.4, 31.0, 15.0  # height of a bar, room for its name, and above a panel [mm]
+_BAR, _NAMES, _BARS_GAP = 3.4, 31.0, 15.0  # height of a bar, room for its name, and above a panel [mm]
 _MARGIN = 4.0
 _VISIBLE = 0.05  # percent, below which a part is next to nothing
 
@@ -24,12 +24,12 @@ def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> 
     shown = [(name, line) for name, told in lines.items() for line in told[:_LINES]]
     groups = [(name, line, _gathered(line.modes), _gathered((*line.bearings, line.free))) for name, line in shown]
     heights = [_BAR * max(len(modes), len(bearings)) for _, _, modes, bearings in groups]
-    height = HEAD + FOOT + sum(heights) + _BETWEEN * len(groups)
+    height = HEAD + FOOT + sum(heights) + _BARS_GAP * len(groups)
     note = f"{title}; parts in phase with the line, in percent of it; left: housing modes, right: bearings"
     figure = sheet(height, "Where the lines come from", note)
     up = height - HEAD
     for (name, line, modes, bearings), tall in zip(groups, heights, strict=True):
-        up -= _BETWEEN - 5.0 + tall
+        up -= _BARS_GAP - 5.0 + tall
         heading = f"{name}: {line.frequency:.0f} Hz, {abs(line.value):.3g} m/s² peak, {line.named.name}"
         figure.text(
             _MARGIN / SHEET_WIDTH,

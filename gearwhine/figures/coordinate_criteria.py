@@ -12,7 +12,7 @@ from gearwhine.figures.style import BLUE, FOOT, HEAD, PANEL_WIDTH, RED, panel, s
 
 FloatArray = npt.NDArray[np.float64]
 
-_HEIGHT, _BETWEEN = 40.0, 5.0  # of a panel, and between them [mm of paper]
+_CRITERIA_HEIGHT, _CRITERIA_GAP = 40.0, 5.0  # of a panel, and between them [mm of paper]
 _NAMED = 6  # at most, of the degrees of freedom that stand out
 _STANDS_OUT = 2.0  # times the median of the enhanced criterion
 
@@ -43,9 +43,9 @@ def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray
     labels = [Label(names[dof], float(dof + 1), float(enhanced[dof]), RED) for dof in worst]
     row = arrange(labels, [PANEL_WIDTH * (dof + 0.5) / count for dof in worst], PANEL_WIDTH)
     note = "COMAC: 1 where pairs agree in amplitude; enhanced COMAC: 0 where they agree in sign and size too"
-    figure = sheet(HEAD + 2.0 * _HEIGHT + 2.0 * _BETWEEN + row.height + 2.0 + FOOT, title, note)
-    lower = panel(figure, FOOT, _HEIGHT)
-    upper = panel(figure, FOOT + _HEIGHT + row.height + _BETWEEN + 2.0, _HEIGHT)
+    figure = sheet(HEAD + 2.0 * _CRITERIA_HEIGHT + 2.0 * _CRITERIA_GAP + row.height + 2.0 + FOOT, title, note)
+    lower = panel(figure, FOOT, _CRITERIA_HEIGHT)
+    upper = panel(figure, FOOT + _CRITERIA_HEIGHT + row.height + _CRITERIA_GAP + 2.0, _CRITERIA_HEIGHT)
     _bars(upper, comac, worst)
     _bars(lower, enhanced, worst)
     upper.set(ylim=(0.0, 1.0), ylabel="COMAC")
@@ -53,7 +53,7 @@ def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray
     largest = float(np.nanmax(enhanced)) if known.size else 0.0
     lower.set(ylim=(0.0, max(1.08 * largest, 0.1)), ylabel="enhanced COMAC")
     lower.set(xlabel="measured degree of freedom, in the survey's order")
-    draw_row(lower, row, _HEIGHT + 1.0)
+    draw_row(lower, row, _CRITERIA_HEIGHT + 1.0)
     return figure
 
 

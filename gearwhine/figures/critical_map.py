@@ -1,4 +1,4 @@
-"""The undamped critical-speed map: critical speeds over the stiffness of the bearings, with the bearings themselves."""
+"""Undamped critical-speed map: critical speeds over bearing stiffness, with the bearings' own stiffness."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -71,7 +71,7 @@ def draw_critical_map(
     critical_speeds
         (k, c): rad/s, each branch down a column; zero (a rigid motion) and NaN are not drawn.
     bearings
-        Whose k_xx and k_yy, over speed where they have tables, are laid over the map.
+        Bearings whose k_xx and k_yy, over speed where they have tables, are drawn over the map.
     operating_speed
         rad/s, drawn as a line.
     whirl
@@ -132,7 +132,7 @@ def draw_critical_map(
 def meetings(
     stiffnesses: FloatArray, critical_speeds: FloatArray, turning: FloatArray, own: FloatArray
 ) -> list[tuple[float, float]]:
-    """Where a bearing's own stiffness meets critical speeds: stiffness (N/m) and speed (rad/s) of each point.
+    """Intersections of a bearing's stiffness with the critical speeds: stiffness (N/m) and speed (rad/s) of each.
 
     Both are straight between their points on logarithmic axes.
 
@@ -178,7 +178,7 @@ def _reached(stiffnesses: FloatArray, critical_speeds: FloatArray, speed: float)
 
 
 def _number(axes: Axes, stiffnesses: FloatArray, branch: FloatArray, number: int) -> None:
-    """Which critical speed a branch is, where it begins."""
+    """Number of the critical speed of a branch, where it begins."""
     known = np.flatnonzero(branch > 0.0)
     if known.size:
         place = (float(stiffnesses[known[0]]), RPM * float(branch[known[0]]))
@@ -217,7 +217,7 @@ def _limits(speeds: FloatArray, operating: float | None) -> tuple[float, float]:
 
 
 def _curves(bearings: Sequence[Bearing], low: float, high: float) -> list[_Curve]:
-    """What the bearings have in x and y between two speeds (rad/s); those alike are one."""
+    """Bearing stiffness in x and y between two speeds (rad/s); equal curves are one."""
     named: dict[tuple[bytes, bytes], tuple[list[str], FloatArray, FloatArray]] = {}
     for bearing in bearings:
         turning = np.geomspace(low, high, _SAMPLES)

@@ -1,4 +1,4 @@
-"""Flanks as an inspection chart has them: profile over the roll angle, helix across the face, pitch tooth by tooth."""
+"""Inspection charts of flanks: profile over the roll angle, helix across the face, pitch tooth by tooth."""
 
 from collections.abc import Callable, Sequence
 
@@ -18,6 +18,8 @@ from gearwhine.figures.style import (
     INK,
     LABEL,
     LEFT,
+    MICRO,
+    MILLI,
     PALE,
     PANEL_WIDTH,
     SERIES,
@@ -31,7 +33,6 @@ FloatArray = npt.NDArray[np.float64]
 
 _ROW, _BETWEEN, _NAMES, _GAP = 50.0, 12.0, 5.0, 14.0  # height of a row, rooms below it, above all and between [mm]
 _PLACES = 400  # along a flank
-_MICRO, _MM = 1e6, 1e3
 
 
 def has_charts(pair: GearPairGeometry) -> bool:
@@ -111,8 +112,8 @@ def _draw_profile(axes: Axes, gear: Gear, active: FloatArray, best: TipRelief | 
     degrees = np.degrees(roll)
     if best is not None:
         depth = best.depth(roll, float(roll[-1]), gear.base_radius)
-        axes.plot(degrees, -_MICRO * depth, color=SERIES[1], lw=1.2, ls=(0, (4, 2)), zorder=2, label="_best")
-    axes.plot(degrees, _MICRO * deviation, color=BLUE, lw=1.3, zorder=3, label="_profile")
+        axes.plot(degrees, -MICRO * depth, color=SERIES[1], lw=1.2, ls=(0, (4, 2)), zorder=2, label="_best")
+    axes.plot(degrees, MICRO * deviation, color=BLUE, lw=1.3, zorder=3, label="_profile")
     for begin, end in ((degrees[0], np.degrees(active[0])), (np.degrees(active[1]), degrees[-1])):
         if end - begin > 1e-6:
             axes.axvspan(begin, end, color=PALE, lw=0.0, zorder=0.2, label="_inactive")
@@ -122,11 +123,11 @@ def _draw_profile(axes: Axes, gear: Gear, active: FloatArray, best: TipRelief | 
 def _draw_helix(axes: Axes, gear: Gear) -> None:
     z = np.linspace(-0.5, 0.5, _PLACES) * gear.face_width
     deviation = np.zeros_like(z) if gear.helix_deviation is None else gear.helix_deviation.at(z, gear.face_width)
-    axes.plot(_MM * z, _MICRO * deviation, color=BLUE, lw=1.3, zorder=3, label="_helix")
-    axes.set(xlabel="helix: from the middle of the face [mm]", xlim=(_MM * z[0], _MM * z[-1]))
+    axes.plot(MILLI * z, MICRO * deviation, color=BLUE, lw=1.3, zorder=3, label="_helix")
+    axes.set(xlabel="helix: from the middle of the face [mm]", xlim=(MILLI * z[0], MILLI * z[-1]))
 
 
 def _draw_pitch(axes: Axes, gear: Gear) -> None:
-    deviations = _MICRO * np.array(gear.pitch_deviations or np.zeros(gear.teeth))
+    deviations = MICRO * np.array(gear.pitch_deviations or np.zeros(gear.teeth))
     axes.bar(np.arange(gear.teeth), deviations, 0.8, color=BLUE, label="_pitch")
     axes.set(xlabel="pitch: number of the tooth", xlim=(-0.7, gear.teeth - 0.3))

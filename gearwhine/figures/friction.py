@@ -1,4 +1,4 @@
-"""Friction between the teeth over time: its force across the line of action, and what it takes."""
+"""Tooth friction over time: force across the line of action, and power loss."""
 
 import numpy as np
 from matplotlib.figure import Figure

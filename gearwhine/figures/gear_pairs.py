@@ -1,4 +1,4 @@
-"""The pictures of a case's gear pairs: which there are, and the files they go to."""
+"""Figures of a case's gear pairs, with their names."""
 
 from collections.abc import Iterator, Sequence
 
@@ -24,9 +24,9 @@ def draw_gear_pairs(pairs: Sequence[PairAnalysis], progress: Progress = silent) 
     Parameters
     ----------
     pairs : sequence of PairAnalysis
-        What one was not asked for, or has not, is not drawn.
+        Analyses that a pair lacks are not drawn.
     progress : callable
-        Told which pair is drawn.
+        Receives the name of the pair being drawn.
 
     Yields
     ------

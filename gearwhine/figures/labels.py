@@ -1,4 +1,4 @@
-"""Labels in a row that do not touch each other, each with a leader to what it names."""
+"""Labels in a row without overlap, each with a leader."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -43,9 +43,9 @@ class LabelRow:
     upright
         Whether they stand rather than lie.
     height
-        What the row needs with its leaders, mm.
+        Height of the row with its leaders, mm.
     left_out
-        How many labels had no room.
+        Number of labels without room.
     """
 
     labels: tuple[Label, ...]

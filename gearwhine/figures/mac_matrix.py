@@ -1,4 +1,4 @@
-"""A matrix of likeness, such as the MAC: a cell for each two modes, its number where it fits, pairs outlined."""
+"""Correlation matrix such as the MAC: a cell for each two modes, its number where it fits, pairs outlined."""
 
 from collections.abc import Collection, Sequence
 
@@ -60,9 +60,9 @@ def draw_mac_matrix(
     outlined
         Cells of pairs: row and column from 0.
     axes_named
-        What the rows are, and the columns.
+        Titles of rows and columns.
     named
-        What the values are.
+        Name of the values.
 
     Raises
     ------

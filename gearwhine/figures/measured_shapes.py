@@ -1,4 +1,4 @@
-"""Measured shapes beside the model's at the survey's points: two wireframes, one camera, one scale, one phase."""
+"""Measured mode shapes beside the model's at the survey's points, as wireframes of one scale and phase."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

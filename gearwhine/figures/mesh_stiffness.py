@@ -1,4 +1,4 @@
-"""Mesh stiffness over a mesh period, and which pair of teeth carries how much of the load."""
+"""Mesh stiffness over a mesh period, and the load shares of the tooth pairs."""
 
 import numpy as np
 import numpy.typing as npt
@@ -7,12 +7,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from coupling.gears import StaticMesh, ToothContact, mesh_stiffness
-from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, NOTE, SERIES, legend, panel, sheet
+from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, MEGA, NOTE, SERIES, legend, panel, sheet
 
 FloatArray = npt.NDArray[np.float64]
 
 _STIFFNESS, _SHARES, _BETWEEN = 66.0, 42.0, 5.0  # heights of the panels and the room between them [mm of paper]
-_MEGA = 1e-6
 
 
 def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: StaticMesh, *, shared: bool = True) -> Figure:
@@ -30,18 +29,18 @@ def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: StaticMesh, *, 
     loaded = mesh.force > 0.0
     below = _SHARES + _BETWEEN if shared and loaded else 0.0
     note = f"mesh force {mesh.force:.5g} N; " if loaded else "without load; "
-    note += f"mean stiffness of all pairs on the path of contact {_MEGA * contact.mean_stiffness:.2f} N/µm"
+    note += f"mean stiffness of all pairs on the path of contact {MEGA * contact.mean_stiffness:.2f} N/µm"
     if loaded:
-        note += f", of those that touch {_MEGA * mesh.mean_stiffness:.2f} N/µm"
+        note += f", of those that touch {MEGA * mesh.mean_stiffness:.2f} N/µm"
     figure = sheet(HEAD + _STIFFNESS + below + FOOT, title, note)
     upper = panel(figure, FOOT + below, _STIFFNESS)
     on_path = mesh_stiffness(contact, mesh.phases)
-    handles = upper.plot(mesh.phases, _MEGA * on_path, color=GREY, lw=1.2, label="all pairs on the path")
+    handles = upper.plot(mesh.phases, MEGA * on_path, color=GREY, lw=1.2, label="all pairs on the path")
     if loaded:
-        touching = _MEGA * mesh.tangent_stiffness
+        touching = MEGA * mesh.tangent_stiffness
         handles += upper.plot(mesh.phases, touching, color=BLUE, lw=1.4, label="pairs that touch under the load")
     upper.set(ylabel="mesh stiffness [N/µm]", xlim=(0.0, 1.0))
-    upper.set_ylim(0.0, 1.08 * _MEGA * max(float(on_path.max()), float(mesh.tangent_stiffness.max())))
+    upper.set_ylim(0.0, 1.08 * MEGA * max(float(on_path.max()), float(mesh.tangent_stiffness.max())))
     mark_events(upper, contact)
     legend(figure, handles)
     if below:
@@ -71,7 +70,7 @@ def _draw_shares(axes: Axes, contact: ToothContact, mesh: StaticMesh) -> None:
 
 
 def _name(before: int) -> str:
-    """Of a pair that entered so many mesh periods before the one drawn."""
+    """Name of a pair by the number of mesh periods since it entered."""
     if before <= 0:
         return "pair that enters at 0" if before == 0 else "pair that follows"
     return "pair before" if before == 1 else f"{before} pairs before"

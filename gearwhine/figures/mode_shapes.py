@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from gearwhine.figures.assembly import RotorAssembly
 from gearwhine.figures.shaft import lay_out
 from gearwhine.figures.shaft_view import MM, ShaftView
-from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, PALE, panel, sheet
+from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, HERTZ, INK, PALE, panel, sheet
 from rotors import LateralModes, TorsionalModes
 
 FloatArray = npt.NDArray[np.float64]
@@ -19,7 +19,6 @@ _PLACES = 201  # along a shaft, besides what it carries
 _HIGHEST, _LOWEST = 20.0, 7.0  # a mode's share of the height, where modes are few and where they are many [mm]
 _TOGETHER = 150.0  # height of all modes, as long as none gets lower than that [mm]
 _SWING = 0.42  # of a shape to either side, in shares of its mode
-_HERTZ = 2.0 * np.pi
 
 
 def draw_lateral_modes(assembly: RotorAssembly, modes: LateralModes, *, most: int | None = None) -> Figure:
@@ -32,7 +31,7 @@ def draw_lateral_modes(assembly: RotorAssembly, modes: LateralModes, *, most: in
     modes
         Its modes in one plane.
     most
-        How many to draw at most; all where not given.
+        Largest number of modes drawn; all where not given.
     """
     z, held, loaded = _places(assembly)
     shown = modes.frequencies[:most]
@@ -111,7 +110,7 @@ def _stacked(
             axes.plot(
                 MM * places, line[at], ls="", marker=marker, color=BLUE, markerfacecolor=face, ms=3.2, mew=0.8, zorder=3
             )
-    names = [f"mode {number}\n{_frequency(value)}" for number, value in enumerate(frequencies / _HERTZ, start=1)]
+    names = [f"mode {number}\n{_frequency(value)}" for number, value in enumerate(frequencies / HERTZ, start=1)]
     axes.set_yticks(levels, names)
     axes.tick_params(axis="y", length=0.0, colors=INK)
     axes.spines["left"].set_visible(False)

@@ -1,4 +1,4 @@
-"""Orbits of gears: where their centres rest, the d.c. part, and how they move about it."""
+"""Orbits of gears: mean position of each centre, and its motion about it."""
 
 from collections.abc import Mapping
 

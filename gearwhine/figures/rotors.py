@@ -1,4 +1,4 @@
-"""The pictures of a case's rotors: which there are, and the files they go to."""
+"""Figures of a case's rotors, with their names."""
 
 from collections.abc import Iterator, Sequence
 
@@ -20,14 +20,13 @@ from gearwhine.figures.unbalance import ProbeResponse, draw_unbalance_response
 from gearwhine.figures.whirl_shapes import draw_whirl_modes
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.build import gear_inertia
+from gearwhine.stages.build import build_gear, gear_inertia
 from gearwhine.stages.rotors import SolvedRotor
 
 FloatArray = npt.NDArray[np.float64]
 
 _CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
 _MODES = 6  # drawn of each kind
-_WIDTH = 10.0  # of a gear without a face width, in modules
 
 
 def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> Iterator[tuple[str, Figure]]:
@@ -42,7 +41,7 @@ def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = 
     solved : sequence of SolvedRotor
         Of the case.
     progress : callable
-        Told which rotor is drawn.
+        Receives the name of the rotor being drawn.
 
     Yields
     ------
@@ -65,14 +64,15 @@ def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
     for gear in case.gear:
         if gear.rotor != name or gear.at is None:
             continue
+        built = build_gear(case, gear)
         gears.append(
             DrawnGear(
                 name=gear.name,
                 at=gear.at,
-                face_width=gear.face_width or _WIDTH * gear.tooth_module,
-                tip_diameter=2.0 * gear.tip_radius,
-                pitch_diameter=2.0 * gear.pitch_radius,
-                root_diameter=2.0 * gear.root_circle_radius,
+                face_width=built.face_width,
+                tip_diameter=2.0 * built.tip_radius,
+                pitch_diameter=2.0 * built.pitch_radius,
+                root_diameter=2.0 * built.root_circle_radius,
                 teeth=gear.teeth,
                 disc=room.Disc(gear.at, *gear_inertia(case, gear)),
             )
@@ -84,7 +84,7 @@ def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
         rotor=one.rotor,
         bearings=one.bearings,
         gears=gears,
-        unbalances=[DrawnUnbalance(at.at, at.moment, at.phase) for at in given.unbalance],
+        unbalances=[DrawnUnbalance(one.at, one.moment, one.phase) for one in given.unbalance],
         rolling={bearing.name for bearing in on_it if isinstance(bearing.stiffness, RollingStiffness)},
         seats={bearing.name: bearing.seat for bearing in on_it if not bearing.grounded},
         materials={

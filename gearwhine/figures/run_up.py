@@ -1,4 +1,4 @@
-"""A run-up or run-down: the waterfall over speed, and orders over speed."""
+"""Run-up and run-down figures: waterfall over speed, and order slices."""
 
 from collections.abc import Iterator, Sequence
 

@@ -1,4 +1,4 @@
-"""Spectra of the sensors, a panel each, their leading lines named."""
+"""Sensor spectra, a panel each, their leading lines named."""
 
 from collections.abc import Sequence
 
@@ -60,7 +60,7 @@ def draw_sensor_spectra(
     marked
         (n,): frequencies of modes, Hz.
     marked_as
-        What they are, in words.
+        Names of the quantities.
     """
     width, limit = SHEET_WIDTH - LEFT - _RIGHT, solved.trusted_limit
     rows = {}

@@ -1,4 +1,4 @@
-"""The drawing of a rotor to scale, alone or above a picture that shares its axis."""
+"""Shaft drawing to scale, alone or above a panel that shares its axis."""
 
 import math
 from collections.abc import Sequence
@@ -39,7 +39,7 @@ class OutlinePanel:
 
     @property
     def remarks(self) -> list[str]:
-        """What a reader of the drawing must know."""
+        """Remarks below the drawing."""
         remarks = []
         if self.view.stretch > 1:
             remarks.append(f"diameters {self.view.stretch} times as large as lengths")

@@ -1,4 +1,4 @@
-"""The shaft itself and what sits on it, in section through its axis: segments, couplings, discs, gears."""
+"""Shaft outline in section through its axis: segments, couplings, discs, gears."""
 
 import numpy as np
 from matplotlib.axes import Axes

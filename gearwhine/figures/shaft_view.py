@@ -1,4 +1,4 @@
-"""The scale at which a shaft is drawn, the same along it and across it wherever that can be seen."""
+"""Drawing scale of a shaft, the same along it and across it where space allows."""
 
 from dataclasses import dataclass
 
@@ -22,7 +22,7 @@ _STRETCHES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)
 
 @dataclass(frozen=True)
 class ShaftView:
-    """How a shaft lies on paper.
+    """Position and scale of a shaft on paper.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class ShaftView:
     per_paper
         Millimetres of the shaft on one of the paper; both directions have it.
     stretch
-        By how much more its diameters are drawn, 1 where the picture is true.
+        Exaggeration of the diameters, 1 where the picture is true to scale.
     half_height
         From the centre line to the largest radius, mm of paper.
     """
@@ -43,7 +43,7 @@ class ShaftView:
     half_height: float
 
     def paper(self, z: float) -> float:
-        """Where a place (m) on the shaft is, mm of paper from the left of the panel."""
+        """Position on paper of a station (m), mm from the left of the panel."""
         return (MM * z - self.low) / self.per_paper
 
     def length(self, paper: float) -> float:

@@ -1,4 +1,4 @@
-"""The lines of a spectrum on a logarithmic scale, as every figure of a transient draws them."""
+"""Spectral lines on a logarithmic scale."""
 
 import numpy as np
 from matplotlib.axes import Axes

@@ -1,4 +1,4 @@
-"""The static deflection of a rotor under its load, and what its bearings carry."""
+"""Static deflection of a rotor under its load, and its bearing reactions."""
 
 import numpy as np
 import numpy.typing as npt
@@ -9,7 +9,7 @@ from gearwhine.figures.assembly import RotorAssembly
 from gearwhine.figures.mode_shapes import draw_along
 from gearwhine.figures.shaft import lay_out
 from gearwhine.figures.shaft_view import MM
-from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, NOTE, SERIES, legend, panel, sheet, shortened
+from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, MICRO, NOTE, SERIES, legend, panel, sheet, shortened
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -17,7 +17,6 @@ _HEIGHT = 60.0  # of the panel [mm of paper]
 _ARROW = 0.26  # of the panel's height, for the largest load
 _WORD, _EDGE = 0.08, 0.03  # ... for what a load is called, and beside all [of the height]
 _NEGLIGIBLE = 1e-6  # of the deflection in y: less in x is not drawn
-_MICRO = 1e6
 
 
 def draw_static_deflection(
@@ -68,8 +67,8 @@ def draw_static_deflection(
     for column, name in ((1, "y"), (0, "x")):
         if np.abs(moved[:, column]).max(initial=0.0) > _NEGLIGIBLE * largest or column == 1:
             color = BLUE if column else SERIES[1]
-            curves += axes.plot(MM * places, _MICRO * moved[:, column], color=color, lw=1.3, zorder=3, label=name)
-    low, high = min(0.0, _MICRO * float(moved.min())), max(0.0, _MICRO * float(moved.max()))
+            curves += axes.plot(MM * places, MICRO * moved[:, column], color=color, lw=1.3, zorder=3, label=name)
+    low, high = min(0.0, MICRO * float(moved.min())), max(0.0, MICRO * float(moved.max()))
     span = (high - low) or 1.0
     # Room for the longest arrow and what it is called, below the line and, where a bearing pulls down, above it.
     upward, downward = bool((loads[:, 1] >= 0.0).any()), bool((loads[:, 1] < 0.0).any())
@@ -79,7 +78,7 @@ def draw_static_deflection(
     strongest = float(np.abs(loads[:, 1]).max(initial=0.0)) or 1.0
     arrow = {"arrowstyle": "-|>,head_width=0.16,head_length=0.4", "color": INK, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
     for bearing, load in zip(assembly.bearings, loads, strict=True):
-        tip = _MICRO * float(np.interp(bearing.at, places, moved[:, 1]))
+        tip = MICRO * float(np.interp(bearing.at, places, moved[:, 1]))
         tail = tip - _ARROW * height * float(load[1]) / strongest
         axes.annotate("", (MM * bearing.at, tip), (MM * bearing.at, tail), arrowprops=arrow, zorder=4)
         axes.annotate(

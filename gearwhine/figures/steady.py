@@ -1,4 +1,4 @@
-"""The steady state: one period of the mesh forces with their lines, and the branch of motions over speed."""
+"""Steady-state figures: one period of the mesh forces with their lines, and the branch of motions over speed."""
 
 from collections.abc import Iterator
 

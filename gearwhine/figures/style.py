@@ -1,8 +1,9 @@
-"""How every figure looks: colours, sizes on paper, axes, and the file it goes to."""
+"""Figure style: colours, sizes on paper, axes, and saving to a file."""
 
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from math import pi
 from pathlib import Path
 from textwrap import wrap
 
@@ -19,8 +20,10 @@ PANEL_WIDTH = SHEET_WIDTH - LEFT - RIGHT
 NOTE, TICK, LABEL, TITLE = 6.5, 7.0, 7.5, 9.0  # letters on it [points]
 MM_PER_INCH = 25.4
 RPM = 9.549296585513721  # revolutions per minute of 1 rad/s
+HERTZ = 2.0 * pi  # rad/s of 1 Hz
+MILLI, MICRO, MEGA = 1e3, 1e6, 1e-6  # factors from m to mm, from m to µm, from Pa to MPa and from N/m to N/µm
 
-_IN_HEAD = 4  # so many lines are explained beside the title
+_IN_HEAD = 4  # entries of a legend beside the title at most
 _NOTE_LETTERS = 124  # of a note in one line
 _NAME_OF_AXIS = 11.2  # left of a panel [mm]
 _SCREEN_DPI, _PRINT_DPI = 130, 200

@@ -1,4 +1,4 @@
-"""The signs under a shaft: a spring or a rolling bearing, on the ground, in a seat or on a pedestal."""
+"""Symbols of supports under a shaft: spring or rolling bearing; ground, seat or pedestal."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,7 +15,7 @@ _LINE = 0.7  # [points]
 
 
 def depth(assembly: RotorAssembly, bearing: Bearing) -> float:
-    """How far a bearing's sign reaches below the shaft's surface, mm of paper."""
+    """Depth of a bearing's symbol below the shaft's surface, mm of paper."""
     if bearing.name in assembly.seats:
         return _SIGN + _SEAT
     return _SIGN + _GROUND + (_MASS + _SPRING if bearing.pedestal is not None else 0.0)

@@ -1,4 +1,4 @@
-"""Figures of a sweep: levels over what is swept, and a waterfall for each sensor."""
+"""Sweep figures: levels over the swept key, and a waterfall for each sensor."""
 
 from collections.abc import Iterator
 from itertools import product

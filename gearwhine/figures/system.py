@@ -1,4 +1,4 @@
-"""The pictures of the coupled system: its Campbell diagram, and what transmission errors do."""
+"""Figures of the coupled system: Campbell diagram and transmissibility."""
 
 from collections.abc import Iterator
 

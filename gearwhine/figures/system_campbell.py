@@ -1,4 +1,4 @@
-"""The Campbell diagram of the whole machine: what moves in each mode by colour, shaft and mesh orders across."""
+"""Campbell diagram of the coupled machine: modes coloured by the part that moves, shaft and mesh orders across."""
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from gearwhine.figures.style import (
     FOOT,
     GREY,
     HEAD,
+    HERTZ,
     INK,
     NOTE,
     PANEL_WIDTH,
@@ -37,7 +38,6 @@ KIND_COLORS = {
     "residual": "#c9ced3",
 }
 _PALE_GREY = "#c3c9ce"
-_HERTZ = 2.0 * np.pi
 _HEIGHT = 105.0  # of the panel [mm]
 _LARGEST = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
 
@@ -61,7 +61,7 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
     if any(line.kind == "sideband" for line in campbell.lines):
         note = note.replace("mesh orders (dashed)", "mesh orders (dashed), their sidebands (pale)")
     speeds = RPM * np.abs(campbell.speeds)
-    top, low, high = campbell.limit / _HERTZ, float(speeds[0]), float(speeds[-1])
+    top, low, high = campbell.limit / HERTZ, float(speeds[0]), float(speeds[-1])
     # Orders that leave the panel at its top are named above it, the others at its right end.
     named = [line for line in campbell.lines if line.kind != "sideband"]
     leaving = [(line, 60.0 * top / line.order) for line in named if low < 60.0 * top / line.order < high]
@@ -129,7 +129,7 @@ def _draw_line(axes: Axes, line: ExcitationLine, last: float, top: float) -> Non
 
 def _mark_crossings(axes: Axes, campbell: SystemCampbell) -> None:
     for one in campbell.crossings:
-        place = (RPM * abs(one.speed), one.eigenvalue.imag / _HERTZ)
+        place = (RPM * abs(one.speed), one.eigenvalue.imag / HERTZ)
         color = KIND_COLORS.get(one.kind, INK)
         if one.line.kind == "mesh" and one.kind != "residual":
             area = 9.0 + _LARGEST * min(one.teeth, 1.0)

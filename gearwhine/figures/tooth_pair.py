@@ -1,4 +1,4 @@
-"""A pair of gears where they mesh: teeth at true shape, the line of action, and where they touch."""
+"""Tooth pair in mesh: true tooth shapes, line of action and points of contact."""
 
 import math
 
@@ -18,6 +18,7 @@ from gearwhine.figures.style import (
     HEAD,
     INK,
     LABEL,
+    MILLI,
     PANEL_WIDTH,
     RED,
     SERIES,
@@ -30,8 +31,7 @@ from gearwhine.figures.style import (
 FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT = 104.0  # of the panel [mm of paper]
-_MM = 1e3
-_PITCHES = 5.6  # so many teeth side by side
+_PITCHES = 5.6  # teeth side by side
 _POINTS = 60  # on each curve of a tooth
 _LETTERS = "ABCDE"  # of the path of contact, as everywhere in the field
 _UP = 0.5 * math.pi  # the driven gear stands above the driver
@@ -60,7 +60,7 @@ def draw_tooth_pair(pair: GearPairGeometry, phase: float | None = None) -> Figur
     figure = sheet(HEAD + _HEIGHT + FOOT, title, note)
     axes = panel(figure, FOOT, _HEIGHT)
     axes.grid(visible=False)
-    half = 0.5 * _MM * _PITCHES * math.pi * pair.driver.transverse_module
+    half = 0.5 * MILLI * _PITCHES * math.pi * pair.driver.transverse_module
     axes.set(xlim=(-half, half), ylim=(-half * _HEIGHT / PANEL_WIDTH, half * _HEIGHT / PANEL_WIDTH))
     axes.set(xlabel="across the line of centres [mm]", ylabel="from the pitch point [mm]")
 
@@ -69,7 +69,7 @@ def draw_tooth_pair(pair: GearPairGeometry, phase: float | None = None) -> Figur
     outlines = pair_outlines(pair, phase, centre_line_angle=_UP, points=_POINTS)
     for outline, color in zip(outlines, _OUTLINES, strict=True):
         # Not as a patch: the axes would look for the limits of each of its sides, which takes longer than all the rest.
-        shape = Polygon(_MM * (outline - pitch), fc=to_rgba(color, 0.12), ec=color, lw=1.0, label="_outline")
+        shape = Polygon(MILLI * (outline - pitch), fc=to_rgba(color, 0.12), ec=color, lw=1.0, label="_outline")
         axes.add_artist(shape)
     _circles(axes, pair, centres)
     _line_of_action(axes, pair, phase, centres[0])
@@ -88,7 +88,9 @@ def draw_tooth_pair(pair: GearPairGeometry, phase: float | None = None) -> Figur
 def _circles(axes: Axes, pair: GearPairGeometry, centres: tuple[FloatArray, FloatArray]) -> None:
     for gear, rolling, centre in zip((pair.driver, pair.driven), pair.working_pitch_radii, centres, strict=True):
         for radius, dashes in zip((rolling, gear.base_radius, gear.tip_radius), _DASHES.values(), strict=True):
-            circle = Circle(tuple(_MM * centre), _MM * radius, fill=False, ec=GREY, lw=0.6, ls=dashes, label="_circle")
+            circle = Circle(
+                tuple(MILLI * centre), MILLI * radius, fill=False, ec=GREY, lw=0.6, ls=dashes, label="_circle"
+            )
             axes.add_patch(circle)
 
 
@@ -101,9 +103,9 @@ def _line_of_action(axes: Axes, pair: GearPairGeometry, phase: float, centre: Fl
 
     def place(position: npt.ArrayLike) -> FloatArray:
         distance = pair.start_distance + pair.base_pitch * np.asarray(position, dtype=np.float64)
-        return np.asarray(_MM * (tangent + distance[..., None] * along), dtype=np.float64)
+        return np.asarray(MILLI * (tangent + distance[..., None] * along), dtype=np.float64)
 
-    ends = _MM * np.array([tangent, tangent + pair.tangent_distance * along])
+    ends = MILLI * np.array([tangent, tangent + pair.tangent_distance * along])
     axes.plot(*ends.T, color=INK, lw=0.7, zorder=3, label="_line of action")
     axes.plot(*place([0.0, pair.contact_ratio]).T, color=INK, lw=1.8, zorder=3, label="_path of contact")
     # Letters on either side in turn: B, C and D may be near to each other.
@@ -119,7 +121,7 @@ def _line_of_action(axes: Axes, pair: GearPairGeometry, phase: float, centre: Fl
 
 
 def _senses(axes: Axes, half: float) -> None:
-    """Arrows that tell how the gears turn: the driver counter-clockwise, the driven the other way."""
+    """Arrows of rotation: the driver counter-clockwise, the driven clockwise."""
     reach, height = 0.12 * half, 0.62 * half * _HEIGHT / PANEL_WIDTH
     for level, bend in ((-height, 0.18), (height, -0.18)):
         start, end = (0.9 * half, level), (0.9 * half - 2.0 * reach, level)

@@ -13,6 +13,7 @@ from gearwhine.figures.style import (
     FOOT,
     GREY,
     HEAD,
+    HERTZ,
     PANEL_WIDTH,
     SERIES,
     legend_beside_title,
@@ -23,14 +24,13 @@ from gearwhine.figures.style import (
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
-_HEIGHT, _BETWEEN = 56.0, 4.0  # of each panel and the room between them [mm of paper]
-_DECADES = 6.0  # shown below the highest
+_RESPONSE_HEIGHT, _RESPONSE_GAP = 56.0, 4.0  # of each panel and the room between them [mm of paper]
+_AMPLITUDE_DECADES = 6.0  # shown below the highest
 
 
 @dataclass(frozen=True)
 class TorsionalReading:
-    """What is read at one place of a shaft.
+    """Torsional response at one station of a shaft.
 
     Parameters
     ----------
@@ -78,33 +78,36 @@ def draw_torsional_response(
     marked = [value for value in np.atleast_1d(natural_frequencies).tolist() if low <= value <= high]
     tops = [max((float(np.max(getattr(one, what))) for one in readings), default=0.0) for what in ("angle", "torque")]
 
-    labels = [Label(f"{value / _HERTZ:.4g}", value / _HERTZ, 2.0 * (tops[0] or 1.0)) for value in marked]
+    labels = [Label(f"{value / HERTZ:.4g}", value / HERTZ, 2.0 * (tops[0] or 1.0)) for value in marked]
     row = arrange(labels, [(value - low) / (high - low) * PANEL_WIDTH for value in marked], PANEL_WIDTH)
     note = "zero to peak; torque in the shaft to the right of each place"
     note += "; above: natural frequencies in Hz, free to turn" * bool(marked)
-    figure = sheet(HEAD + row.height + 2.0 + 2.0 * _HEIGHT + _BETWEEN + FOOT, title, note)
-    upper, lower = panel(figure, FOOT + _HEIGHT + _BETWEEN, _HEIGHT), panel(figure, FOOT, _HEIGHT)
+    figure = sheet(HEAD + row.height + 2.0 + 2.0 * _RESPONSE_HEIGHT + _RESPONSE_GAP + FOOT, title, note)
+    upper, lower = (
+        panel(figure, FOOT + _RESPONSE_HEIGHT + _RESPONSE_GAP, _RESPONSE_HEIGHT),
+        panel(figure, FOOT, _RESPONSE_HEIGHT),
+    )
     handles: list[Line2D] = []
     for axes, what, top, name in (
         (upper, "angle", tops[0], "angle [rad]"),
         (lower, "torque", tops[1], "torque [N m]"),
     ):
-        axes.set_xlim(low / _HERTZ, high / _HERTZ)
+        axes.set_xlim(low / HERTZ, high / HERTZ)
         for value in marked:
-            axes.axvline(value / _HERTZ, color=GREY, lw=0.7, zorder=1, label="natural frequency")
+            axes.axvline(value / HERTZ, color=GREY, lw=0.7, zorder=1, label="natural frequency")
         lines = []
         for number, one in enumerate(readings):
             values = getattr(one, what)
             if values.max(initial=0.0) > 0.0:
                 label = name_in_legend(one.name)
                 color = SERIES[number % len(SERIES)]
-                lines += axes.plot(omega / _HERTZ, values, color=color, lw=1.2, zorder=3, label=label)
+                lines += axes.plot(omega / HERTZ, values, color=color, lw=1.2, zorder=3, label=label)
         if top > 0.0:
-            axes.set(yscale="log", ylim=(top * 10.0**-_DECADES, 2.0 * top))
+            axes.set(yscale="log", ylim=(top * 10.0**-_AMPLITUDE_DECADES, 2.0 * top))
         axes.set_ylabel(name)
         handles = max(handles, lines, key=len)
     upper.tick_params(labelbottom=False)
     lower.set_xlabel("frequency [Hz]")
     legend_beside_title(figure, upper, handles)
-    draw_row(upper, row, _HEIGHT + 1.0)
+    draw_row(upper, row, _RESPONSE_HEIGHT + 1.0)
     return figure

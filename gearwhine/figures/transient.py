@@ -1,4 +1,4 @@
-"""Figures of a transient: spectra, mesh forces, orbits."""
+"""Transient figures: spectra, mesh forces, orbits."""
 
 from collections.abc import Iterator
 from typing import Any

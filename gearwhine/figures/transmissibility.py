@@ -1,4 +1,4 @@
-"""From transmission error at one mesh to mesh forces, bearing forces and sensors, over frequency."""
+"""Transmissibility: mesh forces, bearing forces and sensors per transmission error at one mesh, over frequency."""
 
 from collections.abc import Mapping, Sequence
 
@@ -8,23 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coupling import FrequencyResponse
-from gearwhine.figures.style import (
-    FOOT,
-    GREY,
-    HEAD,
-    NOTE,
-    PANEL_WIDTH,
-    SERIES,
-    panel,
-    sheet,
-    shortened,
-)
+from gearwhine.figures.style import FOOT, GREY, HEAD, HERTZ, NOTE, PANEL_WIDTH, SERIES, panel, sheet, shortened
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
 _MICROMETRE = 1e-6
-_HEIGHT, _BETWEEN = 38.0, 4.0  # of a panel and the room between two [mm]
+_RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 4.0  # of a panel and the room between two [mm]
 _DECADES = 4.0  # of amplitude that a panel shows at most
 _NAMED = 8  # curves that a panel tells apart by colour
 
@@ -45,7 +34,7 @@ def draw_transmissibility(
     limit
         End of the frequency axis, Hz; that of the response where not given.
     """
-    frequencies = response.frequencies / _HERTZ
+    frequencies = response.frequencies / HERTZ
     resultants = {name: np.linalg.norm(force, axis=1) for name, force in response.bearing_force.items()}
     panels = [
         ("mesh force [N/µm]", {name: np.abs(force) for name, force in response.mesh_force.items()}),
@@ -53,14 +42,14 @@ def draw_transmissibility(
         ("acceleration [m/s²/µm]", {name: np.abs(a) for name, a in response.sensor_acceleration.items()}),
     ]
     shown = [(what, curves) for what, curves in panels if curves]
-    height = HEAD + len(shown) * (_HEIGHT + _BETWEEN) + FOOT
+    height = HEAD + len(shown) * (_RESPONSE_HEIGHT + _RESPONSE_GAP) + FOOT
     note = "peak amplitudes by a harmonic error of 1 µm at any frequency"
     if len(mesh_frequencies):
         note += "; dashed: mesh frequencies at operation, and multiples"
     figure = sheet(height, title, note)
     end = limit or float(frequencies[-1])
     for number, (what, curves) in enumerate(reversed(shown)):
-        axes = panel(figure, FOOT + number * (_HEIGHT + _BETWEEN), _HEIGHT)
+        axes = panel(figure, FOOT + number * (_RESPONSE_HEIGHT + _RESPONSE_GAP), _RESPONSE_HEIGHT)
         _draw(axes, frequencies, curves, end)
         axes.set_ylabel(what)
         axes.set_xlim(0.0, end)

@@ -34,7 +34,7 @@ _DECADES = 5.0  # of a logarithmic amplitude, below its highest
 
 @dataclass(frozen=True)
 class ProbeResponse:
-    """What a probe reads over speed.
+    """Response at a probe over speed.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def draw_unbalance_response(
     speeds
         (s,): two or more, ascending, rad/s.
     probes
-        What they read, each (s,).
+        Readings, each (s,).
     critical_speeds
         (c,): rad/s, marked where they are in the range.
     operating_range

@@ -1,4 +1,4 @@
-"""The waterfall: spectra at several speeds, one behind the other, with mesh orders and the housing's modes."""
+"""Waterfall diagram: spectra over speed, with mesh orders and the housing's natural frequencies."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ from gearwhine.figures.style import BLUE, GREY, INK, NOTE, RED, tidy
 
 FloatArray = npt.NDArray[np.float64]
 
-_DECADES = 4.0  # that a row shows, below the highest line of all
+_ROW_DECADES = 4.0  # that a row shows, below the highest line of all
 _OVERLAP = 1.7  # height of a row over the distance to the next
 _MOST_HARMONICS = 12
 _MOST_ROWS = 40  # that one can still tell apart
@@ -81,7 +81,7 @@ def draw_waterfall(
     tidy(axes)
     axes.grid(visible=False, axis="y")
     figure.suptitle(title, fontsize=11, parse_math=False)
-    note = f"each row: {highest * 10.0**-_DECADES:.2g} to {highest:.2g} {unit} peak, logarithmic"
+    note = f"each row: {highest * 10.0**-_ROW_DECADES:.2g} to {highest:.2g} {unit} peak, logarithmic"
     if meshes.size:
         note += "    dashed: mesh frequency and harmonics"
     if modes.size:
@@ -95,8 +95,8 @@ def _draw_row(
 ) -> None:
     """One spectrum on its base line; it hides what lies behind it."""
     known = np.isfinite(heights) & (lines > 0.0)
-    decades = np.log10(np.maximum(heights[known], 1e-300) / highest) + _DECADES
-    tops = base + _OVERLAP * spacing * np.clip(decades, 0.0, None) / _DECADES
+    decades = np.log10(np.maximum(heights[known], 1e-300) / highest) + _ROW_DECADES
+    tops = base + _OVERLAP * spacing * np.clip(decades, 0.0, None) / _ROW_DECADES
     axes.fill_between(lines[known], base, tops, color="white", lw=0.0, zorder=zorder)
     axes.plot(lines[known], tops, color=BLUE, lw=0.6, zorder=zorder + 0.001)
 

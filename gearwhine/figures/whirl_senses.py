@@ -1,4 +1,4 @@
-"""How the sense of a whirl is told from another in every picture: by colour, by line, by word."""
+"""Forward and backward whirl in figures: colours, lines and words."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ PLANAR = 0.05
 
 @dataclass(frozen=True)
 class Sense:
-    """A sense of whirl: its name, its colour, and the line that tells it where there is no colour."""
+    """Sense of whirl: its name, colour and line style."""
 
     name: str
     color: str

@@ -1,4 +1,4 @@
-"""Whirl modes as orbits along the shaft, in oblique projection under its outline."""
+"""Whirl mode shapes as orbits along the shaft, in oblique projection under its outline."""
 
 import numpy as np
 import numpy.typing as npt
@@ -9,7 +9,7 @@ from gearwhine.figures.assembly import RotorAssembly
 from gearwhine.figures.mode_shapes import draw_along
 from gearwhine.figures.shaft import lay_out
 from gearwhine.figures.shaft_view import MM, ShaftView
-from gearwhine.figures.style import FOOT, GREY, HEAD, INK, NOTE, RPM, legend, panel, sheet, shortened
+from gearwhine.figures.style import FOOT, GREY, HEAD, HERTZ, INK, NOTE, RPM, legend, panel, sheet, shortened
 from gearwhine.figures.whirl_senses import Sense, legend_lines, sense_of
 from rotors import MOSTLY_AXIAL, WhirlModes
 
@@ -23,7 +23,6 @@ _ORBITS, _ALONG = 17, 121  # orbits drawn, and places of the shaft's own line
 _BACK = 0.6 * np.exp(1j * np.radians(35.0))
 # An orbit ends short of its start, so that its sense is seen without colours too.
 _TURN = np.linspace(0.0, 0.86 * 2.0 * np.pi, 60)
-_HERTZ = 2.0 * np.pi
 
 
 def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | None = None) -> Figure:
@@ -39,7 +38,7 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     whirl
         Its modes; those that are for the most part along the axis are left out.
     most
-        How many to draw at most; all where not given.
+        Largest number of modes drawn; all where not given.
     """
     outline = lay_out(assembly, labelled=False)
     view = outline.view
@@ -73,7 +72,7 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
 
 
 def local_direction(x: ComplexArray, y: ComplexArray) -> FloatArray:
-    """How circular the whirl of each place is, 1 counter-clockwise to −1 clockwise: 2 Im(x ȳ) / (|x|² + |y|²)."""
+    """Circularity of the whirl at each station, 1 counter-clockwise to −1 clockwise: 2 Im(x ȳ) / (|x|² + |y|²)."""
     size = np.abs(x) ** 2 + np.abs(y) ** 2
     return np.asarray(2.0 * (x * y.conj()).imag / np.where(size > 0.0, size, 1.0))
 
@@ -130,4 +129,4 @@ def _draw_directions(axes: Axes, view: ShaftView) -> None:
 
 
 def _name(whirl: WhirlModes, number: int) -> str:
-    return f"mode {number + 1}\n{whirl.frequencies[number] / _HERTZ:.4g} Hz"
+    return f"mode {number + 1}\n{whirl.frequencies[number] / HERTZ:.4g} Hz"

@@ -1,4 +1,4 @@
-"""The stages of a case, each from the case (and the stages before it) to results.
+"""Solving a case: each module takes a case, and what is solved before it, to results.
 
 :mod:`gearwhine.stages.housing` meshes and solves the housing and compares it with measured modes,
 :mod:`gearwhine.stages.rotors` solves each rotor, :mod:`gearwhine.stages.gears` each gear pair, which

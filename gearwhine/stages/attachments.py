@@ -1,4 +1,4 @@
-"""What is fastened to a case's housing, as the housing room's; and whether it fits the mesh."""
+"""Fixtures of a case's housing on its mesh: supports, mounts, joints, masses, sensors; and their places."""
 
 from collections.abc import Iterator
 
@@ -6,22 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 import housing as room
-from gearwhine.case import (
-    AxialDashpots,
-    AxialSprings,
-    Bushing,
-    Case,
-    CaseError,
-    Joint,
-    LumpedMass,
-    Mount,
-    Patch,
-    Problem,
-    Support,
-    amounts,
-    did_you_mean,
-)
-from gearwhine.case.directions import unit_vector
+from gearwhine.case import Case, CaseError, LumpedMass, Mount, Problem, Support, did_you_mean
 from gearwhine.case.problems import UNSAID
 from gearwhine.stages.geometry import cover_joints
 from meshes import GeometryError, Mesh
@@ -34,7 +19,7 @@ _REACH = 0.05  # farthest that what sits on the surface may be given from it, as
 def build_supports(case: Case) -> list[room.Support]:
     """The supports of a case, in the order of the file."""
     assert case.housing is not None
-    return [_support(entry) for entry in case.housing.support]
+    return [entry.build() for entry in case.housing.support]
 
 
 def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
@@ -42,22 +27,19 @@ def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
     given = case.housing
     assert given is not None
     for index, support in enumerate(given.support):
-        yield f"housing.support[{index}]", f'support "{support.name}"', _support(support)
+        yield f"housing.support[{index}]", f'support "{support.name}"', support.build()
     for index, mount in enumerate(given.mount):
-        fastened = room.Mount(mount.name, _patch(mount), _bushing(mount), mount.center)
-        yield f"housing.mount[{index}]", f'mount "{mount.name}"', fastened
+        yield f"housing.mount[{index}]", f'mount "{mount.name}"', mount.build()
     for index, joint in enumerate(given.joint):
-        first, second = _ends(joint)
-        tied = room.Joint(joint.name, first, second, _bushing(joint), joint.center)
-        yield f"housing.joint[{index}]", f'joint "{joint.name}"', tied
+        yield f"housing.joint[{index}]", f'joint "{joint.name}"', joint.build()
     for tied in cover_joints(case):
         yield "housing.box.cover.bolts", tied.name, tied
     for index, mass in enumerate(given.mass):
-        yield f"housing.mass[{index}]", f'mass "{mass.name}"', _mass(mass)
+        yield f"housing.mass[{index}]", f'mass "{mass.name}"', mass.build()
 
 
 def check_places(case: Case, mesh: Mesh) -> None:
-    """See that all that is fastened to a case's housing, and every sensor, finds its place on the mesh.
+    """Require a place on the mesh for every fixture and sensor of a case's housing.
 
     Raises
     ------
@@ -68,7 +50,7 @@ def check_places(case: Case, mesh: Mesh) -> None:
     assert given is not None
     problems = list(_misplaced(case, mesh))
     for index, sensor in enumerate(given.sensor):
-        found = room.sensor_port(mesh, room.Sensor(sensor.name, sensor.position, sensor.unit_vector)).position
+        found = room.sensor_port(mesh, sensor.build()).position
         key, label = f"housing.sensor[{index}].position", f'sensor "{sensor.name}"'
         problems += _check_reach(mesh, key, label, sensor.position, found)
     if problems:
@@ -127,7 +109,7 @@ def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
         elif entry.box is not None or entry.plane is not None:
             form, holds = ("box", "holds") if entry.plane is None else ("plane", "bears")
             try:
-                _patch(entry).facets(mesh)
+                entry.build_patch().facets(mesh)
             except GeometryError as error:
                 yield Problem(
                     f"{key}.{form}", UNSAID, f"a {form} that {holds} some of the surface; {error}", label=label
@@ -143,69 +125,6 @@ def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
             yield Problem(key, surface, expected, label=label)
     for index, mass in enumerate(given.mass):
         if mass.position is not None:
-            found = _mass(mass).place(mesh).position
+            found = mass.build().place(mesh).position
             label = f'mass "{mass.name}"'
             yield from _check_reach(mesh, f"housing.mass[{index}].position", label, mass.position, found)
-
-
-def _ends(joint: Joint) -> tuple[room.Patch, room.Patch]:
-    """The two patches of a joint: named, or circles on the faces that look along its axis and against it."""
-    if joint.surfaces is not None:
-        first, second = joint.surfaces
-        return room.Patch(first), room.Patch(second)
-    assert joint.center is not None
-    assert joint.axis is not None
-    assert joint.diameter is not None
-    x, y, z = unit_vector(joint.axis)
-    return (
-        room.Patch(circle=(joint.center, (x, y, z), joint.diameter)),
-        room.Patch(circle=(joint.center, (-x, -y, -z), joint.diameter)),
-    )
-
-
-def _patch(entry: Patch) -> room.Patch:
-    return room.Patch(entry.surface, entry.corners, entry.point_and_normal)
-
-
-def _support(entry: Support) -> room.Support:
-    springs, dashpots, fixed = entry.stiffness, entry.damping, entry.fixed or ()
-    return room.Support(
-        name=entry.name,
-        surface=entry.surface,
-        box=entry.corners,
-        plane=entry.point_and_normal,
-        fixed=("x" in fixed, "y" in fixed, "z" in fixed),
-        stiffness=(springs.x, springs.y, springs.z) if springs else (0.0, 0.0, 0.0),
-        damping=(dashpots.x, dashpots.y, dashpots.z) if dashpots else (0.0, 0.0, 0.0),
-    )
-
-
-def _bushing(entry: Bushing) -> room.Bushing:
-    springs, dashpots = entry.stiffness, entry.damping
-    if entry.axis is not None:
-        along = [
-            room.Axial(*amounts(table)) if isinstance(table, AxialSprings | AxialDashpots) else room.Axial()
-            for table in (springs, dashpots)
-        ]
-        return room.Bushing.along(unit_vector(entry.axis), *along)
-    own = entry.own_axes
-    axes = room.GLOBAL_AXES if own is None else room.axes_along(*own)
-    nothing = (0.0,) * 6
-    stiffness, damping = (nothing if table is None else amounts(table) for table in (springs, dashpots))
-    return room.Bushing(_six(stiffness), _six(damping), axes)
-
-
-def _six(values: tuple[float, ...]) -> tuple[float, float, float, float, float, float]:
-    x, y, z, rx, ry, rz = values
-    return x, y, z, rx, ry, rz
-
-
-def _mass(entry: LumpedMass) -> room.LumpedMass:
-    return room.LumpedMass(
-        name=entry.name,
-        mass=entry.mass,
-        patch=None if entry.position is not None else _patch(entry),
-        position=entry.position,
-        inertia=entry.inertia.rows if entry.inertia else room.NO_INERTIA,
-        offset=entry.offset or (0.0, 0.0, 0.0),
-    )

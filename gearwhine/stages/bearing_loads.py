@@ -1,4 +1,4 @@
-"""Loads that bearings' stiffness was made for, beside those that a run finds."""
+"""Bearing loads of a run beside the loads that the bearings' stiffness was computed for."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""A solved housing against what its case says was measured: read, laid on the model, paired."""
+"""Comparison of a solved housing with the measured modes of its case: read, aligned, paired."""
 
 from gearwhine.case import Case
 from gearwhine.progress import Progress, silent

@@ -1,4 +1,4 @@
-"""What results are known again by: files by what is in them, libraries by version, our own code by its text."""
+"""Content digests: files by their content, libraries by version, own code by its text."""
 
 import hashlib
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The housing of a case at any values of its fitted parameters: solved designs and what is near them."""
+"""Parametric housing: modes at any values of the fitted parameters, and surrogates about solved ones."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -34,7 +34,7 @@ class HousingDesigns:
     ----------
     case : FittedCase
     modes : int
-        How many are taken along.
+        Number of modes.
     measured : callable, optional
         From a mesh to the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes).
     threads : int
@@ -56,7 +56,7 @@ class HousingDesigns:
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """What is fitted."""
+        """Fitted parameters."""
         return tuple(number.parameter for number in self.case.numbers)
 
     @property
@@ -98,7 +98,7 @@ class HousingDesigns:
         solved = room.solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
         given = case.housing
         assert given is not None
-        ports = [room.seat_matrix(mesh, room.Seat(seat.name, seat.center)) for seat in given.seat]
+        ports = [room.seat_matrix(mesh, seat.build()) for seat in given.seat]
         seats = (
             np.stack([solved.project(port)[:, :2] for port in ports], axis=1)
             if ports
@@ -118,7 +118,7 @@ class HousingDesign:
     Attributes
     ----------
     designs : HousingDesigns
-        Whose it is.
+        The parametric housing.
     coordinates : ndarray, shape (n_parameters,)
     case : Case
     mesh : Mesh
@@ -154,7 +154,7 @@ class HousingDesign:
         return Surrogate.about(self.coordinates, self.state, rates)
 
     def rates(self) -> list[ModelRate]:
-        """What each coordinate changes in the model, by central differences of what is linear in small steps."""
+        """Derivatives of the model by each coordinate, by central differences of quantities linear in small steps."""
         return [self._rate(number) for number in range(len(self.coordinates))]
 
     def _rate(self, number: int) -> ModelRate:

@@ -1,4 +1,4 @@
-"""What drives the machine of a case: its speed over time, and its torques in and out."""
+"""Excitation of the machine of a case: speed profile, torques over time, ripple, base motion and gravity."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 import coupling as room
-from gearwhine.case import AppliedTorque, Case, TorqueHistory, TorqueLine, TorqueRipple, applied_torques, speed_ratios
+from gearwhine.case import AppliedTorque, Case, TorqueLine, applied_torques, speed_ratios
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -16,31 +16,20 @@ _SLOPE_STEP = 1e-6  # part of the nominal speed to both sides of a corner of a t
 
 
 @dataclass(frozen=True)
-class Driving:
-    """How a machine is driven.
+class CaseDriving(room.Driving):
+    """Excitation of the machine of a case.
 
     Attributes
     ----------
     turning : coupling.Turning or None
         Speed over time; None where it is the nominal one all along.
-    torques : list of coupling torques
-    drives : list of coupling.Drive
     """
 
-    turning: room.Turning | None
-    torques: list[room.AnyTorque]
-    drives: list[room.Drive]
-
-    @property
-    def rates(self) -> tuple[float, float]:
-        """The least and the highest speed as parts of the nominal one, which is between them."""
-        if self.turning is None:
-            return 1.0, 1.0
-        return min(1.0, float(self.turning.rates.min())), max(1.0, float(self.turning.rates.max()))
+    turning: room.Turning | None = None
 
 
-def driving(case: Case, rotors: Sequence[room.RotorComponent]) -> Driving:
-    """Speed over time and torques of a case with an operation.
+def driving(case: Case, rotors: Sequence[room.RotorComponent]) -> CaseDriving:
+    """Speed profile, torques, base motion and gravity of a case with an operation.
 
     Raises
     ------
@@ -77,11 +66,20 @@ def driving(case: Case, rotors: Sequence[room.RotorComponent]) -> Driving:
         torques += _slopes(case, shares)
     torques += _variations(case, shares)
     drives = [room.Drive(shares[0].shaft, _place(shares[0]))] if shares else []
-    return Driving(turning, torques, drives)
+    # The nominal speed is among those at which the machine is assembled.
+    rates = np.array([1.0, *(() if turning is None else turning.rates)])
+    return CaseDriving(
+        torques,
+        drives,
+        (float(rates.min()), float(rates.max())),
+        None if operation.base is None else operation.base.build(),
+        operation.gravity,
+        turning,
+    )
 
 
 def train_inertia(case: Case, rotors: Sequence[room.RotorComponent]) -> float:
-    """Polar inertia of all that the first driver turns, at its own rotor [kg m²]."""
+    """Polar inertia of the train, reduced to the first driver's rotor [kg m²]."""
     ratios = speed_ratios(case)
     shares = applied_torques(case, 1.0)
     turned = set(ratios) if case.gear_pair else {shares[0].shaft}
@@ -104,7 +102,7 @@ def _history(share: AppliedTorque, times: FloatArray, values: FloatArray) -> roo
 
 
 def _slopes(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[room.TorqueSlope]:
-    """What the motor's and the load's torques change where a shaft departs from its nominal rotation.
+    """Slopes of the motor's and the load's torques over the deviation of a shaft from its nominal rotation.
 
     A line's torque T(ω) at the first driver stands for ±T share on a rotor of r times the speed, which changes by
     ±T' share / |r| with the rotor's own speed: the motor's with the turning, the load's against it.
@@ -133,7 +131,7 @@ def _slope_table(line: TorqueLine, nominal: float) -> tuple[FloatArray, FloatArr
 
 
 def _variations(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[room.AnyTorque]:
-    """What is added to the torques over time and swings about them, each in the sense of its torque."""
+    """Histories added to the torques and ripple about them, each in the sense of its torque."""
     operation = case.operation
     assert operation is not None
     if shares:
@@ -143,22 +141,11 @@ def _variations(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[room.An
         entering, leaving = AppliedTorque(case.rotor[0].name, operation.at or 0.0, turning), ()
     own = [output.over_time for output in operation.output]
     if operation.over_time is not None:
-        yield _added(entering, operation.over_time)
+        yield operation.over_time.build(entering.shaft, _place(entering), math.copysign(1.0, entering.torque))
         if not any(own):
-            yield from (_added(share, operation.over_time, share.torque) for share in leaving)
-    yield from (_swinging(entering, ripple) for ripple in operation.ripple)
+            yield from (operation.over_time.build(share.shaft, _place(share), share.torque) for share in leaving)
+    yield from (ripple.build(entering.shaft, _place(entering), entering.torque) for ripple in operation.ripple)
     for output, share in zip(operation.output, leaving, strict=False):
         if output.over_time is not None:
-            yield _added(share, output.over_time)
-        yield from (_swinging(share, ripple) for ripple in output.ripple)
-
-
-def _added(share: AppliedTorque, given: TorqueHistory, factor: float | None = None) -> room.TorqueHistory:
-    factor = math.copysign(1.0, share.torque) if factor is None else factor
-    return room.TorqueHistory(share.shaft, _place(share), np.array(given.time), factor * np.array(given.torque))
-
-
-def _swinging(share: AppliedTorque, ripple: TorqueRipple) -> room.TorqueRipple:
-    frequency = None if ripple.frequency is None else 2.0 * np.pi * ripple.frequency
-    amplitude = math.copysign(ripple.amplitude, share.torque * ripple.amplitude)
-    return room.TorqueRipple(share.shaft, _place(share), amplitude, ripple.phase, ripple.order, frequency)
+            yield output.over_time.build(share.shaft, _place(share), math.copysign(1.0, share.torque))
+        yield from (ripple.build(share.shaft, _place(share), share.torque) for ripple in output.ripple)

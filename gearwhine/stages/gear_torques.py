@@ -1,4 +1,4 @@
-"""Gear pairs over torques: their Harris maps, and the tip relief that suits the case's torque best."""
+"""Harris maps of gear pairs over torque, and the optimal tip relief."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The gear pairs of a case: geometry, contact law, and the mesh at rest under its load."""
+"""Gear pairs of a case: geometry, contact law, and static transmission error under the mean torque."""
 
 from pathlib import Path
 
@@ -11,12 +11,10 @@ from gearwhine.case import Case, CaseError, Problem, pair_torques, require, roto
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.build import build_discs, build_gear, build_rotor, gear_inertia
+from gearwhine.stages.build import build_gear, build_rotor, gear_inertia
 
 FloatArray = npt.NDArray[np.float64]
 
-# In modules: backlash below it is the rounding of printed sizes.
-_ROUNDED = 1e-3
 # Part of the geometry's backlash by which a given one may differ without a word.
 _DIFFERS = 0.1
 
@@ -70,8 +68,8 @@ def build_pair(given: GivenPair, number: int = 0) -> GearPair:
 
 def backlash_doubts(pair: GivenPair, geometry: room.GearPairGeometry) -> list[dict[str, str]]:
     """A warning where the given backlash is not the one that thicknesses and distance of the shafts say."""
-    made = geometry.backlash
-    if pair.backlash is None or made <= _ROUNDED * geometry.driver.module:
+    made = geometry.designed_backlash
+    if pair.backlash is None or made is None:
         return []
     if abs(pair.backlash - made) <= _DIFFERS * made:
         return []
@@ -127,7 +125,7 @@ def _inertia_at(case: Case, given: GivenGear) -> float:
     inertia = gear_inertia(case, given)[1]
     if given.rotor is not None and given.at is not None:
         rotor = case.rotor_named(given.rotor)
-        discs = build_discs(case, rotor)
+        discs = rotor.build(case.material).discs
         inertia += sum(disc.polar_inertia for disc in discs if abs(disc.at - given.at) < 1e-6 * rotor.length)
         if inertia == 0.0:
             inertia = build_rotor(case, rotor).polar_inertia

@@ -1,4 +1,4 @@
-"""The geometry of a case's housing: box, CAD file or mesh file to a mesh in which every seat has its surface."""
+"""Housing mesh of a case, from a box, a CAD file or a mesh file, with a surface for each seat."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,7 +15,7 @@ from meshes import UNITS, GeometryError, Mesh, MeshSizeError, find_bores, mesh_b
 
 
 def unheard(warning: str) -> None:
-    """Tell no one."""
+    """Ignore a warning."""
 
 
 def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int = 2) -> Mesh:
@@ -25,7 +25,7 @@ def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int 
     ----------
     case : Case
     warn : callable
-        Told what the user should know, a sentence each.
+        Receives warnings, a sentence each.
     order : {1, 2}
         Of the elements, where they are made here and not read.
 
@@ -63,14 +63,14 @@ def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int 
 
 
 def _in_the_file(place: tuple[float, float, float], turn: npt.NDArray[np.float64]) -> tuple[float, float, float]:
-    """Where a place of the machine is in the frame of the file."""
+    """Coordinates of a point of the machine in the frame of the file."""
     x, y, z = (turn.T @ np.array(place)).tolist()
     return x, y, z
 
 
 @contextmanager
 def _at_fault(key: str, expected: str, *, file: bool = False) -> Iterator[None]:
-    """Tell what is wrong with a geometry as a problem of the key that it comes from."""
+    """Raise a geometry error as a problem of its key."""
     try:
         yield
     except MeshSizeError as error:

@@ -1,4 +1,4 @@
-"""The housing of a case: geometry to mesh, mesh to certified modes, modes to strengths and comparison."""
+"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance."""
 
 import time
 from dataclasses import dataclass, field
@@ -32,7 +32,7 @@ _DAMPING = "modal_damping"  # its name in a mode-set file
 
 @dataclass(frozen=True)
 class SolvedHousing:
-    """The housing with everything that later stages take from it.
+    """Solved housing: mesh, modes, damping, seats, sensors, dominance and checks.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class SolvedHousing:
     damping_ratios : ndarray, shape (n_modes,)
         As the case gives them; see :attr:`total_damping_ratios`.
     damping_matrix : ndarray, shape (n_modes, n_modes), or None
-        What dashpots, mounts and joints add in modal coordinates [1/s]; None where nothing damps.
+        Modal damping matrix of dashpots, mounts and joints [1/s]; None where nothing damps.
     seats : dict of str to ndarray, shape (n_modes, 6)
         Modes' motions at each bearing seat.
     seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
@@ -62,13 +62,13 @@ class SolvedHousing:
     seconds : dict of str to float
         Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
     record : housing.ModeRecord
-        What a mode-set file holds of it.
+        Content of its mode-set file.
     source : Path or None
         The file that the modes were read from; None where they were solved.
     source_holds : bool
         Whether that file also holds these sensors, so that it need not be written again.
     warnings : list of dict
-        What the user should know, as the documents have it.
+        Warnings, as in the documents.
     """
 
     mesh: Mesh
@@ -92,7 +92,7 @@ class SolvedHousing:
 
     @property
     def trusted_limit_hz(self) -> float:
-        """Up to where the modes are complete [Hz]."""
+        """Frequency below which the modes are complete [Hz]."""
         return self.modes.certificate.limit / _HERTZ
 
     @property
@@ -111,13 +111,13 @@ def solve_housing(
     folder: Path | None = None,
     fresh: bool = False,
 ) -> SolvedHousing:
-    """Mesh the housing and find its modes with their certificate; or read them where they are kept.
+    """Mesh the housing and solve its certified modes, or read them from the mode cache.
 
     Parameters
     ----------
     case : Case
     progress : callable
-        Told in words what happens next.
+        Receives the next step in words.
     command : str
         On whose behalf, for messages.
     folder : path, optional
@@ -152,17 +152,14 @@ def solve_housing(
     with told_on_failure(warnings):
         # Places and ports before modes: what is wrong with them is found out before the long work.
         check_places(case, mesh)
-        seats = _seats(case)
-        seat_ports = {seat.name: room.seat_matrix(mesh, seat) for seat in seats}
+        described = describe_housing(case, mesh)
+        seat_ports = described.seat_ports()
         loaded = {name: room.bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
-        sensors = {
-            entry.name: room.sensor_port(mesh, room.Sensor(entry.name, entry.position, entry.unit_vector))
-            for entry in given.sensor
-        }
+        sensors = described.sensor_ports()
         bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
         survey = room.survey_grid(mesh, bounds)
         if kept is None:
-            modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
+            modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
             warnings += warnings_document(doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ))
         else:
@@ -171,7 +168,7 @@ def solve_housing(
             seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
     seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_ports.items()}
     strengths = None
-    if seats:
+    if seat_ports:
         radial = np.stack([motion[:, :2] for motion in seats_in_modes.values()], axis=1)
         strengths = room.dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
     seconds["total"] = time.perf_counter() - begin
@@ -179,8 +176,8 @@ def solve_housing(
         mesh,
         modes,
         mass,
-        seats=seats,
-        seat_motions=np.stack(list(seats_in_modes.values()), axis=1) if seats else np.empty((0, 0, 6)),
+        seats=tuple(described.seats),
+        seat_motions=np.stack(list(seats_in_modes.values()), axis=1) if seat_ports else np.empty((0, 0, 6)),
         inputs=inputs,
         notes={"seconds": seconds, "checks": checks, "warnings": warnings},
         extras={} if damping_matrix is None else {_DAMPING: _damping_array(damping_matrix)},
@@ -213,14 +210,13 @@ def _damping_array(matrix: FloatArray) -> room.LabelledArray:
 
 
 def _solve_modes(
-    case: Case, mesh: Mesh, loaded: dict[str, sparse.csr_array], progress: Progress
+    case: Case, described: room.Housing, loaded: dict[str, sparse.csr_array], progress: Progress
 ) -> tuple[room.ModeSet, float, FloatArray | None, dict[str, Any], dict[str, float]]:
     """The modes, the housing's mass [kg], what damps it in its modes, its checks, and the seconds of each step."""
     given = case.housing
     assert given is not None
-    begin = time.perf_counter()
+    begin, mesh = time.perf_counter(), described.mesh
     progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
-    described = describe_housing(case, mesh)
     free = described.free_matrices()
     matrices = attach_all(case, mesh, free)
     assembled = time.perf_counter() - begin
@@ -258,12 +254,10 @@ def describe_housing(case: Case, mesh: Mesh) -> room.Housing:
     """
     parted, material, materials = materials_of(case, mesh)
     fixtures = [fixture for _, _, fixture in build_attachments(case)]
-    return room.Housing(parted, material, materials, fixtures, _seats(case))
-
-
-def _seats(case: Case) -> tuple[room.Seat, ...]:
-    assert case.housing is not None
-    return tuple(room.Seat(seat.name, seat.center) for seat in case.housing.seat)
+    given = case.housing
+    assert given is not None
+    seats, sensors = tuple(seat.build() for seat in given.seat), tuple(sensor.build() for sensor in given.sensor)
+    return room.Housing(parted, material, materials, fixtures, seats, sensors)
 
 
 def keep_modes(place: Path, solved: SolvedHousing) -> None:

@@ -18,7 +18,7 @@ _HERTZ = 2.0 * np.pi
 
 
 def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
-    """Where the machine bears on the housing: by bearing, its seat and how far beyond the seat's centre it sits [m].
+    """Bearing positions on the housing: by bearing, its seat and its distance along z from the seat's centre [m].
 
     Where no bearing has a seat, each seat stands for one at its centre. The housing's attachments are for these.
     """
@@ -43,7 +43,7 @@ def housing_checks(given: room.Housing, health: room.HealthReport, masses: room.
 
 
 def static_error_document(modes: room.ModeSet, loaded: dict[str, sparse.csr_array]) -> dict[str, Any] | None:
-    """How far the static compliance where the machine bears on the housing is from exact; None without such places."""
+    """Relative error of the static compliance at the bearings; None without bearings."""
     attached = modes.attachments
     if attached is None:
         return None
@@ -64,7 +64,7 @@ def selection_document(
     loaded: dict[str, sparse.csr_array],
     sensors: dict[str, room.SensorPort],
 ) -> dict[str, Any] | None:
-    """Which modes carry the motion from the bearings to the sensors; None where there are not both."""
+    """Dominant modes between bearings and sensors; None where one of the two is missing."""
     if not loaded or not sensors or not (damping_ratios > 0.0).all():
         return None
     # Forces across the shafts alone: receptances by moments have another unit, and no common scale with these.

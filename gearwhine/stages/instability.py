@@ -1,4 +1,4 @@
-"""Warnings of coupled modes that grow: negative damping, or springs that push."""
+"""Warnings of unstable coupled modes: negative damping, or negative stiffness."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Housing modes kept in the results folder, and read again in place of solving where the housing is unchanged.
+"""Mode cache: housing modes in the results folder, read again while the housing is unchanged.
 
 Modes are known again by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys
 that do not enter the modes, the materials it names, the places of the bearings for which the modes have attachments,
@@ -25,7 +25,7 @@ _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab", "pypardiso")
 
 
 def solution_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, Any]:
-    """What the modes of a case's housing are solved from; its content key is that of the modes.
+    """Inputs of a case's housing modes; their content key is that of the modes.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def solution_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, An
 
 
 def find_modes(folder: Path, inputs: Mapping[str, Any]) -> tuple[room.ModeRecord | None, str | None]:
-    """The kept modes of these inputs, or None; and a warning where a file is there but cannot be used."""
+    """Cached modes of these inputs, or None; and a warning where the file cannot be used."""
     path = folder / MODES_FILE
     if not path.exists():
         return None, None

@@ -1,4 +1,4 @@
-"""The whole machine of a case: rotors, housing, bearings, gears and loads in one system."""
+"""Machine of a case: shafts, bearings, gears and the reduced housing, assembled into one coupled system."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -10,16 +10,14 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 import coupling as room
-import rotors as rotor_room
 from coupling.gears.gear_pair import LoadedGearPair
 from gearwhine.case import Case, Rotor, require
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.bearings import bearing_law, build_bearings
-from gearwhine.stages.build import build_gear, build_shaft, gear_inertia
+from gearwhine.stages.build import build_gear, gear_inertia
 from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import build_pair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, base_participation, solve_housing
-from gearwhine.stages.rotor_loads import given_bow
 from housing import RESPONSE_ORDERS, ModeSet, leading_attachments
 
 FloatArray = npt.NDArray[np.float64]
@@ -35,7 +33,7 @@ _REACH = 2.0  # of the shafts' modes in the basis that tells the error of the fi
 
 @dataclass(frozen=True)
 class SensorPlace:
-    """Where a sensor sits [m] and the unit vector along which it measures, shapes (3,)."""
+    """Sensor position [m] and the unit vector of its direction, shapes (3,)."""
 
     position: FloatArray
     direction: FloatArray
@@ -43,7 +41,7 @@ class SensorPlace:
 
 @dataclass(frozen=True)
 class HousingInMachine:
-    """What a machine takes of a solved housing: kilobytes, in place of its mesh and shapes.
+    """Solved housing reduced to the quantities that a machine needs: kilobytes, without mesh and shapes.
 
     Attributes
     ----------
@@ -51,12 +49,12 @@ class HousingInMachine:
     frequencies_hz : ndarray, shape (n_modes,)
         Natural frequencies of its modes [Hz].
     trusted_limit_hz : float
-        Up to where they are complete [Hz].
+        Frequency below which they are complete [Hz].
     warnings : tuple of dict
-        What the user should know of it, as the documents have it.
+        Warnings about the housing, as in the documents.
     sensors : mapping of str to SensorPlace
     coarser : coupling.HousingComponent or None
-        The component with less of the modes above the limit: what their difference moves, the limit may be wrong by.
+        The component with fewer residual modes; the difference estimates the truncation error.
     """
 
     component: room.HousingComponent
@@ -68,7 +66,7 @@ class HousingInMachine:
 
 
 def housing_in_machine(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingInMachine:
-    """What a machine takes of a solved housing."""
+    """Reduce a solved housing to the quantities that a machine needs."""
     component, coarser = _housing_components(case, solved, progress)
     return HousingInMachine(
         component,
@@ -88,7 +86,7 @@ def build_machine(
     *,
     reach: float = 1.0,
 ) -> room.CoupledMachine:
-    """Couple the parts of a case at its speed of operation.
+    """Assemble the machine of a case at its operating speed.
 
     ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are kept.
 
@@ -103,13 +101,7 @@ def build_machine(
         housing = housing_in_machine(case, housing, progress)
     machine = describe_machine(case, None if housing is None else housing.component)
     components = machine.rotor_components(reach=reach, progress=progress)
-    driven = driving(case, components)
-    assert case.operation is not None
-    return machine.assemble(
-        pairs,
-        components,
-        room.Driving(driven.torques, driven.drives, driven.rates, base_motion(case), case.operation.gravity),
-    )
+    return machine.assemble(pairs, components, driving(case, components))
 
 
 def require_machine(case: Case) -> None:
@@ -173,12 +165,12 @@ def describe_machine(
 def _shaft(case: Case, given: Rotor) -> room.Shaft:
     limit, count = _kept(case, given.name)
     return room.Shaft(
-        build_shaft(case, given),
+        given.build(case.material),
         given.axis,
         given.start,
         given.damping_ratio,
-        [rotor_room.Unbalance(entry.at, entry.moment, entry.phase) for entry in given.unbalance],
-        given_bow(given),
+        given.build_unbalance(),
+        given.build_bow(),
         limit,
         count,
     )
@@ -192,7 +184,7 @@ def solve_machine(
     folder: Path | None = None,
     fresh: bool = False,
 ) -> tuple[SolvedHousing | None, tuple[LoadedGearPair, ...], room.CoupledMachine]:
-    """Solve the housing and the gears that the case has, and couple everything.
+    """Solve the housing and the gears of the case, and assemble the machine.
 
     ``housing`` is one that is solved already; ``folder`` and ``fresh`` are those of
     :func:`gearwhine.stages.housing.solve_housing`.
@@ -206,7 +198,7 @@ def solve_machine(
 
 
 def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
-    """What is kept of a rotor: a frequency limit [rad/s], or a number of modes of each kind."""
+    """Retained modes of a rotor: a frequency limit [rad/s], or a number of each kind."""
     given = case.rotor_named(rotor)
     if given.modes is not None:
         return None, given.modes
@@ -217,17 +209,9 @@ def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
 
 
 def base_motion(case: Case) -> room.BaseMotion | None:
-    """How the ground of a case moves, if it does."""
-    given = None if case.operation is None else case.operation.base
-    if given is None:
-        return None
-    parts: list[room.BaseHarmonic | room.BaseHistory] = [
-        room.BaseHarmonic(_HERTZ * one.frequency, np.array(one.amplitudes) * np.exp(1j * one.phase))
-        for one in given.harmonic
-    ]
-    if given.over_time is not None:
-        parts.append(room.BaseHistory(np.array(given.over_time.time), np.array(given.over_time.rows).T))
-    return room.BaseMotion(tuple(parts), given.point)
+    """Motion of the ground of a case, if it moves."""
+    base = None if case.operation is None else case.operation.base
+    return None if base is None else base.build()
 
 
 def basis_error(

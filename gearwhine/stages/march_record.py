@@ -1,4 +1,4 @@
-"""The record that a march left in its blocks: its histories piece by piece, and their spectra."""
+"""Record of a time integration in blocks: histories block by block, and their spectra."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -14,13 +14,13 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def block_arrays(columns: FloatArray, held: FloatArray, after: room.Checkpoint) -> Arrays:
-    """What is kept of a block: its samples, what the filter holds back for the next, and the state to go on from."""
+    """Stored arrays of a block: its samples, the filter's state, and the state to restart from."""
     return {"columns": columns, "held": held, **after.as_arrays()}
 
 
 @dataclass(frozen=True)
 class Signals:
-    """What is recorded of a transient: the histories, and the modal motion that explains them."""
+    """Recorded signals of a transient: histories, and the modal motion behind them."""
 
     histories: room.Histories
     modal: room.ModalRecord
@@ -63,12 +63,12 @@ class MarchRecord:
 
     @property
     def end(self) -> room.Checkpoint:
-        """Where the march came to."""
+        """State at the end of the integration."""
         return room.Checkpoint.from_arrays(self.blocks[len(self.blocks) - 1])
 
     @property
     def samples(self) -> int:
-        """How many are kept."""
+        """Number of stored samples."""
         return self.sampling.decimation.kept(self.end.sample)
 
     def pieces(self) -> Iterator[Signals]:

@@ -1,4 +1,4 @@
-"""What was measured on the housing, and where it lies on the model."""
+"""Measured modes of a case: read, aligned with the model, and mapped to its degrees of freedom."""
 
 from typing import Any
 
@@ -82,7 +82,7 @@ def mapped_shapes(solved: SolvedHousing, survey: MappedSurvey) -> FloatArray:
 
 
 def measured_document(case: Case) -> dict[str, Any]:
-    """What a case says was measured, before anything is solved."""
+    """Measured modes of a case, before anything is solved."""
     given = case.measured
     assert given is not None
     if given.survey is None:
@@ -115,7 +115,7 @@ def measured_document(case: Case) -> dict[str, Any]:
 
 
 def survey_document(survey: MappedSurvey) -> dict[str, Any]:
-    """How a survey lies on the model, as the command's JSON."""
+    """Alignment of a survey with the model, as the command's JSON."""
     document: dict[str, Any] = {
         "points": len(survey.distances),
         "degrees_of_freedom": survey.matrix.shape[0],

@@ -1,4 +1,4 @@
-"""The housing's mesh, examined: what makes it useless is an error of the case, what is doubtful a warning."""
+"""Mesh checks: defects of a housing's mesh as errors of the case, and warnings of its size and quality."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -22,7 +22,7 @@ _MANY_UNKNOWNS = 1.5e6
 
 
 def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
-    """Doubts about the mesh of a case.
+    """Warnings about the mesh of a case.
 
     Bodies that touch without being joined, or whose elements do not match there, are wrong or doubtful unless the case
     has joints, which may be what joins them.
@@ -48,12 +48,12 @@ def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
 
 
 def _of_loose_bodies(one: Ailment) -> bool:
-    """Whether an ailment lies between bodies; elements of one body that do not match are an error."""
+    """Whether a defect lies between bodies; elements of one body that do not match are an error."""
     return one.name == "disconnected" or (one.name == "non-conforming" and one.severity == "warning")
 
 
 def doubt_resolution(case: Case, mesh: Mesh, limit_hz: float | None) -> tuple[Ailment, ...]:
-    """Doubts about the size of the elements, for modes up to a frequency; without one, about their kind alone."""
+    """Warnings about element size for modes up to a frequency; without one, about the kind of element alone."""
     # Without a limit, one so low that no element is too large for it.
     return resolution_ailments(mesh, _wave(case, limit_hz if limit_hz else 1e-6))
 
@@ -65,9 +65,9 @@ def _wave(case: Case, limit_hz: float) -> WaveCarrier:
 
 
 def foresee(case: Case, progress: Progress = silent) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """What the mesh will be and what is doubtful in it, before anything is solved.
+    """Size of the mesh and warnings about it, before anything is solved.
 
-    A file is read and examined whole; of a box it is said whether its elements will be small enough.
+    A CAD or mesh file is read and checked whole; for a box the element size is compared with the shortest wave.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
 
 
 def _foresee_load(elements: float) -> list[dict[str, Any]]:
-    """A doubt about a mesh that few computers solve."""
+    """Warning about a mesh too large for most computers."""
     unknowns = _UNKNOWNS_EACH * elements
     if unknowns < _MANY_UNKNOWNS:
         return []
@@ -133,7 +133,7 @@ def _foresee_load(elements: float) -> list[dict[str, Any]]:
 
 @contextmanager
 def told_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
-    """Let a failure carry the doubts so far as notes: one of them may be its cause."""
+    """Add the warnings so far to an exception as notes: one of them may be its cause."""
     try:
         yield
     except Exception as error:
@@ -143,10 +143,10 @@ def told_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
 
 
 def doubt(name: str, message: str) -> dict[str, Any]:
-    """A doubt that concerns no place in the mesh, as the command's JSON."""
+    """Warning without a place in the mesh, for the command's JSON."""
     return {"name": name, "message": message}
 
 
 def warnings_document(ailments: tuple[Ailment, ...]) -> list[dict[str, Any]]:
-    """Doubts as the command's JSON."""
+    """Mesh defects as warnings of the command's JSON."""
     return [doubt(one.name, one.message) | {"count": one.count, "place_m": one.place.tolist()} for one in ailments]

@@ -1,4 +1,4 @@
-"""Operating deflection shapes of a run that is on file: the line nearest to a frequency, and which modes make it up."""
+"""Operating deflection shapes of a stored run at the spectral lines nearest to given frequencies."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class RunLine:
     ----------
     shape : housing.operating_shapes.OperatingShape
     name : str
-        What it is, such as ``2x mesh``, where a sensor's line there has a name; else empty.
+        Name, such as ``2x mesh``, where a sensor's line there has a name; else empty.
     """
 
     shape: OperatingShape
@@ -143,7 +143,7 @@ def _leading(line: RunLine, solved: SolvedHousing) -> list[tuple[int, float, flo
 
 
 def _name(content: Any, frequency: float, spacing: float) -> str:
-    """What the sensors' tables call the line, if they tell of it."""
+    """Name of the line in the sensors' tables, if it is listed there."""
     if "line_name" not in content:
         return ""
     near = np.abs(content["line_frequency"].values - frequency) < 0.5 * spacing

@@ -1,4 +1,4 @@
-"""The regions of a case on its mesh: which elements are of which material."""
+"""Material regions of a case's mesh: the material of each element."""
 
 from dataclasses import replace
 

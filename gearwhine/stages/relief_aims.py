@@ -21,7 +21,7 @@ _HARMONICS = 8  # of the mesh frequency, where the case does not name them
 def relief_aims(
     case: Case, pairs: tuple[LoadedGearPair, ...], progress: Progress = silent, *, folder: Path | None = None
 ) -> tuple[room.ReliefAim, ...]:
-    """What each pair's relief is sought for.
+    """Objective of the tip-relief search for each pair.
 
     The aim at a sensor is the root mean square of its acceleration over the multiples n of the mesh frequency,
     √(½ Σ (w_n |H_n| e_n)²), with H_n the transmissibility about the mesh as the case has it under its load. The

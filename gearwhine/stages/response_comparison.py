@@ -1,4 +1,4 @@
-"""Measured frequency responses against those that the model has at the same points: likeness line by line."""
+"""Measured frequency responses beside the model's at the same points, with FRAC."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -88,7 +88,7 @@ def compare_responses(
 def responses_beside(
     case: Case, solved: SolvedHousing, survey: MappedSurvey
 ) -> tuple[ResponseLikeness | None, dict[str, Any] | None]:
-    """The likeness of a case's responses and the command's JSON of it; that says why where there is none.
+    """Correlation of a case's frequency responses and its JSON, with the reason where there is none.
 
     Both are None where no responses were measured.
     """

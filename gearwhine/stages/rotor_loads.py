@@ -12,7 +12,7 @@ from gearwhine.case import Rotor as GivenRotor
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_PLACES = 201  # along a rotor, of its static deflection
+_DEFLECTION_PLACES = 201  # along a rotor, of its static deflection
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def solve_weight(
         deflection = room.static_deflection(rotor, bearings, gravity=analysis.gravity, speed=speed)
     except room.RotorError as error:
         return str(error)
-    places = np.union1d(np.linspace(0.0, rotor.length, _PLACES), rotor.stations)
+    places = np.union1d(np.linspace(0.0, rotor.length, _DEFLECTION_PLACES), rotor.stations)
     return SolvedWeight(deflection, speed, places, deflection.evaluate(places)[:2])
 
 
@@ -107,8 +107,7 @@ def solve_response(
     speeds = [speed for speed in response_speeds(case, given.name) if speed or held]
     if not (given.unbalance or given.bow) or not speeds:
         return None
-    unbalances = [room.Unbalance(entry.at, entry.moment, entry.phase) for entry in given.unbalance]
-    bow = given_bow(given)
+    unbalances, bow = given.build_unbalance(), given.build_bow()
     response = room.unbalance_response(rotor, bearings, unbalances, speeds, bow=bow)
     probes = _probes(case, analysis, given)
     at_operation: tuple[ProbeReading, ...] = ()
@@ -116,14 +115,6 @@ def solve_response(
         once = room.unbalance_response(rotor, bearings, unbalances, [operation], bow=bow)
         at_operation = tuple(_read(once, probe) for probe in probes)
     return SolvedResponse(response, tuple(_read(response, probe) for probe in probes), at_operation)
-
-
-def given_bow(given: GivenRotor) -> room.Bow | None:
-    """A rotor's bow as the rotor room's own, if it has one."""
-    if not given.bow:
-        return None
-    points = np.array([(point.at, point.amplitude, point.phase) for point in given.bow])
-    return room.Bow(*points.T)
 
 
 def _read(response: room.SynchronousResponse, probe: Probe) -> ProbeReading:

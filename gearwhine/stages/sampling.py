@@ -1,4 +1,4 @@
-"""How finely a transient is sampled, how much of it is kept, and what its spectra are taken over.
+"""Sampling of a transient: steps, record length, decimation and spectral windows.
 
 Stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times the
 highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record that
@@ -29,7 +29,7 @@ _LARGEST_BLOCK = 1 << 18  # samples
 
 @dataclass(frozen=True)
 class Sampling:
-    """What is recorded and kept.
+    """Sampling of a transient.
 
     Attributes
     ----------
@@ -53,12 +53,12 @@ class Sampling:
 
     @property
     def interval(self) -> float:
-        """Between kept samples [s]."""
+        """Interval between stored samples [s]."""
         return self.settings.sample_interval * self.decimation.factor
 
     @property
     def is_long(self) -> bool:
-        """Whether the record is too long to be kept as sampled."""
+        """Whether the record is too long to be stored as sampled."""
         return self.decimation.factor > 1
 
 
@@ -132,7 +132,7 @@ def sampling(
 
 
 def transient_duration(case: Case) -> float:
-    """How long the machine turns, by its operation and its transient [s]."""
+    """Duration of the transient [s]."""
     assert case.operation is not None
     assert case.transient is not None
     if case.transient.run is not None:

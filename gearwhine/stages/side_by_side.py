@@ -1,4 +1,4 @@
-"""Work on several tasks at once, by processes of this machine, where the tasks are long and their results small."""
+"""Parallel work by local processes, for long tasks with small results."""
 
 import tempfile
 import warnings
@@ -20,7 +20,7 @@ def default_workers() -> int:
 
 @contextmanager
 def side_by_side(workers: int) -> Iterator[Each]:
-    """Who does the work: processes of one thread each, which end with the block; with one worker this process.
+    """Pool of single-thread processes, which end with the block; one worker is this process.
 
     Raises
     ------

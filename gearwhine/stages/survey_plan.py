@@ -1,4 +1,4 @@
-"""A survey planned on the housing's modes: sensors, a place for the hammer, and files that a test program reads."""
+"""Survey planning on the housing modes: sensors, a hammer position, and files for a test program."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,16 +31,16 @@ _FILES = ("survey.uff", "survey.csv")
 
 @dataclass(frozen=True)
 class PlannedSurvey:
-    """A survey and what it is worth.
+    """Planned survey and its quality.
 
     Attributes
     ----------
     geometry : MeasuredGeometry
-        Sensors, in order of worth.
+        Sensors, the best first.
     candidates : MeasuredGeometry
     plan : SurveyPlan
     modes : ndarray of int
-        Numbers of the modes that it is to tell apart, from 1.
+        Numbers of the modes to separate, from 1.
     """
 
     geometry: MeasuredGeometry
@@ -58,12 +58,12 @@ def plan_housing(case: Case, solved: SolvedHousing, sensors: int, modes: int | N
     solved : SolvedHousing
     sensors : int
     modes : int, optional
-        How many; all that are known where not given. Rigid motions of a free housing are left out.
+        Number of modes; all that are known where not given. Rigid motions of a free housing are left out.
 
     Raises
     ------
     CaseError
-        Where so many sensors cannot tell so many modes apart.
+        Where the sensors cannot separate the modes.
     """
     elastic = np.flatnonzero(solved.modes.frequencies > 0.0)[:modes]
     seats = [block for name in solved.seats for block in solved.mesh.surface(name)]

@@ -16,7 +16,7 @@ _HERTZ = 2.0 * np.pi
 _STEPS = 400  # of frequency, where none are given
 _MODES, _BEYOND = 3, 1.25  # up to this elastic mode, and a little beyond
 _RIGID = 1000.0 * _HERTZ  # highest frequency for a rotor that has no elastic mode [rad/s]
-_PLACES = 201  # along a rotor, to look for its largest torque
+_TORQUE_PLACES = 201  # along a rotor, to look for its largest torque
 
 
 @dataclass(frozen=True)
@@ -76,9 +76,9 @@ def solve_torsion(
         dashpots=[room.TorsionalDashpot(one.at, one.damping) for one in held if one.damping > 0.0],
         damping_ratio=ratio,
     )
-    probes = _probes(wanted, given, rotor)
+    probes = _torsion_probes(wanted, given, rotor)
     angles, carried = (read([probe.at for probe in probes]) for read in (response.angle, response.torque))
-    places = np.union1d(np.linspace(0.0, rotor.length, _PLACES), rotor.stations)
+    places = np.union1d(np.linspace(0.0, rotor.length, _TORQUE_PLACES), rotor.stations)
     sizes = np.abs(response.torque(places))
     worst = sizes.argmax(axis=0)
     return SolvedTorsion(
@@ -100,7 +100,7 @@ def _frequencies(wanted: TorsionalAnalysis, modes: room.TorsionalModes, *, dampe
     return np.union1d(steps, elastic) if damped else steps
 
 
-def _probes(wanted: TorsionalAnalysis, given: GivenRotor, rotor: room.Rotor) -> list[TorsionProbe]:
+def _torsion_probes(wanted: TorsionalAnalysis, given: GivenRotor, rotor: room.Rotor) -> list[TorsionProbe]:
     """The probes of one rotor; where the case names none at all, one at each torque and at either end."""
     if wanted.probes:
         return [probe for probe in wanted.probes if probe.rotor == given.name]

@@ -1,4 +1,4 @@
-"""The error that the modal basis may leave in sensors' lines, as documents tell it: for each line, and by bands."""
+"""Modal truncation error of sensors' lines, line by line and by bands."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ def add_uncertainty(document: dict[str, Any], error: room.BasisError | None, lim
     error : coupling.BasisError or None
         None, where no basis is behind the lines: nothing is added.
     limit_hz : float or None
-        Up to where the bands reach; no bands where it is not given.
+        Upper end of the bands; no bands where it is not given.
     """
     if error is None:
         return

@@ -1,4 +1,4 @@
-"""The parameters of a case's `[update]` as changes of the case: which numbers each one sets, and to what."""
+"""Parameters of a case's `[update]`: the numbers of the case that each one sets, and their values."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class FittedNumber:
         In SI.
     places : tuple of locations
     own : tuple of float
-        What stands there before the fit, in SI.
+        Value before the fit, in SI.
     """
 
     given: UpdateParameter
@@ -44,7 +44,7 @@ class FittedNumber:
         return float(f"{value / unit:.5g}") * unit
 
     def entries(self, value: float) -> Iterator[tuple[Location, float]]:
-        """What to set where, in SI, for a value."""
+        """Numbers to set and their places, in SI, for a value."""
         for place, own in zip(self.places, self.own, strict=True):
             yield place, own * value if self.given.factor else value
 
@@ -147,7 +147,7 @@ def _number(
 
 
 def unit_in_si(given: UpdateParameter) -> float:
-    """What the unit that a parameter is written in amounts to."""
+    """SI value of the unit that a parameter is written in."""
     return amount(f"1 {given.unit}") if given.unit else 1.0
 
 

@@ -1,4 +1,4 @@
-"""What an update's housing is to meet: the measured frequencies, the shapes where a survey holds some, and the rest."""
+"""Targets of an update: measured frequencies, and shapes where a survey holds some."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ Observer = Callable[[Mesh], sparse.csr_array]
 
 @dataclass(frozen=True)
 class Measurement:
-    """What was measured, as a fit takes it.
+    """Measured modes as the fit uses them.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Measurement:
 
 
 def measurement_of(case: Case, progress: Progress = silent) -> Measurement:
-    """What a case's housing is to meet.
+    """Measured targets of a case's update.
 
     Shapes pair the modes where there are any, else the dominance between seats and skin does. Complex ones are turned
     on to the real axis.

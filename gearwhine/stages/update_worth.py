@@ -1,4 +1,4 @@
-"""What an update is worth, on the search's mesh: modes held back, and random sets of frequencies fitted likewise.
+"""Cross-validation of an update: modes left out in turn, and random frequency sets as the null hypothesis.
 
 Each is the whole search again. On the housing's own mesh it would take as long as the update itself, so all are made on
 the coarser one, as if that were the housing; the measured set too, with which the random ones are compared.
@@ -34,7 +34,7 @@ def whole_search(start: HousingDesign, effort: Effort, count: int) -> Procedure[
     effort : Effort
         Of the update.
     count : int
-        How many starts race, this one among them.
+        Number of starts of the multistart search, this one included.
     """
     designs = replace(start.designs, threads=1, draft=True)
     return Procedure(designs.solve, designs.parameters, start.light(), effort, count)

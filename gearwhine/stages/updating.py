@@ -1,4 +1,4 @@
-"""Updating a case's housing: its `[update]` numbers fitted to the measured modes, and what the fit is worth.
+"""Model updating of a case's housing: the search, and the validation of the fit.
 
 The search is made on a mesh of its own, coarse enough for many solves, that moves with the box, with that mesh's bias
 taken off. The box's own mesh decides: it judges every few solves, and the search ends with a few designs more there,
@@ -84,7 +84,7 @@ def update_housing(
     case : Case
     progress : callable
     null : int
-        How many random sets of frequencies to fit likewise.
+        Number of random frequency sets to fit.
     held_back : bool
         Whether to fit again without each measured mode in turn, and to predict it.
     threads : int
@@ -115,7 +115,7 @@ def update_housing(
     begin = time.perf_counter()
     progress("going on with the housing's own mesh")
     found = polish(replace(fine, draft=True).solve, raced, target, fine.parameters, effort, progress)
-    # On the way modes were not counted; those that are told of have their proof.
+    # On the way modes were not counted; those that are reported are certified.
     after = replace(fine.solve(found.design.coordinates), known=found.design.surrogate())
     seconds["own_mesh"] = time.perf_counter() - begin
     rows: list[HeldBack] = []
@@ -148,7 +148,7 @@ def update_housing(
 
 
 def _sharing(threads: int, tasks: int) -> AbstractContextManager[Each]:
-    """Who shares tasks of one thread each; one task, or none, is done here."""
+    """Pool for single-thread tasks; one task is done in this process."""
     return side_by_side(min(threads, tasks, default_workers()))
 
 

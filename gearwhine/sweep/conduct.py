@@ -1,4 +1,4 @@
-"""A sweep from its points to their results: what is done already is read, the rest goes to the workers."""
+"""Running a sweep: points on file are read, the others are solved by the workers."""
 
 from __future__ import annotations
 
@@ -173,7 +173,7 @@ def _as_they_end(client: Client, futures: dict[Future[Any], int]) -> Iterator[tu
 
 
 def _teller(total: int, before: int, progress: Progress) -> Callable[[int], None]:
-    """Tell how many points are done and how long the rest will take, after so many of this run."""
+    """Progress by the number of points done, with an estimate of the time left."""
     start = time.perf_counter()
 
     def told(count: int) -> None:

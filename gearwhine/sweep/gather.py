@@ -1,4 +1,4 @@
-"""A sweep's results in one labelled file, and its document."""
+"""Results of a sweep as one labelled dataset, and as a document."""
 
 from __future__ import annotations
 
@@ -255,7 +255,7 @@ def _settings(keys: Sequence[SweptKey], one: SweptPoint) -> dict[str, str]:
 
 
 def _warnings(swept: Sequence[SweptPoint]) -> list[dict[str, Any]]:
-    """What is to be known of the points' housings, each thing once."""
+    """Warnings of the points' housings, each once."""
     found: dict[str, dict[str, Any]] = {}
     for one in swept:
         if isinstance(one.outcome, PointResult):

@@ -1,4 +1,4 @@
-"""A point on file: NetCDF4 with everything that a sweep gathers of it, written whole or not at all."""
+"""Point files of a sweep: NetCDF4, written whole or not at all."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
     place
         A staging folder on the same file system.
     point, result
-        What to write.
+        Result to write.
     """
     attributes = {
         "source": f"gearwhine {__version__}",

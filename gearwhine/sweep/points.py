@@ -1,4 +1,4 @@
-"""The points of a sweep: the case with each combination of the swept values, checked before anything is solved."""
+"""Sweep points: the case with each combination of the swept values, checked before anything is solved."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Point:
     file : str
         Name of its file.
     duration : float
-        How long its machine turns [s].
+        Duration of its transient [s].
     """
 
     place: tuple[int, ...]

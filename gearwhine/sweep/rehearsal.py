@@ -1,4 +1,4 @@
-"""A small point that every worker solves as it starts, while the housing is solved elsewhere.
+"""Warm-up of the workers: a small point that each one solves as it starts.
 
 Reading the code and loading what numba has compiled takes seconds, which the first point would take longer otherwise.
 Importing this module imports Dask.

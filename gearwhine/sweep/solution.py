@@ -1,4 +1,4 @@
-"""One point of a sweep: what a worker is given, and what it hands back."""
+"""Solving one sweep point on a worker: the transient, reduced to the quantities that a sweep collects."""
 
 from __future__ import annotations
 

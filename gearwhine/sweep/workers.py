@@ -1,4 +1,4 @@
-"""Workers for a sweep: processes on this machine, or those of a Dask cluster that runs already."""
+"""Workers of a sweep: local processes, or those of a running Dask cluster."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def connected(
     Parameters
     ----------
     workers
-        How many processes to start.
+        Number of processes to start.
     scheduler
         Address of a cluster that runs already, whose workers are used in place of our own.
     place
@@ -89,7 +89,7 @@ def connected(
 
 
 def await_workers(client: Client, workers: int) -> None:
-    """Wait until so many workers are there. An interruption strikes outside of what waits.
+    """Wait for a number of workers; an interruption takes effect outside the waiting call.
 
     Raises
     ------
@@ -219,7 +219,7 @@ def _main_module_unseen() -> Iterator[None]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Let Dask log nothing: that a worker died is told in the sweep's own words where it matters."""
+    """Silence Dask's log: the sweep itself reports a dead worker."""
     loggers = [logging.getLogger(name) for name in ("distributed", "asyncio", "tornado", "bokeh")]
     before = [logger.level for logger in loggers]
     for logger in loggers:

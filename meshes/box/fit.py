@@ -1,4 +1,4 @@
-"""Geometry checks of a box: feet, ribs, fillets and bores; all misfits are reported at once."""
+"""Geometry checks of a box: walls, feet, ribs, fillets and bores; all misfits are reported at once."""
 
 from __future__ import annotations
 
@@ -9,13 +9,23 @@ from meshes.box import layout
 from meshes.box.fit_cover import cover_misfits
 from meshes.box.layout import Block
 from meshes.box.misfit import SLACK, Misfit, mm
-from meshes.box.parts import FACES, Bore, Box, Rib
+from meshes.box.parts import FACES, OPPOSITE_FACES, Bore, Box, Rib
 
 _LEAST_CORNER = 0.25  # of the thinner wall must be left where an edge is rounded
 
 
 def misfits(box: Box) -> Iterator[Misfit]:
-    """Yield everything that does not fit; checks that depend on an unsound part are left out."""
+    """Yield everything that does not fit; checks that depend on an unsound part are left out.
+
+    Ribs, cover and fillets are checked only where walls, feet and bores fit each other.
+    """
+    plain = [*_wall_misfits(box), *_foot_sizes(box)]
+    for index, bore in enumerate(box.bores):
+        plain += _bore_misfits(box, index, bore)
+    plain += _bores_apart(box)
+    if plain:
+        yield from plain
+        return
     sound = True
     for group in (_feet_misfits(box), _fillet_sizes(box), *(_rib_misfits(box, i) for i in range(len(box.ribs)))):
         for misfit in group:
@@ -30,6 +40,64 @@ def misfits(box: Box) -> Iterator[Misfit]:
         yield from _rib_clashes(box)
         for index, bore in enumerate(box.bores):
             yield from _bore_clashes(box, index, bore)
+
+
+def _wall_misfits(box: Box) -> Iterator[Misfit]:
+    """Walls that meet."""
+    for axis, size, (low, high) in zip("xyz", box.size, OPPOSITE_FACES, strict=True):
+        if box.wall.of(low) + box.wall.of(high) >= size:
+            expected = f"{low} and {high} walls that leave room inside the {mm(size)} of the box along {axis}"
+            yield Misfit(("wall",), expected)
+
+
+def _foot_sizes(box: Box) -> Iterator[Misfit]:
+    """Feet that touch would melt into one, and their undersides with them."""
+    if box.feet is None:
+        return
+    base = layout.body_block(box).size
+    for axis in (0, 2):
+        if 2.0 * box.feet.size[axis] >= base[axis]:
+            expected = f"feet of less than half the base along {'xyz'[axis]}, {mm(base[axis] / 2)}"
+            yield Misfit(("feet", "size", axis), expected)
+
+
+def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
+    """A bore in no end wall, or one that leaves it, with its boss or without."""
+    half, location = box.size[2] / 2.0, ("bores", index)
+    if layout.end_wall(box, bore) is None:
+        expected = (
+            f"z in the back wall, {mm(-half)} to {mm(-half + box.wall.back)}, "
+            f"or in the front wall, {mm(half - box.wall.front)} to {mm(half)}"
+        )
+        yield Misfit((*location, "center", 2), expected)
+    x, y, _ = bore.center
+    for what, diameter in (("bore", bore.diameter), ("boss", bore.boss.diameter if bore.boss else 0.0)):
+        over = max(abs(x) + diameter / 2.0 - box.size[0] / 2.0, diameter / 2.0 - y, y + diameter / 2.0 - box.size[1])
+        if over > SLACK:
+            expected = (
+                f"a {what} within its wall of {mm(box.size[0])} by {mm(box.size[1])}; around "
+                f"x = {mm(x)}, y = {mm(y)} it reaches {mm(over)} beyond the edge"
+            )
+            yield Misfit((*location, "diameter") if what == "bore" else (*location, "boss", "diameter"), expected)
+            return
+
+
+def _bores_apart(box: Box) -> Iterator[Misfit]:
+    """Bores that touch another bore or its boss, which would break the cylinder of either."""
+    for index, bore in enumerate(box.bores):
+        for other in box.bores[:index]:
+            wall = layout.end_wall(box, bore)
+            if wall is None or wall != layout.end_wall(box, other):
+                continue
+            apart = math.hypot(bore.center[0] - other.center[0], bore.center[1] - other.center[1])
+            bosses = [one.boss.diameter if one.boss else one.diameter for one in (bore, other)]
+            needed = max(bore.diameter + bosses[1], bosses[0] + other.diameter) / 2.0
+            if apart <= needed:
+                expected = (
+                    f'a bore clear of seat "{other.name}" and its boss (they overlap by {mm(needed - apart)}: centres '
+                    f"{mm(apart)} apart, {mm(needed)} needed)"
+                )
+                yield Misfit(("bores", index, "diameter"), expected)
 
 
 def _feet_misfits(box: Box) -> Iterator[Misfit]:
@@ -168,7 +236,7 @@ def _joint_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
     normal, way = FACES[box.cover.face]
     radius = (bore.boss.diameter if bore.boss else bore.diameter) / 2
     if normal == 2:
-        for bolt in box.bolts if box.end_wall(bore) == box.cover.face else ():
+        for bolt in box.bolts if layout.end_wall(box, bore) == box.cover.face else ():
             apart = math.hypot(bolt.position[0] - bore.center[0], bolt.position[1] - bore.center[1])
             if apart < bore.diameter / 2 + bolt.patch_diameter / 2:
                 yield Misfit(("bores", index, "center"), f"a bore clear of the cover's {bolt.name}")

@@ -7,12 +7,10 @@ the underside of its base in y; feet reach below y = 0.
 from dataclasses import dataclass, field
 from typing import Literal
 
-import numpy as np
-
 from meshes.box import layout
 from meshes.box.fit import misfits
 from meshes.box.misfit import Misfit
-from meshes.box.parts import FACES, FOOT_NAMES, Bolt, Bore, Cover, Feet, Fillets, Rib, WallThickness
+from meshes.box.parts import FACES, FOOT_NAMES, OPPOSITE_FACES, Bolt, Bore, Cover, Feet, Fillets, Rib, WallThickness
 from meshes.errors import GeometryError
 
 
@@ -49,9 +47,10 @@ class BoxGeometry:
     Raises
     ------
     GeometryError
-        Where the walls meet, a bore leaves its wall, touches another, or lies in neither end wall.
+        Where a size is not positive, a boss is no wider than its bore, or a seat has no name of its own.
     BoxMisfitError
-        Where ribs, cover, fillets or bolt patches do not fit; it carries all the misfits.
+        Where the parts do not fit each other, with everything that does not: walls that meet, feet that touch, bores
+        that leave their wall or touch another, ribs, cover, fillets, bolt patches.
     """
 
     size: tuple[float, float, float]
@@ -64,27 +63,20 @@ class BoxGeometry:
 
     def __post_init__(self) -> None:
         """Check the dimensions, and that the parts fit the box."""
-        wall = self.wall
-        pairs = ((wall.left, wall.right), (wall.bottom, wall.top), (wall.back, wall.front))
-        for axis, length, (low, high) in zip("xyz", self.size, pairs, strict=True):
-            if not all(value > 0.0 for value in (length, low, high)):
-                raise GeometryError(f"box along {axis}: size {length} m and walls {low}, {high} m must be positive")
-            if low + high >= length:
-                raise GeometryError(f"walls of {low} m and {high} m leave no room in a box {length} m along {axis}")
-        if self.feet is not None:
-            width, height, depth = self.feet.size
-            base = layout.body_block(self).size
-            # Feet that touch would melt into one, and their undersides with them.
-            if min(self.feet.size) <= 0.0 or 2 * width >= base[0] or 2 * depth >= base[2]:
+        for axis, length, (low, high) in zip("xyz", self.size, OPPOSITE_FACES, strict=True):
+            sizes = length, self.wall.of(low), self.wall.of(high)
+            if not all(value > 0.0 for value in sizes):
                 raise GeometryError(
-                    f"feet of {width} x {height} x {depth} m do not fit under a base of "
-                    f"{base[0]} x {base[2]} m: give positive sizes, less than half the base each"
+                    f"box along {axis}: size {length} m and walls {sizes[1]}, {sizes[2]} m must be positive"
                 )
+        if self.feet is not None and min(self.feet.size) <= 0.0:
+            raise GeometryError(f"feet of {' x '.join(map(str, self.feet.size))} m: give positive sizes")
         for bore in self.bores:
-            self._check_bore(bore)
-        for i, first in enumerate(self.bores):
-            for second in self.bores[i + 1 :]:
-                self._check_apart(first, second)
+            _check_sizes(bore)
+        names = [bore.name for bore in self.bores]
+        for name in names:
+            if names.count(name) > 1:
+                raise GeometryError(f"two seats are named {name!r}")
         found = tuple(misfits(self))
         if found:
             raise BoxMisfitError(found)
@@ -111,18 +103,14 @@ class BoxGeometry:
         GeometryError
             Where the bore's centre lies in neither the back nor the front wall.
         """
-        half = self.size[2] / 2
-        slack = 1e-9 + 1e-6 * half
-        for name, start, thickness in (
-            ("back", -half, self.wall.back),
-            ("front", half - self.wall.front, self.wall.front),
-        ):
-            if start - slack <= bore.center[2] <= start + thickness + slack:
-                return "back" if name == "back" else "front"
-        raise GeometryError(
-            f"seat {bore.name!r} at z = {bore.center[2]:g} m lies in neither end wall: the back wall spans "
-            f"{-half:g} to {-half + self.wall.back:g} m, the front wall {half - self.wall.front:g} to {half:g} m"
-        )
+        wall = layout.end_wall(self, bore)
+        if wall is None:
+            half = self.size[2] / 2
+            raise GeometryError(
+                f"seat {bore.name!r} at z = {bore.center[2]:g} m lies in neither end wall: the back wall spans "
+                f"{-half:g} to {-half + self.wall.back:g} m, the front wall {half - self.wall.front:g} to {half:g} m"
+            )
+        return wall
 
     def bore_span(self, bore: Bore) -> tuple[float, float]:
         """Return the ends of the bore's surface along z, boss included [m]."""
@@ -137,36 +125,13 @@ class BoxGeometry:
         """Ends of the cavity along y [m]."""
         return (self.wall.bottom, self.size[1] - self.wall.top)
 
-    def _check_bore(self, bore: Bore) -> None:
-        self.end_wall(bore)
-        if bore.diameter <= 0.0:
-            raise GeometryError(f"seat {bore.name!r}: diameter {bore.diameter} m must be positive")
-        radius = bore.diameter / 2
-        if bore.boss is not None:
-            if bore.boss.diameter <= bore.diameter or bore.boss.length <= 0.0:
-                raise GeometryError(
-                    f"seat {bore.name!r}: a boss of {bore.boss.diameter} m diameter and {bore.boss.length} m length "
-                    f"needs a positive length and more than the bore's {bore.diameter} m"
-                )
-            radius = bore.boss.diameter / 2
-        x, y, _ = bore.center
-        if abs(x) + radius > self.size[0] / 2 or y - radius < 0.0 or y + radius > self.size[1]:
-            raise GeometryError(
-                f"seat {bore.name!r}: a circle of radius {radius:g} m around x = {x:g}, y = {y:g} m leaves "
-                f"its wall of {self.size[0]:g} x {self.size[1]:g} m"
-            )
 
-    def _check_apart(self, first: Bore, second: Bore) -> None:
-        if first.name == second.name:
-            raise GeometryError(f"two seats are named {first.name!r}")
-        if self.end_wall(first) != self.end_wall(second):
-            return
-        distance = float(np.hypot(first.center[0] - second.center[0], first.center[1] - second.center[1]))
-        # A bore may touch a neighbour's boss no more than its bore: both would break the cylinder.
-        for bore, other in ((first, second), (second, first)):
-            reach = bore.diameter / 2 + (other.boss.diameter if other.boss else other.diameter) / 2
-            if distance <= reach:
-                raise GeometryError(
-                    f"seats {first.name!r} and {second.name!r} overlap: centres {distance:g} m apart, "
-                    f"more than {reach:g} m needed"
-                )
+def _check_sizes(bore: Bore) -> None:
+    """Raise where a bore or its boss has no sound size of its own."""
+    if bore.diameter <= 0.0:
+        raise GeometryError(f"seat {bore.name!r}: diameter {bore.diameter} m must be positive")
+    if bore.boss is not None and (bore.boss.diameter <= bore.diameter or bore.boss.length <= 0.0):
+        raise GeometryError(
+            f"seat {bore.name!r}: a boss of {bore.boss.diameter} m diameter and {bore.boss.length} m length "
+            f"needs a positive length and more than the bore's {bore.diameter} m"
+        )

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
-from meshes.box.parts import FACES, Bolt, Box, Cover, Face, Point, Rib, plane_axes
+from meshes.box.parts import FACES, Bolt, Bore, Box, Cover, Face, Point, Rib, plane_axes
 
 SUNK = 0.5
 """Ribs reach into the walls they meet by this part of the thickness, so that rounded edges leave no gap below."""
@@ -45,6 +46,15 @@ class Block:
         for axis in axes:
             block = block.replaced(axis, self.low[axis] - by, self.high[axis] + by)
         return block
+
+
+def end_wall(box: Box, bore: Bore) -> Literal["back", "front"] | None:
+    """The wall that a bore goes through, by the z of its centre; None for neither."""
+    z, half = bore.center[2], box.size[2] / 2
+    slack = 1e-9 + 1e-6 * half
+    if -half - slack <= z <= -half + box.wall.back + slack:
+        return "back"
+    return "front" if half - box.wall.front - slack <= z <= half + slack else None
 
 
 def outer_block(box: Box) -> Block:

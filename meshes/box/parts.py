@@ -20,6 +20,8 @@ FACES: dict[Face, tuple[int, int]] = {
     "back": (2, -1),
     "front": (2, 1),
 }
+# Opposite faces along x, y and z, the lower first.
+OPPOSITE_FACES: tuple[tuple[Face, Face], ...] = (("left", "right"), ("bottom", "top"), ("back", "front"))
 FOOT_NAMES = ("foot-1", "foot-2", "foot-3", "foot-4")
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from gearwhine.case import dump_case, parse_case
+from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.screen.case import show_check
 from gearwhine.screen.gears import show_gears
 from gearwhine.stages.build import build_gear
@@ -44,14 +44,36 @@ def test_three_ways_of_saying_the_size() -> None:
         assert gear.module == pytest.approx(3.175e-3, rel=1e-13)
         assert gear.base_radius == pytest.approx(base_radius, rel=1e-13)
         # What the case knows by itself agrees with the gear that is built.
-        for ours, built in (
-            (given.tooth_module, gear.module),
-            (given.base_circle_radius, gear.base_radius),
-            (given.pitch_radius, gear.pitch_radius),
-            (given.tip_radius, gear.tip_radius),
-            (given.root_circle_radius, gear.root_circle_radius),
-        ):
-            assert ours == pytest.approx(built, rel=1e-13)
+        assert given.tooth_module == pytest.approx(gear.module, rel=1e-13)
+        assert given.base_circle_radius == pytest.approx(gear.base_radius, rel=1e-13)
+
+
+def test_a_gear_without_a_material_is_of_the_case_s_only_one() -> None:
+    """Teeth of aluminium yield 207/70 as much as those of steel: the models' stiffness goes with Young's modulus."""
+    teeth = {key: value for key, value in TOOTH.items() if key != "material"}
+    document = {
+        "title": "gears",
+        "material": {"aluminium": {"youngs_modulus": "70 GPa", "poisson_ratio": 0.3, "density": "2700 kg/m^3"}},
+        "gear": [{"name": "pinion", "teeth": 20} | teeth, {"name": "wheel", "teeth": 61} | teeth],
+        "gear_pair": [{"driver": "pinion", "driven": "wheel"}],
+    }
+    case = parse_case(document)
+    gear = build_gear(case, case.gear_named("wheel"))
+    assert (gear.youngs_modulus, gear.density) == (70e9, 2700.0)
+    steel = build_gear(case_of(TOOTH, TOOTH), case_of(TOOTH, TOOTH).gear_named("wheel"))
+    assert gear.mass == pytest.approx(steel.mass * 2700.0 / 7850.0, rel=1e-12)
+
+
+def test_gears_that_cannot_be_made_are_named_by_their_keys() -> None:
+    """A rack cuts away the foot of 8 teeth; a tip beyond the start of the other's involute finds no flank."""
+    with pytest.raises(CaseError) as caught:
+        case_of(TOOTH | {"teeth": 8}, TOOTH)
+    (line,) = str(caught.value).splitlines()
+    assert line.startswith("gears.toml: gear[0] (gear \"pinion\"): expected a gear that can be made; gear 'pinion'")
+    with pytest.raises(CaseError) as caught:
+        case_of(TOOTH | {"teeth": 18}, TOOTH | {"addendum": 1.2, "root_radius": "1.3 mm"})
+    (line,) = str(caught.value).splitlines()
+    assert line.startswith('gears.toml: gear_pair[0] ("pinion" to "wheel"): expected gears that can mesh; ')
 
 
 def test_every_key_reaches_the_gear_and_the_resolved_case() -> None:

@@ -88,19 +88,19 @@ def test_shafts_without_gears_balance_each_for_itself() -> None:
 
 
 def test_a_train_that_gears_beyond_all_measure_is_an_error() -> None:
-    """130 stages of 2000 to 5 teeth are 10 to the power of 338, more than a float can hold."""
-    for big, small in ((2000, 5), (5, 2000)):
+    """160 stages of 2000 to 18 teeth are 10 to the power of 327, more than a float can hold."""
+    for big, small in ((2000, 18), (18, 2000)):
         segments = [{"length": "1 m", "diameter": "10 mm"}]
         shape = {"at": "0.5 m", "module": "0.2 mm", "face_width": "10 mm"}
-        axes = [[0.2005 * place, 0.0] for place in range(131)]
+        axes = [[0.2018 * place, 0.0] for place in range(161)]
         document = {
             "material": STEEL,
             "rotor": [
                 {"name": f"s{i}", "material": "steel", "axis": a, "segments": segments} for i, a in enumerate(axes)
             ],
-            "gear": [{"name": f"a{i}", "rotor": f"s{i}", "teeth": big, **shape} for i in range(130)]
-            + [{"name": f"b{i}", "rotor": f"s{i + 1}", "teeth": small, **shape} for i in range(130)],
-            "gear_pair": [{"driver": f"a{i}", "driven": f"b{i}"} for i in range(130)],
+            "gear": [{"name": f"a{i}", "rotor": f"s{i}", "teeth": big, **shape} for i in range(160)]
+            + [{"name": f"b{i}", "rotor": f"s{i + 1}", "teeth": small, **shape} for i in range(160)],
+            "gear_pair": [{"driver": f"a{i}", "driven": f"b{i}"} for i in range(160)],
             "operation": {"speed": "1 rpm", "torque": "1 N*m"},
         }
         assert problems(document) == [

@@ -1,4 +1,4 @@
-"""Points of a sweep: what they are known again by, what a machine takes of a housing, and what is gathered."""
+"""Points of a sweep: identification, what a machine takes of a housing, and the collected dataset."""
 
 from __future__ import annotations
 
