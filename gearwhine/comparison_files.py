@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case
-from gearwhine.results import LabelledArrays, file_attributes
+from gearwhine.output.dataset import LabelledArrays, file_attributes
 from gearwhine.stages.response_comparison import ResponseLikeness
 from housing import Comparison, ShapeCorrelation
 from housing.measured import MeasuredGeometry

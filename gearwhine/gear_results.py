@@ -6,7 +6,6 @@ import numpy as np
 import numpy.typing as npt
 
 import coupling.gears as room
-from gearwhine.rotor_results import padded
 from gearwhine.stages.gear_analysis import PairAnalysis, first_touch
 from housing.netcdf import Variables
 
@@ -167,6 +166,15 @@ def _harris(pairs: Sequence[PairAnalysis], variables: Variables) -> None:
         padded([empty if one is None else one.transmission_error for one in maps]),
         _unit("m", "static transmission error under the torque"),
     )
+
+
+def padded(arrays: Sequence[FloatArray]) -> FloatArray:
+    """Arrays of one number of dimensions in one, filled up with NaN behind each."""
+    shape = tuple(max(lengths) for lengths in zip(*(array.shape for array in arrays), strict=True))
+    whole = np.full((len(arrays), *shape), np.nan)
+    for target, array in zip(whole, arrays, strict=True):
+        target[tuple(slice(length) for length in array.shape)] = array
+    return whole
 
 
 def _unit(unit: str, what: str) -> dict[str, str]:

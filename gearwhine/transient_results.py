@@ -1,6 +1,7 @@
 """The transient's part of the results file: histories, written piece by piece, and spectra."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,7 @@ def _recorded(signals: Signals) -> list[tuple[Quantity, Mapping[str, FloatArray]
 def write_transient(solved: SolvedTransient, variables: Variables, coordinates: Variables) -> None:
     """Add the names of the signals and the spectra; the histories follow by :func:`append_histories`."""
     for quantity, values in _recorded(solved.signals):
-        coordinates |= quantity.coordinates(list(values))
+        coordinates.update(quantity.coordinates(list(values)))
     for name, spectra, dimension, unit, what in (
         ("sensor_spectrum", solved.sensor_spectra, "sensor", "m/s2", "peak amplitude of acceleration"),
         ("mesh_force_spectrum", solved.force_spectra, "contact", "N", "peak amplitude of the gear-mesh force"),
@@ -53,6 +54,21 @@ def write_transient(solved: SolvedTransient, variables: Variables, coordinates: 
             }
         variables[name] = ((dimension, "frequency"), amplitude, attributes)
         variables[f"{name}_phase"] = ((dimension, "frequency"), phase, _unit("rad", f"phase of {what[18:]}"))
+
+
+@dataclass(frozen=True)
+class HistoryStream:
+    """Histories of a transient as a stream of the results file."""
+
+    solved: SolvedTransient
+
+    def append_to(self, path: Path) -> None:
+        """See :func:`append_histories`."""
+        append_histories(path, self.solved)
+
+    def add_to(self, variables: Variables) -> None:
+        """See :func:`add_histories`."""
+        add_histories(self.solved, variables, variables)
 
 
 def append_histories(path: Path, solved: SolvedTransient) -> None:

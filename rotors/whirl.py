@@ -40,6 +40,8 @@ WIDE_GAP = 0.01
 # Part of a motion's kinetic energy above which it is called axial. One with less along the axis is still driven by
 # unbalance, by the root of what is left for the motion across it.
 MOSTLY_AXIAL = 0.9
+# A damping ratio nearer to zero is rounding: the mode neither grows nor decays.
+NEUTRAL = 1e-9
 # A limit in a gap narrower than this would be too near a root to count by.
 LEAST_GAP = 1e-6
 
@@ -106,6 +108,11 @@ class WhirlModes:
     def log_decrements(self) -> FloatArray:
         """Logarithmic decrement −2π Re λ / Im λ, (w,)."""
         return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
+
+    @property
+    def stable(self) -> bool:
+        """Whether no mode grows by itself."""
+        return bool((self.damping_ratios >= -NEUTRAL).all())
 
     def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Complex x and y of every mode at positions z (m), both (w, len(z)), by the exact field."""

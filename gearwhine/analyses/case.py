@@ -29,9 +29,10 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
 
 def report_case(case: Case, folder: Path) -> dict[str, Any]:
     """The results in a folder as one HTML page, which marks those that do not fit the case any more."""
-    from gearwhine.report import report_page
+    from gearwhine.output.html import report_page
+    from gearwhine.results.chapters import chapters_of
 
-    page = report_page(folder, case)
+    page = report_page(folder, chapters_of, case)
     with staging(folder) as place:
         (place / "report.html").write_text(page, encoding="utf-8")
     return {"folder": str(folder), "files": ["report.html"]}

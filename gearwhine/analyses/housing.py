@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gearwhine import results
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require
 from gearwhine.comparison_files import (
@@ -14,7 +13,9 @@ from gearwhine.comparison_files import (
     write_likeness,
 )
 from gearwhine.drawings import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
+from gearwhine.output.dataset import labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.housing import HOUSING, write_shapes
 from gearwhine.stages import comparison as comparison_stage
 from gearwhine.stages import comparison_documents, housing_documents, mesh_health, response_comparison, survey_plan
 from gearwhine.stages import geometry as geometry_stage
@@ -106,14 +107,14 @@ def modes(
     solved = _solved(case, "modes", housing, folder, progress, fresh=fresh)
 
     def files(place: Path, *, pictures: bool) -> None:
-        results.write_shapes(place / "modes.vtu", solved)
+        write_shapes(place / "modes.vtu", solved)
 
     return Result(
         "modes",
         case,
         solved,
         housing_documents.modes_document(solved, detail=detail),
-        _arrays=lambda: results.labelled(case, housing=solved),
+        _arrays=lambda: labelled(case, (HOUSING, solved)),
         _files=files,
         _housing=solved,
     )

@@ -5,18 +5,20 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gearwhine import results
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, swept_keys
 from gearwhine.doubtful import add_warnings, joined, warning
+from gearwhine.gear_results import write_gears
+from gearwhine.output.dataset import labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.housing import HOUSING
+from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.stages import (
     gear_analysis,
     gear_documents,
     gear_torques,
     housing_documents,
     relief_aims,
-    rotor_documents,
 )
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import machine as machine_stage
@@ -31,6 +33,8 @@ from gearwhine.stages.steady import SolvedSteady
 from gearwhine.stages.system import SolvedSystem
 from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.uncertainty import add_uncertainty
+from gearwhine.steady_results import write_steady
+from gearwhine.system_results import write_system
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +60,7 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
         Where modes fail their certificate.
     """
     solved = rotor_stage.solve_rotors(case, progress)
-    document = rotor_documents.rotors_document(solved)
+    document = rotors_document(solved)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_rotors
@@ -73,7 +77,7 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
         case,
         solved,
         document,
-        _arrays=lambda: results.labelled(case, rotors=solved),
+        _arrays=lambda: labelled(case, (ROTORS, solved)),
         _figures=figures,
         _files=files,
     )
@@ -108,7 +112,7 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
         case,
         pairs,
         gear_documents.gears_document(pairs),
-        _arrays=lambda: results.labelled(case, pairs=pairs),
+        _arrays=lambda: labelled(case, (write_gears, pairs)),
         _figures=figures,
     )
 
@@ -173,7 +177,7 @@ def system(
         case,
         solved,
         joined(document, housing_documents.origin_document(solved_housing)),
-        _arrays=lambda: results.labelled(case, housing=solved_housing, system=solved),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (write_system, solved)),
         _figures=figures,
         _housing=solved_housing,
     )
@@ -242,7 +246,7 @@ def steady(
         case,
         solved,
         joined(document, housing_documents.origin_document(solved_housing)),
-        _arrays=lambda: results.labelled(case, housing=solved_housing, steady=solved),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (write_steady, solved)),
         _figures=figures,
         _housing=solved_housing,
     )

@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearwhine import results
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.comparison_files import draw_comparison_figures, write_comparison
@@ -18,9 +17,12 @@ from gearwhine.doubtful import add_warnings, joined
 from gearwhine.drawings import draw_modes
 from gearwhine.march_files import kept_march
 from gearwhine.output import staging
+from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.housing import HOUSING, write_shapes
+from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.stages import comparison as comparison_stage
-from gearwhine.stages import comparison_documents, gear_analysis, gear_documents, housing_documents, rotor_documents
+from gearwhine.stages import comparison_documents, gear_analysis, gear_documents, housing_documents
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
@@ -107,7 +109,7 @@ def run(
         housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
     timed("housing", begin)
     if rotors:
-        document = joined(document, rotor_documents.rotors_document(rotors))
+        document = joined(document, rotors_document(rotors))
     if pairs:
         document = joined(document, gear_documents.gears_document(analysed))
     comparison = None
@@ -163,7 +165,7 @@ def run(
     def files(place: Path, *, pictures: bool) -> None:
         if solved.housing is None:
             return
-        results.write_shapes(place / "modes.vtu", solved.housing)
+        write_shapes(place / "modes.vtu", solved.housing)
         if comparison is not None:
             write_comparison(place, comparison)
         if pictures:
@@ -174,16 +176,7 @@ def run(
         case,
         solved,
         document,
-        _arrays=lambda: results.labelled(
-            case,
-            housing=solved.housing,
-            rotors=rotors,
-            pairs=analysed,
-            system=system,
-            transient=transient,
-            signature=signature,
-            run=run_signature,
-        ),
+        _arrays=partial(_arrays, case, solved),
         _figures=partial(_figures, case, solved),
         _files=files,
         _housing=housing,
@@ -269,6 +262,28 @@ class RunSolution:
     transient: SolvedTransient | None
     signature: SolvedSignature | None
     run_signature: RunSignature | None
+
+
+def _arrays(case: Case, solved: RunSolution) -> LabelledArrays:
+    """The quantities of what there is."""
+    from gearwhine.gear_results import write_gears
+    from gearwhine.signature_results import write_run_signature, write_signature
+    from gearwhine.system_results import write_system
+    from gearwhine.transient_results import HistoryStream, write_transient
+
+    parts: list[tuple[Any, Any]] = [(HOUSING, solved.housing), (ROTORS, solved.rotors or None)]
+    if solved.pairs:
+        parts.append((write_gears, solved.pairs))
+    if solved.system is not None:
+        parts.append((write_system, solved.system))
+    if solved.transient is not None:
+        parts.append((write_transient, solved.transient))
+        if solved.signature is not None:
+            parts.append((partial(write_signature, solved.transient), solved.signature))
+    if solved.run_signature is not None:
+        parts.append((write_run_signature, solved.run_signature))
+    streams = () if solved.transient is None else (HistoryStream(solved.transient),)
+    return labelled(case, *parts, streams=streams)
 
 
 def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tuple[str, Figure]]:

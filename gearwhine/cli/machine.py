@@ -28,13 +28,14 @@ def rotors(
 ) -> None:
     """Each rotor's lateral and torsional modes, whirl and critical speeds; of a case, or of a rotor saved by ROSS."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_rotors
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.rotors import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common) if write_ross else common.output
         return written(analyses.rotors(given, write_ross=write_ross, progress=progress), folder, progress)
 
-    on_case(case, common, work, show_rotors)
+    on_case(case, common, work, shown_by(sections))
 
 
 def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:

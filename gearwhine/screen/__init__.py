@@ -4,7 +4,6 @@ from gearwhine.screen.case import show_check, show_examples, show_mesh
 from gearwhine.screen.gears import show_gears
 from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail, show_survey
 from gearwhine.screen.machine import show_run
-from gearwhine.screen.rotors import show_rotors
 from gearwhine.screen.steady import show_steady
 from gearwhine.screen.sweep import show_sweep
 from gearwhine.screen.system import show_system
@@ -19,7 +18,6 @@ __all__ = [
     "show_mesh",
     "show_modes",
     "show_modes_in_detail",
-    "show_rotors",
     "show_run",
     "show_steady",
     "show_survey",

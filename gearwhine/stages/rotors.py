@@ -18,8 +18,11 @@ from gearwhine.stages.torsion import SolvedTorsion, solve_torsion
 from rotors.rolling import RollingState
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 Bearings = tuple[room.Bearing, ...]
 Crossings = tuple[room.Crossing, ...] | str
+
+_PLACES = 101  # along a rotor, of its shapes
 
 
 @dataclass(frozen=True)
@@ -83,6 +86,41 @@ class SolvedRotor:
     torsion: SolvedTorsion | None
     stiffness_map: room.CriticalSpeedMap | None
     rolling: Mapping[str, RollingState]
+
+    @property
+    def lateral_at_rest(self) -> npt.NDArray[np.bool_]:
+        """Which of the frequencies at rest are of motions across the axis for the most part."""
+        return np.asarray(self.rest.axial_share <= room.MOSTLY_AXIAL)
+
+    @property
+    def margins(self) -> FloatArray | None:
+        """Distance of each critical speed from operation, as a part of that; None where nothing turns."""
+        return None if not self.operation else self.critical.speeds / abs(self.operation) - 1.0
+
+    @property
+    def places(self) -> FloatArray:
+        """Evenly along the shaft from its left end, for shapes [m]."""
+        return np.linspace(0.0, self.rotor.length, _PLACES)
+
+    @property
+    def whirl_deflection(self) -> FloatArray | None:
+        """Largest deflection over a cycle of each whirl mode at operation along :attr:`places` [m/√kg]."""
+        return None if self.operation is None else _largest_over_cycle(*self.whirl[0].evaluate(self.places))
+
+    @property
+    def whirl_moment(self) -> FloatArray | None:
+        """Largest bending moment over a cycle of each whirl mode at operation along :attr:`places` [N/√kg]."""
+        return None if self.operation is None else _largest_over_cycle(*self.whirl[0].section_loads(self.places)[1])
+
+    @property
+    def damps_across(self) -> bool:
+        """Whether a coupling damps motion across the axis, which it does in the turning shaft."""
+        couplings = [part for part in self.rotor.segments if isinstance(part, room.Coupling)]
+        return any(part.lateral_damping > 0.0 or part.tilt_damping > 0.0 for part in couplings)
+
+
+def _largest_over_cycle(x: ComplexArray, y: ComplexArray) -> FloatArray:
+    return room.orbit_of(x, y, np.ones(1)).major
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:

@@ -9,7 +9,7 @@ import tomli_w
 from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.check_provenance import without_changed
 from gearwhine.case.problems import Location, key_of
-from gearwhine.results import LabelledArrays, file_attributes
+from gearwhine.output.dataset import LabelledArrays, file_attributes
 from gearwhine.stages.update_keys import FittedNumber, unit_in_si, with_entry
 from gearwhine.stages.update_worth import NullTest
 from gearwhine.stages.updating import SolvedUpdate

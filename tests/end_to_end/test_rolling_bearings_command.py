@@ -11,9 +11,9 @@ import pytest
 
 from coupling import coupled_modes
 from gearwhine.case import CaseError, parse_case
+from gearwhine.results.rotors import rotors_document
 from gearwhine.stages.bearings import build_bearings, rolling_state
 from gearwhine.stages.machine import build_machine
-from gearwhine.stages.rotor_documents import rotors_document
 from gearwhine.stages.rotors import solve_rotors
 
 FRISWELL = tomllib.loads(files("gearwhine.cases").joinpath("friswell-rotor.toml").read_text(encoding="utf-8"))

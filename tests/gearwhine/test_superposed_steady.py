@@ -14,7 +14,7 @@ from coupling.gears import ToothContact, piecewise
 from coupling.periodic import orbit, periodic_response, shooting, superposed_response
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli import run_command
-from gearwhine.report.sections import sections_of
+from gearwhine.results.chapters import chapters_of
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
 from gearwhine.stages.steady import solve_steady, steady_document
@@ -139,7 +139,7 @@ def test_the_command_says_which_was_done(tmp_path: Path, capsys: pytest.CaptureF
     with xr.open_dataset(tmp_path / "out" / "results.nc") as data:
         assert data["excitation_mesh_force"].dims == ("excitation", "contact", "period_part")
         assert data["excitation_period"].values == pytest.approx([1 / 1050, 72 / 1050 / 19, 72 * 56 / 1050 / 19])
-    text = " ".join(sentence for section in sections_of(document) for sentence in section.sentences)
+    text = " ".join(sentence for section in chapters_of(document) for sentence in section.sentences)
     assert "these are superposed" in text
     assert run_command(["steady", str(place), "-q"]) == 0
     assert "these are superposed" in capsys.readouterr().out.replace("\n", " ")

@@ -1,39 +1,23 @@
-"""What a report shows of the documents that commands write: sections of sentences and tables.
+"""Chapters of the report: those parts of a command's document that are there, each by its own module."""
 
-A command's document is read by its keys alone, so that a report can be made of whatever command filled the folder.
-"""
-
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
 from typing import Any
 
-from gearwhine.report import columns
-from gearwhine.report.tables import Table, table_of
-
-Document = Mapping[str, Any]
+from gearwhine.output.sections import Document, Section, Table, table_of
+from gearwhine.results import columns, rotors
 
 _MOST_MODES = 60  # of the coupled system that a table holds
 _LINES_OF_A_SENSOR = 6
 
 
-@dataclass(frozen=True)
-class Section:
-    """A heading, sentences, tables, and the pictures whose names begin with one of some words."""
-
-    title: str
-    sentences: tuple[str, ...] = ()
-    tables: tuple[Table, ...] = ()
-    pictures: tuple[str, ...] = field(default=())
-
-
-def sections_of(document: Document) -> tuple[Section, ...]:
-    """The sections of a command's document, those without anything left out."""
+def chapters_of(document: Document) -> tuple[Section, ...]:
+    """The chapters of a command's document, those without anything left out."""
     housing = document.get("housing", document if "certificate" in document and "mesh" in document else {})
     makers: tuple[tuple[Callable[[Document], Section], Any], ...] = (
         (_housing, housing),
         (_comparison, document.get("compare", document if "pairing" in document else {})),
         (_update, document if "parameters" in document else {}),
-        (_rotors, document if document.get("rotors") else {}),
+        (rotors.report, document if document.get("rotors") else {}),
         (_gears, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
         (_system, document.get("system", document if "stability" in document else {})),
         (_transient, document if "steps" in document else {}),
@@ -55,7 +39,7 @@ def _housing(document: Document) -> Section:
             f"{mesh['elements']} elements, {mesh['dofs']} degrees of freedom, {document.get('mass_kg', 0.0):.2f} kg."
         )
     tables = table_of(columns.MODES, document.get("modes", ()))
-    return Section("Housing modes", tuple(sentences), tables, ("modes", "mode-", "gallery"))
+    return Section("Housing modes", (*sentences, *tables), pictures=("modes", "mode-", "gallery"))
 
 
 def _comparison(document: Document) -> Section:
@@ -70,7 +54,7 @@ def _comparison(document: Document) -> Section:
         sentences.append(f"Gap of dominance {document['gap']:.3f}; the three measures {agree}.")
     pictures = ("comparison", "mac", "auto-mac", "comac", "cross-orthogonality")
     tables = table_of(columns.PAIRS, document.get("pairs", ()))
-    return Section("Measured and modelled", tuple(sentences), tables, pictures)
+    return Section("Measured and modelled", (*sentences, *tables), pictures=pictures)
 
 
 def _update(document: Document) -> Section:
@@ -97,16 +81,11 @@ def _update(document: Document) -> Section:
         sentences.append("Not known is how often random frequencies are fitted as well (--null).")
     tables = table_of(columns.PARAMETERS, document["parameters"])
     tables += table_of(columns.HELD_BACK, document.get("held_back", ()), "Each mode predicted by a fit to the others")
-    return Section("Updated numbers", tuple(sentences), tables, ("update",))
-
-
-def _rotors(document: Document) -> Section:
-    pictures = ("rotor", "shaft", "campbell-rotor", "critical", "unbalance")
-    return Section("Rotors", (), table_of(columns.ROTORS, document["rotors"]), pictures)
+    return Section("Updated numbers", (*sentences, *tables), pictures=("update",))
 
 
 def _gears(document: Document) -> Section:
-    return Section("Gears", (), table_of(columns.GEARS, document["pairs"]), ("gears-",))
+    return Section("Gears", table_of(columns.GEARS, document["pairs"]), pictures=("gears-",))
 
 
 def _system(document: Document) -> Section:
@@ -117,7 +96,7 @@ def _system(document: Document) -> Section:
     if len(modes) > _MOST_MODES:
         sentences.append(f"The lowest {_MOST_MODES} of {len(modes)} modes.")
     tables = table_of(columns.SYSTEM, modes[:_MOST_MODES])
-    return Section("Coupled system", tuple(sentences), tables, ("campbell", "transmissibility", "system"))
+    return Section("Coupled system", (*sentences, *tables), pictures=("campbell", "transmissibility", "system"))
 
 
 def _transient(document: Document) -> Section:
@@ -143,7 +122,7 @@ def _transient(document: Document) -> Section:
         "waterfall",
         "sweep",
     )
-    return Section("Motion", tuple(sentences), tables, pictures)
+    return Section("Motion", (*sentences, *tables), pictures=pictures)
 
 
 def _basis_error(document: Document) -> list[str]:
@@ -182,4 +161,4 @@ def _steady(document: Document) -> Section:
         tables += table_of(columns.MESHES, motion["gear_pairs"])
         tables += table_of(columns.LINES, _lines(motion, "lines"))
     tables += table_of(columns.EVENTS, document.get("curve", {}).get("bifurcations", ()), "Over speed")
-    return Section("Steady state", tuple(sentences), tables, ("steady",))
+    return Section("Steady state", (*sentences, *tables), pictures=("steady",))

@@ -1,0 +1,81 @@
+"""The columns of a report's tables: the key of a command's document, the heading with its unit, how it is written."""
+
+from gearwhine.output.sections import Column
+
+MODES = (
+    Column("mode", "number", "d"),
+    Column("frequency [Hz]", "frequency_hz", ".2f"),
+    Column("damping ratio", "damping_ratio", ".4f"),
+    Column("strength [1/kg]", "strength", ".4g"),
+)
+PAIRS = (
+    Column("measured [Hz]", "measured_hz", ".1f"),
+    Column("model [Hz]", "model_hz", ".1f"),
+    Column("error [%]", "error_percent", "+.2f"),
+    Column("mode", "mode", "d"),
+    Column("MAC", "mac", ".3f"),
+    Column("confidence", "confidence", ".2f"),
+    Column("strength [1/kg]", "strength", ".4g"),
+)
+GEARS = (
+    Column("driver", "driver"),
+    Column("driven", "driven"),
+    Column("contact ratio", "contact_ratio", ".4f"),
+    Column("mesh frequency [Hz]", "mesh_frequency_hz", ".2f"),
+    Column("mean stiffness [N/µm]", "stiffness_n_per_m.mean", ".1f", 1e-6),
+    Column("mean transmission error [µm]", "transmission_error_m.mean", ".2f", 1e6),
+    Column("peak to peak [µm]", "transmission_error_m.peak_to_peak", ".3f", 1e6),
+)
+MESHES = (
+    Column("driver", "driver"),
+    Column("driven", "driven"),
+    Column("mean force [N]", "mean_force_n", ".0f"),
+    Column("largest force [N]", "peak_force_n", ".0f"),
+    Column("apart [%]", "contact_loss_fraction", ".2f", 100.0),
+    Column("friction takes [W]", "friction.mean_power_w", ".3g"),
+    Column("a.c. compression [µm rms]", "rms_compression_m", ".3g", 1e6),
+)
+ORDERS = (
+    Column("signal", "signal"),
+    Column("order", "name"),
+    Column("highest [peak]", "highest_amplitude", ".3g"),
+    Column("unit", "unit"),
+    Column("at [rpm]", "at_rpm", ".0f"),
+    Column("that is [Hz]", "frequency_hz", ".0f"),
+)
+LINES = (
+    Column("sensor", "sensor"),
+    Column("line [Hz]", "frequency_hz", ".1f"),
+    Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
+    Column("level [dB re 1e-6 m/s²]", "level_db", ".1f"),
+    Column("± by the modal basis [%]", "uncertainty", ".1f", 100.0),
+    Column("what it is", "name"),
+    Column("mostly by", "by"),
+)
+SYSTEM = (
+    Column("frequency [Hz]", "frequency_hz", ".2f"),
+    Column("damping ratio", "damping_ratio", ".4f"),
+    Column("kind", "kind"),
+    Column("where", "where"),
+)
+BEARINGS = (
+    Column("bearing", "name"),
+    Column("mean force x, y, z [N]", "mean_force_n", ".1f"),
+    Column("a.c. force x, y, z [N rms]", "rms_force_n", ".2f"),
+    Column("mean moment x, y [N m]", "mean_moment_n_m", ".2f"),
+)
+PARAMETERS = (
+    Column("parameter", "name"),
+    Column("before (SI)", "before", ".5g"),
+    Column("after (SI)", "after", ".5g"),
+    Column("± (SI)", "standard_deviation", ".2g"),
+)
+HELD_BACK = (
+    Column("held back [Hz]", "measured_hz", ".1f"),
+    Column("predicted [Hz]", "predicted_hz", ".1f"),
+    Column("error [%]", "error_percent", "+.2f"),
+    Column("expected ± [%]", "standard_deviation_percent", ".2f"),
+    Column("error before [%]", "before_error_percent", "+.2f"),
+    Column("rms of the others [%]", "rms_error_percent_of_the_others", ".2f"),
+)
+EVENTS = (Column("speed [rpm]", "speed_rpm", ".1f"), Column("what happens", "kind"))
