@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, swept_keys
 from gearwhine.doubtful import add_warnings, joined, warning
-from gearwhine.gear_results import write_gears
 from gearwhine.output.dataset import labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.stages import (
     gear_analysis,
-    gear_documents,
     gear_torques,
     housing_documents,
     relief_aims,
@@ -111,8 +110,8 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
         "gears",
         case,
         pairs,
-        gear_documents.gears_document(pairs),
-        _arrays=lambda: labelled(case, (write_gears, pairs)),
+        gears_document(pairs),
+        _arrays=lambda: labelled(case, (GEARS, pairs)),
         _figures=figures,
     )
 

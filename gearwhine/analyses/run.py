@@ -19,10 +19,11 @@ from gearwhine.march_files import kept_march
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, write_shapes
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.stages import comparison as comparison_stage
-from gearwhine.stages import comparison_documents, gear_analysis, gear_documents, housing_documents
+from gearwhine.stages import comparison_documents, gear_analysis, housing_documents
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
@@ -111,7 +112,7 @@ def run(
     if rotors:
         document = joined(document, rotors_document(rotors))
     if pairs:
-        document = joined(document, gear_documents.gears_document(analysed))
+        document = joined(document, gears_document(analysed))
     comparison = None
     if housing is not None:
         document["housing"] = housing_documents.modes_document(housing)
@@ -176,7 +177,7 @@ def run(
         case,
         solved,
         document,
-        _arrays=partial(_arrays, case, solved),
+        _arrays=partial(run_arrays, case, solved),
         _figures=partial(_figures, case, solved),
         _files=files,
         _housing=housing,
@@ -264,16 +265,13 @@ class RunSolution:
     run_signature: RunSignature | None
 
 
-def _arrays(case: Case, solved: RunSolution) -> LabelledArrays:
+def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
     """The quantities of what there is."""
-    from gearwhine.gear_results import write_gears
     from gearwhine.signature_results import write_run_signature, write_signature
     from gearwhine.system_results import write_system
     from gearwhine.transient_results import HistoryStream, write_transient
 
-    parts: list[tuple[Any, Any]] = [(HOUSING, solved.housing), (ROTORS, solved.rotors or None)]
-    if solved.pairs:
-        parts.append((write_gears, solved.pairs))
+    parts: list[tuple[Any, Any]] = [(HOUSING, solved.housing), (ROTORS, solved.rotors), (GEARS, solved.pairs)]
     if solved.system is not None:
         parts.append((write_system, solved.system))
     if solved.transient is not None:

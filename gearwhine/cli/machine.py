@@ -41,12 +41,13 @@ def rotors(
 def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     """Each gear pair: geometry, stiffness, transmission error, load sharing, pressure, Harris map, best tip relief."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_gears
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.gears import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return written(analyses.gears(given, folder=common.output, progress=progress), common.output, progress)
 
-    on_case(case, common, work, show_gears)
+    on_case(case, common, work, shown_by(sections))
 
 
 def system(

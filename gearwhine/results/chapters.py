@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from gearwhine.output.sections import Document, Section, Table, table_of
-from gearwhine.results import columns, rotors
+from gearwhine.results import columns, gears, rotors
 
 _MOST_MODES = 60  # of the coupled system that a table holds
 _LINES_OF_A_SENSOR = 6
@@ -18,7 +18,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (_comparison, document.get("compare", document if "pairing" in document else {})),
         (_update, document if "parameters" in document else {}),
         (rotors.report, document if document.get("rotors") else {}),
-        (_gears, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
+        (gears.report, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
         (_system, document.get("system", document if "stability" in document else {})),
         (_transient, document if "steps" in document else {}),
         (_steady, document if "motions" in document else {}),
@@ -82,10 +82,6 @@ def _update(document: Document) -> Section:
     tables = table_of(columns.PARAMETERS, document["parameters"])
     tables += table_of(columns.HELD_BACK, document.get("held_back", ()), "Each mode predicted by a fit to the others")
     return Section("Updated numbers", (*sentences, *tables), pictures=("update",))
-
-
-def _gears(document: Document) -> Section:
-    return Section("Gears", table_of(columns.GEARS, document["pairs"]), pictures=("gears-",))
 
 
 def _system(document: Document) -> Section:

@@ -17,15 +17,6 @@ PAIRS = (
     Column("confidence", "confidence", ".2f"),
     Column("strength [1/kg]", "strength", ".4g"),
 )
-GEARS = (
-    Column("driver", "driver"),
-    Column("driven", "driven"),
-    Column("contact ratio", "contact_ratio", ".4f"),
-    Column("mesh frequency [Hz]", "mesh_frequency_hz", ".2f"),
-    Column("mean stiffness [N/µm]", "stiffness_n_per_m.mean", ".1f", 1e-6),
-    Column("mean transmission error [µm]", "transmission_error_m.mean", ".2f", 1e6),
-    Column("peak to peak [µm]", "transmission_error_m.peak_to_peak", ".3f", 1e6),
-)
 MESHES = (
     Column("driver", "driver"),
     Column("driven", "driven"),

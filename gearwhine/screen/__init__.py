@@ -1,7 +1,6 @@
 """What a person sees on the terminal: a function for each command, given the document that its JSON holds."""
 
 from gearwhine.screen.case import show_check, show_examples, show_mesh
-from gearwhine.screen.gears import show_gears
 from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail, show_survey
 from gearwhine.screen.machine import show_run
 from gearwhine.screen.steady import show_steady
@@ -14,7 +13,6 @@ __all__ = [
     "show_comparison",
     "show_examples",
     "show_files",
-    "show_gears",
     "show_mesh",
     "show_modes",
     "show_modes_in_detail",

@@ -19,10 +19,11 @@ from gearwhine.case import (
     rotor_speeds,
 )
 from gearwhine.progress import Progress, silent
+from gearwhine.results.gears import geometry_document
 from gearwhine.stages import mesh_health
 from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
-from gearwhine.stages.gear_shapes import doubts, geometry_document, pairs_document
+from gearwhine.stages.gear_shapes import doubts, pairs_document
 from gearwhine.stages.gears import backlash_doubts, build_pair, pair_geometries
 from gearwhine.stages.geometry import material_of
 from gearwhine.stages.machine import require_machine

@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 
 from gearwhine.case import dump_case, parse_case
+from gearwhine.output.terminal import show
+from gearwhine.results.gears import gears_document, sections
 from gearwhine.screen.case import show_check
-from gearwhine.screen.gears import show_gears
 from gearwhine.stages.build import build_gear
 from gearwhine.stages.gear_analysis import analyse_pairs
-from gearwhine.stages.gear_documents import gears_document
 from gearwhine.stages.gear_torques import over_torques
 from gearwhine.stages.gears import pair_geometry, solve_gears
 from gearwhine.stages.summary import check_document
@@ -89,7 +89,7 @@ def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) 
     show_check(document)
     document = gears_document(over_torques(analyse_pairs(HELICAL, solve_gears(HELICAL))))
     assert document["pairs"][0]["transmission_error_m"]["peak_to_peak"] > 0.0
-    show_gears(document)
+    show(document, sections(document))
     shown = " ".join(capsys.readouterr().out.split())
     assert "+ overlap" in shown
     assert "helix 15° left" in shown
