@@ -13,6 +13,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING
 from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import (
     gear_analysis,
     gear_torques,
@@ -30,10 +31,8 @@ from gearwhine.stages.instability import machine_warnings, unstable_modes_warnin
 from gearwhine.stages.rotors import SolvedRotor
 from gearwhine.stages.steady import SolvedSteady
 from gearwhine.stages.system import SolvedSystem
-from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.uncertainty import add_uncertainty
 from gearwhine.steady_results import write_steady
-from gearwhine.system_results import write_system
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -161,7 +160,7 @@ def system(
         over_speed=over_speed or swept or sidebands > 0,
         sidebands=sidebands,
     )
-    document = system_document(case, solved, solved_housing)
+    document = system_document(solved)
     add_warnings(document, unstable_modes_warnings(solved.stability))
     error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
     add_uncertainty(document, error, document["trusted_below_hz"])
@@ -176,7 +175,7 @@ def system(
         case,
         solved,
         joined(document, housing_documents.origin_document(solved_housing)),
-        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (write_system, solved)),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (SYSTEM, solved)),
         _figures=figures,
         _housing=solved_housing,
     )

@@ -22,6 +22,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, write_shapes
 from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import comparison as comparison_stage
 from gearwhine.stages import comparison_documents, gear_analysis, housing_documents
 from gearwhine.stages import gears as gear_stage
@@ -37,7 +38,6 @@ from gearwhine.stages.housing import keep_modes
 from gearwhine.stages.instability import unstable_modes_warnings
 from gearwhine.stages.kept_modes import MODES_FILE
 from gearwhine.stages.machine import require_machine
-from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.uncertainty import add_uncertainty
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ def run(
         machine = machine_stage.build_machine(case, part, pairs, progress)
         basis = machine_stage.basis_error(case, machine, part, pairs, progress)
         system = system_stage.solve_system(case, machine, housing, progress)
-        document["system"] = system_document(case, system, housing)
+        document["system"] = system_document(system)
         add_warnings(document, unstable_modes_warnings(system.stability))
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
         timed("system", begin)
@@ -268,12 +268,14 @@ class RunSolution:
 def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
     """The quantities of what there is."""
     from gearwhine.signature_results import write_run_signature, write_signature
-    from gearwhine.system_results import write_system
     from gearwhine.transient_results import HistoryStream, write_transient
 
-    parts: list[tuple[Any, Any]] = [(HOUSING, solved.housing), (ROTORS, solved.rotors), (GEARS, solved.pairs)]
-    if solved.system is not None:
-        parts.append((write_system, solved.system))
+    parts: list[tuple[Any, Any]] = [
+        (HOUSING, solved.housing),
+        (ROTORS, solved.rotors),
+        (GEARS, solved.pairs),
+        (SYSTEM, solved.system),
+    ]
     if solved.transient is not None:
         parts.append((write_transient, solved.transient))
         if solved.signature is not None:

@@ -77,7 +77,8 @@ def system(
 ) -> None:
     """Complex natural modes of the whole coupled system, who moves and damps; what reaches bearings and sensors."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_system
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.system import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.system(
@@ -91,7 +92,7 @@ def system(
         )
         return written(found, common.output, progress)
 
-    on_case(case, common, work, show_system)
+    on_case(case, common, work, shown_by(sections))
 
 
 def steady(

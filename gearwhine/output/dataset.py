@@ -128,6 +128,8 @@ def _add_quantity(quantity: Quantity, objects: Sequence[Any], along: tuple[str, 
         labels = quantity.dimensions[0]
         found.setdefault(labels, ((labels,), list(values[known]), {}))
         values = [None if value is None else np.array(list(value.values())) for value in values]
+    if quantity.name in found and quantity.dimensions != (quantity.name,):
+        raise ValueError(f"{quantity.name!r} is declared twice")
     told: dict[str, Any] = {} if quantity.unit == "" else {"units": quantity.unit}
     told |= {} if quantity.long_name == "" else {"long_name": quantity.long_name}
     told |= {} if quantity.attributes is None else quantity.attributes(objects[known])

@@ -4,9 +4,8 @@ from collections.abc import Callable
 from typing import Any
 
 from gearwhine.output.sections import Document, Section, Table, table_of
-from gearwhine.results import columns, gears, rotors
+from gearwhine.results import columns, gears, rotors, system
 
-_MOST_MODES = 60  # of the coupled system that a table holds
 _LINES_OF_A_SENSOR = 6
 
 
@@ -19,7 +18,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (_update, document if "parameters" in document else {}),
         (rotors.report, document if document.get("rotors") else {}),
         (gears.report, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
-        (_system, document.get("system", document if "stability" in document else {})),
+        (system.report, document.get("system", document if "stability" in document else {})),
         (_transient, document if "steps" in document else {}),
         (_steady, document if "motions" in document else {}),
     )
@@ -82,17 +81,6 @@ def _update(document: Document) -> Section:
     tables = table_of(columns.PARAMETERS, document["parameters"])
     tables += table_of(columns.HELD_BACK, document.get("held_back", ()), "Each mode predicted by a fit to the others")
     return Section("Updated numbers", (*sentences, *tables), pictures=("update",))
-
-
-def _system(document: Document) -> Section:
-    modes, sentences = document.get("modes", ()), []
-    if stability := document.get("stability"):
-        growing = len(stability["growing"])
-        sentences.append("No mode grows." if stability["stable"] else f"Unstable: {growing} of the modes grow.")
-    if len(modes) > _MOST_MODES:
-        sentences.append(f"The lowest {_MOST_MODES} of {len(modes)} modes.")
-    tables = table_of(columns.SYSTEM, modes[:_MOST_MODES])
-    return Section("Coupled system", (*sentences, *tables), pictures=("campbell", "transmissibility", "system"))
 
 
 def _transient(document: Document) -> Section:

@@ -43,12 +43,6 @@ LINES = (
     Column("what it is", "name"),
     Column("mostly by", "by"),
 )
-SYSTEM = (
-    Column("frequency [Hz]", "frequency_hz", ".2f"),
-    Column("damping ratio", "damping_ratio", ".4f"),
-    Column("kind", "kind"),
-    Column("where", "where"),
-)
 BEARINGS = (
     Column("bearing", "name"),
     Column("mean force x, y, z [N]", "mean_force_n", ".1f"),

@@ -5,7 +5,6 @@ from gearwhine.screen.housing import show_comparison, show_files, show_modes, sh
 from gearwhine.screen.machine import show_run
 from gearwhine.screen.steady import show_steady
 from gearwhine.screen.sweep import show_sweep
-from gearwhine.screen.system import show_system
 from gearwhine.screen.updating import show_update
 
 __all__ = [
@@ -20,6 +19,5 @@ __all__ = [
     "show_steady",
     "show_survey",
     "show_sweep",
-    "show_system",
     "show_update",
 ]

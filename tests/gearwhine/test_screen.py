@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 
 from gearwhine import screen
+from gearwhine.output.terminal import shown_by
+from gearwhine.results import system
 
 Document = dict[str, Any]
 
@@ -75,7 +77,7 @@ def test_one_mode_is_no_modes() -> None:
 
 
 def test_no_share_is_minus_nothing_and_rigid_modes_have_none() -> None:
-    out = _said(screen.show_system, _system())
+    out = _said(shown_by(system.sections), _system())
     assert "-0" not in out
     rows = [line for line in out.splitlines() if "rigid" in line or "torsion" in line][1:]  # the first is the head
     assert rows[0].split() == ["0.00", "0.0000", "rigid"]
@@ -87,19 +89,19 @@ def test_no_share_is_minus_nothing_and_rigid_modes_have_none() -> None:
 def test_motion_along_the_axis_and_of_pedestals_is_shown_where_there_is_any() -> None:
     thrust = _system()
     thrust["modes"][1]["energy"] = thrust["modes"][1]["energy"] | {"torsion": 0.25, "axial": 0.75}
-    out = _said(screen.show_system, thrust)
+    out = _said(shown_by(system.sections), thrust)
     assert "axial" in out
     assert "75 %" in out
     assert "pedestal" not in out
-    assert "axial" not in _said(screen.show_system, _system())
+    assert "axial" not in _said(shown_by(system.sections), _system())
 
 
 def test_modes_far_above_the_housing_limit_are_counted_only() -> None:
-    out = _said(screen.show_system, _system(trusted_below_hz=1000.0))
+    out = _said(shown_by(system.sections), _system(trusted_below_hz=1000.0))
     assert "2500.00" not in out
     assert out.rstrip().endswith("1 more mode above 2000 Hz.")
-    assert "above" not in _said(screen.show_system, _system(trusted_below_hz=1250.0))
-    assert "2500.00" in _said(screen.show_system, _system(trusted_below_hz=None))
+    assert "above" not in _said(shown_by(system.sections), _system(trusted_below_hz=1250.0))
+    assert "2500.00" in _said(shown_by(system.sections), _system(trusted_below_hz=None))
 
 
 @pytest.mark.parametrize("gap", [None, math.inf])
