@@ -13,6 +13,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING
 from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.steady import STEADY, steady_document
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import (
     gear_analysis,
@@ -32,7 +33,6 @@ from gearwhine.stages.rotors import SolvedRotor
 from gearwhine.stages.steady import SolvedSteady
 from gearwhine.stages.system import SolvedSystem
 from gearwhine.stages.uncertainty import add_uncertainty
-from gearwhine.steady_results import write_steady
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -229,7 +229,7 @@ def steady(
         points=points,
         exact=exact,
     )
-    document = steady_stage.steady_document(case, solved)
+    document = steady_document(case.title, solved)
     add_warnings(document, machine_warnings(machine))
     error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
     add_uncertainty(document, error, document["trusted_below_hz"])
@@ -244,7 +244,7 @@ def steady(
         case,
         solved,
         joined(document, housing_documents.origin_document(solved_housing)),
-        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (write_steady, solved)),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (STEADY, solved)),
         _figures=figures,
         _housing=solved_housing,
     )

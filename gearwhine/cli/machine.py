@@ -127,7 +127,8 @@ def steady(
 ) -> None:
     """The motion that repeats with the excitation, without marching to it; whether it is stable, and over speed."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_steady
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.steady import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.steady(
@@ -142,7 +143,7 @@ def steady(
         )
         return written(found, common.output, progress)
 
-    on_case(case, common, work, show_steady)
+    on_case(case, common, work, shown_by(sections))
 
 
 def sweep(

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from gearwhine.output.sections import Document, Section, Table, table_of
-from gearwhine.results import columns, gears, rotors, system
+from gearwhine.results import columns, gears, rotors, steady, system
 
 _LINES_OF_A_SENSOR = 6
 
@@ -20,7 +20,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (gears.report, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
         (system.report, document.get("system", document if "stability" in document else {})),
         (_transient, document if "steps" in document else {}),
-        (_steady, document if "motions" in document else {}),
+        (steady.report, document if "motions" in document else {}),
     )
     return tuple(make(given) for make, given in makers if given)
 
@@ -125,24 +125,3 @@ def _lines(document: Document, key: str) -> list[dict[str, Any]]:
             parts = line.get("contributions", {}).get("housing_modes", ())
             rows.append({**line, "sensor": sensor["name"], "by": parts[0]["name"] if parts else None})
     return rows
-
-
-def _steady(document: Document) -> Section:
-    sentences: list[str] = []
-    tables: tuple[Table, ...] = ()
-    for motion in document["motions"]:
-        stable = "stable" if motion["stable"] else "unstable"
-        if "excitations" in motion:
-            names = "; ".join(one["name"] for one in motion["excitations"])
-            worst = 100.0 * max((pair["neglected_part"] for pair in motion["gear_pairs"]), default=0.0)
-            sentences.append(
-                f"The excitations have no short common period: each has its own motion, the other meshes linear about "
-                f"their mean load, and these are superposed ({names}); {stable}. The sum leaves out at most "
-                f"{worst:.2g} % of a mesh's varying force."
-            )
-        else:
-            sentences.append(f"Period {1e3 * motion['period_s']:.6g} ms, {stable}.")
-        tables += table_of(columns.MESHES, motion["gear_pairs"])
-        tables += table_of(columns.LINES, _lines(motion, "lines"))
-    tables += table_of(columns.EVENTS, document.get("curve", {}).get("bifurcations", ()), "Over speed")
-    return Section("Steady state", (*sentences, *tables), pictures=("steady",))

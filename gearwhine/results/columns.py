@@ -63,4 +63,3 @@ HELD_BACK = (
     Column("error before [%]", "before_error_percent", "+.2f"),
     Column("rms of the others [%]", "rms_error_percent_of_the_others", ".2f"),
 )
-EVENTS = (Column("speed [rpm]", "speed_rpm", ".1f"), Column("what happens", "kind"))

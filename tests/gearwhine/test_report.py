@@ -10,7 +10,7 @@ import pytest
 from gearwhine.case import CaseError
 from gearwhine.output.html import report_page
 from gearwhine.output.sections import Column, columns_of, table_of
-from gearwhine.results import columns, gears, rotors, system
+from gearwhine.results import columns, gears, rotors, steady, system
 from gearwhine.results.chapters import chapters_of
 from gearwhine.stages.contents import file_contents
 
@@ -393,6 +393,7 @@ CELLS = {
 
 TABLES: dict[str, tuple[Column, ...]] = {
     "ROTORS": columns_of(rotors.ROTOR),
+    "EVENTS": columns_of(steady.EVENT),
     "GEARS": gears.OVERVIEW,
     "SYSTEM": (),  # depends on the modes
     **{name: table for name, table in vars(columns).items() if name.isupper()},
