@@ -22,6 +22,13 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, write_shapes
 from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.run import (
+    RUN_SIGNATURE,
+    TRANSIENT,
+    HistoryStream,
+    run_signature_document,
+    transient_document,
+)
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import comparison as comparison_stage
 from gearwhine.stages import comparison_documents, gear_analysis, housing_documents
@@ -145,17 +152,16 @@ def run(
             transient = transient_stage.solve_transient(
                 case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep
             )
-            document = joined(document, transient_stage.transient_document(case, transient))
-            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
-            add_uncertainty(document, basis, transient.trusted_limit)
             if transient_stage.is_traced(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
-                signature_stage.add_signature(document, transient, signature)
+            document = joined(document, transient_document(transient, signature))
+            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
+            add_uncertainty(document, basis, transient.trusted_limit)
             run_signature = run_up_stage.solve_run_signature(case, transient)
             add_warnings(document, run_up_stage.run_signature_warnings(case, transient))
             if run_signature is not None:
-                document["run_signature"] = run_up_stage.run_signature_document(run_signature)
+                document["run_signature"] = run_signature_document(run_signature)
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
@@ -267,23 +273,17 @@ class RunSolution:
 
 def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
     """The quantities of what there is."""
-    from gearwhine.signature_results import write_run_signature, write_signature
-    from gearwhine.transient_results import HistoryStream, write_transient
-
-    parts: list[tuple[Any, Any]] = [
+    streams = () if solved.transient is None else (HistoryStream(solved.transient),)
+    return labelled(
+        case,
         (HOUSING, solved.housing),
         (ROTORS, solved.rotors),
         (GEARS, solved.pairs),
         (SYSTEM, solved.system),
-    ]
-    if solved.transient is not None:
-        parts.append((write_transient, solved.transient))
-        if solved.signature is not None:
-            parts.append((partial(write_signature, solved.transient), solved.signature))
-    if solved.run_signature is not None:
-        parts.append((write_run_signature, solved.run_signature))
-    streams = () if solved.transient is None else (HistoryStream(solved.transient),)
-    return labelled(case, *parts, streams=streams)
+        (TRANSIENT, None if solved.transient is None else (solved.transient, solved.signature)),
+        (RUN_SIGNATURE, solved.run_signature),
+        streams=streams,
+    )
 
 
 def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tuple[str, Figure]]:

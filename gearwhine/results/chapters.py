@@ -3,10 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from gearwhine.output.sections import Document, Section, Table, table_of
-from gearwhine.results import columns, gears, rotors, steady, system
-
-_LINES_OF_A_SENSOR = 6
+from gearwhine.output.sections import Document, Section, table_of
+from gearwhine.results import columns, gears, rotors, run, steady, system
 
 
 def chapters_of(document: Document) -> tuple[Section, ...]:
@@ -19,7 +17,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (rotors.report, document if document.get("rotors") else {}),
         (gears.report, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
         (system.report, document.get("system", document if "stability" in document else {})),
-        (_transient, document if "steps" in document else {}),
+        (run.report, document if "steps" in document else {}),
         (steady.report, document if "motions" in document else {}),
     )
     return tuple(make(given) for make, given in makers if given)
@@ -81,47 +79,3 @@ def _update(document: Document) -> Section:
     tables = table_of(columns.PARAMETERS, document["parameters"])
     tables += table_of(columns.HELD_BACK, document.get("held_back", ()), "Each mode predicted by a fit to the others")
     return Section("Updated numbers", (*sentences, *tables), pictures=("update",))
-
-
-def _transient(document: Document) -> Section:
-    sentences = [
-        f"{document['steps']} steps at {document['speed_rpm']:.0f} rpm, {document['coordinates']} modal coordinates; "
-        f"the energy balance closes to {document['energy_error']:.1e}."
-    ]
-    if document.get("trusted_below_hz"):
-        sentences.append(f"The model's modes are complete up to {document['trusted_below_hz']:.0f} Hz.")
-    sentences += _basis_error(document)
-    tables = table_of(columns.MESHES, document.get("gear_pairs", ()), "Gear meshes")
-    tables += table_of(columns.LINES, [*_lines(document, "peaks")], "Highest lines of each sensor")
-    tables += table_of(columns.BEARINGS, document.get("bearings", ()), "Bearings")
-    tables += table_of(columns.ORDERS, document.get("run_signature", {}).get("orders", ()), "Orders along the run")
-    pictures = (
-        "spectrum",
-        "contributions",
-        "mesh-force",
-        "orbits",
-        "modal-coordinates",
-        "friction",
-        "run-up",
-        "waterfall",
-        "sweep",
-    )
-    return Section("Motion", (*sentences, *tables), pictures=pictures)
-
-
-def _basis_error(document: Document) -> list[str]:
-    """The error that the modal basis may leave in responses, at worst in each band."""
-    parts = []
-    for band in document.get("basis_error", ()):
-        worst = max((sensor["largest"] for sensor in band["sensors"]), default=0.0)
-        parts.append(f"{100.0 * worst:.2g} % up to {band['to_hz']:.0f} Hz")
-    return [f"Error left by the modal basis, at the worst sensor and frequency: {', '.join(parts)}."] if parts else []
-
-
-def _lines(document: Document, key: str) -> list[dict[str, Any]]:
-    rows = []
-    for sensor in document.get("sensors", ()):
-        for line in sensor.get(key, ())[:_LINES_OF_A_SENSOR]:
-            parts = line.get("contributions", {}).get("housing_modes", ())
-            rows.append({**line, "sensor": sensor["name"], "by": parts[0]["name"] if parts else None})
-    return rows

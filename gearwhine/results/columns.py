@@ -17,38 +17,6 @@ PAIRS = (
     Column("confidence", "confidence", ".2f"),
     Column("strength [1/kg]", "strength", ".4g"),
 )
-MESHES = (
-    Column("driver", "driver"),
-    Column("driven", "driven"),
-    Column("mean force [N]", "mean_force_n", ".0f"),
-    Column("largest force [N]", "peak_force_n", ".0f"),
-    Column("apart [%]", "contact_loss_fraction", ".2f", 100.0),
-    Column("friction takes [W]", "friction.mean_power_w", ".3g"),
-    Column("a.c. compression [µm rms]", "rms_compression_m", ".3g", 1e6),
-)
-ORDERS = (
-    Column("signal", "signal"),
-    Column("order", "name"),
-    Column("highest [peak]", "highest_amplitude", ".3g"),
-    Column("unit", "unit"),
-    Column("at [rpm]", "at_rpm", ".0f"),
-    Column("that is [Hz]", "frequency_hz", ".0f"),
-)
-LINES = (
-    Column("sensor", "sensor"),
-    Column("line [Hz]", "frequency_hz", ".1f"),
-    Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
-    Column("level [dB re 1e-6 m/s²]", "level_db", ".1f"),
-    Column("± by the modal basis [%]", "uncertainty", ".1f", 100.0),
-    Column("what it is", "name"),
-    Column("mostly by", "by"),
-)
-BEARINGS = (
-    Column("bearing", "name"),
-    Column("mean force x, y, z [N]", "mean_force_n", ".1f"),
-    Column("a.c. force x, y, z [N rms]", "rms_force_n", ".2f"),
-    Column("mean moment x, y [N m]", "mean_moment_n_m", ".2f"),
-)
 PARAMETERS = (
     Column("parameter", "name"),
     Column("before (SI)", "before", ".5g"),

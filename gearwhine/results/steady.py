@@ -7,7 +7,7 @@ import numpy as np
 
 from gearwhine.doubtful import add_warnings
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, percent, table_of
+from gearwhine.output.sections import Document, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
 
 if TYPE_CHECKING:
@@ -230,9 +230,7 @@ CURVE = (
     ),
     _of_contacts("compression", lambda curve: curve.rms_compression, "m", "a.c. rms of the compression of the mesh"),
     _of_contacts("peak_force", lambda curve: curve.peak_force, "N", "largest gear-mesh force"),
-    _of_contacts(
-        "contact_loss", lambda curve: curve.contact_loss, "1", "part of the period that the flanks are apart"
-    ),
+    _of_contacts("contact_loss", lambda curve: curve.contact_loss, "1", "part of the period that the flanks are apart"),
     Quantity("", _sensor_rms, "branch_sensor_rms", (*_POINT, "sensor"), "m/s2", "rms of the sensor's acceleration"),
     Rows(
         "gear_pairs",
@@ -253,9 +251,7 @@ CURVE = (
         lambda solved: [{"name": name, "rms_m_per_s2": values} for name, values in solved.branch_rms.items()],
     ),
     Rows("bifurcations", lambda solved: solved.curve.bifurcations, EVENT),
-    Quantity(
-        "", lambda solved: [event.kind for event in solved.curve.bifurcations], "branch_event", ("branch_event",)
-    ),
+    Quantity("", lambda solved: [event.kind for event in solved.curve.bifurcations], "branch_event", ("branch_event",)),
     Quantity(
         "",
         lambda solved: np.array([event.speed for event in solved.curve.bifurcations]) * RPM,

@@ -81,9 +81,7 @@ MODE = (
         heading="kind",
         shown=lambda row: _named(row),
     ),
-    Quantity(
-        "where", lambda row: row[0].modes.where[row[1]], "system_where", (), "", "where it moves most"
-    ),
+    Quantity("where", lambda row: row[0].modes.where[row[1]], "system_where", (), "", "where it moves most"),
     Quantity("energy", lambda row: row[0].modes.energy[row[1]]),
     _of_components(
         "kinetic_energy", "kinetic_share", "1", "share of the kinetic energy", lambda modes: modes.shares.kinetic
@@ -210,12 +208,15 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
         *curves(loads(slice(0, 2)), "bearing", "force", ("plane",), "N", force),
         *curves(loads(2), "bearing", "axial_force", (), "N", f"{force} along z"),
         *curves(
-            loads(slice(3, 5)), "bearing", "moment", ("plane",), "N m", "moment of the shaft on its bearing about x and y"
+            loads(slice(3, 5)),
+            "bearing",
+            "moment",
+            ("plane",),
+            "N m",
+            "moment of the shaft on its bearing about x and y",
         ),
         *curves(lambda one: one.mesh_force, "mesh", "force", (), "N", "gear-mesh force along the line of action"),
-        Quantity(
-            "", lambda row: ["x", "y"] if row[0].bearing_load else None, "plane", ("plane",), common=True
-        ),
+        Quantity("", lambda row: ["x", "y"] if row[0].bearing_load else None, "plane", ("plane",), common=True),
     )
 
 
@@ -283,9 +284,7 @@ CAMPBELL = (
         "rpm",
         "speed of the first driver",
     ),
-    _diagram(
-        "frequency", lambda row: row[0].frequencies_hz, "Hz", "damped frequency of the coupled modes over speed"
-    ),
+    _diagram("frequency", lambda row: row[0].frequencies_hz, "Hz", "damped frequency of the coupled modes over speed"),
     _diagram("damping_ratio", lambda row: row[0].damping_ratios, "1", "damping ratio of the coupled modes over speed"),
     _diagram("whirl", lambda row: row[0].whirl, "1", "sense of the rotor that bends most, 1 counter-clockwise"),
     _diagram("teeth", lambda row: row[0].teeth, "1", "share of the gear meshes in the strain energy"),
@@ -301,9 +300,7 @@ CAMPBELL = (
             Quantity("where", lambda row: row[0].where[:, row[1]]),
         ),
     ),
-    Quantity(
-        "lines", lambda row: [{"name": one.name, "kind": one.kind, "order": one.order} for one in row[0].lines]
-    ),
+    Quantity("lines", lambda row: [{"name": one.name, "kind": one.kind, "order": one.order} for one in row[0].lines]),
     Rows("crossings", lambda row: [(one, row[1]) for one in row[0].crossings], CROSSING, "system_crossing"),
     Quantity("unsettled", lambda row: row[0].unsettled),
 )
@@ -337,9 +334,7 @@ SYSTEM = (
         "",
         "component, connector or contact",
     ),
-    Rows(
-        "modes", lambda solved: [(solved, mode) for mode in range(len(solved.modes.kinds))], MODE, "system_mode"
-    ),
+    Rows("modes", lambda solved: [(solved, mode) for mode in range(len(solved.modes.kinds))], MODE, "system_mode"),
     Quantity("coordinates", lambda solved: solved.machine.system.size),
     Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
     Part("stability", lambda solved: solved, STABILITY),
@@ -357,9 +352,7 @@ SYSTEM = (
     Quantity(
         "static_error",
         lambda solved: (
-            None
-            if solved.housing is None
-            else static_error_document(solved.housing.modes, solved.housing.loaded)
+            None if solved.housing is None else static_error_document(solved.housing.modes, solved.housing.loaded)
         ),
     ),
     Part(
@@ -502,7 +495,10 @@ def _stability(stability: Document) -> Iterator[str]:
 def _peaks(response: Document) -> Iterator[str | Table]:
     """Where the dynamic mesh force and the sensors answer most to a micrometre of error."""
     rows: list[dict[str, Any]] = []
-    for key, what in (("mesh_force_n", "mesh force [N/µm]"), ("sensor_acceleration_m_per_s2", "acceleration [m/s²/µm]")):
+    for key, what in (
+        ("mesh_force_n", "mesh force [N/µm]"),
+        ("sensor_acceleration_m_per_s2", "acceleration [m/s²/µm]"),
+    ):
         rows += [{"what": what, "name": name, "peaks": peaks} for name, peaks in response[key].items()]
     columns = (
         Column("peak amplitude of", "what"),

@@ -10,7 +10,7 @@ import pytest
 from gearwhine.case import CaseError
 from gearwhine.output.html import report_page
 from gearwhine.output.sections import Column, columns_of, table_of
-from gearwhine.results import columns, gears, rotors, steady, system
+from gearwhine.results import columns, gears, motion, rotors, run, steady, system
 from gearwhine.results.chapters import chapters_of
 from gearwhine.stages.contents import file_contents
 
@@ -395,6 +395,10 @@ TABLES: dict[str, tuple[Column, ...]] = {
     "ROTORS": columns_of(rotors.ROTOR),
     "EVENTS": columns_of(steady.EVENT),
     "GEARS": gears.OVERVIEW,
+    "MESHES": (*run.MESH_COLUMNS, *columns_of(steady.PAIR)[-1:]),
+    "LINES": motion.LINE_COLUMNS,
+    "BEARINGS": columns_of(run.BEARING),
+    "ORDERS": columns_of(run.ORDER),
     "SYSTEM": (),  # depends on the modes
     **{name: table for name, table in vars(columns).items() if name.isupper()},
 }
