@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -623,11 +624,15 @@ def _weight(static: Document) -> Iterator[str | Table]:
         return
     columns = (
         Column("bearing carries", "name"),
-        *(Column(f"{axis} [N]", lambda row, at=at: f"{row['load_n'][at]:z.5g}") for at, axis in enumerate("xy")),
+        *(Column(f"{axis} [N]", partial(_load, at)) for at, axis in enumerate("xy")),
     )
     yield from table_of(columns, static["bearings"], f"Under its weight{_with_bearings_at(static['bearings_at_rpm'])}")
     sag, place = 1e6 * static["largest_deflection_m"], 1e3 * static["largest_deflection_at_m"]
     yield f"It sags most at {place:.5g} mm, by {sag:.3g} µm"
+
+
+def _load(axis: int, bearing: Document) -> str:
+    return f"{bearing['load_n'][axis]:z.5g}"
 
 
 _PROBES = (

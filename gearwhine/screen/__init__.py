@@ -3,7 +3,6 @@
 from gearwhine.screen.case import show_check, show_examples, show_mesh
 from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail, show_survey
 from gearwhine.screen.machine import show_run
-from gearwhine.screen.sweep import show_sweep
 from gearwhine.screen.updating import show_update
 
 __all__ = [
@@ -16,6 +15,5 @@ __all__ = [
     "show_modes_in_detail",
     "show_run",
     "show_survey",
-    "show_sweep",
     "show_update",
 ]
