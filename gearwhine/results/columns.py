@@ -2,21 +2,6 @@
 
 from gearwhine.output.sections import Column
 
-MODES = (
-    Column("mode", "number", "d"),
-    Column("frequency [Hz]", "frequency_hz", ".2f"),
-    Column("damping ratio", "damping_ratio", ".4f"),
-    Column("strength [1/kg]", "strength", ".4g"),
-)
-PAIRS = (
-    Column("measured [Hz]", "measured_hz", ".1f"),
-    Column("model [Hz]", "model_hz", ".1f"),
-    Column("error [%]", "error_percent", "+.2f"),
-    Column("mode", "mode", "d"),
-    Column("MAC", "mac", ".3f"),
-    Column("confidence", "confidence", ".2f"),
-    Column("strength [1/kg]", "strength", ".4g"),
-)
 MESHES = (
     Column("driver", "driver"),
     Column("driven", "driven"),
@@ -54,19 +39,5 @@ BEARINGS = (
     Column("mean force x, y, z [N]", "mean_force_n", ".1f"),
     Column("a.c. force x, y, z [N rms]", "rms_force_n", ".2f"),
     Column("mean moment x, y [N m]", "mean_moment_n_m", ".2f"),
-)
-PARAMETERS = (
-    Column("parameter", "name"),
-    Column("before (SI)", "before", ".5g"),
-    Column("after (SI)", "after", ".5g"),
-    Column("± (SI)", "standard_deviation", ".2g"),
-)
-HELD_BACK = (
-    Column("held back [Hz]", "measured_hz", ".1f"),
-    Column("predicted [Hz]", "predicted_hz", ".1f"),
-    Column("error [%]", "error_percent", "+.2f"),
-    Column("expected ± [%]", "standard_deviation_percent", ".2f"),
-    Column("error before [%]", "before_error_percent", "+.2f"),
-    Column("rms of the others [%]", "rms_error_percent_of_the_others", ".2f"),
 )
 EVENTS = (Column("speed [rpm]", "speed_rpm", ".1f"), Column("what happens", "kind"))

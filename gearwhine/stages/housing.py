@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ FloatArray = npt.NDArray[np.float64]
 _HERTZ = 2.0 * np.pi
 _COORDINATES = ("coordinate", "other_coordinate")
 _ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
+_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
 _DAMPING = "modal_damping"  # its name in a mode-set file
 
 
@@ -101,6 +103,38 @@ class SolvedHousing:
         if self.damping_matrix is None:
             return self.damping_ratios
         return room.damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
+
+    @property
+    def survey_shapes(self) -> FloatArray:
+        """Mode shapes at the survey points, mass-normalised, shape (n_modes, n_points, 3) [1/√kg]."""
+        count = len(self.modes.frequencies)
+        return (self.survey.matrix @ self.modes.shapes.reshape(count, -1).T).T.reshape(count, -1, 3)
+
+    @property
+    def missing_compliance(self) -> FloatArray:
+        """Part of the static compliance that the modes lack without attachments, shape (n_loaded, 5).
+
+        Raises
+        ------
+        ValueError
+            Where there are no attachments.
+        """
+        if self.modes.attachments is None:
+            raise ValueError("static compliance of a housing without attachments")
+        return self.modes.attachments.proof.missing_parts.reshape(len(self.loaded), -1)
+
+    @cached_property
+    def selection(self) -> room.Selection | None:
+        """Modes that carry forces across the shafts from the bearings to the sensors; None where there are not both."""
+        ratios = self.total_damping_ratios
+        if not self.loaded or not self.sensors or not (ratios > 0.0).all():
+            return None
+        # Forces across the shafts alone: receptances by moments have another unit, and no common scale with these.
+        forces = sparse.csr_array(sparse.vstack([motions[:2] for motions in self.loaded.values()], format="csr"))
+        motions = sparse.csr_array(sparse.vstack([sensor.matrix for sensor in self.sensors.values()], format="csr"))
+        # From just above rest, where a free housing has no receptance.
+        limit = self.modes.certificate.limit
+        return room.select_modes(self.modes, ratios, forces, motions, (0.01 * limit, limit), _SELECTION_TOLERANCE)
 
 
 def solve_housing(

@@ -10,7 +10,7 @@ import pytest
 from gearwhine.case import CaseError
 from gearwhine.output.html import report_page
 from gearwhine.output.sections import Column, columns_of, table_of
-from gearwhine.results import columns, gears, rotors
+from gearwhine.results import columns, comparison, gears, housing, rotors, update
 from gearwhine.results.chapters import chapters_of
 from gearwhine.stages.contents import file_contents
 
@@ -369,6 +369,10 @@ CELLS = {
 
 
 TABLES: dict[str, tuple[Column, ...]] = {
+    "MODES": columns_of(housing.MODE),
+    "PAIRS": columns_of(comparison.PAIR),
+    "PARAMETERS": columns_of(update.PARAMETER),
+    "HELD_BACK": columns_of(update.HELD_BACK),
     "ROTORS": columns_of(rotors.ROTOR),
     "GEARS": gears.OVERVIEW,
     **{name: table for name, table in vars(columns).items() if name.isupper()},
