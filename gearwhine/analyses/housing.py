@@ -48,9 +48,8 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
     progress("meshing the housing")
     remarks: list[str] = []
     made = geometry_stage.build_mesh(case, remarks.append)
-    doubts = mesh_health.examine(case, made)
-    doubts += mesh_health.doubt_resolution(case, made, case.housing.frequency_limit if case.housing else None)
-    warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.warnings_document(doubts)
+    warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.examine(case, made)
+    warnings += mesh_health.doubt_resolution(case, made, case.housing.frequency_limit if case.housing else None)
 
     def files(place: Path, *, pictures: bool) -> None:
         write_mesh(made, place / f"mesh.{suffix}")

@@ -11,12 +11,13 @@ from gearwhine.doubtful import add_warnings, joined, warning
 from gearwhine.output.dataset import labelled
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
-from gearwhine.results.housing import HOUSING
+from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.steady import STEADY, steady_document
+from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import (
     gear_analysis,
     gear_torques,
-    housing_documents,
     relief_aims,
 )
 from gearwhine.stages import gears as gear_stage
@@ -30,10 +31,7 @@ from gearwhine.stages.instability import machine_warnings, unstable_modes_warnin
 from gearwhine.stages.rotors import SolvedRotor
 from gearwhine.stages.steady import SolvedSteady
 from gearwhine.stages.system import SolvedSystem
-from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.uncertainty import add_uncertainty
-from gearwhine.steady_results import write_steady
-from gearwhine.system_results import write_system
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -161,7 +159,7 @@ def system(
         over_speed=over_speed or swept or sidebands > 0,
         sidebands=sidebands,
     )
-    document = system_document(case, solved, solved_housing)
+    document = system_document(solved)
     add_warnings(document, unstable_modes_warnings(solved.stability))
     error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
     add_uncertainty(document, error, document["trusted_below_hz"])
@@ -175,8 +173,8 @@ def system(
         "system",
         case,
         solved,
-        joined(document, housing_documents.origin_document(solved_housing)),
-        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (write_system, solved)),
+        joined(document, origin_document(solved_housing)),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (SYSTEM, solved)),
         _figures=figures,
         _housing=solved_housing,
     )
@@ -230,7 +228,7 @@ def steady(
         points=points,
         exact=exact,
     )
-    document = steady_stage.steady_document(case, solved)
+    document = steady_document(case.title, solved)
     add_warnings(document, machine_warnings(machine))
     error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
     add_uncertainty(document, error, document["trusted_below_hz"])
@@ -244,8 +242,8 @@ def steady(
         "steady",
         case,
         solved,
-        joined(document, housing_documents.origin_document(solved_housing)),
-        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (write_steady, solved)),
+        joined(document, origin_document(solved_housing)),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (STEADY, solved)),
         _figures=figures,
         _housing=solved_housing,
     )

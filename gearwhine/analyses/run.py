@@ -19,11 +19,20 @@ from gearwhine.march_files import kept_march
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.comparison import comparison_document
 from gearwhine.results.gears import GEARS, gears_document
-from gearwhine.results.housing import HOUSING, write_shapes
+from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
 from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.run import (
+    RUN_SIGNATURE,
+    TRANSIENT,
+    HistoryStream,
+    run_signature_document,
+    transient_document,
+)
+from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import comparison as comparison_stage
-from gearwhine.stages import comparison_documents, gear_analysis, housing_documents
+from gearwhine.stages import gear_analysis
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
@@ -37,7 +46,6 @@ from gearwhine.stages.housing import keep_modes
 from gearwhine.stages.instability import unstable_modes_warnings
 from gearwhine.stages.kept_modes import MODES_FILE
 from gearwhine.stages.machine import require_machine
-from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.uncertainty import add_uncertainty
 
 if TYPE_CHECKING:
@@ -115,11 +123,11 @@ def run(
         document = joined(document, gears_document(analysed))
     comparison = None
     if housing is not None:
-        document["housing"] = housing_documents.modes_document(housing)
-        document = joined(document, housing_documents.origin_document(housing))
+        document["housing"] = modes_document(housing)
+        document = joined(document, origin_document(housing))
         if case.measured is not None:
             comparison = comparison_stage.compare_housing(case, housing, progress)
-            document["compare"] = comparison_documents.comparison_document(comparison, housing)
+            document["compare"] = comparison_document(comparison, housing)
 
     transient, system, signature, run_signature = None, None, None, None
     if case.rotor and case.operation:
@@ -128,7 +136,7 @@ def run(
         machine = machine_stage.build_machine(case, part, pairs, progress)
         basis = machine_stage.basis_error(case, machine, part, pairs, progress)
         system = system_stage.solve_system(case, machine, housing, progress)
-        document["system"] = system_document(case, system, housing)
+        document["system"] = system_document(system)
         add_warnings(document, unstable_modes_warnings(system.stability))
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
         timed("system", begin)
@@ -145,17 +153,16 @@ def run(
             transient = transient_stage.solve_transient(
                 case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep
             )
-            document = joined(document, transient_stage.transient_document(case, transient))
-            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
-            add_uncertainty(document, basis, transient.trusted_limit)
             if transient_stage.is_traced(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
-                signature_stage.add_signature(document, transient, signature)
+            document = joined(document, transient_document(transient, signature))
+            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
+            add_uncertainty(document, basis, transient.trusted_limit)
             run_signature = run_up_stage.solve_run_signature(case, transient)
             add_warnings(document, run_up_stage.run_signature_warnings(case, transient))
             if run_signature is not None:
-                document["run_signature"] = run_up_stage.run_signature_document(run_signature)
+                document["run_signature"] = run_signature_document(run_signature)
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
@@ -267,21 +274,17 @@ class RunSolution:
 
 def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
     """The quantities of what there is."""
-    from gearwhine.signature_results import write_run_signature, write_signature
-    from gearwhine.system_results import write_system
-    from gearwhine.transient_results import HistoryStream, write_transient
-
-    parts: list[tuple[Any, Any]] = [(HOUSING, solved.housing), (ROTORS, solved.rotors), (GEARS, solved.pairs)]
-    if solved.system is not None:
-        parts.append((write_system, solved.system))
-    if solved.transient is not None:
-        parts.append((write_transient, solved.transient))
-        if solved.signature is not None:
-            parts.append((partial(write_signature, solved.transient), solved.signature))
-    if solved.run_signature is not None:
-        parts.append((write_run_signature, solved.run_signature))
     streams = () if solved.transient is None else (HistoryStream(solved.transient),)
-    return labelled(case, *parts, streams=streams)
+    return labelled(
+        case,
+        (HOUSING, solved.housing),
+        (ROTORS, solved.rotors),
+        (GEARS, solved.pairs),
+        (SYSTEM, solved.system),
+        (TRANSIENT, None if solved.transient is None else (solved.transient, solved.signature)),
+        (RUN_SIGNATURE, solved.run_signature),
+        streams=streams,
+    )
 
 
 def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tuple[str, Figure]]:

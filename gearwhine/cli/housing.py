@@ -160,7 +160,7 @@ def render(
 ) -> None:
     """Shapes of modes, of a run's lines, or measured: pictures, films, models in OUT (default: ./<case>-results)."""
     from gearwhine.analyses import housing as analyses
-    from gearwhine.output.terminal import shown_by
+    from gearwhine.output.terminal import show_files
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
@@ -177,4 +177,4 @@ def render(
         )
         return written(found, folder, progress)
 
-    on_case(case, common, work, shown_by(lambda document: ()))
+    on_case(case, common, work, show_files)

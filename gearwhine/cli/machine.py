@@ -77,7 +77,8 @@ def system(
 ) -> None:
     """Complex natural modes of the whole coupled system, who moves and damps; what reaches bearings and sensors."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_system
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.system import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.system(
@@ -91,7 +92,7 @@ def system(
         )
         return written(found, common.output, progress)
 
-    on_case(case, common, work, show_system)
+    on_case(case, common, work, shown_by(sections))
 
 
 def steady(
@@ -126,7 +127,8 @@ def steady(
 ) -> None:
     """The motion that repeats with the excitation, without marching to it; whether it is stable, and over speed."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_steady
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.steady import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.steady(
@@ -141,7 +143,7 @@ def steady(
         )
         return written(found, common.output, progress)
 
-    on_case(case, common, work, show_steady)
+    on_case(case, common, work, shown_by(sections))
 
 
 def sweep(

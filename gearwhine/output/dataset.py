@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
-from gearwhine.output.quantity import ABSENT, RPM, Field, Part, Quantity
+from gearwhine.output.quantity import ABSENT, RPM, Field, Fields, Part, Quantity
 from housing.netcdf import Variables, write_netcdf
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 class Stream(Protocol):
     """Arrays that are too long to be held at once: they are written behind the others."""
+
+    def labels(self) -> Variables:
+        """Coordinates along their dimensions, which stand in the file before."""
 
     def append_to(self, path: Path) -> None:
         """Write them piece by piece into a file that holds the others."""
@@ -65,14 +68,13 @@ class LabelledArrays:
         return xr.Dataset(variables, self.scalars, self.attributes)
 
 
-def labelled(case: Case, *parts: tuple[Any, Any], streams: Sequence[Stream] = ()) -> LabelledArrays:
+def labelled(case: Case, *parts: tuple[Fields, Any], streams: Sequence[Stream] = ()) -> LabelledArrays:
     """Solved objects, each with the declaration of its quantities, as labelled arrays; what is None is left out."""
     variables: Variables = {}
     for fields, solved in parts:
-        if callable(fields):  # until every result is declared
-            fields(solved, variables, variables)
-        else:
-            variables |= {} if solved is None else arrays_of(fields, solved)
+        variables |= {} if solved is None else arrays_of(fields, solved)
+    for stream in streams:
+        variables = stream.labels() | variables
     scalars: Variables = {}
     if case.operation is not None:
         told = {"units": "rpm", "long_name": "speed of the first driver"}
@@ -128,6 +130,8 @@ def _add_quantity(quantity: Quantity, objects: Sequence[Any], along: tuple[str, 
         labels = quantity.dimensions[0]
         found.setdefault(labels, ((labels,), list(values[known]), {}))
         values = [None if value is None else np.array(list(value.values())) for value in values]
+    if quantity.name in found and quantity.dimensions != (quantity.name,):
+        raise ValueError(f"{quantity.name!r} is declared twice")
     told: dict[str, Any] = {} if quantity.unit == "" else {"units": quantity.unit}
     told |= {} if quantity.long_name == "" else {"long_name": quantity.long_name}
     told |= {} if quantity.attributes is None else quantity.attributes(objects[known])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import coupling.gears
-from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
 from gearwhine.stages.gear_shapes import doubts
 from gearwhine.stages.gears import backlash_doubts
@@ -61,9 +61,7 @@ GEAR = (
     Quantity("profile_shift", lambda row: row[1].profile_shift, heading="shift [modules]"),
     Quantity("rack_tip_radius_m", lambda row: row[1].rack_tip_radius),
     Quantity("undercut", lambda row: row[1].is_undercut),
-    Quantity(
-        "face_width_m", lambda row: row[1].face_width if row[2] else None, heading="face", shown=".5g", scale=_MM
-    ),
+    Quantity("face_width_m", lambda row: row[1].face_width if row[2] else None, heading="face", shown=".5g", scale=_MM),
     Quantity(
         "diameters_m",
         lambda row: {
@@ -362,17 +360,13 @@ PAIR = (
     Quantity("driver", lambda pair: pair.solved.pair.driver, heading="driver"),
     Quantity("driven", lambda pair: pair.solved.pair.driven, heading="driven"),
     Quantity("model", lambda pair: pair.given.stiffness.model),
-    Quantity(
-        "contact_ratio", lambda pair: pair.solved.geometry.contact_ratio, heading="contact ratio", shown=".4f"
-    ),
+    Quantity("contact_ratio", lambda pair: pair.solved.geometry.contact_ratio, heading="contact ratio", shown=".4f"),
     Quantity("overlap_ratio", lambda pair: pair.solved.geometry.overlap_ratio),
     Quantity("total_contact_ratio", lambda pair: pair.solved.geometry.total_contact_ratio),
     Quantity("centre_distance_m", lambda pair: pair.solved.geometry.working_centre_distance),
     Quantity("working_pressure_angle_rad", lambda pair: pair.solved.geometry.working_pressure_angle),
     Quantity("backlash_m", lambda pair: pair.solved.backlash),
-    Quantity(
-        "mesh_frequency_hz", lambda pair: pair.solved.mesh_frequency, heading="mesh frequency [Hz]", shown=".2f"
-    ),
+    Quantity("mesh_frequency_hz", lambda pair: pair.solved.mesh_frequency, heading="mesh frequency [Hz]", shown=".2f"),
     Quantity("torque_n_m", lambda pair: pair.solved.torque),
     Quantity("mean_force_n", lambda pair: pair.solved.static.force),
     Rows("gears", lambda pair: _gears(pair.solved.geometry, pair.widths_given), GEAR),
@@ -420,11 +414,6 @@ PAIR = (
 
 GEARS = (Rows("pairs", lambda pairs: pairs, PAIR, "gear_pair"),)
 """Of all gear pairs of a case."""
-
-
-def geometry_document(geometry: coupling.gears.GearPairGeometry) -> dict[str, Any]:
-    """The shape of both gears, and the named points of their path of contact."""
-    return document_of(GEOMETRY, geometry)
 
 
 def gears_document(pairs: "Sequence[PairAnalysis]") -> dict[str, Any]:
@@ -598,9 +587,8 @@ def _best_relief(pair: Document) -> list[str]:
         f"{_MM * best['length_m']:.2f} mm of the line of action: {least:.2f} µm"
     )
     if aim["kind"] != "peak-to-peak":
-        lines.append(
-            f"Aim, the {_aim_in_words(aim)}: {_value(aim, 'without_relief')} without relief, {_value(aim, 'best')} with the best"
-        )
+        without_relief, with_best = _value(aim, "without_relief"), _value(aim, "best")
+        lines.append(f"Aim, the {_aim_in_words(aim)}: {without_relief} without relief, {with_best} with the best")
         return [*lines, f"Best {best['shape']} relief: {text} peak to peak"]
     close = least > _WORTH_IT * given
     return [*lines, f"Hardly better would be {text}" if close else f"Best {best['shape']} relief: {text}"]
@@ -632,5 +620,3 @@ def _alike(values: Sequence[float], form: str, unit: str) -> str:
     """Two figures with a stroke between, or one where they read the same."""
     shown = list(dict.fromkeys(f"{value:{form}}" for value in values))
     return "/".join(shown) + unit
-
-

@@ -1,4 +1,4 @@
-"""Housing modes: their quantities, their proof and the model's health on terminal and report, and their shapes as a file."""
+"""Housing modes: quantities of the modes, their proof and the model's health, how they are shown; shapes as a file."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -12,7 +12,6 @@ from gearwhine.output.sections import Column, Document, Section, Table, columns_
 
 if TYPE_CHECKING:
     from gearwhine.stages.rotors import Crossings, SolvedRotor
-    from rotors.rolling import RollingState
 
 _ROTATING = (
     "rotor {!r}: the damping of its coupling across the axis turns with the shaft and feeds forward whirl at speeds "
@@ -400,7 +399,9 @@ ROTOR = (
     ),
     Part("unbalance_response", lambda one: one.response, RESPONSE),
     Rows("rolling_bearings", lambda one: one.rolling.items(), ROLLING, "rolling_bearing"),
-    Quantity("damping", lambda one: "of the bearings; that of the shaft and of its couplings acts in the coupled system"),
+    Quantity(
+        "damping", lambda one: "of the bearings; that of the shaft and of its couplings acts in the coupled system"
+    ),
     Part("torsional_response", lambda one: one.torsion, TORSION),
     Part("stiffness_map", lambda one: one.stiffness_map, STIFFNESS_MAP),
     Part("certificate", lambda one: one.rest.certificate, CERTIFICATE),
@@ -624,9 +625,7 @@ def _weight(static: Document) -> Iterator[str | Table]:
         Column("bearing carries", "name"),
         *(Column(f"{axis} [N]", lambda row, at=at: f"{row['load_n'][at]:z.5g}") for at, axis in enumerate("xy")),
     )
-    yield from table_of(
-        columns, static["bearings"], f"Under its weight{_with_bearings_at(static['bearings_at_rpm'])}"
-    )
+    yield from table_of(columns, static["bearings"], f"Under its weight{_with_bearings_at(static['bearings_at_rpm'])}")
     sag, place = 1e6 * static["largest_deflection_m"], 1e3 * static["largest_deflection_at_m"]
     yield f"It sags most at {place:.5g} mm, by {sag:.3g} µm"
 

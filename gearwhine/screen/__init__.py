@@ -1,25 +1,5 @@
 """What a person sees on the terminal: a function for each command, given the document that its JSON holds."""
 
-from gearwhine.screen.case import show_check, show_examples, show_mesh
-from gearwhine.screen.housing import show_comparison, show_files, show_modes, show_modes_in_detail, show_survey
-from gearwhine.screen.machine import show_run
-from gearwhine.screen.steady import show_steady
 from gearwhine.screen.sweep import show_sweep
-from gearwhine.screen.system import show_system
-from gearwhine.screen.updating import show_update
 
-__all__ = [
-    "show_check",
-    "show_comparison",
-    "show_examples",
-    "show_files",
-    "show_mesh",
-    "show_modes",
-    "show_modes_in_detail",
-    "show_run",
-    "show_steady",
-    "show_survey",
-    "show_sweep",
-    "show_system",
-    "show_update",
-]
+__all__ = ["show_sweep"]

@@ -5,7 +5,6 @@ from typing import Any
 from rich.console import Console
 
 _WIDTH = 120
-_TOLD = 0.03  # an error of a line that is worth its place
 
 
 def open_console() -> Console:
@@ -30,16 +29,6 @@ def show_origin(console: Console, document: dict[str, Any]) -> None:
     """Where modes were read from in place of being solved for."""
     if document.get("reused"):
         console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
-
-
-def line_text(line: dict[str, Any]) -> str:
-    """A sensor's line, such as ``733 (0.58)``; beside it the error that the modal basis may leave, where it counts."""
-    doubt = line.get("uncertainty", 0.0)
-    return f"{line['frequency_hz']:.0f} ({line['amplitude_m_per_s2']:.2g}{_doubt(doubt) if doubt > _TOLD else ''})"
-
-
-def _doubt(part: float) -> str:
-    return f" ± {100.0 * part:.0f} %" if part < 1.0 else ", unsure"
 
 
 def counted(number: int, what: str) -> str:

@@ -13,12 +13,13 @@ from scipy import sparse
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.problems import UNSAID
+from gearwhine.doubtful import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_attachments, check_places
 from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.housing_checks import bearing_places, housing_checks
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
-from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, told_on_failure, warnings_document
+from gearwhine.stages.mesh_health import doubt_resolution, examine, told_on_failure
 from gearwhine.stages.regions import materials_of
 from housing.measured import MeasuredModes
 from meshes import Mesh
@@ -181,7 +182,7 @@ def solve_housing(
         if mesh is None:
             progress("meshing the housing")
             mesh = build_mesh(case, remarks.append)
-        warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
+        warnings = [warning("geometry", remark) for remark in remarks] + examine(case, mesh)
     meshed = time.perf_counter() - begin
     with told_on_failure(warnings):
         # Places and ports before modes: what is wrong with them is found out before the long work.
@@ -198,7 +199,7 @@ def solve_housing(
         if kept is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, mesh, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
-            warnings += warnings_document(doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ))
+            warnings += doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ)
         else:
             modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
             damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
@@ -238,7 +239,7 @@ def solve_housing(
         record=record,
         source=None if kept is None or folder is None else folder / MODES_FILE,
         source_holds=kept is not None and kept.sensors == record.sensors,
-        warnings=warnings + ([] if spoilt is None else [doubt("modes file", spoilt)]),
+        warnings=warnings + ([] if spoilt is None else [warning("modes file", spoilt)]),
     )
 
 

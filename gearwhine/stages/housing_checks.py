@@ -1,8 +1,6 @@
-"""What a solved housing says of itself: its health report, effective masses and static error, as the command's JSON."""
+"""Checks of a solved housing, as they are kept with its modes: health report, effective masses, mass of the solid."""
 
 from typing import Any
-
-from scipy import sparse
 
 import housing as room
 from gearwhine.case import Case
@@ -32,22 +30,6 @@ def housing_checks(given: room.Housing, health: room.HealthReport, masses: room.
         "health": _health_document(health),
         "effective_mass": _mass_document(masses),
         "solid": {"mass_kg": solid.mass, "center_of_mass_m": solid.center.tolist()},
-    }
-
-
-def static_error_document(modes: room.ModeSet, loaded: dict[str, sparse.csr_array]) -> dict[str, Any] | None:
-    """How far the static compliance where the machine bears on the housing is from exact; None without such places."""
-    attached = modes.attachments
-    if attached is None:
-        return None
-    missing = attached.proof.missing_parts.reshape(len(loaded), -1)
-    return {
-        "without_attachments": float(missing.max()),
-        "with_attachments": attached.proof.error,
-        "attachments": len(attached.frequencies),
-        "without_attachments_at": dict(zip(loaded, missing.max(axis=1).tolist(), strict=True)),
-        "directions": list(DIRECTIONS[:5]),
-        "without_attachments_along": dict(zip(loaded, missing.tolist(), strict=True)),
     }
 
 

@@ -10,7 +10,7 @@ import pytest
 from gearwhine.case import CaseError
 from gearwhine.output.html import report_page
 from gearwhine.output.sections import Column, columns_of, table_of
-from gearwhine.results import columns, comparison, gears, housing, rotors, update
+from gearwhine.results import comparison, gears, housing, motion, rotors, run, steady, system, update
 from gearwhine.results.chapters import chapters_of
 from gearwhine.stages.contents import file_contents
 
@@ -135,9 +135,12 @@ def test_what_a_fit_is_worth_is_told_beside_it() -> None:
 
 
 def test_an_unstable_machine_is_not_called_stable() -> None:
-    growing = {"stable": False, "growing": [{"frequency_hz": 90.0}]}
-    (section,) = chapters_of({"system": {"modes": [], "stability": growing}})
-    assert section.sentences[0].startswith("Unstable: 1 of")
+    mode = {"frequency_hz": 90.0, "damping_ratio": -0.01, "kind": "torsion", "doubling_time_s": 0.1, "fed_by": []}
+    growing = {"stable": False, "growing": [mode]}
+    whole = {"modes": [], "coordinates": 3, "speed_rpm": 1000.0, "stability": growing}
+    (section,) = chapters_of({"system": whole})
+    assert any(sentence.startswith("UNSTABLE: 1 mode") for sentence in section.sentences)
+    assert not any("Stable" in sentence for sentence in section.sentences)
 
 
 def test_columns_without_values_are_left_out() -> None:
@@ -304,8 +307,28 @@ CELLS = {
         },
     ),
     "SYSTEM": (
-        {"frequency_hz": 812.345, "damping_ratio": 0.0234, "kind": "rotor", "where": "input"},
-        {"frequency [Hz]": "812.35", "damping ratio": "0.0234", "kind": "rotor", "where": "input"},
+        {
+            "frequency_hz": 812.345,
+            "damping_ratio": 0.0234,
+            "kind": "rotor",
+            "where": "input",
+            "energy": {"housing": 0.1, "rotor": 0.5, "torsion": 0.2, "axial": 0.05, "pedestal": 0.0, "residual": 0.15}
+            | {"mesh": 0.3},
+            "strain_energy": {"components": {"input": 0.6}, "bearings": {"left": 0.1}, "gear_meshes": {"a -> b": 0.3}},
+            "whirl": {"input": -0.8},
+        },
+        {
+            "frequency [Hz]": "812.35",
+            "damping ratio": "0.0234",
+            "kind": "rotor: input ↻",
+            "housing": "10 %",
+            "rotor": "50 %",
+            "torsion": "20 %",
+            "axial": "5 %",
+            "residual": "15 %",
+            "teeth": "30 %",
+            "strained most": "input 60 %",
+        },
     ),
     "ROTORS": (
         {
@@ -374,15 +397,21 @@ TABLES: dict[str, tuple[Column, ...]] = {
     "PARAMETERS": columns_of(update.PARAMETER),
     "HELD_BACK": columns_of(update.HELD_BACK),
     "ROTORS": columns_of(rotors.ROTOR),
+    "EVENTS": columns_of(steady.EVENT),
     "GEARS": gears.OVERVIEW,
-    **{name: table for name, table in vars(columns).items() if name.isupper()},
+    "MESHES": (*run.MESH_COLUMNS, *columns_of(steady.PAIR)[-1:]),
+    "LINES": motion.LINE_COLUMNS,
+    "BEARINGS": columns_of(run.BEARING),
+    "ORDERS": columns_of(run.ORDER),
+    "SYSTEM": (),  # depends on the modes
 }
 
 
 @pytest.mark.parametrize("table", CELLS)
 def test_every_cell_shows_its_own_quantity_in_its_unit(table: str) -> None:
     row, expected = CELLS[table]
-    (one,) = table_of(TABLES[table], [row])
+    columns_for = TABLES[table] if table != "SYSTEM" else system.mode_columns([row])
+    (one,) = table_of(columns_for, [row])
     shown, ((*texts,),) = one.filled()
     assert {column.heading: text for column, text in zip(shown, texts, strict=True)} == expected
     assert [column.heading for column in shown] == list(expected)
