@@ -10,8 +10,8 @@ from gearwhine.case import load_case
 from gearwhine.comparison_files import draw_comparison_pictures, write_comparison
 from gearwhine.failures import run_script
 from gearwhine.output import finite, json_text, staging
+from gearwhine.results.comparison import comparison_document
 from gearwhine.stages.comparison import compare_housing
-from gearwhine.stages.comparison_documents import comparison_document
 from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.kept_modes import keep_modes
 

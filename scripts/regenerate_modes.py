@@ -12,8 +12,8 @@ from gearwhine.case import load_case
 from gearwhine.failures import run_script
 from gearwhine.output import staging
 from gearwhine.results import write_shapes
+from gearwhine.results.housing import modes_document
 from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.housing_documents import modes_document
 from gearwhine.stages.kept_modes import keep_modes
 
 

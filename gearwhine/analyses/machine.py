@@ -11,14 +11,13 @@ from gearwhine.doubtful import add_warnings, joined, warning
 from gearwhine.output.dataset import labelled
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
-from gearwhine.results.housing import HOUSING
+from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.steady import STEADY, steady_document
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import (
     gear_analysis,
     gear_torques,
-    housing_documents,
     relief_aims,
 )
 from gearwhine.stages import gears as gear_stage
@@ -174,7 +173,7 @@ def system(
         "system",
         case,
         solved,
-        joined(document, housing_documents.origin_document(solved_housing)),
+        joined(document, origin_document(solved_housing)),
         _arrays=lambda: labelled(case, (HOUSING, solved_housing), (SYSTEM, solved)),
         _figures=figures,
         _housing=solved_housing,
@@ -243,7 +242,7 @@ def steady(
         "steady",
         case,
         solved,
-        joined(document, housing_documents.origin_document(solved_housing)),
+        joined(document, origin_document(solved_housing)),
         _arrays=lambda: labelled(case, (HOUSING, solved_housing), (STEADY, solved)),
         _figures=figures,
         _housing=solved_housing,

@@ -19,8 +19,9 @@ from gearwhine.march_files import kept_march
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.comparison import comparison_document
 from gearwhine.results.gears import GEARS, gears_document
-from gearwhine.results.housing import HOUSING, write_shapes
+from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import (
     RUN_SIGNATURE,
@@ -31,7 +32,7 @@ from gearwhine.results.run import (
 )
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import comparison as comparison_stage
-from gearwhine.stages import comparison_documents, gear_analysis, housing_documents
+from gearwhine.stages import gear_analysis
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
@@ -122,11 +123,11 @@ def run(
         document = joined(document, gears_document(analysed))
     comparison = None
     if housing is not None:
-        document["housing"] = housing_documents.modes_document(housing)
-        document = joined(document, housing_documents.origin_document(housing))
+        document["housing"] = modes_document(housing)
+        document = joined(document, origin_document(housing))
         if case.measured is not None:
             comparison = comparison_stage.compare_housing(case, housing, progress)
-            document["compare"] = comparison_documents.comparison_document(comparison, housing)
+            document["compare"] = comparison_document(comparison, housing)
 
     transient, system, signature, run_signature = None, None, None, None
     if case.rotor and case.operation:

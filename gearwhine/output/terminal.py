@@ -44,6 +44,11 @@ def show(document: Document, sections: Iterable[Section], *, timed: bool = False
         console.print(f"Time: {document['seconds']['total']:.1f} s")
 
 
+def show_files(document: Document) -> None:
+    """Print which files were written, for commands that show nothing else."""
+    show(document, ())
+
+
 def show_section(console: Console, section: Section, indent: int = 0) -> None:
     """Print a section; content under a title is set in by two columns."""
     if section.title:

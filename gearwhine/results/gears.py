@@ -417,11 +417,6 @@ GEARS = (Rows("pairs", lambda pairs: pairs, PAIR, "gear_pair"),)
 """Of all gear pairs of a case."""
 
 
-def geometry_document(geometry: coupling.gears.GearPairGeometry) -> dict[str, Any]:
-    """The shape of both gears, and the named points of their path of contact."""
-    return document_of(GEOMETRY, geometry)
-
-
 def gears_document(pairs: "Sequence[PairAnalysis]") -> dict[str, Any]:
     """The gear pairs as the command's JSON, with warnings where there are any."""
     warnings = [doubt for pair in pairs for doubt in _doubts(pair)]

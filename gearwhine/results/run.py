@@ -13,6 +13,8 @@ from coupling.histories import HISTORY_QUANTITIES
 from coupling.histories import Quantity as History
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.results import comparison
+from gearwhine.results.housing import modes_sentence
 from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
 from housing.netcdf import Variables
 
@@ -586,8 +588,10 @@ def _basis_error(document: Document) -> list[str]:
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """The main job's outcome: forces of the meshes, lines of the sensors and their origin, and the proof."""
-    return (Section("", tuple(_content(document))),)
+    """The housing beside what was measured, forces of the meshes, lines of the sensors and their origin, the proof."""
+    housing = (modes_sentence(document["housing"]),) if "housing" in document else ()
+    compared = comparison.sections(document["compare"]) if "compare" in document else ()
+    return (Section("", housing), *compared, Section("", tuple(_content(document))))
 
 
 def _content(document: Document) -> Iterator[str | Table]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
-from gearwhine.stages.housing_checks import static_error_document
+from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
 
 if TYPE_CHECKING:
     from gearwhine.stages.system import SolvedSystem
@@ -350,12 +350,7 @@ SYSTEM = (
         "trusted_below_hz",
         lambda solved: None if solved.housing is None else solved.housing.modes.certificate.limit / HERTZ,
     ),
-    Quantity(
-        "static_error",
-        lambda solved: (
-            None if solved.housing is None else static_error_document(solved.housing.modes, solved.housing.loaded)
-        ),
-    ),
+    Part("static_error", lambda solved: static_error(solved.housing), STATIC_ERROR),
     Part(
         "campbell",
         lambda solved: ABSENT if solved.campbell is None else (solved.campbell, solved.speed),
@@ -422,14 +417,6 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield from _peaks(response)
     if campbell := document.get("campbell"):
         yield from _crossings(campbell)
-
-
-def static_error_sentence(error: Document) -> str:
-    """The static compliance at the bearings in words."""
-    return (
-        f"Static compliance at the bearings: the modes alone lack up to {100 * error['without_attachments']:.3g} %; "
-        f"with {counted(error['attachments'], 'residual attachment')} {error['with_attachments']:.0e} of it is left."
-    )
 
 
 def _mesh_sentence(mesh: Document) -> str:

@@ -14,12 +14,13 @@ import coupling as room
 from coupling import static_equilibrium
 from coupling.gears.kernels import tooth_force
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
+from gearwhine.output.terminal import shown_by
+from gearwhine.results import check
+from gearwhine.results.check import check_document
 from gearwhine.results.run import transient_document
-from gearwhine.screen.case import show_check
 from gearwhine.stages.driving import driving, train_inertia
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine, solve_machine
-from gearwhine.stages.summary import check_document
 from gearwhine.stages.transient import SolvedTransient, solve_transient
 
 RPM = math.pi / 30.0
@@ -70,7 +71,7 @@ def run(case: Case) -> SolvedTransient:
 def test_written_cases_load_back_equal(given: dict[str, Any]) -> None:
     case = parse_case(given)
     assert parse_case(tomllib.loads(dump_case(case))) == case
-    show_check(check_document(case))
+    shown_by(check.sections)(check_document(case))
 
 
 WRONG: dict[str, tuple[dict[str, Any], str]] = {

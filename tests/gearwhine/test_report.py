@@ -10,7 +10,7 @@ import pytest
 from gearwhine.case import CaseError
 from gearwhine.output.html import report_page
 from gearwhine.output.sections import Column, columns_of, table_of
-from gearwhine.results import columns, gears, motion, rotors, run, steady, system
+from gearwhine.results import comparison, gears, housing, motion, rotors, run, steady, system, update
 from gearwhine.results.chapters import chapters_of
 from gearwhine.stages.contents import file_contents
 
@@ -392,6 +392,10 @@ CELLS = {
 
 
 TABLES: dict[str, tuple[Column, ...]] = {
+    "MODES": columns_of(housing.MODE),
+    "PAIRS": columns_of(comparison.PAIR),
+    "PARAMETERS": columns_of(update.PARAMETER),
+    "HELD_BACK": columns_of(update.HELD_BACK),
     "ROTORS": columns_of(rotors.ROTOR),
     "EVENTS": columns_of(steady.EVENT),
     "GEARS": gears.OVERVIEW,
@@ -400,7 +404,6 @@ TABLES: dict[str, tuple[Column, ...]] = {
     "BEARINGS": columns_of(run.BEARING),
     "ORDERS": columns_of(run.ORDER),
     "SYSTEM": (),  # depends on the modes
-    **{name: table for name, table in vars(columns).items() if name.isupper()},
 }
 
 
