@@ -1,10 +1,12 @@
 """Housing modes: quantities of the modes, their proof and the model's health, how they are shown; shapes as a file."""
 
 from collections.abc import Iterator
+from functools import partial
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
 
 if TYPE_CHECKING:
@@ -149,7 +151,7 @@ def static_error(solved: "SolvedHousing | None") -> "SolvedHousing | None":
     return None if solved is None or solved.modes.attachments is None else solved
 
 
-HOUSING = (
+HOUSING: Fields = (
     Quantity("", lambda solved: ["x", "y", "z"], "component", ("component",)),
     Rows("modes", _modes, MODE, "housing_mode"),
     Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
@@ -168,7 +170,7 @@ HOUSING = (
     *(
         Quantity(
             "",
-            lambda solved, name=name: getattr(solved.survey, name),
+            attrgetter(f"survey.{name}"),
             f"survey_{name.removesuffix('s')}",
             ("survey_point", "component"),
             unit,
@@ -252,7 +254,7 @@ def sections(document: Document) -> tuple[Section, ...]:
     """The modes, the checks of the model that break their bounds, and the static compliance at the bearings."""
     lines = [line for line in document["health"]["lines"] if line["bound"] is not None]
     broken = [line for line in lines if not line["ok"]]
-    health = (
+    health: tuple[str | Table, ...] = (
         *table_of(_CHECKS, broken),
         f"Health of the model: {len(lines) - len(broken)} of {len(lines)} checks keep their bounds "
         "(--detail shows all).",
@@ -300,16 +302,21 @@ def static_error_sentence(error: Document) -> str:
     )
 
 
+def _part(place: int, row: Document) -> str:
+    return _percent(row["parts"][place])
+
+
+def _held(name: str, support: Document) -> str:
+    return _percent(support["share"][name])
+
+
 def _effective_mass(document: Document) -> tuple[Table, ...]:
     """Effective masses of each mode, and what these, higher ones and the supports have in all."""
     mass = document["effective_mass"]
     columns = (
         Column("mode", "mode"),
         Column("frequency [Hz]", "frequency"),
-        *(
-            Column(_SHORT.get(name, name), lambda row, place=place: _percent(row["parts"][place]))
-            for place, name in enumerate(mass["directions"])
-        ),
+        *(Column(_SHORT.get(name, name), partial(_part, place)) for place, name in enumerate(mass["directions"])),
     )
     rows = [
         {"mode": mode["number"], "frequency": f"{mode['frequency_hz']:.2f}", "parts": mode["effective_mass"]}
@@ -327,10 +334,7 @@ def _supports(supports: list[Document], directions: list[str]) -> tuple[Table, .
     columns = (
         Column("support", "name"),
         Column("fixes", lambda support: f"{support['fixes']} of 6" if support["fixes"] else ""),
-        *(
-            Column(_SHORT.get(name, name), lambda support, name=name: _percent(support["share"][name]))
-            for name in directions
-        ),
+        *(Column(_SHORT.get(name, name), partial(_held, name)) for name in directions),
     )
     caption = "What the supports hold of the housing as a whole; shares of the springs' stiffness"
     return table_of(columns, supports, caption)
