@@ -173,7 +173,8 @@ def sweep(
     """The transient over the speeds of [sweep] or any keys, in parallel; resumes in OUT (default: ./<case>-results)."""
     from gearwhine.analyses import machine as analyses
     from gearwhine.failures import PartlyFailedError
-    from gearwhine.screen import show_sweep
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.sweep import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
@@ -183,7 +184,7 @@ def sweep(
         )
         return written(found, folder, progress)
 
-    document = on_case(case, common, work, show_sweep)
+    document = on_case(case, common, work, shown_by(sections, timed=True))
     if document["failed"]:
         total = len(document["points"])
         raise PartlyFailedError(f"{document['failed']} of {total} points failed; they are tried again on the next run")

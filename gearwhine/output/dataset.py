@@ -151,5 +151,5 @@ def _stacked(values: Sequence[Any], axes: int) -> npt.NDArray[Any]:
     whole = np.full((len(arrays), *shape), np.nan)
     for row, (array, value) in enumerate(zip(arrays, values, strict=True)):
         if value is not None:
-            whole[(row, *(slice(length) for length in array.shape))] = array
+            whole[row : row + 1][(slice(None), *map(slice, array.shape))] = array
     return whole

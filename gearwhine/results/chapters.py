@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from gearwhine.output.sections import Document, Section
-from gearwhine.results import comparison, gears, housing, rotors, run, steady, system, update
+from gearwhine.results import comparison, gears, housing, rotors, run, steady, sweep, system, update
 
 
 def chapters_of(document: Document) -> tuple[Section, ...]:
@@ -18,6 +18,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (gears.report, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
         (system.report, document.get("system", document if "stability" in document else {})),
         (run.report, document if "steps" in document else {}),
+        (sweep.report, document if "points" in document and "axes" in document else {}),
         (steady.report, document if "motions" in document else {}),
     )
     return tuple(make(given) for make, given in makers if given)

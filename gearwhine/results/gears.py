@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -488,9 +489,9 @@ def _path(pair: Document) -> tuple[Table, ...]:
     columns = [Column("", "point")]
     for side in ("driver", "driven"):
         columns += [
-            Column(f"{side}: roll", lambda row, side=side: _degrees(row[f"{side}_roll_angle_rad"], ".2f")),
+            Column(f"{side}: roll", partial(_roll, f"{side}_roll_angle_rad")),
             Column("⌀ [mm]", f"{side}_radius_m", ".3f", 2 * _MM),
-            Column("sliding", lambda row, side=side: _sliding(row[f"{side}_specific_sliding"])),
+            Column("sliding", partial(_sliding, f"{side}_specific_sliding")),
         ]
     title = "Path of contact, with roll angles and specific sliding"
     return table_of(tuple(columns), pair["path_of_contact"], title)
@@ -500,8 +501,13 @@ def _degrees(angle: float, form: str = ".5g") -> str:
     return f"{math.degrees(angle):{form}}°"
 
 
-def _sliding(value: float | None) -> str:
+def _roll(key: str, point: Document) -> str:
+    return _degrees(point[key], ".2f")
+
+
+def _sliding(key: str, point: Document) -> str:
     """To two places; endless where a flank does not move along itself."""
+    value = point[key]
     return f"{value:z.2f}" if value is not None and math.isfinite(value) else "-∞"
 
 

@@ -1,10 +1,11 @@
 """Housing modes: quantities of the modes, their proof and the model's health, how they are shown; shapes as a file."""
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
 
 if TYPE_CHECKING:
@@ -149,7 +150,7 @@ def static_error(solved: "SolvedHousing | None") -> "SolvedHousing | None":
     return None if solved is None or solved.modes.attachments is None else solved
 
 
-HOUSING = (
+HOUSING: Fields = (
     Quantity("", lambda solved: ["x", "y", "z"], "component", ("component",)),
     Rows("modes", _modes, MODE, "housing_mode"),
     Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
@@ -165,25 +166,22 @@ HOUSING = (
     Quantity("health", lambda solved: solved.checks["health"]),
     Quantity("solid", lambda solved: solved.checks["solid"]),
     Quantity("seconds", lambda solved: solved.seconds),
-    *(
-        Quantity(
-            "",
-            lambda solved, name=name: getattr(solved.survey, name),
-            f"survey_{name.removesuffix('s')}",
-            ("survey_point", "component"),
-            unit,
-            long_name,
-        )
-        for name, unit, long_name in (
-            ("positions", "m", "survey points on the housing's outer faces"),
-            ("normals", "1", "outward normals"),
-        )
+    Quantity(
+        "",
+        lambda solved: solved.survey.positions,
+        "survey_position",
+        ("survey_point", "component"),
+        "m",
+        "survey points on the housing's outer faces",
+    ),
+    Quantity(
+        "", lambda solved: solved.survey.normals, "survey_normal", ("survey_point", "component"), "1", "outward normals"
     ),
     Part("", lambda solved: solved, ORIGIN),
 )
 """Of a solved housing."""
 
-_SELECTED = (Part("selection", lambda solved: None if solved.selection is None else solved, SELECTION),)
+_SELECTED: Fields = (Part("selection", lambda solved: None if solved.selection is None else solved, SELECTION),)
 
 
 def modes_document(solved: "SolvedHousing", *, detail: bool = False) -> dict[str, Any]:
@@ -252,7 +250,7 @@ def sections(document: Document) -> tuple[Section, ...]:
     """The modes, the checks of the model that break their bounds, and the static compliance at the bearings."""
     lines = [line for line in document["health"]["lines"] if line["bound"] is not None]
     broken = [line for line in lines if not line["ok"]]
-    health = (
+    health: tuple[str | Table, ...] = (
         *table_of(_CHECKS, broken),
         f"Health of the model: {len(lines) - len(broken)} of {len(lines)} checks keep their bounds "
         "(--detail shows all).",
@@ -262,7 +260,7 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 def detailed_sections(document: Document) -> tuple[Section, ...]:
     """The modes with every check, effective masses, the supports, and the modes that carry the forces."""
-    content = (
+    content: tuple[str | Table, ...] = (
         *_modes_content(document),
         *table_of(_CHECKS, document["health"]["lines"]),
         *_static_error(document),
@@ -307,7 +305,7 @@ def _effective_mass(document: Document) -> tuple[Table, ...]:
         Column("mode", "mode"),
         Column("frequency [Hz]", "frequency"),
         *(
-            Column(_SHORT.get(name, name), lambda row, place=place: _percent(row["parts"][place]))
+            Column(_SHORT.get(name, name), partial(_percent, "parts", place))
             for place, name in enumerate(mass["directions"])
         ),
     )
@@ -327,10 +325,7 @@ def _supports(supports: list[Document], directions: list[str]) -> tuple[Table, .
     columns = (
         Column("support", "name"),
         Column("fixes", lambda support: f"{support['fixes']} of 6" if support["fixes"] else ""),
-        *(
-            Column(_SHORT.get(name, name), lambda support, name=name: _percent(support["share"][name]))
-            for name in directions
-        ),
+        *(Column(_SHORT.get(name, name), partial(_percent, "share", name)) for name in directions),
     )
     caption = "What the supports hold of the housing as a whole; shares of the springs' stiffness"
     return table_of(columns, supports, caption)
@@ -347,5 +342,6 @@ def _selection(selection: Document) -> str:
     )
 
 
-def _percent(part: float) -> str:
+def _percent(key: str, direction: str | int, row: Document) -> str:
+    part = row[key][direction]
     return f"{100 * part:.1f} %" if abs(part) >= _SHOWN else ""

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from gearwhine.output.sections import Column, Document, Section, Table, columns_
 
 if TYPE_CHECKING:
     from gearwhine.stages.rotors import Crossings, SolvedRotor
+    from rotors.rolling import RollingState
 
 _ROTATING = (
     "rotor {!r}: the damping of its coupling across the axis turns with the shaft and feeds forward whirl at speeds "
@@ -117,32 +119,54 @@ CAMPBELL = (
 )
 """Whirl over speed: a row for each speed, a column for each branch, which keeps its place through its crossings."""
 
+
+def _loaded(row: tuple["SolvedRotor", str]) -> "RollingState":
+    return row[0].rolling[row[1]]
+
+
+def _life(row: tuple["SolvedRotor", str]) -> float | None:
+    """Hours at the speed of operation that 90 % of like bearings reach."""
+    one, name = row
+    return one.lives[name] / (60.0 * abs(one.operation) * RPM) if one.operation and name in one.lives else None
+
+
 ROLLING = (
-    Quantity("name", lambda row: row[0], heading="bearing"),
+    Quantity("", lambda row: f"{row[0].rotor.name}: {row[1]}", "rolling_bearing"),
+    Quantity("name", lambda row: row[1], heading="bearing"),
     Quantity(
         "load_n",
-        lambda row: row[1].load[:3],
+        lambda row: _loaded(row).load[:3],
         heading="x, y, z [N]",
         shown=lambda row: ", ".join(f"{load:z.5g}" for load in row["load_n"]),
     ),
-    Quantity("elements", lambda row: sum(each.count for each in row[1].bearing.rows)),
+    Quantity("elements", lambda row: sum(each.count for each in _loaded(row).bearing.rows)),
     Quantity(
         "loaded_elements",
-        lambda row: row[1].loaded,
+        lambda row: _loaded(row).loaded,
         heading="loaded",
         shown=lambda row: f"{row['loaded_elements']} of {row['elements']}",
     ),
-    Quantity("peak_pressure_pa", lambda row: row[1].peak_pressure, heading="peak [GPa]", shown=".3g", scale=1e-9),
+    Quantity("peak_pressure_pa", lambda row: _loaded(row).peak_pressure, heading="peak [GPa]", shown=".3g", scale=1e-9),
     Quantity(
         "stiffness",  # over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad
-        lambda row: row[1].stiffness,
+        lambda row: _loaded(row).stiffness,
         heading="stiffness [N/m]",
         shown=lambda row: ", ".join(f"{row['stiffness'][motion][motion]:.3g}" for motion in range(3)),
     ),
-    Quantity("displacement_m", lambda row: row[1].displacement[:3]),
-    Quantity("residual", lambda row: row[1].residual),
+    Quantity(
+        "life_h",
+        _life,
+        "rolling_bearing_life",
+        (),
+        "h",
+        "basic rating life L10 by ISO 281 at the speed of operation",
+        heading="rated life L10 [h]",
+        shown=".3g",
+    ),
+    Quantity("displacement_m", lambda row: _loaded(row).displacement[:3]),
+    Quantity("residual", lambda row: _loaded(row).residual),
 )
-"""Of a rolling bearing under its load: its name and its state."""
+"""Of a rotor and the name of one of its rolling bearings, under its load."""
 
 STATIC = (
     Quantity("gravity_m_per_s2", lambda one: one.weight.deflection.gravity),
@@ -398,7 +422,7 @@ ROTOR = (
         (Quantity("bearings", lambda one: None), Quantity("why_not", lambda one: one.weight)),
     ),
     Part("unbalance_response", lambda one: one.response, RESPONSE),
-    Rows("rolling_bearings", lambda one: one.rolling.items(), ROLLING, "rolling_bearing"),
+    Rows("rolling_bearings", lambda one: [(one, name) for name in one.rolling], ROLLING, "rolling_bearing"),
     Quantity(
         "damping", lambda one: "of the bearings; that of the shaft and of its couplings acts in the coupled system"
     ),
@@ -623,11 +647,15 @@ def _weight(static: Document) -> Iterator[str | Table]:
         return
     columns = (
         Column("bearing carries", "name"),
-        *(Column(f"{axis} [N]", lambda row, at=at: f"{row['load_n'][at]:z.5g}") for at, axis in enumerate("xy")),
+        *(Column(f"{axis} [N]", partial(_load, at)) for at, axis in enumerate("xy")),
     )
     yield from table_of(columns, static["bearings"], f"Under its weight{_with_bearings_at(static['bearings_at_rpm'])}")
     sag, place = 1e6 * static["largest_deflection_m"], 1e3 * static["largest_deflection_at_m"]
     yield f"It sags most at {place:.5g} mm, by {sag:.3g} µm"
+
+
+def _load(axis: int, bearing: Document) -> str:
+    return f"{bearing['load_n'][axis]:z.5g}"
 
 
 _PROBES = (

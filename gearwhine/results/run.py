@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from coupling.histories import HISTORY_QUANTITIES
 from coupling.histories import Quantity as History
-from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
 from gearwhine.results import comparison
 from gearwhine.results.housing import modes_sentence
@@ -215,10 +216,7 @@ RECORD = (
 )
 """Length and fineness of the record, and of the stretches that the spectra were taken over."""
 
-ENERGY = tuple(
-    Quantity(key, lambda energy, key=key: getattr(energy, key))
-    for key in ("change", "loads", "lost", "teeth", "friction")
-)
+ENERGY = tuple(Quantity(key, attrgetter(key)) for key in ("change", "loads", "lost", "teeth", "friction"))
 
 
 def _spectra(of: Any, name: str, dimension: str, unit: str, what: str) -> tuple[Quantity, ...]:
@@ -340,7 +338,7 @@ HOUSING_LINES = (
 )
 """Of frequencies up to where the modes are complete, the lines there, and their window: operating shapes follow."""
 
-TRANSIENT = (
+TRANSIENT: Fields = (
     Quantity("speed_rpm", lambda row: row[0].speed * RPM),
     Part("run", lambda row: None if row[0].turning is None else row[0], RUN),
     Quantity("method", lambda row: row[0].method),
@@ -394,10 +392,10 @@ def transient_document(solved: "SolvedTransient", signature: "SolvedSignature | 
 
 ORDER = (
     Quantity("signal", lambda row: row["signal"], heading="signal"),
-    Quantity("unit", lambda row: row["unit"]),
     Quantity("name", lambda row: row["name"], heading="order"),
     Quantity("order", lambda row: row["order"]),
     Quantity("highest_amplitude", lambda row: row["highest_amplitude"], heading="highest [peak]", shown=".3g"),
+    Quantity("unit", lambda row: row["unit"], heading="unit"),
     Quantity("at_rpm", lambda row: row["at_rpm"], heading="at [rpm]", shown=".0f"),
     Quantity("frequency_hz", lambda row: row["frequency_hz"], heading="that is [Hz]", shown=".0f"),
 )

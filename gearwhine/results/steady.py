@@ -40,7 +40,7 @@ PAIR = (
     Quantity("neglected_part", lambda row: row[1].neglected_part[row[2]] if row[4] else ABSENT),
     Quantity("force_lines", lambda row: row[3]),
 )
-"""Of a gear mesh (see :data:`gearwhine.results.motion.MESH`), lines of its force, and whether motions are superposed."""
+"""Of a gear mesh as :data:`gearwhine.results.motion.MESH`, lines of its force, and whether motions are superposed."""
 
 
 def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[Any]:

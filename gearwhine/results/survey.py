@@ -1,6 +1,7 @@
 """Survey plan of the housing: its quantities, and how the terminal shows it."""
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
@@ -62,10 +63,14 @@ def plan_document(planned: "PlannedSurvey", solved: "SolvedHousing") -> dict[str
     return document_of(PLAN, planned) | document_of(ORIGIN, solved)
 
 
+def _coordinate(axis: int, sensor: Document) -> str:
+    return f"{1e3 * sensor['position_m'][axis]:.1f}"
+
+
 _POINT, *_ALONG = columns_of(SENSOR)
 _SENSORS = (
     _POINT,
-    *(Column(f"{axis} [mm]", lambda row, at=at: f"{1e3 * row['position_m'][at]:.1f}") for at, axis in enumerate("xyz")),
+    *(Column(f"{axis} [mm]", partial(_coordinate, at)) for at, axis in enumerate("xyz")),
     *_ALONG,
 )
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -433,12 +434,12 @@ def mode_columns(shown: list[Document]) -> tuple[Column, ...]:
     kinds = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
     return (
         *columns_of(MODE),
-        *(Column("teeth" if kind == "mesh" else kind, lambda row, kind=kind: _share(row, kind)) for kind in kinds),
+        *(Column("teeth" if kind == "mesh" else kind, partial(_share, kind)) for kind in kinds),
         Column("strained most", _strained),
     )
 
 
-def _share(mode: Document, kind: str) -> str:
+def _share(kind: str, mode: Document) -> str:
     # A rigid mode is the free turning of the train: its shares say nothing of vibration.
     return "" if mode["kind"] == "rigid" else f"{100 * mode['energy'][kind]:z.0f} %"
 

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 import rotors as room
-from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
+from gearwhine.case import Case, RollingStiffness, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.bearings import build_bearings, rolling_states
@@ -16,6 +16,7 @@ from gearwhine.stages.build import build_rotor
 from gearwhine.stages.rotor_loads import SolvedResponse, SolvedWeight, solve_response, solve_weight
 from gearwhine.stages.torsion import SolvedTorsion, solve_torsion
 from rotors.rolling import RollingState
+from rotors.rolling.life import rated_revolutions
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -65,6 +66,8 @@ class SolvedRotor:
         Where the case asks for it.
     rolling : mapping of str to rotors.rolling.RollingState
         What its rolling bearings carry, by their names.
+    lives : mapping of str to float
+        Basic rating life of those whose dynamic rating the case gives, as far as it is defined [revolutions].
     """
 
     rotor: room.Rotor
@@ -86,6 +89,7 @@ class SolvedRotor:
     torsion: SolvedTorsion | None
     stiffness_map: room.CriticalSpeedMap | None
     rolling: Mapping[str, RollingState]
+    lives: Mapping[str, float]
 
     @property
     def lateral_at_rest(self) -> npt.NDArray[np.bool_]:
@@ -149,6 +153,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         held = not isinstance(weight, str)
         rest = room.rest_frequencies(rotor, resting, count=analysis.modes)
         torsional = room.solve_torsional_modes(rotor)
+        rolling = rolling_states(case, given.name)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
@@ -171,10 +176,26 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
                 torsion=solve_torsion(analysis, given, rotor, torsional),
                 stiffness_map=_stiffness_map(analysis, rotor, bearings),
-                rolling=rolling_states(case, given.name),
+                rolling=rolling,
+                lives=_rated_lives(case, rolling),
             )
         )
     return tuple(solved)
+
+
+def _rated_lives(case: Case, states: Mapping[str, RollingState]) -> dict[str, float]:
+    """Basic rating lives in revolutions."""
+    ratings = {
+        bearing.name: bearing.stiffness.rolling.dynamic_rating
+        for bearing in case.bearing
+        if isinstance(bearing.stiffness, RollingStiffness)
+    }
+    lives = {
+        name: rated_revolutions(state, rating)
+        for name, state in states.items()
+        if (rating := ratings.get(name)) is not None
+    }
+    return {name: life for name, life in lives.items() if life is not None}
 
 
 def _axial_frequencies(rotor: room.Rotor, resting: Bearings, rest: room.RestFrequencies) -> FloatArray:
