@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from functools import partial
-from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -167,25 +166,22 @@ HOUSING: Fields = (
     Quantity("health", lambda solved: solved.checks["health"]),
     Quantity("solid", lambda solved: solved.checks["solid"]),
     Quantity("seconds", lambda solved: solved.seconds),
-    *(
-        Quantity(
-            "",
-            attrgetter(f"survey.{name}"),
-            f"survey_{name.removesuffix('s')}",
-            ("survey_point", "component"),
-            unit,
-            long_name,
-        )
-        for name, unit, long_name in (
-            ("positions", "m", "survey points on the housing's outer faces"),
-            ("normals", "1", "outward normals"),
-        )
+    Quantity(
+        "",
+        lambda solved: solved.survey.positions,
+        "survey_position",
+        ("survey_point", "component"),
+        "m",
+        "survey points on the housing's outer faces",
+    ),
+    Quantity(
+        "", lambda solved: solved.survey.normals, "survey_normal", ("survey_point", "component"), "1", "outward normals"
     ),
     Part("", lambda solved: solved, ORIGIN),
 )
 """Of a solved housing."""
 
-_SELECTED = (Part("selection", lambda solved: None if solved.selection is None else solved, SELECTION),)
+_SELECTED: Fields = (Part("selection", lambda solved: None if solved.selection is None else solved, SELECTION),)
 
 
 def modes_document(solved: "SolvedHousing", *, detail: bool = False) -> dict[str, Any]:
@@ -264,7 +260,7 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 def detailed_sections(document: Document) -> tuple[Section, ...]:
     """The modes with every check, effective masses, the supports, and the modes that carry the forces."""
-    content = (
+    content: tuple[str | Table, ...] = (
         *_modes_content(document),
         *table_of(_CHECKS, document["health"]["lines"]),
         *_static_error(document),
@@ -302,21 +298,16 @@ def static_error_sentence(error: Document) -> str:
     )
 
 
-def _part(place: int, row: Document) -> str:
-    return _percent(row["parts"][place])
-
-
-def _held(name: str, support: Document) -> str:
-    return _percent(support["share"][name])
-
-
 def _effective_mass(document: Document) -> tuple[Table, ...]:
     """Effective masses of each mode, and what these, higher ones and the supports have in all."""
     mass = document["effective_mass"]
     columns = (
         Column("mode", "mode"),
         Column("frequency [Hz]", "frequency"),
-        *(Column(_SHORT.get(name, name), partial(_part, place)) for place, name in enumerate(mass["directions"])),
+        *(
+            Column(_SHORT.get(name, name), partial(_percent, "parts", place))
+            for place, name in enumerate(mass["directions"])
+        ),
     )
     rows = [
         {"mode": mode["number"], "frequency": f"{mode['frequency_hz']:.2f}", "parts": mode["effective_mass"]}
@@ -334,7 +325,7 @@ def _supports(supports: list[Document], directions: list[str]) -> tuple[Table, .
     columns = (
         Column("support", "name"),
         Column("fixes", lambda support: f"{support['fixes']} of 6" if support["fixes"] else ""),
-        *(Column(_SHORT.get(name, name), partial(_held, name)) for name in directions),
+        *(Column(_SHORT.get(name, name), partial(_percent, "share", name)) for name in directions),
     )
     caption = "What the supports hold of the housing as a whole; shares of the springs' stiffness"
     return table_of(columns, supports, caption)
@@ -351,5 +342,6 @@ def _selection(selection: Document) -> str:
     )
 
 
-def _percent(part: float) -> str:
+def _percent(key: str, direction: str | int, row: Document) -> str:
+    part = row[key][direction]
     return f"{100 * part:.1f} %" if abs(part) >= _SHOWN else ""

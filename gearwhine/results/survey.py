@@ -63,14 +63,14 @@ def plan_document(planned: "PlannedSurvey", solved: "SolvedHousing") -> dict[str
     return document_of(PLAN, planned) | document_of(ORIGIN, solved)
 
 
-def _millimetres(axis: int, sensor: Document) -> str:
+def _coordinate(axis: int, sensor: Document) -> str:
     return f"{1e3 * sensor['position_m'][axis]:.1f}"
 
 
 _POINT, *_ALONG = columns_of(SENSOR)
 _SENSORS = (
     _POINT,
-    *(Column(f"{axis} [mm]", partial(_millimetres, at)) for at, axis in enumerate("xyz")),
+    *(Column(f"{axis} [mm]", partial(_coordinate, at)) for at, axis in enumerate("xyz")),
     *_ALONG,
 )
 

@@ -99,7 +99,8 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
         build_bearings(case, rotor.name)
     if case.update is not None:
         fitted_case(case)
-    mesh, warnings = None, list[dict[str, Any]]()
+    mesh: ForeseenMesh | None = None
+    warnings: list[dict[str, Any]] = []
     if case.housing is not None:
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:
             material_of(case, name)
@@ -118,8 +119,7 @@ def _checked_pairs(case: Case) -> Iterator[CheckedPair]:
     number = len(case.gear_pair)
     frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
     torques = pair_torques(case) if case.operation is not None else (None,) * number
-    rows = zip(case.gear_pair, pair_geometries(case), frequencies, torques, strict=True)
-    for given, geometry, frequency, torque in rows:
-        pair = CheckedPair(given, geometry, frequency, torque)
-        build_pair(given).require_sound_faults(pair.geometry)
+    for row in zip(case.gear_pair, pair_geometries(case), frequencies, torques, strict=True):
+        pair = CheckedPair(*row)
+        build_pair(pair.given).require_sound_faults(pair.geometry)
         yield pair
