@@ -11,7 +11,7 @@ def fit(rms: float, largest: float, gap: float = 0.5, *, agree: bool = True, met
 
 
 def test_parts_of_random_sets_are_counted_by_their_own_errors() -> None:
-    """Of four sets, errors by hand: one within 1 %, three within 2 % of which one is a clear choice, four within 5 %."""
+    """Of four sets, errors by hand: one within 1 %, three within 2 % (one a clear choice), four within 5 %."""
     fits = [fit(0.5, 0.9, gap=0.05), fit(1.0, 1.8, met=True), fit(1.4, 2.0, agree=False), fit(3.0, 4.0)]
     test = NullTest(fit(1.2, 1.9), fits)
     assert [test.within(percent) for percent in (1.0, 2.0, 5.0)] == [0.25, 0.75, 1.0]
