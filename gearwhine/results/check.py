@@ -329,11 +329,7 @@ _WIDTH = 12  # of the column with the names of parts
 def sections(document: Document) -> tuple[Section, ...]:
     """The parts of a case in words, a part's name before its first line."""
     return tuple(
-        Section(
-            part,
-            tuple(f"{'':{_WIDTH - 2}}{line}" for line in lines),
-            note=f"{'':{_WIDTH - len(part)}}{first}",
-        )
+        Section(part, tuple(f"{'':{_WIDTH - 2}}{line}" for line in lines), note=f"{'':{_WIDTH - len(part)}}{first}")
         for part, (first, *lines) in _parts(document)
     )
 

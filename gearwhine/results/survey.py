@@ -68,11 +68,7 @@ def _coordinate(axis: int, sensor: Document) -> str:
 
 
 _POINT, *_ALONG = columns_of(SENSOR)
-_SENSORS = (
-    _POINT,
-    *(Column(f"{axis} [mm]", partial(_coordinate, at)) for at, axis in enumerate("xyz")),
-    *_ALONG,
-)
+_SENSORS = (_POINT, *(Column(f"{axis} [mm]", partial(_coordinate, at)) for at, axis in enumerate("xyz")), *_ALONG)
 
 
 def sections(document: Document) -> tuple[Section, ...]:

@@ -147,13 +147,7 @@ IDENTIFIABILITY = (
 
 HELD_BACK = (
     Quantity("measured_hz", lambda row: row.measured / HERTZ, heading="held back [Hz]", shown=".1f"),
-    Quantity(
-        "predicted_hz",
-        lambda row: row.predicted / HERTZ,
-        document=_known,
-        heading="predicted [Hz]",
-        shown=".1f",
-    ),
+    Quantity("predicted_hz", lambda row: row.predicted / HERTZ, document=_known, heading="predicted [Hz]", shown=".1f"),
     Quantity("error_percent", lambda row: row.error_percent, document=_known, heading="error [%]", shown="+.2f"),
     Quantity(
         "standard_deviation_percent",
